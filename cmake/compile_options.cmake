@@ -1,0 +1,22 @@
+# How everything in the project is compiled. No -march=native and no -ffast-math: both change PCL's ABI or our numbers.
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()
+
+if(PCL_SYMMETRY_SANITIZE)
+  add_compile_options(-fsanitize=${PCL_SYMMETRY_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${PCL_SYMMETRY_SANITIZE})
+endif()
+
+# Warnings for our own targets only.
+add_library(pcl_symmetry_warnings INTERFACE)
+target_compile_options(pcl_symmetry_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
