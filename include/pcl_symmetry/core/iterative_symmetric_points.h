@@ -1,0 +1,77 @@
+#pragma once
+
+#include <vector>
+
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+
+namespace pcl_symmetry {
+
+/// How Iterative Symmetric Points moves the plane.
+enum class IspUpdate {
+  PointToPoint,  ///< the paper's: the plane that minimises the weighted squared distances of the pairs, in closed form
+  PointToPlane   ///< distances across the surface only: a Gauss-Newton step, converges in far fewer iterations
+};
+
+struct IspOptions {
+  IspUpdate update = IspUpdate::PointToPlane;
+  double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
+  double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; the width halves in every iteration until then
+  int max_iterations = 30;   ///< >= 1
+  double angle_tolerance = 1e-7;   ///< radians, >= 0: converged when the normal moves less
+  double offset_tolerance = 1e-7;  ///< input units, >= 0: and the center of the samples sees the plane move less
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// The surface that reflected samples are matched to.
+struct IspSurface {
+  const Points& points;
+  const Points& normals;  ///< 3 x N unit normals of any sign; may be empty with PointToPoint
+  const ClosestPointSearch& search;
+};
+
+/// What one iteration saw and did: everything that a picture of it needs (Figure 7).
+struct IspStep {
+  ReflectionPlane plane;             ///< the plane after the step
+  double residual = 0.0;             ///< weighted root mean square distance of the pairs before the step, input units
+  double weight = 0.0;               ///< mean weight of the pairs, in [0, 1]
+  std::vector<int> closest;          ///< for each sample the closest point to its reflection
+  std::vector<float> sq_distances;   ///< and its squared distance
+};
+
+struct IspResult {
+  ReflectionPlane plane;
+  int iterations = 0;
+  bool converged = false;
+  double residual = 0.0;  ///< of the last iteration, input units
+  double weight = 0.0;    ///< of the last iteration
+};
+
+/// Pairs (x, y) of a sample and the closest point to its reflection, with weights: the sums of the closed form.
+///
+/// sum w |x' - y|^2 = const + 4 sum w (n.x - r)(n.y - r), hence r = n.m with m the weighted mean of (x + y) / 2, and n is
+/// the eigenvector of the smallest eigenvalue of sum w [(x - m)(y - m)^T + (y - m)(x - m)^T] / 2.
+/// \param x,y 3 x M. \param weights M values >= 0. \return \p fallback where the weights vanish.
+ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const std::vector<double>& weights,
+                                   const ReflectionPlane& fallback);
+
+/// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2, m the mean direction of the normals at y and of the
+/// reflected normal at x. Directions that the pairs leave free (those of a sphere, say) do not move.
+/// \param x,y,x_normals,y_normals 3 x M. \param weights M values >= 0.
+ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
+                                    const PointsRef& y_normals, const std::vector<double>& weights,
+                                    const ReflectionPlane& plane);
+
+/// One iteration of Iterative Symmetric Points (Section 4.4): reflect, match, weight, move the plane.
+/// \param samples indices of the points of the surface to reflect.
+IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                               double sigma, IspUpdate update);
+
+/// Iterates until the plane stands still.
+IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                                const IspOptions& options);
+
+}  // namespace pcl_symmetry
