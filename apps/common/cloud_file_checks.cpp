@@ -1,0 +1,423 @@
+#include "cloud_file_checks.h"
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "file_text.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+constexpr std::uint64_t kMaxPoints = std::numeric_limits<std::int32_t>::max();
+
+using Words = std::vector<std::string>;
+
+/// Reads line by line and knows where the next line begins.
+class LineReader {
+public:
+  explicit LineReader(std::string_view text) : text_(text) {}
+
+  bool next(std::string_view& line) {
+    if (position_ >= text_.size()) return false;
+    const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+    line = text_.substr(position_, end - position_);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    position_ = std::min(end + 1, text_.size());
+    return true;
+  }
+  std::size_t position() const { return position_; }
+
+private:
+  std::string_view text_;
+  std::size_t position_ = 0;
+};
+
+Words split(std::string_view line) {
+  Words words;
+  const std::string trimmed = boost::algorithm::trim_copy(std::string(line));
+  if (!trimmed.empty()) boost::algorithm::split(words, trimmed, boost::is_space(), boost::token_compress_on);
+  return words;
+}
+
+bool isPrintable(std::string_view line) {
+  return std::all_of(line.begin(), line.end(), [](unsigned char c) { return c == '\t' || c >= 32; });
+}
+
+[[noreturn]] void reject(const std::string& path, const std::string& what) {
+  throw InputError(path + ": " + what);
+}
+
+std::uint64_t headerCount(const std::string& path, const std::string& key, const std::string& value,
+                          std::uint64_t largest) {
+  std::uint64_t count = 0;
+  if (!spellsCount(value, &count)) reject(path, key + " = " + value + ", must be a whole number >= 0");
+  if (count > largest) reject(path, key + " = " + value + ", must be <= " + std::to_string(largest));
+  return count;
+}
+
+struct PCDHeader {
+  std::map<std::string, Words> entries;
+  std::size_t body = 0;
+
+  const Words* find(const std::string& key) const {
+    const auto entry = entries.find(key);
+    return entry == entries.end() ? nullptr : &entry->second;
+  }
+};
+
+PCDHeader readPCDHeader(const std::string& path, std::string_view text) {
+  PCDHeader header;
+  LineReader lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    if (!isPrintable(line)) reject(path, "has no PCD header");
+    Words words = split(line);
+    if (words.empty() || words[0][0] == '#') continue;
+    std::string key = words[0];
+    words.erase(words.begin());
+    if (key == "COLUMNS") key = "FIELDS";
+    static const char* const known[] = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
+                                        "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+    if (std::find(std::begin(known), std::end(known), key) == std::end(known)) {
+      reject(path, header.entries.empty() ? "has no PCD header" : "unknown PCD header entry " + key.substr(0, 40));
+    }
+    if (!header.entries.emplace(key, words).second) reject(path, "PCD header entry " + key + " stands twice");
+    if (words.empty()) reject(path, "PCD header entry " + key + " has no value");
+    if (key == "DATA") {
+      header.body = lines.position();
+      return header;
+    }
+  }
+  reject(path, header.entries.empty() ? "has no PCD header" : "PCD header ends before DATA");
+}
+
+struct PCDLayout {
+  std::uint64_t num_points = 0;
+  std::uint64_t point_size = 0;
+  std::uint64_t packed_size = 0;  ///< without padding fields
+  std::uint64_t num_values = 0;
+};
+
+PCDLayout checkPCDFields(const std::string& path, const PCDHeader& header) {
+  const Words* fields = header.find("FIELDS");
+  const Words* sizes = header.find("SIZE");
+  const Words* types = header.find("TYPE");
+  const Words* counts = header.find("COUNT");
+  if (!fields) reject(path, "PCD header has no FIELDS");
+  if (!sizes) reject(path, "PCD header has no SIZE");
+  if (!types) reject(path, "PCD header has no TYPE");
+  const auto check_length = [&](const char* key, const Words& words) {
+    if (words.size() != fields->size()) {
+      reject(path, std::string(key) + " has " + std::to_string(words.size()) + " entries, must be " +
+                       std::to_string(fields->size()) + ", one per field");
+    }
+  };
+  check_length("SIZE", *sizes);
+  check_length("TYPE", *types);
+  if (counts) check_length("COUNT", *counts);
+
+  PCDLayout layout;
+  for (std::size_t i = 0; i < fields->size(); ++i) {
+    const std::string& name = (*fields)[i];
+    const std::string& type = (*types)[i];
+    const std::uint64_t size = headerCount(path, "SIZE of " + name, (*sizes)[i], 8);
+    const bool known = (type == "F" && (size == 4 || size == 8)) ||
+                       ((type == "I" || type == "U") && (size == 1 || size == 2 || size == 4 || size == 8));
+    if (!known && name != "_") {
+      reject(path, "TYPE and SIZE of " + name + " = " + type + " " + (*sizes)[i] +
+                       ", must be F 4, F 8, or I or U with 1, 2, 4 or 8");
+    }
+    const std::uint64_t count = counts ? headerCount(path, "COUNT of " + name, (*counts)[i], 1 << 20) : 1;
+    if (count == 0) reject(path, "COUNT of " + name + " = 0, must be > 0");
+    const bool coordinate = name == "x" || name == "y" || name == "z";
+    if (coordinate && type != "F") reject(path, "TYPE of " + name + " = " + type + ", must be F");
+    if (coordinate && count != 1) reject(path, "COUNT of " + name + " = " + std::to_string(count) + ", must be 1");
+    if (std::count(fields->begin(), fields->end(), name) > 1 && name != "_")
+      reject(path, "field " + name + " stands twice");
+    layout.point_size += size * count;
+    layout.packed_size += name == "_" ? 0 : size * count;
+    layout.num_values += count;
+  }
+  for (const char* name : {"x", "y", "z"}) {
+    if (std::find(fields->begin(), fields->end(), name) == fields->end()) {
+      reject(path, "has no field " + std::string(name) + ", must have x, y and z");
+    }
+  }
+  return layout;
+}
+
+void checkPCDCounts(const std::string& path, const PCDHeader& header, PCDLayout& layout) {
+  for (const char* key : {"WIDTH", "HEIGHT", "POINTS"}) {
+    if (!header.find(key)) reject(path, "PCD header has no " + std::string(key));
+  }
+  const std::uint64_t width = headerCount(path, "WIDTH", header.find("WIDTH")->front(), kMaxPoints);
+  const std::uint64_t height = headerCount(path, "HEIGHT", header.find("HEIGHT")->front(), kMaxPoints);
+  layout.num_points = headerCount(path, "POINTS", header.find("POINTS")->front(), kMaxPoints);
+  if (width * height != layout.num_points) {
+    reject(path, "POINTS = " + std::to_string(layout.num_points) +
+                     ", must be WIDTH * HEIGHT = " + std::to_string(width * height));
+  }
+  if (layout.num_points == 0) reject(path, "POINTS = 0, must be > 0");
+  if (const Words* viewpoint = header.find("VIEWPOINT")) {
+    double value = 0;
+    if (viewpoint->size() != 7 || !std::all_of(viewpoint->begin(), viewpoint->end(), [&](const std::string& word) {
+          return spellsNumber(word, &value) && std::isfinite(value);
+        })) {
+      reject(path, "VIEWPOINT must be seven finite numbers");
+    }
+  }
+}
+
+void checkPCDText(const std::string& path, std::string_view body, const PCDLayout& layout) {
+  LineReader lines(body);
+  std::string_view line;
+  std::uint64_t row = 0;
+  while (row < layout.num_points && lines.next(line)) {
+    TokenReader tokens(line, path);
+    std::uint64_t values = 0;
+    for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next(), ++values) {
+      if (!spellsNumber(token)) {
+        reject(path, "point " + std::to_string(row) + " holds a value that is not a number");
+      }
+    }
+    if (values == 0) continue;
+    if (values != layout.num_values) {
+      reject(path, "point " + std::to_string(row) + " has " + std::to_string(values) + " values, must be " +
+                       std::to_string(layout.num_values));
+    }
+    ++row;
+  }
+  if (row < layout.num_points) {
+    reject(path, "holds " + std::to_string(row) + " points, POINTS = " + std::to_string(layout.num_points));
+  }
+}
+
+}  // namespace
+
+void checkPCD(const std::string& path) {
+  const std::string text = readWholeFile(path);
+  const PCDHeader header = readPCDHeader(path, text);
+  PCDLayout layout = checkPCDFields(path, header);
+  checkPCDCounts(path, header, layout);
+  const std::string& data = header.find("DATA")->front();
+  const std::uint64_t available = text.size() - header.body;
+  const auto need = [&](std::uint64_t bytes) {
+    if (available < bytes) {
+      reject(path, "holds " + std::to_string(available) + " bytes of points, must be >= " + std::to_string(bytes) +
+                       " for POINTS = " + std::to_string(layout.num_points));
+    }
+  };
+  if (data == "ascii") {
+    need(2 * layout.num_values * layout.num_points - 1);
+    checkPCDText(path, std::string_view(text).substr(header.body), layout);
+  } else if (data == "binary") {
+    need(layout.point_size * layout.num_points);
+  } else if (data == "binary_compressed") {
+    if (available < 8) reject(path, "ends before the sizes of the compressed points");
+    std::uint32_t compressed = 0, uncompressed = 0;
+    std::memcpy(&compressed, text.data() + header.body, 4);
+    std::memcpy(&uncompressed, text.data() + header.body + 4, 4);
+    if (compressed == 0 || compressed > available - 8) {
+      reject(path, "compressed size = " + std::to_string(compressed) +
+                       ", must be > 0 and <= " + std::to_string(available - 8) + ", the bytes that follow");
+    }
+    if (uncompressed != layout.packed_size * layout.num_points) {
+      reject(path, "uncompressed size = " + std::to_string(uncompressed) + ", must be " +
+                       std::to_string(layout.packed_size * layout.num_points) + ", the size of all points");
+    }
+  } else {
+    reject(path, "DATA = " + data.substr(0, 40) + ", must be ascii, binary or binary_compressed");
+  }
+}
+
+namespace {
+
+struct PLYProperty {
+  std::string name;
+  std::size_t size = 0;             ///< bytes of the value, or of one entry of a list
+  bool integer = false;             ///< of the value, or of one entry of a list
+  std::size_t list_count_size = 0;  ///< bytes of a list's length; 0 = no list
+};
+
+struct PLYElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PLYProperty> properties;
+};
+
+struct PLYHeader {
+  std::string format;
+  std::vector<PLYElement> elements;
+  std::size_t body = 0;
+};
+
+struct PLYScalar {
+  std::size_t size;
+  bool integer;
+};
+
+PLYScalar scalarType(const std::string& path, const std::string& type) {
+  static const std::map<std::string, PLYScalar> types = {
+      {"char", {1, true}},   {"int8", {1, true}},     {"uchar", {1, true}},   {"uint8", {1, true}},
+      {"short", {2, true}},  {"int16", {2, true}},    {"ushort", {2, true}},  {"uint16", {2, true}},
+      {"int", {4, true}},    {"int32", {4, true}},    {"uint", {4, true}},    {"uint32", {4, true}},
+      {"float", {4, false}}, {"float32", {4, false}}, {"double", {8, false}}, {"float64", {8, false}}};
+  const auto entry = types.find(type);
+  if (entry == types.end()) reject(path, "unknown PLY type " + type.substr(0, 40));
+  return entry->second;
+}
+
+PLYProperty parseProperty(const std::string& path, const Words& words) {
+  if (words.size() == 5 && words[1] == "list") {
+    const PLYScalar count = scalarType(path, words[2]), value = scalarType(path, words[3]);
+    if (!count.integer) reject(path, "length of list " + words[4] + " has type " + words[2] + ", must be an integer");
+    return {words[4], value.size, value.integer, count.size};
+  }
+  if (words.size() != 3) reject(path, "malformed PLY property");
+  const PLYScalar value = scalarType(path, words[1]);
+  return {words[2], value.size, value.integer, 0};
+}
+
+PLYHeader readPLYHeader(const std::string& path, std::string_view text) {
+  PLYHeader header;
+  LineReader lines(text);
+  std::string_view line;
+  if (!lines.next(line) || line != "ply") reject(path, "does not begin with ply");
+  while (lines.next(line)) {
+    if (!isPrintable(line)) reject(path, "PLY header ends before end_header");
+    const Words words = split(line);
+    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+    if (words[0] == "format" && words.size() == 3) {
+      header.format = words[1];
+      if (words[2] != "1.0") reject(path, "PLY version = " + words[2] + ", must be 1.0");
+    } else if (words[0] == "element" && words.size() == 3) {
+      header.elements.push_back({words[1], headerCount(path, "element " + words[1], words[2], kMaxPoints), {}});
+    } else if (words[0] == "property" && !header.elements.empty()) {
+      header.elements.back().properties.push_back(parseProperty(path, words));
+    } else if (words[0] == "end_header") {
+      header.body = lines.position();
+      return header;
+    } else {
+      reject(path, "malformed PLY header line '" + std::string(line.substr(0, 40)) + "'");
+    }
+  }
+  reject(path, "PLY header ends before end_header");
+}
+
+void checkPLYHeader(const std::string& path, const PLYHeader& header, std::uint64_t available) {
+  if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian") {
+    reject(path, "PLY format = " + header.format + ", must be ascii, binary_little_endian or binary_big_endian");
+  }
+  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(),
+                                   [](const PLYElement& element) { return element.name == "vertex"; });
+  if (vertex == header.elements.end()) reject(path, "has no element vertex");
+  if (vertex->count == 0) reject(path, "element vertex = 0, must be > 0");
+  for (const char* name : {"x", "y", "z"}) {
+    const auto property = std::find_if(vertex->properties.begin(), vertex->properties.end(),
+                                       [&](const PLYProperty& candidate) { return candidate.name == name; });
+    if (property == vertex->properties.end()) {
+      reject(path, "has no vertex property " + std::string(name) + ", must have x, y and z");
+    }
+    if (property->integer || property->list_count_size) {
+      reject(path, "vertex property " + std::string(name) + " must be float or double");
+    }
+  }
+  std::uint64_t least = 0;
+  for (const PLYElement& element : header.elements) {
+    std::uint64_t size = 0;
+    for (const PLYProperty& property : element.properties) {
+      if (header.format == "ascii") {
+        size += 2;
+      } else {
+        size += property.list_count_size ? property.list_count_size : property.size;
+      }
+    }
+    least += size * element.count;
+    if (least > available + 1) {
+      reject(path, "element " + element.name + " = " + std::to_string(element.count) + ", but only " +
+                       std::to_string(available) + " bytes follow the header");
+    }
+  }
+}
+
+/// Steps through the values of a PLY body, as text or as bytes of either order.
+class PLYBody {
+public:
+  PLYBody(const std::string& path, std::string_view body, const std::string& format)
+      : path_(path), body_(body), tokens_(body, path), text_(format == "ascii"), big_(format == "binary_big_endian") {}
+
+  void skip(const PLYElement& element, std::uint64_t index, std::size_t size, std::uint64_t count) {
+    if (text_) {
+      for (std::uint64_t i = 0; i < count; ++i) tokens_.number(label(element), index);
+      return;
+    }
+    if (count > (body_.size() - position_) / size) {
+      reject(path_, element.name + " " + std::to_string(index) + " is missing, the file ends before it");
+    }
+    position_ += count * size;
+  }
+
+  std::uint64_t length(const PLYElement& element, std::uint64_t index, std::size_t size) {
+    if (text_) return tokens_.count(label(element), index, body_.size());
+    const std::size_t begin = position_;
+    skip(element, index, size, 1);
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::size_t at = begin + (big_ ? i : size - 1 - i);
+      value = value << 8 | static_cast<unsigned char>(body_[at]);
+    }
+    return value;
+  }
+
+  bool isText() const { return text_; }
+
+private:
+  const char* label(const PLYElement& element) {
+    label_ = "a value of " + element.name;
+    return label_.c_str();
+  }
+
+  const std::string& path_;
+  std::string_view body_;
+  TokenReader tokens_;
+  bool text_, big_;
+  std::size_t position_ = 0;
+  std::string label_;
+};
+
+}  // namespace
+
+bool checkPLY(const std::string& path) {
+  const std::string text = readWholeFile(path);
+  const PLYHeader header = readPLYHeader(path, text);
+  checkPLYHeader(path, header, text.size() - header.body);
+  PLYBody body(path, std::string_view(text).substr(header.body), header.format);
+  bool has_faces = false;
+  for (const PLYElement& element : header.elements) {
+    const bool scalars_only = std::none_of(element.properties.begin(), element.properties.end(),
+                                           [](const PLYProperty& property) { return property.list_count_size > 0; });
+    has_faces |= element.name == "face" && element.count > 0 && !scalars_only;
+    if (scalars_only && !body.isText()) {
+      std::size_t size = 0;
+      for (const PLYProperty& property : element.properties) size += property.size;
+      if (size > 0) body.skip(element, 0, size, element.count);
+      continue;
+    }
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const PLYProperty& property : element.properties) {
+        const std::uint64_t count = property.list_count_size ? body.length(element, i, property.list_count_size) : 1;
+        body.skip(element, i, property.size, count);
+      }
+    }
+  }
+  return has_faces;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,17 @@
+/// Looks through PCD and PLY files before PCL's readers do: those crash on files that promise what they do not hold.
+#pragma once
+
+#include <string>
+
+namespace pcl_symmetry::apps {
+
+/// Checks that x, y and z are there, that sizes and counts agree with each other and with the file, and, for text, that
+/// every value is a number.
+/// \throws InputError naming the field, its value and the rule.
+void checkPCD(const std::string& path);
+
+/// The same for PLY; the lengths of all lists are followed to the end of the file.
+/// \return true if the file has faces.
+bool checkPLY(const std::string& path);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,56 @@
+/// Pictures of clouds, meshes and symmetry planes as PNG files, also on machines without a display.
+#pragma once
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+/// A translucent square in the plane normal . x = offset.
+struct PlanePatch {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
+  double offset = 0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< projected onto the plane
+  double half_size = 1;                              ///< input units
+  Eigen::Vector3d color = {0.90, 0.62, 0.0};         ///< red, green, blue in [0, 1]
+};
+
+/// One view among several in a picture.
+struct PicturePanel {
+  std::string label;                 ///< drawn at the top; empty for none
+  std::vector<double> support = {};  ///< one value in [0, 1] per point, cividis colours; empty for one plain colour
+  std::vector<PlanePatch> planes = {};
+};
+
+/// What a picture shows: the same shape in every panel.
+struct PictureScene {
+  pcl::PointCloud<pcl::PointXYZ>::ConstPtr points;  ///< non-finite points are not drawn
+  std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light grey
+  std::vector<PicturePanel> panels = {};            ///< at least one
+  int num_columns = 0;                              ///< 0 = as square as the panels allow
+  Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< from the scene towards the camera
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  bool show_color_bar = true;  ///< legend of the support, in panels that have support
+};
+
+/// Eight colours that remain apart for colour-blind eyes (Okabe and Ito), repeated from the start when they run out.
+Eigen::Vector3d distinctColor(std::size_t index);
+
+/// \param value in [0, 1], clamped. \return its colour on the cividis scale (dark blue to yellow).
+Eigen::Vector3d cividis(double value);
+
+/// Renders off screen and writes a PNG whole. Uses the display if there is one, or else a private Xvfb.
+/// \param width, height of the whole picture in pixels, 16 to 16384.
+/// \throws std::invalid_argument for a scene that does not fit together, InputError if nothing can draw or the file
+/// cannot be written.
+void renderPicture(const PictureScene& scene, const std::string& path, int width, int height);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,33 @@
+/// Reads clouds and meshes from files, and refuses what it cannot trust with one clear line.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/PolygonMesh.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+/// What a file holds. Points may be non-finite, as scanners write them.
+struct Shape {
+  pcl::PCLPointCloud2 cloud;                   ///< all fields of the file; the vertices of a mesh
+  pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< the coordinates alone, same order and organization
+  std::optional<pcl::PolygonMesh> mesh;        ///< polygons of any size >= 3, indices checked
+  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
+  Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
+};
+
+/// \param path a .pcd, .ply, .obj, .stl or .off file, in capitals or not.
+/// \throws InputError naming the file, what is wrong and the rule.
+Shape loadShape(const std::string& path);
+
+/// \return a shape made of a mesh, as if it had been loaded.
+Shape shapeFromMesh(const pcl::PolygonMesh& mesh);
+
+}  // namespace pcl_symmetry::apps

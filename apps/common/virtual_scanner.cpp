@@ -1,0 +1,302 @@
+#include "virtual_scanner.h"
+
+#include <embree3/rtcore.h>
+#include <omp.h>
+#include <pcl/conversions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+constexpr int kMaxResolution = 8192;
+constexpr int kFirstResolution = 128;
+constexpr double kAcceptedCountError = 0.01;
+
+[[noreturn]] void reject(const char* field, double value, const char* rule) {
+  throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + ", " + rule);
+}
+
+/// Uniform in [0, 1), the same on every platform.
+double uniform(std::mt19937_64& generator) {
+  return static_cast<double>(generator() >> 11) * 0x1.0p-53;
+}
+
+/// Standard normal by Box and Muller, the same wherever the elementary functions are.
+double normal(std::mt19937_64& generator) {
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(generator)));
+  return radius * std::cos(2.0 * M_PI * uniform(generator));
+}
+
+/// Right, down, forward: the columns of the sensor's rotation. The picture's up is z, or y for a vertical view.
+Eigen::Matrix3d lookAlong(const Eigen::Vector3d& forward) {
+  const Eigen::Vector3d up =
+      std::abs(forward.z()) < 0.999 * forward.norm() ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
+  Eigen::Matrix3d R_model_sensor;
+  R_model_sensor.col(2) = forward.normalized();
+  R_model_sensor.col(0) = forward.cross(up).normalized();
+  R_model_sensor.col(1) = R_model_sensor.col(2).cross(R_model_sensor.col(0));
+  return R_model_sensor;
+}
+
+struct Camera {
+  Eigen::Vector3d origin;
+  Eigen::Matrix3d axes;  ///< columns right, down, forward
+  double half_width;     ///< at depth one
+  int resolution;
+
+  Eigen::Vector3d rayThrough(int column, int row) const {
+    const double x = (2.0 * (column + 0.5) / resolution - 1.0) * half_width;
+    const double y = (2.0 * (row + 0.5) / resolution - 1.0) * half_width;
+    return (axes * Eigen::Vector3d(x, y, 1.0)).normalized();
+  }
+};
+
+struct Triangle {
+  Eigen::Vector3d a, b, c;
+};
+
+}  // namespace
+
+void VirtualScannerOptions::validate() const {
+  if (num_points <= 0) reject("num_points", num_points, "must be > 0");
+  if (!(field_of_view > 0) || !(field_of_view < M_PI)) reject("field_of_view", field_of_view, "must be > 0 and < pi");
+  if (!(distance > 0.5) || !std::isfinite(distance)) reject("distance", distance, "must be > 0.5 diagonals");
+  if (!(noise >= 0) || !std::isfinite(noise)) reject("noise", noise, "must be >= 0");
+  if (num_threads < 0) reject("num_threads", num_threads, "must be >= 0");
+  if (resolution && (*resolution < 1 || *resolution > kMaxResolution)) {
+    reject("resolution", *resolution, "must be >= 1 and <= 8192");
+  }
+}
+
+/// The triangles in a frame of their own, centred and with unit diagonal, where single precision is enough to find
+/// which one is hit; where exactly is computed in double precision.
+struct VirtualScanner::Scene {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double diagonal = 0;
+  std::vector<Triangle> triangles;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  ~Scene() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  void collectTriangles(const pcl::PolygonMesh& mesh) {
+    pcl::PointCloud<pcl::PointXYZ> vertices;
+    pcl::fromPCLPointCloud2(mesh.cloud, vertices);
+    const auto corner = [&](pcl::index_t index) -> Eigen::Vector3d {
+      return vertices.at(static_cast<std::size_t>(index)).getVector3fMap().cast<double>();
+    };
+    Eigen::AlignedBox3d box;
+    for (const pcl::Vertices& polygon : mesh.polygons) {
+      for (std::size_t k = 2; k < polygon.vertices.size(); ++k) {
+        const Triangle triangle{corner(polygon.vertices[0]), corner(polygon.vertices[k - 1]),
+                                corner(polygon.vertices[k])};
+        if (!triangle.a.allFinite() || !triangle.b.allFinite() || !triangle.c.allFinite()) continue;
+        box.extend(triangle.a).extend(triangle.b).extend(triangle.c);
+        triangles.push_back(triangle);
+      }
+    }
+    if (triangles.empty()) throw std::invalid_argument("mesh has no faces to scan");
+    center = box.center();
+    diagonal = box.diagonal().norm();
+    if (!(diagonal > 0)) throw std::invalid_argument("mesh has no extent, all its corners are equal");
+    for (Triangle& triangle : triangles) {
+      for (Eigen::Vector3d* point : {&triangle.a, &triangle.b, &triangle.c}) *point = (*point - center) / diagonal;
+    }
+  }
+
+  /// One thread builds the tree, so that it is the same tree for any number of threads.
+  void buildTree() {
+    device = rtcNewDevice("threads=1");
+    if (!device) throw std::runtime_error("Embree cannot start");
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * triangles.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), triangles.size()));
+    if (!positions || !indices) {
+      rtcReleaseGeometry(geometry);
+      throw std::bad_alloc();
+    }
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      Eigen::Map<Eigen::Matrix3f>(positions + 9 * i) << triangles[i].a.cast<float>(), triangles[i].b.cast<float>(),
+          triangles[i].c.cast<float>();
+      for (unsigned k = 0; k < 3; ++k) indices[3 * i + k] = static_cast<unsigned>(3 * i + k);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its tree");
+  }
+
+  /// \return the distance to the first triangle along a unit ray, infinite if there is none.
+  double distanceAlong(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query{};
+    const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>();
+    query.ray.org_x = o.x(), query.ray.org_y = o.y(), query.ray.org_z = o.z();
+    query.ray.dir_x = d.x(), query.ray.dir_y = d.y(), query.ray.dir_z = d.z();
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::numeric_limits<double>::infinity();
+    const Triangle& triangle = triangles[query.hit.primID];
+    const Eigen::Vector3d normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
+    const double distance = normal.dot(triangle.a - origin) / normal.dot(direction);
+    const double coarse = query.ray.tfar;
+    return std::abs(distance - coarse) < 1e-3 ? distance : coarse;
+  }
+
+  /// \return the distance of each pixel, row by row.
+  std::vector<double> takePicture(const Camera& camera, int num_threads) const {
+    std::vector<double> distances(static_cast<std::size_t>(camera.resolution) * camera.resolution);
+#pragma omp parallel for schedule(dynamic, 8) num_threads(num_threads > 0 ? num_threads : omp_get_max_threads())
+    for (int row = 0; row < camera.resolution; ++row) {
+      for (int column = 0; column < camera.resolution; ++column) {
+        distances[static_cast<std::size_t>(row) * camera.resolution + column] =
+            distanceAlong(camera.origin, camera.rayThrough(column, row));
+      }
+    }
+    return distances;
+  }
+};
+
+namespace {
+
+int countHits(const std::vector<double>& distances) {
+  return static_cast<int>(std::count_if(distances.begin(), distances.end(), [](double d) { return std::isfinite(d); }));
+}
+
+bool touchesBorder(const std::vector<double>& distances, int resolution) {
+  for (int i = 0; i < resolution; ++i) {
+    const std::size_t last = static_cast<std::size_t>(resolution) * (resolution - 1);
+    const std::size_t row = static_cast<std::size_t>(resolution) * i;
+    for (const std::size_t pixel : {std::size_t(i), last + i, row, row + resolution - 1}) {
+      if (std::isfinite(distances[pixel])) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+VirtualScanner::VirtualScanner(const pcl::PolygonMesh& mesh) : scene_(std::make_unique<Scene>()) {
+  scene_->collectTriangles(mesh);
+  scene_->buildTree();
+}
+
+VirtualScanner::~VirtualScanner() = default;
+VirtualScanner::VirtualScanner(VirtualScanner&&) noexcept = default;
+VirtualScanner& VirtualScanner::operator=(VirtualScanner&&) noexcept = default;
+
+Eigen::Vector3d VirtualScanner::center() const {
+  return scene_->center;
+}
+double VirtualScanner::diagonal() const {
+  return scene_->diagonal;
+}
+
+VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options) const {
+  options.validate();
+  if (!direction.allFinite() || !(direction.norm() > 0)) {
+    throw std::invalid_argument("direction must be finite and not zero");
+  }
+  const Eigen::Vector3d towards_scanner = direction.normalized();
+  Camera camera{options.distance * towards_scanner, lookAlong(-towards_scanner), std::tan(options.field_of_view / 2),
+                options.resolution.value_or(kFirstResolution)};
+
+  std::vector<double> distances = scene_->takePicture(camera, options.num_threads);
+  int num_hits = countHits(distances);
+  if (!options.resolution) {
+    Camera best = camera;
+    std::vector<double> best_distances = distances;
+    const auto error = [&](int hits) { return std::abs(double(hits) / options.num_points - 1.0); };
+    for (int round = 0; round < 8 && error(countHits(best_distances)) > kAcceptedCountError; ++round) {
+      const double wanted = camera.resolution * std::sqrt(double(options.num_points) / std::max(num_hits, 1));
+      const int previous = camera.resolution;
+      camera.resolution = static_cast<int>(std::clamp(std::round(wanted), 1.0, double(kMaxResolution)));
+      if (num_hits == 0) camera.resolution = std::min(4 * previous, kMaxResolution);
+      if (camera.resolution == previous) break;
+      distances = scene_->takePicture(camera, options.num_threads);
+      num_hits = countHits(distances);
+      if (error(num_hits) < error(countHits(best_distances))) {
+        best = camera;
+        best_distances = distances;
+      }
+    }
+    camera = best;
+    distances = std::move(best_distances);
+    num_hits = countHits(distances);
+  }
+  if (num_hits == 0) throw std::runtime_error("no ray hits the model");
+
+  std::mt19937_64 generator(options.seed ^ 0x9e3779b97f4a7c15ull);
+  VirtualScan result;
+  result.num_points = num_hits;
+  result.cropped = touchesBorder(distances, camera.resolution);
+  if (options.random_pose) {
+    result.T_scan_model = randomPose(options.seed, scene_->diagonal);
+    result.T_scan_model.translation() -= result.T_scan_model.linear() * scene_->center;
+  }
+  const auto to_scan = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+    return result.T_scan_model * (scene_->center + scene_->diagonal * point);
+  };
+  result.T_scan_sensor.linear() = result.T_scan_model.linear() * camera.axes;
+  result.T_scan_sensor.translation() = to_scan(camera.origin);
+
+  result.cloud.reset(new pcl::PointCloud<pcl::PointXYZ>(camera.resolution, camera.resolution));
+  for (int row = 0; row < camera.resolution; ++row) {
+    for (int column = 0; column < camera.resolution; ++column) {
+      double distance = distances[static_cast<std::size_t>(row) * camera.resolution + column];
+      pcl::PointXYZ& point = result.cloud->at(column, row);
+      if (!std::isfinite(distance)) {
+        point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
+        continue;
+      }
+      if (options.noise > 0) distance += options.noise * normal(generator);
+      point.getVector3fMap() = to_scan(camera.origin + distance * camera.rayThrough(column, row)).cast<float>();
+    }
+  }
+  result.cloud->is_dense = num_hits == camera.resolution * camera.resolution;
+  result.cloud->sensor_origin_.head<3>() = result.T_scan_sensor.translation().cast<float>();
+  result.cloud->sensor_origin_[3] = 0.0f;
+  result.cloud->sensor_orientation_ = Eigen::Quaterniond(result.T_scan_sensor.linear()).normalized().cast<float>();
+  return result;
+}
+
+std::array<Eigen::Vector3d, 8> cubeCorners() {
+  std::array<Eigen::Vector3d, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners[i] = Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).normalized();
+  }
+  return corners;
+}
+
+/// Shoemake, Uniform random rotations, Graphics Gems III.
+Eigen::Isometry3d randomPose(std::uint64_t seed, double extent) {
+  std::mt19937_64 generator(seed);
+  const double u = uniform(generator), v = 2 * M_PI * uniform(generator), w = 2 * M_PI * uniform(generator);
+  const Eigen::Quaterniond rotation(std::sqrt(u) * std::cos(w), std::sqrt(1 - u) * std::sin(v),
+                                    std::sqrt(1 - u) * std::cos(v), std::sqrt(u) * std::sin(w));
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation.normalized().toRotationMatrix();
+  for (int k = 0; k < 3; ++k) pose.translation()[k] = extent * (2 * uniform(generator) - 1);
+  return pose;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,71 @@
+/// A range scanner that looks at a mesh: organized clouds as a depth camera takes them (Section 5.1, Figure 11).
+#pragma once
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+namespace pcl_symmetry::apps {
+
+struct VirtualScannerOptions {
+  int num_points = 10000;              ///< wanted number of hits, > 0
+  double field_of_view = 0.4;          ///< full angle of the square picture, radians, in (0, pi)
+  double distance = 2.0;               ///< from the centre of the bounding box, in its diagonals, > 0.5
+  double noise = 0.0;                  ///< standard deviation of the depth along the ray, in diagonals, >= 0
+  bool random_pose = false;            ///< turn and move the model before it is scanned
+  std::uint64_t seed = 0;              ///< of pose and noise
+  int num_threads = 0;                 ///< 0 = all; does not change the result
+  std::optional<int> resolution = {};  ///< edge of the picture in pixels, 1 to 8192; chosen by num_points if not set
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+struct VirtualScan {
+  /// One point per pixel, row by row, NaN where the ray misses, in the scan's frame; sensor_origin_ and
+  /// sensor_orientation_ tell where the scanner stood (z forward, x right, y down).
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud;
+  Eigen::Isometry3d T_scan_model = Eigen::Isometry3d::Identity();  ///< the identity unless random_pose is set
+  Eigen::Isometry3d T_scan_sensor = Eigen::Isometry3d::Identity();
+  int num_points = 0;    ///< number of hits
+  bool cropped = false;  ///< the model reaches beyond the picture
+};
+
+/// Holds the mesh in the form that rays are traced against.
+class VirtualScanner {
+public:
+  /// Polygons are cut into fans; triangles with non-finite corners are left out.
+  /// \throws std::invalid_argument if no triangle is left.
+  explicit VirtualScanner(const pcl::PolygonMesh& mesh);
+  ~VirtualScanner();
+  VirtualScanner(VirtualScanner&&) noexcept;
+  VirtualScanner& operator=(VirtualScanner&&) noexcept;
+
+  /// Centre and diagonal of the bounding box of the triangles, input units.
+  Eigen::Vector3d center() const;
+  double diagonal() const;
+
+  /// \param direction from the centre towards the scanner, in the model's frame; any length but zero.
+  /// \param options with random_pose, scanner and model are turned and moved together, so what is seen stays.
+  /// \throws std::invalid_argument for bad options or a zero direction, std::runtime_error if too few rays hit.
+  VirtualScan scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options = {}) const;
+
+private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+/// The eight corners of a cube around the origin, unit length; bit k of the index is set where coordinate k is
+/// positive.
+std::array<Eigen::Vector3d, 8> cubeCorners();
+
+/// A rotation drawn uniformly and a translation drawn from the cube [-extent, extent]^3.
+Eigen::Isometry3d randomPose(std::uint64_t seed, double extent);
+
+}  // namespace pcl_symmetry::apps
