@@ -1,0 +1,203 @@
+#include "pcl_symmetry/core/gaussian_edt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "check.h"
+#include "pcl_symmetry/core/parallel.h"
+#include "simd.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr double kSigmaInCells = 2.0;
+constexpr double kMarginInSigmas = 2.0;  // f < 2 % outside the grid
+constexpr double kReachInSigmas = 3.0;   // f < 2e-4 beyond
+
+/// Lowers the squared distances of a run of cells to those from one point; all lengths in cells.
+PCL_SYMMETRY_MULTIVERSION
+void lowerRow(float* sq_distances, int begin, int end, float x, float sq_row_distance) {
+  for (int i = begin; i < end; ++i) {
+    const float d = static_cast<float>(i) - x;
+    const float sq_distance = d * d + sq_row_distance;
+    sq_distances[i] = sq_distance < sq_distances[i] ? sq_distance : sq_distances[i];
+  }
+}
+
+/// Typical distance between neighbouring samples of a surface, 1 / sqrt(density): twice the mean distance to the nearest
+/// other point, over a fixed number of probes; 0 for clouds too large to be sparse.
+double sampleSpacing(const PointsRef& points) {
+  constexpr Eigen::Index kNumProbes = 64, kNumDense = 200'000;
+  const Eigen::Index size = points.cols();
+  if (size < 2 || size > kNumDense) return 0.0;
+  const Eigen::Index num_probes = std::min(kNumProbes, size);
+  std::vector<double> nearest;
+  for (Eigen::Index k = 0; k < num_probes; ++k) {
+    const Eigen::Vector3f probe = points.col(k * size / num_probes);
+    float sq_nearest = std::numeric_limits<float>::max();
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const float sq_distance = (points.col(i) - probe).squaredNorm();
+      if (sq_distance > 0.0f && sq_distance < sq_nearest) sq_nearest = sq_distance;
+    }
+    if (sq_nearest < std::numeric_limits<float>::max()) nearest.push_back(std::sqrt(static_cast<double>(sq_nearest)));
+  }
+  if (nearest.empty()) return 0.0;
+  std::nth_element(nearest.begin(), nearest.begin() + nearest.size() / 2, nearest.end());
+  return 2.0 * nearest[nearest.size() / 2];
+}
+
+/// One point per 1/64 cell, the first of each; positions in cells.
+Points thin(const Points& points, int num_cells) {
+  const int side = 4 * num_cells;
+  std::vector<bool> taken(static_cast<std::size_t>(side) * side * side);
+  Points kept(3, points.cols());
+  Eigen::Index num_kept = 0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const auto at = [&](int axis) {
+      return static_cast<std::size_t>(std::clamp(static_cast<int>(4.0f * (points(axis, i) + 0.5f)), 0, side - 1));
+    };
+    const std::size_t slot = (at(2) * side + at(1)) * side + at(0);
+    if (taken[slot]) continue;
+    taken[slot] = true;
+    kept.col(num_kept++) = points.col(i);
+  }
+  kept.conservativeResize(3, num_kept);
+  return kept;
+}
+
+}  // namespace
+
+void GaussianEdtOptions::validate() const {
+  check(num_cells >= 8 && num_cells <= 512, "num_cells", num_cells, "in [8, 512]");
+  check(std::isfinite(sigma) && sigma >= 0.0, "sigma", sigma, "finite and >= 0");
+  check(std::isfinite(radius) && radius >= 0.0, "radius", radius, "finite and >= 0");
+  check(center.allFinite(), "center", center.transpose(), "finite");
+  checkNumThreads(num_threads);
+}
+
+GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options) {
+  options.validate();
+  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
+  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+  num_cells_ = options.num_cells;
+  center_ = options.center;
+  radius_ = options.radius;
+  if (radius_ == 0.0) {
+    const BoundingBall ball = boundingBall(points);
+    center_ = ball.center;
+    radius_ = ball.radius;
+  }
+  if (!(radius_ > std::numeric_limits<float>::epsilon() * center_.norm()))
+    throw std::invalid_argument("points: all at one place, must have an extent");
+
+  const double half = 0.5 * num_cells_;
+  if (options.sigma > 0.0) {
+    sigma_ = options.sigma;
+    cell_size_ = (radius_ + kMarginInSigmas * sigma_) / half;
+  } else {
+    cell_size_ = radius_ / std::max(half - kMarginInSigmas * kSigmaInCells, 0.5 * half);
+    sigma_ = kSigmaInCells * cell_size_;
+    const double spacing = std::min(sampleSpacing(points), 0.25 * radius_);
+    if (spacing > sigma_) {
+      sigma_ = spacing;
+      cell_size_ = (radius_ + kMarginInSigmas * sigma_) / half;
+    }
+  }
+  origin_ = center_ - Eigen::Vector3d::Constant((half - 0.5) * cell_size_);
+  computeDistances(points, options.num_threads);
+  interpolation_ = sharpened(1.0 / 12.0);
+}
+
+void GaussianEdt::computeDistances(const PointsRef& points, int num_threads) {
+  const int n = num_cells_;
+  const std::size_t slice_size = static_cast<std::size_t>(n) * n;
+  Points cells = normalizePoints(points, origin_, cell_size_);
+  if (static_cast<std::size_t>(cells.cols()) > 8 * slice_size) cells = thin(cells, n);
+
+  // Points in the order of their slice, so that a block of slices meets only its own.
+  const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_);
+  const auto slice = [&](Eigen::Index i) { return std::clamp(static_cast<int>(std::floor(cells(2, i))), -1, n) + 1; };
+  std::vector<Eigen::Index> begin(n + 3, 0), order(cells.cols());
+  for (Eigen::Index i = 0; i < cells.cols(); ++i) ++begin[slice(i) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  auto next = begin;
+  for (Eigen::Index i = 0; i < cells.cols(); ++i) order[next[slice(i)]++] = i;
+
+  values_.assign(slice_size * n, reach * reach);
+  const double scale = -1.0 / std::pow(sigma_ / cell_size_, 2);
+  std::vector<double> sums(n, 0.0), sq_sums(n, 0.0);
+  parallelBlocks(n, num_threads, [&](std::size_t z) {
+    float* const values = values_.data() + z * slice_size;
+    const int first = std::clamp(static_cast<int>(std::floor(z - reach)), -1, n) + 1;
+    const int last = std::clamp(static_cast<int>(std::floor(z + reach)), -1, n) + 1;
+    for (Eigen::Index o = begin[first]; o < begin[last + 1]; ++o) {
+      const Eigen::Vector3f point = cells.col(order[o]);
+      const float dz = static_cast<float>(z) - point.z();
+      const float sq_radius = reach * reach - dz * dz;
+      if (sq_radius <= 0.0f) continue;
+      const float radius = std::sqrt(sq_radius);
+      const int y_begin = std::max(0, static_cast<int>(std::ceil(point.y() - radius)));
+      const int y_end = std::min(n, static_cast<int>(std::floor(point.y() + radius)) + 1);
+      for (int y = y_begin; y < y_end; ++y) {
+        const float dy = static_cast<float>(y) - point.y();
+        const float half = std::sqrt(std::max(0.0f, sq_radius - dy * dy));
+        const int x_begin = std::max(0, static_cast<int>(std::ceil(point.x() - half)));
+        const int x_end = std::min(n, static_cast<int>(std::floor(point.x() + half)) + 1);
+        lowerRow(values + static_cast<std::size_t>(y) * n, x_begin, x_end, point.x(), dz * dz + dy * dy);
+      }
+    }
+    for (std::size_t i = 0; i < slice_size; ++i) {
+      values[i] = values[i] < reach * reach ? static_cast<float>(std::exp(scale * values[i])) : 0.0f;
+      sums[z] += values[i];
+      sq_sums[z] += static_cast<double>(values[i]) * values[i];
+    }
+  });
+  sum_ = std::accumulate(sums.begin(), sums.end(), 0.0);
+  sq_norm_ = std::accumulate(sq_sums.begin(), sq_sums.end(), 0.0);
+  if (sq_norm_ == 0.0) throw std::invalid_argument("points: none near the ball given by center and radius");
+}
+
+Eigen::Vector3d GaussianEdt::cellCenter(std::size_t index) const {
+  const std::size_t n = num_cells_;
+  return origin_ + cell_size_ * Eigen::Vector3d(static_cast<double>(index % n), static_cast<double>(index / n % n),
+                                                static_cast<double>(index / n / n));
+}
+
+double GaussianEdt::operator()(const Eigen::Vector3d& x) const {
+  const Eigen::Vector3d p = (x - origin_) / cell_size_;
+  if (!((p.array() >= 0.0).all() && (p.array() < num_cells_ - 1.0).all())) return 0.0;
+  const Eigen::Vector3i c = p.cast<int>();
+  const Eigen::Vector3d t = p - c.cast<double>();
+  const std::size_t n = num_cells_;
+  const float* f = interpolation_.data() + (static_cast<std::size_t>(c.z()) * n + c.y()) * n + c.x();
+  const auto row = [&](std::size_t offset) { return f[offset] + t.x() * (f[offset + 1] - f[offset]); };
+  const double near = row(0) + t.y() * (row(n) - row(0));
+  const double far = row(n * n) + t.y() * (row(n * n + n) - row(n * n));
+  return near + t.z() * (far - near);
+}
+
+std::vector<float> GaussianEdt::sharpened(double c) const {
+  const int n = num_cells_;
+  const std::size_t slice_size = static_cast<std::size_t>(n) * n;
+  std::vector<float> result(values_);
+  const float weight = static_cast<float>(c);
+  for (int z = 1; z + 1 < n; ++z) {
+    for (int y = 1; y + 1 < n; ++y) {
+      const std::size_t row = static_cast<std::size_t>(z) * slice_size + static_cast<std::size_t>(y) * n;
+      const float* f = values_.data() + row;
+      float* out = result.data() + row;
+      for (int x = 1; x + 1 < n; ++x) {
+        const float laplacian =
+            f[x - 1] + f[x + 1] + f[x - n] + f[x + n] + (f + x)[-static_cast<std::ptrdiff_t>(slice_size)] +
+            f[x + slice_size] - 6.0f * f[x];
+        out[x] = std::max(0.0f, f[x] - weight * laplacian);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace pcl_symmetry
