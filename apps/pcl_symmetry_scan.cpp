@@ -117,6 +117,7 @@ int run(int argc, char** argv) {
   std::vector<VirtualScan> scans;
   int num_points = 0;
   for (const View& view : views) {
+    options.scanner.noise_stream = scans.size();
     scans.push_back(scanner.scan(view.direction, options.scanner));
     num_points += scans.back().num_points;
     scanning.progress(double(scans.size()) / double(views.size()));

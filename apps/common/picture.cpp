@@ -25,6 +25,7 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -80,8 +81,8 @@ void checkScene(const PictureScene& scene, int width, int height) {
     }
     for (const PlanePatch& plane : panel.planes) {
       if (!plane.normal.allFinite() || !(plane.normal.norm() > 0) || !std::isfinite(plane.offset) ||
-          !plane.center.allFinite() || !(plane.half_size > 0) || !std::isfinite(plane.half_size)) {
-        throw std::invalid_argument("a plane is not finite, or its normal or half_size is zero");
+          !plane.center.allFinite() || !(plane.half_size >= 0) || !std::isfinite(plane.half_size)) {
+        throw std::invalid_argument("a plane is not finite, its normal is zero or its half_size negative");
       }
     }
   }
@@ -208,7 +209,35 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normaliz
   return actor;
 }
 
-std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
+/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
+std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
+  const Eigen::Vector3d normal = plane.normal.normalized(), s = normal.unitOrthogonal(), t = normal.cross(s);
+  std::vector<Eigen::Vector2d> projections;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d second_moment = Eigen::Matrix2d::Zero();
+  for (const pcl::PointXYZ& point : points) {
+    const Eigen::Vector3d position = point.getVector3fMap().cast<double>();
+    if (!position.allFinite()) continue;
+    projections.emplace_back(s.dot(position), t.dot(position));
+    mean += projections.back();
+  }
+  mean /= static_cast<double>(projections.size());
+  for (const Eigen::Vector2d& q : projections) second_moment += (q - mean) * (q - mean).transpose();
+  const Eigen::Matrix2d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(second_moment).eigenvectors();
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& q : projections) box.extend(axes.transpose() * q);
+  const double margin = 0.06 * box.diagonal().norm();
+  box.extend(box.min() - Eigen::Vector2d::Constant(margin)).extend(box.max() + Eigen::Vector2d::Constant(margin));
+  const auto corner = [&](double u, double v) -> Eigen::Vector3d {
+    const Eigen::Vector2d q = axes * Eigen::Vector2d(u, v);
+    return plane.offset / plane.normal.norm() * normal + q.x() * s + q.y() * t;
+  };
+  return {corner(box.min().x(), box.min().y()), corner(box.max().x(), box.min().y()),
+          corner(box.max().x(), box.max().y()), corner(box.min().x(), box.max().y())};
+}
+
+/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
+std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
   const double length = plane.normal.norm();
   const Eigen::Vector3d normal = plane.normal / length;
   const Eigen::Vector3d center = plane.center - (normal.dot(plane.center) - plane.offset / length) * normal;
@@ -223,7 +252,8 @@ std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const Eigen
 void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,
               double line_width) {
   vtkNew<vtkPoints> points;
-  for (const Eigen::Vector3d& corner : patchCorners(plane, scene.up)) points->InsertNextPoint(normalize(corner).data());
+  const auto corners = plane.half_size > 0 ? squareCorners(plane, scene.up) : fittedCorners(plane, *scene.points);
+  for (const Eigen::Vector3d& corner : corners) points->InsertNextPoint(normalize(corner).data());
   const vtkIdType loop[] = {0, 1, 2, 3, 0};
   vtkNew<vtkCellArray> quad, outline;
   quad->InsertNextCell(4, loop);
@@ -241,7 +271,7 @@ void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
     actor->GetProperty()->SetColor(plane.color.x(), plane.color.y(), plane.color.z());
-    actor->GetProperty()->SetOpacity(filled ? 0.30 : 1.0);
+    actor->GetProperty()->SetOpacity(filled ? 0.25 : 1.0);
     actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
     actor->GetProperty()->LightingOff();
     renderer.AddActor(actor);
@@ -273,7 +303,7 @@ vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, i
   bar->SetLookupTable(table);
   bar->SetTitle("support");
   bar->SetNumberOfLabels(3);
-  bar->SetLabelFormat("%.1f");
+  bar->SetLabelFormat(" %.1f");
   bar->UnconstrainedFontSizeOn();
   for (vtkTextProperty* text : {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
     text->SetFontFamilyToArial();
@@ -293,8 +323,9 @@ vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, i
   return bar;
 }
 
-/// Places the camera so that every corner of the panel's boxes lies inside the picture, below the label.
-void fitCamera(vtkRenderer& renderer, const PictureScene& scene, double aspect) {
+/// Places the camera so that all of the panel lies inside the picture, below the label and left of the colour bar.
+/// \param bar_share part of the panel's width that the colour bar takes.
+void fitCamera(vtkRenderer& renderer, const PictureScene& scene, double aspect, double bar_share) {
   vtkCamera* camera = renderer.GetActiveCamera();
   const Eigen::Vector3d view = scene.view.normalized(), up = scene.up.normalized();
   camera->SetFocalPoint(0, 0, 0);
@@ -302,7 +333,8 @@ void fitCamera(vtkRenderer& renderer, const PictureScene& scene, double aspect) 
   camera->SetViewUp(up.x(), up.y(), up.z());
   camera->SetViewAngle(kViewAngle);
   const Eigen::Vector3d right = up.cross(view).normalized(), top = view.cross(right);
-  const double half_height = std::tan(kViewAngle / 2 * M_PI / 180) * 0.88, half_width = half_height * aspect;
+  const double half_height = std::tan(kViewAngle / 2 * M_PI / 180) * 0.88,
+               half_width = half_height * aspect * (1 - bar_share);
 
   double distance = 0;
   vtkActorCollection* actors = renderer.GetActors();
@@ -322,7 +354,8 @@ void fitCamera(vtkRenderer& renderer, const PictureScene& scene, double aspect) 
     const double x = std::abs(right.dot(corner) - middle.x()), y = std::abs(top.dot(corner) - middle.y());
     distance = std::max(distance, view.dot(corner) + std::max(x / half_width, y / half_height));
   }
-  const Eigen::Vector3d focus = middle.x() * right + (middle.y() + 0.05 * half_height * distance) * top;
+  const double shift = bar_share * half_height * aspect * distance;
+  const Eigen::Vector3d focus = (middle.x() + shift) * right + (middle.y() + 0.05 * half_height * distance) * top;
   const Eigen::Vector3d position = focus + std::max(distance, 1e-3) * view;
   camera->SetFocalPoint(focus.x(), focus.y(), focus.z());
   camera->SetPosition(position.x(), position.y(), position.z());
@@ -350,7 +383,7 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, int width, in
   const int rows = (static_cast<int>(scene.panels.size()) + columns - 1) / columns;
   const int panel_width = width / columns, panel_height = height / rows;
   const double panel_pixels = std::min(panel_width, panel_height);
-  const int font_size = std::max(8, static_cast<int>(std::lround(panel_pixels * 0.042)));
+  const int font_size = std::max(8, static_cast<int>(std::lround(panel_pixels * 0.036)));
   const Normalization normalize = normalizationOf(scene);
   const std::vector<double> brightness = shading(scene, normalize);
   for (std::size_t i = 0; i < scene.panels.size(); ++i) {
@@ -366,9 +399,10 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, int width, in
     if (scene.mesh) renderer->AddActor(meshActor(*scene.mesh, normalize));
     renderer->AddActor(cloudActor(scene, panel, normalize, brightness, panel_pixels));
     for (const PlanePatch& plane : panel.planes) addPlane(*renderer, plane, scene, normalize, panel_pixels / 250);
-    fitCamera(*renderer, scene, double(panel_width) / panel_height);
+    const bool has_bar = scene.show_color_bar && !panel.support.empty();
+    fitCamera(*renderer, scene, double(panel_width) / panel_height, has_bar ? 0.12 : 0.0);
     if (!panel.label.empty()) renderer->AddActor2D(labelActor(panel.label, font_size));
-    if (scene.show_color_bar && !panel.support.empty()) {
+    if (has_bar) {
       renderer->AddActor2D(colorBar(panel_width, panel_height, std::max(8, font_size * 3 / 4)));
     }
     window.AddRenderer(renderer);

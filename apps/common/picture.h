@@ -14,13 +14,13 @@
 
 namespace pcl_symmetry::apps {
 
-/// A translucent square in the plane normal . x = offset.
+/// A translucent rectangle in the plane normal . x = offset; fitted to the points unless half_size is set.
 struct PlanePatch {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
   double offset = 0;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< projected onto the plane
-  double half_size = 1;                              ///< input units
-  Eigen::Vector3d color = {0.90, 0.62, 0.0};         ///< red, green, blue in [0, 1]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the square, projected onto the plane
+  double half_size = 0;  ///< of the square, input units; 0 = a rectangle around the projected points, center not used
+  Eigen::Vector3d color = {0.90, 0.62, 0.0};  ///< red, green, blue in [0, 1]
 };
 
 /// One view among several in a picture.

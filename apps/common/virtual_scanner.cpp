@@ -245,7 +245,8 @@ VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const Virtual
   }
   if (num_hits == 0) throw std::runtime_error("no ray hits the model");
 
-  std::mt19937_64 generator(options.seed ^ 0x9e3779b97f4a7c15ull);
+  std::seed_seq streams{options.seed, options.seed >> 32, options.noise_stream};
+  std::mt19937_64 generator(streams);
   VirtualScan result;
   result.num_points = num_hits;
   result.cropped = touchesBorder(distances, camera.resolution);

@@ -20,6 +20,7 @@ struct VirtualScannerOptions {
   double noise = 0.0;                  ///< standard deviation of the depth along the ray, in diagonals, >= 0
   bool random_pose = false;            ///< turn and move the model before it is scanned
   std::uint64_t seed = 0;              ///< of pose and noise
+  std::uint64_t noise_stream = 0;      ///< tells scans of one pose apart, so that their noise is not the same
   int num_threads = 0;                 ///< 0 = all; does not change the result
   std::optional<int> resolution = {};  ///< edge of the picture in pixels, 1 to 8192; chosen by num_points if not set
 
