@@ -1,6 +1,7 @@
 #include "cloud_file_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <cstring>
@@ -376,6 +377,22 @@ public:
     return value;
   }
 
+  /// \return the value of a float or double property; binary integers are passed over and read as zero.
+  double scalar(const PLYElement& element, std::uint64_t index, const PLYProperty& property) {
+    if (text_) return tokens_.number(label(element), index);
+    const std::size_t begin = position_;
+    skip(element, index, property.size, 1);
+    if (property.integer) return 0;
+    std::array<char, 8> bytes{};
+    std::copy_n(body_.data() + begin, property.size, bytes.begin());
+    if (big_) std::reverse(bytes.begin(), bytes.begin() + property.size);
+    float single = 0;
+    double value = 0;
+    std::memcpy(&single, bytes.data(), 4);
+    std::memcpy(&value, bytes.data(), 8);
+    return property.size == 4 ? single : value;
+  }
+
   bool isText() const { return text_; }
 
 private:
@@ -392,18 +409,38 @@ private:
   std::string label_;
 };
 
+/// Reads the camera element as PCL writes it: the rows of the rotation are called x, y and z axis.
+void readCamera(PLYBody& body, const PLYElement& element, PLYSummary& summary) {
+  std::map<std::string, double> values;
+  for (const PLYProperty& property : element.properties) values[property.name] = body.scalar(element, 0, property);
+  Eigen::Vector3d origin;
+  Eigen::Matrix3d rotation;
+  for (int k = 0; k < 3; ++k) {
+    const std::string axis(1, "xyz"[k]);
+    origin[k] = values["view_p" + axis];
+    for (int j = 0; j < 3; ++j) rotation(k, j) = values[axis + "_axis" + "xyz"[j]];
+  }
+  if (!origin.allFinite() || !rotation.isUnitary(1e-3) || rotation.determinant() < 0) return;
+  summary.sensor_origin.head<3>() = origin.cast<float>();
+  summary.sensor_orientation = Eigen::Quaterniond(rotation).normalized().cast<float>();
+}
+
 }  // namespace
 
-bool checkPLY(const std::string& path) {
+PLYSummary checkPLY(const std::string& path) {
   const std::string text = readWholeFile(path);
   const PLYHeader header = readPLYHeader(path, text);
   checkPLYHeader(path, header, text.size() - header.body);
   PLYBody body(path, std::string_view(text).substr(header.body), header.format);
-  bool has_faces = false;
+  PLYSummary summary;
   for (const PLYElement& element : header.elements) {
     const bool scalars_only = std::none_of(element.properties.begin(), element.properties.end(),
                                            [](const PLYProperty& property) { return property.list_count_size > 0; });
-    has_faces |= element.name == "face" && element.count > 0 && !scalars_only;
+    summary.has_faces |= element.name == "face" && element.count > 0 && !scalars_only;
+    if (element.name == "camera" && element.count == 1 && scalars_only) {
+      readCamera(body, element, summary);
+      continue;
+    }
     if (scalars_only && !body.isText()) {
       std::size_t size = 0;
       for (const PLYProperty& property : element.properties) size += property.size;
@@ -417,7 +454,7 @@ bool checkPLY(const std::string& path) {
       }
     }
   }
-  return has_faces;
+  return summary;
 }
 
 }  // namespace pcl_symmetry::apps

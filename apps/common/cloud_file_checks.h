@@ -1,6 +1,7 @@
 /// Looks through PCD and PLY files before PCL's readers do: those crash on files that promise what they do not hold.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <string>
 
 namespace pcl_symmetry::apps {
@@ -10,8 +11,14 @@ namespace pcl_symmetry::apps {
 /// \throws InputError naming the field, its value and the rule.
 void checkPCD(const std::string& path);
 
+/// What PCL's reader does not tell about a PLY file: whether it is a mesh, and the camera, which PCL writes but loses.
+struct PLYSummary {
+  bool has_faces = false;
+  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
+  Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
+};
+
 /// The same for PLY; the lengths of all lists are followed to the end of the file.
-/// \return true if the file has faces.
-bool checkPLY(const std::string& path);
+PLYSummary checkPLY(const std::string& path);
 
 }  // namespace pcl_symmetry::apps

@@ -98,10 +98,10 @@ Shape loadPCD(const std::string& path) {
 }
 
 Shape loadPLY(const std::string& path) {
-  const bool has_faces = checkPLY(path);
+  const PLYSummary summary = checkPLY(path);
   Shape shape;
   int version = 0;
-  if (has_faces) {
+  if (summary.has_faces) {
     shape.mesh.emplace();
     if (pcl::PLYReader().read(path, *shape.mesh, shape.sensor_origin, shape.sensor_orientation, version) < 0) {
       throw InputError(path + ": PCL cannot read it as PLY, its data is damaged");
@@ -110,6 +110,8 @@ Shape loadPLY(const std::string& path) {
   } else if (pcl::PLYReader().read(path, shape.cloud, shape.sensor_origin, shape.sensor_orientation, version) < 0) {
     throw InputError(path + ": PCL cannot read it as PLY, its data is damaged");
   }
+  shape.sensor_origin = summary.sensor_origin;
+  shape.sensor_orientation = summary.sensor_orientation;
   return shape;
 }
 

@@ -1,6 +1,7 @@
 #include "shape_output.h"
 
 #include <fcntl.h>
+#include <pcl/common/io.h>
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <sys/stat.h>
@@ -86,6 +87,37 @@ private:
   throw InputError(path + ": cannot be written, " + why);
 }
 
+/// \return the cloud without padding, its fields one after the other: PCL's PCD writer derives padding from the order
+/// of the fields, and writes negative counts for types such as PointXYZRGBNormal whose order is not that in memory.
+pcl::PCLPointCloud2 packed(const pcl::PCLPointCloud2& cloud) {
+  pcl::PCLPointCloud2 result;
+  result.header = cloud.header;
+  result.width = cloud.width;
+  result.height = cloud.height;
+  result.is_dense = cloud.is_dense;
+  result.is_bigendian = cloud.is_bigendian;
+  std::vector<std::size_t> sources;
+  for (pcl::PCLPointField field : cloud.fields) {
+    if (field.name == "_") continue;
+    sources.push_back(field.offset);
+    field.count = std::max<pcl::uindex_t>(field.count, 1);
+    field.offset = result.point_step;
+    result.point_step += field.count * static_cast<pcl::uindex_t>(pcl::getFieldSize(field.datatype));
+    result.fields.push_back(field);
+  }
+  result.row_step = result.point_step * result.width;
+  const std::size_t num_points = std::size_t{cloud.width} * cloud.height;
+  result.data.resize(num_points * result.point_step);
+  for (std::size_t i = 0; i < num_points; ++i) {
+    for (std::size_t k = 0; k < sources.size(); ++k) {
+      const pcl::PCLPointField& field = result.fields[k];
+      std::memcpy(&result.data[i * result.point_step + field.offset], &cloud.data[i * cloud.point_step + sources[k]],
+                  field.count * static_cast<std::size_t>(pcl::getFieldSize(field.datatype)));
+    }
+  }
+  return result;
+}
+
 std::string lowerExtension(const std::string& path) {
   return boost::algorithm::to_lower_copy(fs::path(path).extension().string());
 }
@@ -137,19 +169,23 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
   const std::string extension = lowerExtension(path);
   if (extension != ".pcd" && extension != ".ply") throw InputError(path + ": unknown extension, must be .pcd or .ply");
   if (cloud.width == 0 || cloud.height == 0) throw InputError(path + ": not written, the cloud has no points");
+  if (cloud.data.size() < std::size_t{cloud.width} * cloud.height * cloud.point_step) {
+    throw InputError(path + ": not written, the cloud holds fewer points than width * height");
+  }
+  const pcl::PCLPointCloud2 fields = packed(cloud);
   writeAtomically(path, [&](const std::string& temporary) {
     int status = -1;
     try {
       if (extension == ".ply") {
-        status = pcl::PLYWriter().writeBinary(temporary, cloud, sensor_origin, sensor_orientation);
+        status = pcl::PLYWriter().writeBinary(temporary, fields, sensor_origin, sensor_orientation);
       } else {
         pcl::PCDWriter writer;
         if (encoding == PCDEncoding::Ascii)
-          status = writer.writeASCII(temporary, cloud, sensor_origin, sensor_orientation, 9);
+          status = writer.writeASCII(temporary, fields, sensor_origin, sensor_orientation, 9);
         if (encoding == PCDEncoding::Binary)
-          status = writer.writeBinary(temporary, cloud, sensor_origin, sensor_orientation);
+          status = writer.writeBinary(temporary, fields, sensor_origin, sensor_orientation);
         if (encoding == PCDEncoding::BinaryCompressed) {
-          status = writer.writeBinaryCompressed(temporary, cloud, sensor_origin, sensor_orientation);
+          status = writer.writeBinaryCompressed(temporary, fields, sensor_origin, sensor_orientation);
         }
       }
     } catch (const std::exception& error) {
