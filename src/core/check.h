@@ -14,6 +14,8 @@ void check(bool valid, const char* field, const T& value, const char* rule) {
   throw std::invalid_argument(message.str());
 }
 
-inline void checkNumThreads(int num_threads) { check(num_threads >= 0, "num_threads", num_threads, ">= 0"); }
+inline void checkNumThreads(int num_threads) {
+  check(num_threads >= 0, "num_threads", num_threads, ">= 0");
+}
 
 }  // namespace pcl_symmetry

@@ -8,7 +8,7 @@ namespace pcl_symmetry {
 namespace {
 
 class FlannSearch : public ClosestPointSearch {
- public:
+public:
   explicit FlannSearch(const PointsRef& points)
       : points_(points),
         index_(flann::Matrix<float>(points_.data(), points_.cols(), 3), flann::KDTreeSingleIndexParams(10, true)) {
@@ -30,13 +30,15 @@ class FlannSearch : public ClosestPointSearch {
     index_.knnSearch(query, index, sq_distance, num_neighbours, params);
   }
 
- private:
+private:
   Points points_;
   flann::KDTreeSingleIndex<flann::L2_Simple<float>> index_;
 };
 
 }  // namespace
 
-ClosestPointSearch::Ptr makeFlannSearch(const PointsRef& points) { return std::make_shared<FlannSearch>(points); }
+ClosestPointSearch::Ptr makeFlannSearch(const PointsRef& points) {
+  return std::make_shared<FlannSearch>(points);
+}
 
 }  // namespace pcl_symmetry

@@ -18,8 +18,8 @@ namespace {
 
 constexpr int kLanes = 16;  // parallel lines that are resampled and correlated together
 
-/// Sixteen parallel lines of equally spaced points: point l of lane j is start[axis][j] + l * step[axis], in fixed-point
-/// table coordinates, inside the table for l in [begin[j], end[j]).
+/// Sixteen parallel lines of equally spaced points: point l of lane j is start[axis][j] + l * step[axis], in
+/// fixed-point table coordinates, inside the table for l in [begin[j], end[j]).
 struct LineBundle {
   alignas(64) std::int32_t start[3][kLanes];
   alignas(64) std::int32_t begin[kLanes];
@@ -78,8 +78,8 @@ __attribute__((target("avx2"))) void resampleAvx2(const LineBundle& lines, const
       }
       const __m256i inside = _mm256_andnot_si256(_mm256_cmpgt_epi32(loadLanes(lines.begin + 8 * half), at),
                                                  _mm256_cmpgt_epi32(loadLanes(lines.end + 8 * half), at));
-      const __m256i index = _mm256_add_epi32(
-          _mm256_add_epi32(_mm256_sll_epi32(cell[2], slice), _mm256_sll_epi32(cell[1], row)), cell[0]);
+      const __m256i index =
+          _mm256_add_epi32(_mm256_add_epi32(_mm256_sll_epi32(cell[2], slice), _mm256_sll_epi32(cell[1], row)), cell[0]);
       halves[half] = _mm256_and_si256(
           _mm256_mask_i32gather_epi32(zero, reinterpret_cast<const int*>(table), index, inside, 1), byte);
     }
@@ -93,7 +93,8 @@ __attribute__((target("avx2"))) void correlateAvx2(const std::int16_t* values, i
   for (int s = 2 * first; s <= 2 * (last - 1); ++s) {
     __m256i pairs = _mm256_setzero_si256();
     for (int a = std::max(first, s - last + 1); 2 * a < s; ++a)
-      pairs = _mm256_add_epi32(pairs, _mm256_madd_epi16(loadLanes(values + a * kLanes), loadLanes(values + (s - a) * kLanes)));
+      pairs = _mm256_add_epi32(pairs,
+                               _mm256_madd_epi16(loadLanes(values + a * kLanes), loadLanes(values + (s - a) * kLanes)));
     pairs = _mm256_add_epi32(pairs, pairs);
     if (s % 2 == 0) {
       const __m256i self = loadLanes(values + s / 2 * kLanes);
@@ -153,55 +154,55 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
   map.center_of_mass = grid.center();
   map.values.resize(grid.size());
   constexpr std::size_t kDirectionsPerBlock = 16;
-  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads,
-                 [&](std::size_t begin, std::size_t end) {
-    std::vector<std::int16_t> values(static_cast<std::size_t>(num_along) * kLanes);
-    std::vector<std::int64_t> sums(2 * num_along);
-    LineBundle lines;
-    for (std::size_t direction = begin; direction < end; ++direction) {
-      const Eigen::Vector3d n =
-          grid.normal(static_cast<int>(direction / grid.numPhi()), static_cast<int>(direction % grid.numPhi()));
-      const Eigen::Vector3d u = n.unitOrthogonal(), v = n.cross(u);
-      // Each direction has its own phase of the lattice: what aliasing is left does not add up over directions.
-      const double phase_u = std::fmod(0.7548776662466927 * static_cast<double>(direction), 1.0) - 0.5;
-      const double phase_v = std::fmod(0.5698402909980532 * static_cast<double>(direction), 1.0) - 0.5;
-      const double first_offset = n.dot(center) + grid.offset(0) / edt.cellSize();
-      const double num_skipped = std::floor((-clip - first_offset) / radius_step);
-      const double t0 = first_offset + num_skipped * radius_step;
-      for (int axis = 0; axis < 3; ++axis) lines.step[axis] = LookupTable::toFixed(along * n[axis]);
-      std::fill(sums.begin(), sums.end(), 0);
-      for (int i = 0; i < num_across; ++i) {
-        const double a = (i - num_across / 2 + phase_u) * spacing;
-        for (int j = 0; j < num_across; j += kLanes) {
-          lines.first = num_along;
-          lines.last = 0;
-          for (int lane = 0; lane < kLanes; ++lane) {
-            const double b = (j + lane - num_across / 2 + phase_v) * spacing;
-            const Eigen::Vector3d start = table_middle + a * u + b * v + t0 * n;
-            for (int axis = 0; axis < 3; ++axis) lines.start[axis][lane] = LookupTable::toFixed(start[axis]);
-            const double sq_chord = clip * clip - a * a - b * b;
-            const double chord = std::sqrt(std::max(0.0, sq_chord));
-            const bool hit = sq_chord > 0.0 && j + lane < num_across;
-            lines.begin[lane] = hit ? std::max(0, static_cast<int>(std::ceil((-chord - t0) / along))) : 0;
-            lines.end[lane] = hit ? std::min(num_along, static_cast<int>(std::floor((chord - t0) / along)) + 1) : 0;
-            if (lines.begin[lane] >= lines.end[lane]) continue;
-            lines.first = std::min(lines.first, lines.begin[lane]);
-            lines.last = std::max(lines.last, lines.end[lane]);
+  parallelRanges(
+      grid.numDirections(), kDirectionsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::int16_t> values(static_cast<std::size_t>(num_along) * kLanes);
+        std::vector<std::int64_t> sums(2 * num_along);
+        LineBundle lines;
+        for (std::size_t direction = begin; direction < end; ++direction) {
+          const Eigen::Vector3d n =
+              grid.normal(static_cast<int>(direction / grid.numPhi()), static_cast<int>(direction % grid.numPhi()));
+          const Eigen::Vector3d u = n.unitOrthogonal(), v = n.cross(u);
+          // Each direction has its own phase of the lattice: what aliasing is left does not add up over directions.
+          const double phase_u = std::fmod(0.7548776662466927 * static_cast<double>(direction), 1.0) - 0.5;
+          const double phase_v = std::fmod(0.5698402909980532 * static_cast<double>(direction), 1.0) - 0.5;
+          const double first_offset = n.dot(center) + grid.offset(0) / edt.cellSize();
+          const double num_skipped = std::floor((-clip - first_offset) / radius_step);
+          const double t0 = first_offset + num_skipped * radius_step;
+          for (int axis = 0; axis < 3; ++axis) lines.step[axis] = LookupTable::toFixed(along * n[axis]);
+          std::fill(sums.begin(), sums.end(), 0);
+          for (int i = 0; i < num_across; ++i) {
+            const double a = (i - num_across / 2 + phase_u) * spacing;
+            for (int j = 0; j < num_across; j += kLanes) {
+              lines.first = num_along;
+              lines.last = 0;
+              for (int lane = 0; lane < kLanes; ++lane) {
+                const double b = (j + lane - num_across / 2 + phase_v) * spacing;
+                const Eigen::Vector3d start = table_middle + a * u + b * v + t0 * n;
+                for (int axis = 0; axis < 3; ++axis) lines.start[axis][lane] = LookupTable::toFixed(start[axis]);
+                const double sq_chord = clip * clip - a * a - b * b;
+                const double chord = std::sqrt(std::max(0.0, sq_chord));
+                const bool hit = sq_chord > 0.0 && j + lane < num_across;
+                lines.begin[lane] = hit ? std::max(0, static_cast<int>(std::ceil((-chord - t0) / along))) : 0;
+                lines.end[lane] = hit ? std::min(num_along, static_cast<int>(std::floor((chord - t0) / along)) + 1) : 0;
+                if (lines.begin[lane] >= lines.end[lane]) continue;
+                lines.first = std::min(lines.first, lines.begin[lane]);
+                lines.last = std::max(lines.last, lines.end[lane]);
+              }
+              if (lines.first >= lines.last) continue;
+              resample(lines, table.data(), table.bits(), values.data());
+              correlate(values.data(), lines.first, lines.last, sums.data());
+            }
           }
-          if (lines.first >= lines.last) continue;
-          resample(lines, table.data(), table.bits(), values.data());
-          correlate(values.data(), lines.first, lines.last, sums.data());
+          float* const out = map.values.data() + direction * grid.numRadius();
+          for (int k = 0; k < grid.numRadius(); ++k) {
+            const double s = (k - num_skipped) * refine;
+            out[k] = s >= 0.0 && s < static_cast<double>(sums.size())
+                         ? static_cast<float>(scale * static_cast<double>(sums[static_cast<std::size_t>(s)]))
+                         : 0.0f;
+          }
         }
-      }
-      float* const out = map.values.data() + direction * grid.numRadius();
-      for (int k = 0; k < grid.numRadius(); ++k) {
-        const double s = (k - num_skipped) * refine;
-        out[k] = s >= 0.0 && s < static_cast<double>(sums.size())
-                     ? static_cast<float>(scale * static_cast<double>(sums[static_cast<std::size_t>(s)]))
-                     : 0.0f;
-      }
-    }
-  });
+      });
   return map;
 }
 

@@ -7,6 +7,8 @@
 #include "simd.h"
 
 #if defined(__x86_64__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // from GCC 12's own AVX-512 header
 #include <immintrin.h>
 #endif
 
@@ -74,10 +76,9 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
     for (; k < k_end; k += kLanes) {
       const __m256i at = _mm256_add_epi32(_mm256_set1_epi32(k), lane);
       const __m256i inside = _mm256_and_si256(_mm256_cmpgt_epi32(at, before), _mm256_cmpgt_epi32(behind, at));
-      const __m256i index = _mm256_add_epi32(
-          _mm256_add_epi32(_mm256_sll_epi32(_mm256_sra_epi32(z, fraction), slice),
-                           _mm256_sll_epi32(_mm256_sra_epi32(y, fraction), row)),
-          _mm256_sra_epi32(x, fraction));
+      const __m256i index = _mm256_add_epi32(_mm256_add_epi32(_mm256_sll_epi32(_mm256_sra_epi32(z, fraction), slice),
+                                                              _mm256_sll_epi32(_mm256_sra_epi32(y, fraction), row)),
+                                             _mm256_sra_epi32(x, fraction));
       const __m256i value = _mm256_and_si256(
           _mm256_mask_i32gather_epi32(zero, reinterpret_cast<const int*>(table), index, inside, 1), byte);
       auto* sum = reinterpret_cast<__m256i*>(sums + k);
@@ -112,10 +113,9 @@ __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, con
     for (; k < k_end; k += kLanes) {
       const __m512i at = _mm512_add_epi32(_mm512_set1_epi32(k), lane);
       const __mmask16 inside = _mm512_cmpge_epi32_mask(at, first) & _mm512_cmplt_epi32_mask(at, behind);
-      const __m512i index = _mm512_add_epi32(
-          _mm512_add_epi32(_mm512_sll_epi32(_mm512_sra_epi32(z, fraction), slice),
-                           _mm512_sll_epi32(_mm512_sra_epi32(y, fraction), row)),
-          _mm512_sra_epi32(x, fraction));
+      const __m512i index = _mm512_add_epi32(_mm512_add_epi32(_mm512_sll_epi32(_mm512_sra_epi32(z, fraction), slice),
+                                                              _mm512_sll_epi32(_mm512_sra_epi32(y, fraction), row)),
+                                             _mm512_sra_epi32(x, fraction));
       const __m512i value = _mm512_and_si512(_mm512_mask_i32gather_epi32(zero, inside, index, table, 1), byte);
       _mm512_storeu_si512(sums + k, _mm512_add_epi32(_mm512_loadu_si512(sums + k), value));
       x = _mm512_add_epi32(x, stride[0]);
@@ -125,6 +125,7 @@ __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, con
   }
 }
 
+#pragma GCC diagnostic pop
 #endif
 
 }  // namespace

@@ -11,10 +11,9 @@ namespace {
 
 bool isLocalMaximum(const SymmetryMap& map, std::size_t index) {
   const float value = map[index];
-  for (const std::size_t neighbour : map.grid.neighbours(map.grid.bin(index))) {
-    if (map[neighbour] > value || (map[neighbour] == value && neighbour < index)) return false;
-  }
-  return true;
+  return map.grid.visitNeighbours(map.grid.bin(index), [&](std::size_t neighbour) {
+    return map[neighbour] < value || (map[neighbour] == value && neighbour > index);
+  });
 }
 
 /// Sum of the second differences; planes beyond the ends of r have no symmetry.
@@ -41,16 +40,25 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
   const std::size_t strongest = map.strongest();
   const double strength = options.strength * map[strongest];
   const double curvature = options.laplacian * -laplacian(map, map.grid.bin(strongest));
-  for (std::size_t index = 0; index < map.values.size(); ++index) {
-    if (map[index] <= 0.0f) continue;
-    const auto bin = map.grid.bin(index);
-    // Cheap test first: along r the neighbours lie side by side.
-    if (bin.radius > 0 && map[index - 1] > map[index]) continue;
-    if (bin.radius + 1 < map.grid.numRadius() && map[index + 1] > map[index]) continue;
-    const ReflectionPlane plane = map.grid.plane(bin);
-    const double share = 1.0 - std::abs(plane.signedDistance(map.center_of_mass)) / map.grid.radius();
-    if (map[index] < strength * share || !isLocalMaximum(map, index) || -laplacian(map, bin) < curvature) continue;
-    maxima.push_back({bin, plane, map[index]});
+  const PlaneGrid& grid = map.grid;
+  for (int t = 0; t < grid.numTheta(); ++t) {
+    for (int p = 0; p < grid.numPhi(); ++p) {
+      const double center_offset = grid.normal(t, p).dot(map.center_of_mass - grid.center());
+      for (int k = 0; k < grid.numRadius(); ++k) {
+        const PlaneGrid::Bin bin{t, p, k};
+        const std::size_t index = grid.index(bin);
+        const float value = map[index];
+        const double share = 1.0 - std::abs(grid.offset(k) - center_offset) / grid.radius();
+        if (value <= 0.0f || value < strength * share) continue;
+        // Most bins fail at a neighbour that is quickly reached.
+        if (k > 0 && map[index - 1] > value) continue;
+        if (k + 1 < grid.numRadius() && map[index + 1] > value) continue;
+        if (p > 0 && map[index - grid.numRadius()] > value) continue;
+        if (p + 1 < grid.numPhi() && map[index + grid.numRadius()] > value) continue;
+        if (!isLocalMaximum(map, index) || -laplacian(map, bin) < curvature) continue;
+        maxima.push_back({bin, grid.plane(bin), value});
+      }
+    }
   }
   std::stable_sort(maxima.begin(), maxima.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
   return maxima;

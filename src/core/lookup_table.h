@@ -9,10 +9,10 @@ namespace pcl_symmetry {
 
 /// f as bytes for the hot loops: positions are fixed-point numbers of cells, a look-up is three shifts and a load.
 ///
-/// The table is padded to a power of two along each side, with at least one empty cell all around, so that a clipped line
-/// needs no further test. Values are f sharpened for the blur of the look-ups, times kOne.
+/// The table is padded to a power of two along each side, with at least one empty cell all around, so that a clipped
+/// line needs no further test. Values are f sharpened for the blur of the look-ups, times kOne.
 class LookupTable {
- public:
+public:
   static constexpr int kFractionBits = 16;
   static constexpr double kOne = 200.0;  ///< sharpening lifts f a little above 1
 
@@ -32,7 +32,7 @@ class LookupTable {
   }
   static std::int32_t toFixed(double cells) { return static_cast<std::int32_t>(cells * (1 << kFractionBits)); }
 
- private:
+private:
   int bits_ = 0;
   int padding_ = 0;
   std::vector<std::uint8_t> table_;

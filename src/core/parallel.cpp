@@ -7,7 +7,9 @@
 
 namespace pcl_symmetry {
 
-int resolveNumThreads(int num_threads) { return num_threads > 0 ? num_threads : std::max(1, omp_get_num_procs()); }
+int resolveNumThreads(int num_threads) {
+  return num_threads > 0 ? num_threads : std::max(1, omp_get_num_procs());
+}
 
 void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function<void(std::size_t)>& block) {
   const int threads = static_cast<int>(std::min<std::size_t>(resolveNumThreads(num_threads), num_blocks));
@@ -30,9 +32,8 @@ void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function
 
 void parallelRanges(std::size_t size, std::size_t block_size, int num_threads,
                     const std::function<void(std::size_t, std::size_t)>& range) {
-  parallelBlocks((size + block_size - 1) / block_size, num_threads, [&](std::size_t b) {
-    range(b * block_size, std::min(size, (b + 1) * block_size));
-  });
+  parallelBlocks((size + block_size - 1) / block_size, num_threads,
+                 [&](std::size_t b) { range(b * block_size, std::min(size, (b + 1) * block_size)); });
 }
 
 }  // namespace pcl_symmetry

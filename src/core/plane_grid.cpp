@@ -19,11 +19,21 @@ PlaneGrid::PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Ve
   check(num_radius >= 1 && num_radius <= 4096, "num_radius", num_radius, "in [1, 4096]");
   check(center.allFinite(), "center", center.transpose(), "finite");
   check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
+  for (int t = 0; t < num_theta; ++t) {
+    const double width = phiStep() * std::sin(theta(t));
+    phi_reach_.push_back(std::clamp(static_cast<int>(std::ceil(thetaStep() / width)), 1, num_phi / 2));
+  }
 }
 
-double PlaneGrid::thetaStep() const { return 0.5 * kPi / num_theta_; }
-double PlaneGrid::phiStep() const { return 2.0 * kPi / num_phi_; }
-double PlaneGrid::radiusStep() const { return 2.0 * radius_ / num_radius_; }
+double PlaneGrid::thetaStep() const {
+  return 0.5 * kPi / num_theta_;
+}
+double PlaneGrid::phiStep() const {
+  return 2.0 * kPi / num_phi_;
+}
+double PlaneGrid::radiusStep() const {
+  return 2.0 * radius_ / num_radius_;
+}
 
 PlaneGrid::Bin PlaneGrid::bin(std::size_t index) const {
   const auto direction = index / num_radius_;
@@ -71,18 +81,10 @@ std::optional<PlaneGrid::Bin> PlaneGrid::step(const Bin& bin, int dt, int dp, in
 
 std::vector<std::size_t> PlaneGrid::neighbours(const Bin& bin) const {
   std::vector<std::size_t> found;
-  const std::size_t self = index(bin);
-  for (int dt = -1; dt <= 1; ++dt) {
-    const auto row = step(bin, dt, 0, 0);
-    const double width = phiStep() * std::sin(theta(row ? row->theta : bin.theta));
-    const int reach = std::min(num_phi_ / 2, std::max(1, static_cast<int>(std::ceil(thetaStep() / width))));
-    for (int dp = -reach; dp <= reach; ++dp) {
-      for (int dk = -1; dk <= 1; ++dk) {
-        const auto to = step(bin, dt, dp, dk);
-        if (to && index(*to) != self) found.push_back(index(*to));
-      }
-    }
-  }
+  visitNeighbours(bin, [&](std::size_t index) {
+    found.push_back(index);
+    return true;
+  });
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;

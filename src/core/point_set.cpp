@@ -28,7 +28,7 @@ std::pair<Eigen::Index, double> farthest(const PointsRef& points, const Eigen::V
 BoundingBall boundingBall(const PointsRef& points) {
   BoundingBall ball;
   if (points.cols() == 0) return ball;
-  constexpr Eigen::Index kNumProbed = 20'000;
+  constexpr Eigen::Index kNumProbed = 2'500;
   constexpr int kNumIterations = 60;
   const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kNumProbed);
   ball.center = centerOfMass(points);

@@ -31,8 +31,9 @@ std::uint32_t mortonPart(std::uint32_t v) {
   return spread;
 }
 
-/// Points of the EDT in cells from its first cell center: a cell drawn by f, then a uniform place in it. One point falls
-/// in each of num_samples equal shares of sum f along a space-filling curve, so that the points are spread evenly.
+/// Points of the EDT in cells from its first cell center: a cell drawn by f, then a uniform place in it. One point
+/// falls in each of num_samples equal shares of sum f along a space-filling curve, so that the points are spread
+/// evenly.
 Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64_t seed) {
   constexpr int kBlockBits = 3, kBlock = 1 << kBlockBits;
   static const auto kCurve = mortonCurve<kBlockBits>();
@@ -82,8 +83,7 @@ Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64
       sum += f[cell(x, y, z)];
       if (sum > target) break;
     }
-    for (int axis = 0; axis < 3; ++axis)
-      points(axis, i) = chosen[axis] + static_cast<float>(random.uniform() - 0.5);
+    for (int axis = 0; axis < 3; ++axis) points(axis, i) = chosen[axis] + static_cast<float>(random.uniform() - 0.5);
   }
   return points;
 }
@@ -123,33 +123,38 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
   const int num_radius = grid.numRadius();
   constexpr std::size_t kDirectionsPerBlock = 32;
   constexpr int kChunk = 1024;  // samples that are set up at a time
-  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads,
-                 [&](std::size_t begin, std::size_t end) {
-    std::vector<std::int32_t> sums(num_radius + 2 * kLineLanes);
-    std::vector<std::int32_t> lines(5 * kChunk);
-    Lines batch{lines.data(), lines.data() + kChunk, lines.data() + 2 * kChunk, lines.data() + 3 * kChunk,
-                lines.data() + 4 * kChunk, 0, {}};
-    std::vector<double> totals(num_radius);
-    for (std::size_t direction = begin; direction < end; ++direction) {
-      const Eigen::Vector3f n =
-          grid.normal(static_cast<int>(direction / grid.numPhi()), static_cast<int>(direction % grid.numPhi()))
-              .cast<float>();
-      const float offset = n.dot(center) + first_offset;  // of the first plane from the middle of the cube
-      for (int axis = 0; axis < 3; ++axis)
-        batch.step[axis] = static_cast<std::int32_t>(std::lround(2.0f * radius_step * n[axis] * one));
-      std::fill(totals.begin(), totals.end(), 0.0);
-      for (int first = 0; first < options.num_samples; first += kChunk) {
-        batch.size = std::min(kChunk, options.num_samples - first);
-        setUpLines(points.data() + 3 * first, static_cast<float>(middle), n.data(), offset, radius_step, num_radius,
-                   sq_clip, to_table[0], one, batch);
-        std::fill(sums.begin(), sums.end(), 0);
-        accumulate(batch, table.data(), table.bits(), sums.data());
-        for (int k = 0; k < num_radius; ++k) totals[k] += sums[k];
-      }
-      float* values = map.values.data() + direction * num_radius;
-      for (int k = 0; k < num_radius; ++k) values[k] = static_cast<float>(scale * totals[k]);
-    }
-  });
+  parallelRanges(
+      grid.numDirections(), kDirectionsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::int32_t> sums(num_radius + 2 * kLineLanes);
+        std::vector<std::int32_t> lines(5 * kChunk);
+        Lines batch{lines.data(),
+                    lines.data() + kChunk,
+                    lines.data() + 2 * kChunk,
+                    lines.data() + 3 * kChunk,
+                    lines.data() + 4 * kChunk,
+                    0,
+                    {}};
+        std::vector<double> totals(num_radius);
+        for (std::size_t direction = begin; direction < end; ++direction) {
+          const Eigen::Vector3f n =
+              grid.normal(static_cast<int>(direction / grid.numPhi()), static_cast<int>(direction % grid.numPhi()))
+                  .cast<float>();
+          const float offset = n.dot(center) + first_offset;  // of the first plane from the middle of the cube
+          for (int axis = 0; axis < 3; ++axis)
+            batch.step[axis] = static_cast<std::int32_t>(std::lround(2.0f * radius_step * n[axis] * one));
+          std::fill(totals.begin(), totals.end(), 0.0);
+          for (int first = 0; first < options.num_samples; first += kChunk) {
+            batch.size = std::min(kChunk, options.num_samples - first);
+            setUpLines(points.data() + 3 * first, static_cast<float>(middle), n.data(), offset, radius_step, num_radius,
+                       sq_clip, to_table[0], one, batch);
+            std::fill(sums.begin(), sums.end(), 0);
+            accumulate(batch, table.data(), table.bits(), sums.data());
+            for (int k = 0; k < num_radius; ++k) totals[k] += sums[k];
+          }
+          float* values = map.values.data() + direction * num_radius;
+          for (int k = 0; k < num_radius; ++k) values[k] = static_cast<float>(scale * totals[k]);
+        }
+      });
   return map;
 }
 

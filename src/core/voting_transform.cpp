@@ -17,7 +17,7 @@ constexpr double kPi = 3.14159265358979323846;
 /// Draws points of the EDT with probability f: cells in constant time by Walker's alias method, then a uniform place in
 /// the cell, whose blur f is sharpened against; input frame.
 class PointSampler {
- public:
+public:
   explicit PointSampler(const GaussianEdt& edt) : edt_(edt) {
     std::vector<double> share;
     const std::vector<float> f = edt.sharpened(1.0 / 24.0);
@@ -58,7 +58,7 @@ class PointSampler {
 
   double sum() const { return sum_; }
 
- private:
+private:
   const GaussianEdt& edt_;
   double sum_ = 0.0;
   std::vector<Eigen::Vector3f> cells_;
@@ -89,7 +89,8 @@ SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const
   const double far_weight =
       num_far > 0 ? sampler.sum() * sampler.sum() * cell_volume / (num_far * bin_measure * edt.sqNorm()) : 0.0;
   const double near_weight =
-      num_near > 0 ? sampler.sum() * (0.5 * kPi * 2.0 * kPi * near_distance) / (num_near * bin_measure * edt.sqNorm()) : 0.0;
+      num_near > 0 ? sampler.sum() * (0.5 * kPi * 2.0 * kPi * near_distance) / (num_near * bin_measure * edt.sqNorm())
+                   : 0.0;
 
   // A fixed number of partial maps, added up in their order.
   constexpr std::size_t kNumBlocks = 8;

@@ -9,7 +9,7 @@ namespace pcl_symmetry {
 
 /// Finds closest points of one fixed point set, many queries at a time.
 class ClosestPointSearch {
- public:
+public:
   using Ptr = std::shared_ptr<ClosestPointSearch>;
   virtual ~ClosestPointSearch() = default;
 

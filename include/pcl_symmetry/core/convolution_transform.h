@@ -15,8 +15,8 @@ struct ConvolutionTransformOptions {
   void validate() const;
 };
 
-/// The exact transform by convolution over plane translations (Section 4.2): for each direction n the volume is resampled
-/// along n, and one correlation of each line with its reversal gives D for every r at once.
+/// The exact transform by convolution over plane translations (Section 4.2): for each direction n the volume is
+/// resampled along n, and one correlation of each line with its reversal gives D for every r at once.
 ///
 /// Departure from the paper: the lines are resampled at `spacing` sigmas and not at every cell. A Gaussian shell of
 /// width sigma holds less than 1 % of its spectrum beyond the Nyquist frequency of that lattice, and the sum over it

@@ -10,11 +10,11 @@ namespace pcl_symmetry {
 
 /// Options of the Gaussian Euclidean distance transform. Zero means: choose from the data.
 struct GaussianEdtOptions {
-  int num_cells = 64;    ///< cells along each side, in [8, 512]
-  double sigma = 0.0;    ///< width in input units, >= 0; 0 = two cells, or the spacing of the points where that is more
-  double radius = 0.0;   ///< radius of the ball to cover, input units, >= 0; 0 = the bounding ball of the points
+  int num_cells = 64;   ///< cells along each side, in [8, 512]
+  double sigma = 0.0;   ///< width in input units, >= 0; 0 = two cells, or the spacing of the points where that is more
+  double radius = 0.0;  ///< radius of the ball to cover, input units, >= 0; 0 = the bounding ball of the points
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of that ball; used only with radius > 0
-  int num_threads = 0;   ///< >= 0; 0 = one per core
+  int num_threads = 0;                               ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -23,10 +23,10 @@ struct GaussianEdtOptions {
 /// f(x) = exp(-dist^2(x, points) / sigma^2) on a cube of cells around the points (Section 4.1).
 ///
 /// The distance at every cell center is exact with respect to the points' true positions (not to occupied cells) where
-/// f > 1e-4 and f is 0 beyond. Clouds with many points to a cell are thinned to one point per 1/64 cell first, which moves
-/// the distance by less than a quarter of a cell along the surface and hardly across it.
+/// f > 1.2e-3 and f is 0 beyond. Clouds with many points to a cell are thinned to one point per 1/64 cell first, which
+/// moves the distance by less than a quarter of a cell along the surface and hardly across it.
 class GaussianEdt {
- public:
+public:
   /// \param points 3 x N, finite, input units, N >= 1, not all equal unless options.radius is set.
   /// \throws std::invalid_argument for bad options, no points, points without extent, or non-finite values.
   explicit GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options = {});
@@ -44,8 +44,8 @@ class GaussianEdt {
   const std::vector<float>& values() const { return values_; }
   Eigen::Vector3d cellCenter(std::size_t index) const;
 
-  double sum() const { return sum_; }          ///< sum of f over cells
-  double sqNorm() const { return sq_norm_; }   ///< sum of f^2 over cells
+  double sum() const { return sum_; }         ///< sum of f over cells
+  double sqNorm() const { return sq_norm_; }  ///< sum of f^2 over cells
 
   /// f in between the cells: trilinear over coefficients (sharpened()) that make its mean over a cell right.
   /// \param x input frame; 0 outside the grid.
@@ -57,7 +57,7 @@ class GaussianEdt {
   /// \param c 1/24 for each box, 1/12 for trilinear interpolation or two boxes.
   std::vector<float> sharpened(double c) const;
 
- private:
+private:
   void computeDistances(const PointsRef& points, int num_threads);
 
   int num_cells_ = 0;

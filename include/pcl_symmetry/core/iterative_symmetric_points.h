@@ -16,11 +16,16 @@ enum class IspUpdate {
 
 struct IspOptions {
   IspUpdate update = IspUpdate::PointToPlane;
-  double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
-  double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; the width halves in every iteration until then
-  int max_iterations = 30;   ///< >= 1
-  double angle_tolerance = 1e-7;   ///< radians, >= 0: converged when the normal moves less
-  double offset_tolerance = 1e-7;  ///< input units, >= 0: and the center of the samples sees the plane move less
+  double sigma = 0.0;  ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
+  double final_sigma =
+      0.0;  ///< width at the end, input units, in (0, sigma]; the width halves in every iteration until then
+  int max_iterations = 30;  ///< >= 1
+  /// Converged when the plane moves by less than this, in radians and in input units divided by the extent of the
+  /// samples (the root mean square distance from their mean), >= 0 ...
+  double tolerance = 1e-7;
+  /// ... or by less than this share of its own standard error, residual / sqrt(number of samples), >= 0: beyond that,
+  /// matches that change sides keep a plane of sampled points in motion without making it better.
+  double error_share = 0.3;
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -35,26 +40,25 @@ struct IspSurface {
 
 /// What one iteration saw and did: everything that a picture of it needs (Figure 7).
 struct IspStep {
-  ReflectionPlane plane;             ///< the plane after the step
-  double residual = 0.0;             ///< weighted root mean square distance of the pairs before the step, input units
-  double weight = 0.0;               ///< mean weight of the pairs, in [0, 1]
-  std::vector<int> closest;          ///< for each sample the closest point to its reflection
-  std::vector<float> sq_distances;   ///< and its squared distance
+  ReflectionPlane plane;            ///< the plane after the step
+  double residual = 0.0;            ///< weighted root mean square distance of the pairs before the step, input units
+  double weight = 0.0;              ///< mean weight of the pairs, in [0, 1]
+  std::vector<int> closest;         ///< for each sample the closest point to its reflection
+  std::vector<float> sq_distances;  ///< and its squared distance
 };
 
 struct IspResult {
   ReflectionPlane plane;
   int iterations = 0;
   bool converged = false;
-  double residual = 0.0;  ///< of the last iteration, input units
-  double weight = 0.0;    ///< of the last iteration
+  IspStep last;  ///< of the last iteration: its distances are those before a step that no longer mattered
 };
 
 /// Pairs (x, y) of a sample and the closest point to its reflection, with weights: the sums of the closed form.
 ///
-/// sum w |x' - y|^2 = const + 4 sum w (n.x - r)(n.y - r), hence r = n.m with m the weighted mean of (x + y) / 2, and n is
-/// the eigenvector of the smallest eigenvalue of sum w [(x - m)(y - m)^T + (y - m)(x - m)^T] / 2.
-/// \param x,y 3 x M. \param weights M values >= 0. \return \p fallback where the weights vanish.
+/// sum w |x' - y|^2 = const + 4 sum w (n.x - r)(n.y - r), hence r = n.m with m the weighted mean of (x + y) / 2, and n
+/// is the eigenvector of the smallest eigenvalue of sum w [(x - m)(y - m)^T + (y - m)(x - m)^T] / 2. \param x,y 3 x M.
+/// \param weights M values >= 0. \return \p fallback where the weights vanish.
 ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const std::vector<double>& weights,
                                    const ReflectionPlane& fallback);
 
@@ -71,7 +75,7 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
                                double sigma, IspUpdate update);
 
 /// Iterates until the plane stands still.
-IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
-                                const IspOptions& options);
+IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
+                                const ReflectionPlane& plane, const IspOptions& options);
 
 }  // namespace pcl_symmetry

@@ -24,8 +24,8 @@ struct LocalMaximum {
 
 /// Local maxima of the map that pass the three thresholds, strongest first. A maximum on a seam is found once.
 ///
-/// r is the distance of the plane from the center of mass, R the radius of the grid; the discrete Laplacian is the sum of
-/// the second differences along theta, phi and r in steps of the grid.
+/// r is the distance of the plane from the center of mass, R the radius of the grid; the discrete Laplacian is the sum
+/// of the second differences along theta, phi and r in steps of the grid.
 std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMaximaOptions& options = {});
 
 }  // namespace pcl_symmetry

@@ -10,12 +10,13 @@
 namespace pcl_symmetry {
 
 /// The discrete space of planes (Section 4.2): theta in [0, pi/2], phi in [0, 2 pi), r in [-radius, radius] about a
-/// center, cut into equal bins; bin (t, p, k) has its center at ((t + 1/2) dtheta, (p + 1/2) dphi, (k + 1/2) dr - radius).
+/// center, cut into equal bins; bin (t, p, k) has its center at ((t + 1/2) dtheta, (p + 1/2) dphi, (k + 1/2) dr -
+/// radius).
 ///
 /// Seams: phi wraps; past the pole (theta < 0) lies (-theta, phi + pi, r); past the equator (theta > pi/2) lies
 /// (pi - theta, phi + pi, -r).
 class PlaneGrid {
- public:
+public:
   struct Bin {
     int theta;
     int phi;
@@ -64,17 +65,38 @@ class PlaneGrid {
   /// The bin at (t + dt, p + dp, k + dk) with dt in {-1, 0, 1}, led across the seams; none beyond the ends of r.
   std::optional<Bin> step(const Bin& bin, int dt, int dp, int dk) const;
 
-  /// Indices of the bins around this one, without itself: one step in theta and r, and in phi as many as it takes to
-  /// cover an angle of one step in theta. (At the equator that is the paper's 26 neighbours. Near the pole bins are
-  /// slivers in phi, and one peak would be a maximum of many of them.)
+  /// Indices of the bins around this one, without itself, ascending: one step in theta and r, and in phi as many as it
+  /// takes to cover an angle of one step in theta. (At the equator that is the paper's 26 neighbours. Near the pole
+  /// bins are slivers in phi, and one peak would be a maximum of many of them.)
   std::vector<std::size_t> neighbours(const Bin& bin) const;
 
- private:
+  /// Calls visit(index) for the same bins, some of them twice, until one call returns false.
+  /// \return whether all calls returned true.
+  template <typename Visit>
+  bool visitNeighbours(const Bin& bin, const Visit& visit) const {
+    const std::size_t self = index(bin);
+    for (int dt = -1; dt <= 1; ++dt) {
+      const int reach = phiReach(step(bin, dt, 0, 0)->theta);
+      for (int dp = -reach; dp <= reach; ++dp) {
+        for (int dk = -1; dk <= 1; ++dk) {
+          const auto to = step(bin, dt, dp, dk);
+          if (to && index(*to) != self && !visit(index(*to))) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+private:
+  /// Bins in phi that cover one step of theta in this row.
+  int phiReach(int t) const { return phi_reach_[t]; }
+
   int num_theta_ = 0;
   int num_phi_ = 0;
   int num_radius_ = 0;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double radius_ = 0.0;
+  std::vector<int> phi_reach_;
 };
 
 }  // namespace pcl_symmetry

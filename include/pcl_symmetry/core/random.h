@@ -6,7 +6,7 @@ namespace pcl_symmetry {
 
 /// A small random stream (SplitMix64) whose numbers are the same with every compiler and standard library.
 class RandomStream {
- public:
+public:
   using result_type = std::uint64_t;
 
   /// Streams of the same seed and different \p stream numbers are independent.
@@ -31,7 +31,7 @@ class RandomStream {
   static constexpr std::uint64_t min() { return 0; }
   static constexpr std::uint64_t max() { return ~std::uint64_t{0}; }
 
- private:
+private:
   std::uint64_t state_;
 };
 

@@ -8,7 +8,7 @@ namespace pcl_symmetry {
 ///
 /// Invariant: |normal| = 1. (n, r) and (-n, -r) are the same plane: compare canonical forms, or use angleTo().
 class ReflectionPlane {
- public:
+public:
   /// The plane z = 0.
   ReflectionPlane() = default;
 
@@ -47,7 +47,7 @@ class ReflectionPlane {
   /// Angle between the two normals as lines, in [0, pi/2] radians.
   double angleTo(const ReflectionPlane& other) const;
 
- private:
+private:
   Eigen::Vector3d normal_ = Eigen::Vector3d::UnitZ();
   double offset_ = 0.0;
 };

@@ -14,22 +14,23 @@ enum class Simd { Auto, Scalar, Avx2, Avx512 };
 bool simdSupported(Simd simd);
 
 struct SampledTransformOptions {
-  int num_samples = 128;   ///< points drawn for the whole map, >= 1; the error falls about as num_samples^-0.7
+  int num_samples = 128;  ///< points drawn for the whole map, >= 1; the error falls about as num_samples^-0.7
   std::uint64_t seed = 1;
-  int num_threads = 0;     ///< >= 0; 0 = one per core
+  int num_threads = 0;  ///< >= 0; 0 = one per core
   Simd simd = Simd::Auto;
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
 
-/// Draws points x_i with probability f / S, stratified in space, once for the whole map, and looks up the other point of
-/// each pair: D(gamma) = (S / |f|^2) mean f(gamma x_i).
+/// Draws points x_i with probability f / S, stratified in space, once for the whole map, and looks up the other point
+/// of each pair: D(gamma) = (S / |f|^2) mean f(gamma x_i).
 ///
 /// Unlike pairs that vote (Section 4.3) it needs no weights, has no singularity at coincident points, and gives values
 /// at bin centers. For one direction all radii of a sample lie on a straight line through the grid.
 /// \param edt the function f. \param grid the planes, in the frame of the EDT.
 /// \return D at the bin centers.
-SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options = {});
+SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid,
+                             const SampledTransformOptions& options = {});
 
 }  // namespace pcl_symmetry

@@ -23,9 +23,8 @@ struct VotingTransformOptions {
 ///
 /// The weight has infinite variance as d -> 0. Departure from the paper: pairs closer than near_distance do not vote;
 /// their share of the integral is drawn the other way round - x by f, a plane uniformly in (theta, phi, r) at less than
-/// near_distance / 2 from x, with weight f(x') - where the same change of variables makes the weight bounded. The sum of
-/// both is unbiased.
-/// \return averages of D over the bins.
+/// near_distance / 2 from x, with weight f(x') - where the same change of variables makes the weight bounded. The sum
+/// of both is unbiased. \return averages of D over the bins.
 SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options = {});
 
 }  // namespace pcl_symmetry

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace pcl_symmetry {
+
+/// What the neighbourhood of each point of a cloud says about the surface it was sampled from.
+struct LocalGeometry {
+  Points normals;  ///< 3 x N, unit, of any sign
+  std::vector<float>
+      spacing;  ///< N, 1 / sqrt(density): the distance at which a surface sample has 1 / pi of a neighbour
+};
+
+/// Normals by PCA of the nearest neighbours, and the local spacing of the samples from the distance r_k to the k-th of
+/// them: a surface of density rho has k = pi rho r_k^2 neighbours within r_k.
+/// \param num_neighbours >= 3; clouds with fewer points use all they have.
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
+                            int num_threads);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,155 @@
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "check.h"
+
+namespace pcl_symmetry {
+
+void IspOptions::validate() const {
+  check(std::isfinite(sigma) && sigma > 0.0, "sigma", sigma, "finite and > 0");
+  check(final_sigma > 0.0 && final_sigma <= sigma, "final_sigma", final_sigma, "in (0, sigma]");
+  check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
+  check(tolerance >= 0.0, "tolerance", tolerance, ">= 0");
+  check(error_share >= 0.0, "error_share", error_share, ">= 0");
+}
+
+ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const std::vector<double>& weights,
+                                   const ReflectionPlane& fallback) {
+  double sum = 0.0;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    middle += 0.5 * weights[i] * (x.col(i) + y.col(i)).cast<double>();
+    sum += weights[i];
+  }
+  if (!(sum > 0.0)) return fallback;
+  middle /= sum;
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const Eigen::Vector3d p = x.col(i).cast<double>() - middle, q = y.col(i).cast<double>() - middle;
+    a += weights[i] * p * q.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (a + a.transpose()));
+  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
+  return ReflectionPlane(normal, normal.dot(middle));
+}
+
+ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
+                                    const PointsRef& y_normals, const std::vector<double>& weights,
+                                    const ReflectionPlane& plane) {
+  constexpr double kLeastStiffness = 1e-3;  // of the stiffest direction; softer ones are free
+  constexpr double kLongestStep = 0.2;      // radians, or times the extent of the samples
+  const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
+  double sum = 0.0, sq_extent = 0.0;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    middle += weights[i] * x.col(i).cast<double>();
+    sum += weights[i];
+  }
+  if (!(sum > 0.0)) return plane;
+  middle /= sum;
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    sq_extent += weights[i] * (x.col(i).cast<double>() - middle).squaredNorm() / sum;
+  const double extent = std::sqrt(sq_extent);
+  if (!(extent > 0.0)) return plane;
+
+  // Unknowns: n moves by (a u + b v), the plane's distance from the middle of the samples by extent * c.
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  const double offset = plane.offset() - n.dot(middle);
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    if (weights[i] == 0.0) continue;
+    const Eigen::Vector3d p = x.col(i).cast<double>() - middle, q = y.col(i).cast<double>() - middle;
+    const double height = n.dot(p) - offset;
+    const Eigen::Vector3d reflected = p - 2.0 * height * n;
+    const Eigen::Vector3d x_normal = x_normals.col(i).cast<double>();
+    const Eigen::Vector3d turned = x_normal - 2.0 * n.dot(x_normal) * n;
+    const Eigen::Vector3d y_normal = y_normals.col(i).cast<double>();
+    const double cosine = turned.dot(y_normal);
+    Eigen::Vector3d m = y_normal + (cosine < 0.0 ? -turned : turned);
+    m.normalize();
+    const double weight = weights[i] * cosine * cosine;
+    const double error = m.dot(reflected - q);
+    const Eigen::Vector3d slope(-2.0 * (u.dot(p) * m.dot(n) + height * m.dot(u)),
+                                -2.0 * (v.dot(p) * m.dot(n) + height * m.dot(v)), 2.0 * extent * m.dot(n));
+    h += weight * slope * slope.transpose();
+    g += weight * error * slope;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const double stiffness = solver.eigenvalues()[i];
+    if (stiffness > kLeastStiffness * solver.eigenvalues()[2] && stiffness > 0.0)
+      step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness);
+  }
+  const double length = step.norm();
+  if (!std::isfinite(length)) return plane;
+  if (length > kLongestStep) step *= kLongestStep / length;
+  const Eigen::Vector3d normal = (n + step[0] * u + step[1] * v).normalized();
+  return ReflectionPlane(normal, normal.dot(middle) + offset + step[2] * extent);
+}
+
+IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                               double sigma, IspUpdate update) {
+  const auto size = static_cast<Eigen::Index>(samples.size());
+  IspStep step;
+  Points x(3, size), reflected(3, size), y(3, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    x.col(i) = surface.points.col(samples[i]);
+    reflected.col(i) = plane.reflect(x.col(i).cast<double>()).cast<float>();
+  }
+  surface.search.search(reflected, 1, step.closest, step.sq_distances);
+  std::vector<double> weights(samples.size());
+  double sum = 0.0, sq_sum = 0.0;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    y.col(i) = surface.points.col(step.closest[i]);
+    weights[i] = std::exp(-step.sq_distances[i] / (sigma * sigma));
+    sum += weights[i];
+    sq_sum += weights[i] * step.sq_distances[i];
+  }
+  step.residual = sum > 0.0 ? std::sqrt(sq_sum / sum) : 0.0;
+  step.weight = size > 0 ? sum / static_cast<double>(size) : 0.0;
+  if (update == IspUpdate::PointToPoint) {
+    step.plane = fitReflectionPlane(x, y, weights, plane);
+  } else {
+    Points x_normals(3, size), y_normals(3, size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      x_normals.col(i) = surface.normals.col(samples[i]);
+      y_normals.col(i) = surface.normals.col(step.closest[i]);
+    }
+    step.plane = stepReflectionPlane(x, y, x_normals, y_normals, weights, plane);
+  }
+  return step;
+}
+
+IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
+                                const ReflectionPlane& plane, const IspOptions& options) {
+  options.validate();
+  const double size = static_cast<double>(samples.size());
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const int i : samples) middle += surface.points.col(i).cast<double>() / size;
+  double sq_extent = 0.0;
+  for (const int i : samples) sq_extent += (surface.points.col(i).cast<double>() - middle).squaredNorm() / size;
+  const double extent = std::sqrt(sq_extent);
+
+  IspResult result;
+  result.plane = plane;
+  double sigma = options.sigma;
+  while (result.iterations < options.max_iterations && !result.converged) {
+    result.last = iterateSymmetricPoints(surface, samples, result.plane, sigma, options.update);
+    ++result.iterations;
+    const ReflectionPlane& next = result.last.plane;
+    const double moved =
+        std::abs(std::abs(next.signedDistance(middle)) - std::abs(result.plane.signedDistance(middle)));
+    const double tolerance = options.tolerance * extent + options.error_share * result.last.residual / std::sqrt(size);
+    result.converged =
+        sigma == options.final_sigma && moved <= tolerance && next.angleTo(result.plane) * extent <= tolerance;
+    result.plane = next;
+    sigma = std::max(options.final_sigma, 0.5 * sigma);
+  }
+  return result;
+}
+
+}  // namespace pcl_symmetry

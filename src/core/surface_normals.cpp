@@ -1,0 +1,44 @@
+#include "pcl_symmetry/core/surface_normals.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "pcl_symmetry/core/parallel.h"
+
+namespace pcl_symmetry {
+
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
+                            int num_threads) {
+  constexpr double kPi = 3.14159265358979323846;
+  constexpr std::size_t kBlockSize = 512;
+  const auto size = static_cast<std::size_t>(points.cols());
+  const int count = static_cast<int>(std::min<std::size_t>(size, num_neighbours + 1));  // with the point itself
+  LocalGeometry geometry{Points(3, points.cols()), std::vector<float>(size, 0.0f)};
+  parallelRanges(size, kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> indices;
+    std::vector<float> sq_distances;
+    search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
+    for (std::size_t i = begin; i < end; ++i) {
+      const int* neighbours = indices.data() + (i - begin) * count;
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+      for (int k = 0; k < count; ++k) {
+        const Eigen::Vector3f d = points.col(neighbours[k]) - points.col(i);
+        sum += d;
+        squares += d * d.transpose();
+      }
+      const Eigen::Matrix3f covariance = squares - sum * sum.transpose() / static_cast<float>(count);
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+      solver.computeDirect(covariance);
+      const Eigen::Vector3f normal = solver.eigenvectors().col(0);
+      const bool usable = normal.allFinite() && std::abs(normal.squaredNorm() - 1.0f) < 0.1f;
+      geometry.normals.col(i) = usable ? normal : Eigen::Vector3f(Eigen::Vector3f::UnitZ());
+      const double sq_radius = sq_distances[(i - begin) * count + count - 1];
+      geometry.spacing[i] = static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
+    }
+  });
+  return geometry;
+}
+
+}  // namespace pcl_symmetry
