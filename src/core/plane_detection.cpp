@@ -142,7 +142,8 @@ void DetectionOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-Detection detectPlanes(const PointsRef& points, const DetectionOptions& options) {
+Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
+                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search) {
   options.validate();
   Stopwatch watch;
   const GaussianEdt edt(points, options.edt);
@@ -155,7 +156,7 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options)
   SymmetryMap map = sampledTransform(edt, grid, sampling);
   map.center_of_mass = centerOfMass(points);
   const double transform_ms = watch.lap();
-  Detection detection = refineMaxima(points, edt, map, options);
+  Detection detection = refineMaxima(points, edt, map, options, make_search ? make_search(edt) : nullptr);
   detection.map = std::move(map);
   detection.timing_ms.insert(detection.timing_ms.begin(),
                              {{"distance_transform", edt_ms}, {"transform", transform_ms}});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,7 +71,9 @@ struct Detection {
 /// From points to planes: transform, maxima, refinement (Sections 4.1 to 4.4).
 /// \param points 3 x N, finite, input units; at least two different ones.
 /// \throws std::invalid_argument for bad options or points without extent.
-Detection detectPlanes(const PointsRef& points, const DetectionOptions& options = {});
+/// \param make_search makes the search of refineMaxima for the distance transform of these points; null = FLANN.
+Detection detectPlanes(const PointsRef& points, const DetectionOptions& options = {},
+                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr);
 
 /// The same from a map that was made before.
 /// \param edt,map of these points. \param search closest points among \p points divided by edt.radius() after taking

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <algorithm>
+#include <mutex>
+
+#include "pcl_symmetry/impl/bad_argument.hpp"
+#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+
+namespace pcl_symmetry {
+
+/// A pcl::search::Search seen from the normalised frame of the refinement.
+template <typename PointT>
+class PCLPointSearch : public ClosestPointSearch {
+public:
+  PCLPointSearch(const typename pcl::search::Search<PointT>::Ptr& search,
+                 const typename pcl::PointCloud<PointT>::ConstPtr& cloud, const pcl::Indices& used,
+                 const GaussianEdt& edt)
+      : search_(search), center_(edt.center()), scale_(edt.radius()), position_(cloud->size(), -1) {
+    for (std::size_t i = 0; i < used.size(); ++i) position_[used[i]] = static_cast<int>(i);
+    search_->setInputCloud(cloud, pcl::make_shared<pcl::Indices>(used));
+  }
+
+  void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+              std::vector<float>& sq_distances) const override {
+    indices.resize(queries.cols() * num_neighbours);
+    sq_distances.resize(indices.size());
+    pcl::Indices found;
+    std::vector<float> found_sq_distances;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (Eigen::Index i = 0; i < queries.cols(); ++i) {
+      PointT query;
+      query.getVector3fMap() = (queries.col(i).template cast<double>() * scale_ + center_).template cast<float>();
+      if (search_->nearestKSearch(query, num_neighbours, found, found_sq_distances) < num_neighbours)
+        throw std::invalid_argument("search method: found fewer neighbours than points, must find all");
+      for (int k = 0; k < num_neighbours; ++k) {
+        indices[i * num_neighbours + k] = position_[found[k]];
+        sq_distances[i * num_neighbours + k] = static_cast<float>(found_sq_distances[k] / (scale_ * scale_));
+      }
+    }
+  }
+
+private:
+  typename pcl::search::Search<PointT>::Ptr search_;
+  Eigen::Vector3d center_;
+  double scale_;
+  std::vector<int> position_;
+  mutable std::mutex mutex_;
+};
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setOptions(const DetectionOptions& options) {
+  withBadArguments([&] { options.validate(); });
+  options_ = options;
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setMinSupport(double min_support) {
+  DetectionOptions options = options_;
+  options.min_support = min_support;
+  setOptions(options);
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setApproximate(bool approximate) {
+  options_.approximate = approximate;
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setMaxPlanes(int max_planes) {
+  DetectionOptions options = options_;
+  options.max_planes = max_planes;
+  setOptions(options);
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setGridSize(int num_cells) {
+  DetectionOptions options = options_;
+  options.edt.num_cells = num_cells;
+  setOptions(options);
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setSigma(double sigma) {
+  DetectionOptions options = options_;
+  options.edt.sigma = sigma;
+  setOptions(options);
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setRandomSeed(std::uint64_t seed) {
+  options_.seed = seed;
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setNumberOfThreads(int num_threads) {
+  DetectionOptions options = options_;
+  options.num_threads = options.edt.num_threads = num_threads;
+  setOptions(options);
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setMaxPoints(std::size_t max_points) {
+  if (max_points < 2) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 2");
+  max_points_ = max_points;
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setSymmetryMap(const SymmetryMap& map,
+                                                      const std::shared_ptr<const GaussianEdt>& edt) {
+  if (map.empty() || !edt)
+    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "symmetry map: empty, must be made by PlanarSymmetryTransform");
+  map_ = map;
+  edt_ = edt;
+}
+
+template <typename PointT>
+std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
+  return withBadArguments([&] {
+    if (!input_) throw std::invalid_argument("input cloud: not set, must be given by setInputCloud");
+    SelectedPoints selected =
+        selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, options_.seed);
+    used_indices_ = std::move(selected.indices);
+    const auto search = [&](const GaussianEdt& edt) -> ClosestPointSearch::Ptr {
+      return search_ ? std::make_shared<PCLPointSearch<PointT>>(search_, input_, used_indices_, edt) : nullptr;
+    };
+    Detection detection = edt_ ? refineMaxima(selected.points, *edt_, map_, options_, search(*edt_))
+                               : detectPlanes(selected.points, options_, search);
+    timing_ms_ = std::move(detection.timing_ms);
+    return std::move(detection.planes);
+  });
+}
+
+template <typename PointT>
+std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PointCloud<PointT>& cloud, const DetectionOptions& options) {
+  SymmetryMaximaRefinement<PointT> refinement;
+  refinement.setOptions(options);
+  // The cloud outlives this call: no copy.
+  refinement.setInputCloud(typename pcl::PointCloud<PointT>::ConstPtr(&cloud, [](const void*) {}));
+  return refinement.compute();
+}
+
+}  // namespace pcl_symmetry
+
+#define PCL_INSTANTIATE_SymmetryMaximaRefinement(T)                                     \
+  template class pcl_symmetry::SymmetryMaximaRefinement<T>;                             \
+  template std::vector<pcl_symmetry::SymmetryPlane> pcl_symmetry::detectSymmetryPlanes( \
+      const pcl::PointCloud<T>&, const pcl_symmetry::DetectionOptions&);

@@ -1,0 +1,29 @@
+#include "pcl_symmetry/core/planar_transform.h"
+
+namespace pcl_symmetry {
+
+void PlanarTransformOptions::validate() const {
+  sampled.validate();
+  convolution.validate();
+  voting.validate();
+}
+
+SymmetryMap planarTransform(const GaussianEdt& edt, const PlaneGrid& grid, const Eigen::Vector3d& center_of_mass,
+                            const PlanarTransformOptions& options) {
+  SymmetryMap map;
+  switch (options.method) {
+    case TransformMethod::Sampled:
+      map = sampledTransform(edt, grid, options.sampled);
+      break;
+    case TransformMethod::Convolution:
+      map = convolutionTransform(edt, grid, options.convolution);
+      break;
+    case TransformMethod::Voting:
+      map = votingTransform(edt, grid, options.voting);
+      break;
+  }
+  map.center_of_mass = center_of_mass;
+  return map;
+}
+
+}  // namespace pcl_symmetry
