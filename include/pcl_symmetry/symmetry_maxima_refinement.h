@@ -57,6 +57,10 @@ public:
   /// \throws pcl::BadArgumentException without input, or where the finite points have no extent.
   std::vector<SymmetryPlane> compute();
 
+  /// Support of every point of the input cloud, also of those that compute() did not use; NaN for points that are not
+  /// finite. Follows a compute().
+  std::vector<float> computePointSupport(const ReflectionPlane& plane) const;
+
   /// Of the last compute(): the points used, in the order of SymmetryPlane::point_support.
   const pcl::Indices& getUsedIndices() const { return used_indices_; }
   /// Of the last compute(): stages and their milliseconds, in order.
@@ -74,6 +78,7 @@ private:
   SymmetryMap map_;
   std::shared_ptr<const GaussianEdt> edt_;
   pcl::Indices used_indices_;
+  Points used_points_;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "check.h"
 #include "pcl_symmetry/core/parallel.h"
+#include "pcl_symmetry/core/plane_support.h"
 #include "pcl_symmetry/core/principal_axes.h"
 #include "pcl_symmetry/core/random.h"
 #include "pcl_symmetry/core/sampled_transform.h"
@@ -17,10 +18,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kNumNeighbours = 8;              // for normals and spacing
 constexpr double kCandidateAngle = 0.1;        // radians: maxima closer than this ...
 constexpr double kCandidateOffset = 0.06;      // ... in angle and radii share one basin of refinement
-constexpr double kSupportReach = 1.25;         // spacings; a resampled surface exceeds it in 1 of 130 points
 constexpr double kFinalSigmaInSpacings = 3.0;  // weights at the end: well above the spacing, well below sigma
 constexpr double kLeastValue = 0.45;           // of D in a bin that may hold a plane of min_support: half the peak
 constexpr double kCoarseSlack = 0.3, kCloseSlack = 0.1;     // of support after the stages, below min_support
@@ -95,19 +94,6 @@ std::vector<Candidate> gatherCandidates(const SymmetryMap& map, const Points& po
   return candidates;
 }
 
-/// 1 for points that the reflection brings onto the surface as closely as its samples lie, falling off beyond.
-std::vector<float> pointSupport(const std::vector<int>& samples, const IspStep& step,
-                                const std::vector<float>& spacing) {
-  std::vector<float> support(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const float reach = static_cast<float>(kSupportReach) * std::max(spacing[samples[i]], spacing[step.closest[i]]);
-    const float distance = std::sqrt(step.sq_distances[i]);
-    const float excess = distance <= reach ? 0.0f : (distance - reach) / std::max(reach, 1e-6f);
-    support[i] = std::exp(-excess * excess);
-  }
-  return support;
-}
-
 double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -175,7 +161,7 @@ public:
         frame_{edt.center(), edt.radius()},
         points_(normalizePoints(points, frame_.center, frame_.scale)),
         search_(search ? search : makeFlannSearch(points_)),
-        geometry_(localGeometry(points_, *search_, kNumNeighbours, options.num_threads)),
+        geometry_(localGeometry(points_, *search_, kNumSupportNeighbours, options.num_threads)),
         surface_{points_, geometry_.normals, *search_},
         sigma_(edt.sigma() / frame_.scale) {
     std::vector<float> spacing = geometry_.spacing;
@@ -224,7 +210,7 @@ public:
                    : iterateSymmetricPoints(surface_, all, candidate.plane, final_sigma_, IspUpdate::PointToPoint);
       SymmetryPlane& plane = planes[i];
       static_cast<ReflectionPlane&>(plane) = frame_.toInput(candidate.plane).canonical();
-      plane.point_support = pointSupport(all, step, geometry_.spacing);
+      plane.point_support = pointSupport(step.closest, step.sq_distances, geometry_.spacing);
       plane.support = mean(plane.point_support);
       plane.score = correlation(edt_, plane);
       plane.iterations = candidate.iterations;
@@ -298,7 +284,8 @@ private:
       candidate.last = refineSymmetricPoints(surface_, samples, candidate.plane, isp);
       candidate.plane = candidate.last.plane;
       candidate.iterations += candidate.last.iterations;
-      candidate.support = mean(pointSupport(samples, candidate.last.last, geometry_.spacing));
+      candidate.support =
+          mean(pointSupport(candidate.last.last.closest, candidate.last.last.sq_distances, geometry_.spacing));
     });
   }
 

@@ -13,6 +13,9 @@ struct LocalGeometry {
       spacing;  ///< N, 1 / sqrt(density): the distance at which a surface sample has 1 / pi of a neighbour
 };
 
+/// Neighbours that normals and spacing are taken from: the fewest that keep the error of the spacing below 20 %.
+constexpr int kNumSupportNeighbours = 8;
+
 /// Normals by PCA of the nearest neighbours, and the local spacing of the samples from the distance r_k to the k-th of
 /// them: a surface of density rho has k = pi rho r_k^2 neighbours within r_k.
 /// \param num_neighbours >= 3; clouds with fewer points use all they have.

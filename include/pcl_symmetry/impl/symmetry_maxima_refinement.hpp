@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 
+#include "pcl_symmetry/core/plane_support.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -121,13 +123,26 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     SelectedPoints selected =
         selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, options_.seed);
     used_indices_ = std::move(selected.indices);
+    used_points_ = std::move(selected.points);
     const auto search = [&](const GaussianEdt& edt) -> ClosestPointSearch::Ptr {
       return search_ ? std::make_shared<PCLPointSearch<PointT>>(search_, input_, used_indices_, edt) : nullptr;
     };
-    Detection detection = edt_ ? refineMaxima(selected.points, *edt_, map_, options_, search(*edt_))
-                               : detectPlanes(selected.points, options_, search);
+    Detection detection = edt_ ? refineMaxima(used_points_, *edt_, map_, options_, search(*edt_))
+                               : detectPlanes(used_points_, options_, search);
     timing_ms_ = std::move(detection.timing_ms);
     return std::move(detection.planes);
+  });
+}
+
+template <typename PointT>
+std::vector<float> SymmetryMaximaRefinement<PointT>::computePointSupport(const ReflectionPlane& plane) const {
+  return withBadArguments([&] {
+    if (used_points_.cols() == 0) throw std::invalid_argument("input cloud: not analysed, must be by compute()");
+    const SelectedPoints all = selectPoints(*input_, nullptr, input_->size(), 0);
+    const std::vector<float> finite = planeSupport(all.points, used_points_, plane, options_.num_threads);
+    std::vector<float> support(input_->size(), std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < finite.size(); ++i) support[all.indices[i]] = finite[i];
+    return support;
   });
 }
 

@@ -1,0 +1,211 @@
+/// Symmetry planes of a cloud or mesh: a table, JSON, the support of every point, a picture.
+#include <pcl/common/io.h>
+
+#include <boost/filesystem/path.hpp>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "options.h"
+#include "pcl_symmetry/mesh_sampling.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "picture.h"
+#include "shape_input.h"
+#include "shape_output.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+constexpr std::size_t kMaxPanels = 4;
+
+struct PlanesOptions {
+  std::string input;
+  std::optional<std::string> png_path, support_path;
+  int mesh_points = 10'000;
+  DetectionOptions detection;
+  std::optional<double> sigma;
+  CommonOptions common;
+};
+
+CommandLine commandLine(PlanesOptions& options) {
+  CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of a cloud or mesh.",
+                   "pcl_symmetry_planes chair.pcd -json planes.json -png planes.png");
+  line.positional("input", options.input, ".pcd, .ply, .obj, .stl or .off")
+      .text("png", "FILE", options.png_path, "picture: cloud, planes and support, best planes first")
+      .text("support", "FILE", options.support_path,
+            "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane")
+      .flag("approximate", options.detection.approximate,
+            "also report approximate symmetries and symmetries of parts, marked as such")
+      .number("min_support", options.detection.min_support, Range::closed(0, 1),
+              "share of the surface that a symmetry must map onto the surface")
+      .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "planes reported at most")
+      .number("sigma", options.sigma, Range::above(0), "width of the Gaussian, input units (two cells)")
+      .number("points", options.mesh_points, Range::closed(100, 10'000'000), "points spread over a mesh")
+      .common(options.common, kJson | kSeed | kThreads | kGrid | kQuiet);
+  return line;
+}
+
+nlohmann::json toJson(const Eigen::Vector4d& v) {
+  return {v[0], v[1], v[2], v[3]};
+}
+
+void printTable(const std::vector<SymmetryPlane>& planes) {
+  if (planes.empty()) {
+    std::printf("no symmetry plane\n");
+    return;
+  }
+  std::printf("%5s %11s %11s %11s %13s %8s %8s  %s\n", "plane", "a", "b", "c", "d", "score", "support", "kind");
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const Eigen::Vector4d c = planes[i].coefficients();
+    std::printf("%5zu %11.6f %11.6f %11.6f %13.6g %8.3f %8.3f  %s\n", i + 1, c[0], c[1], c[2], c[3], planes[i].score,
+                planes[i].support, planes[i].approximate ? "approximate" : "symmetry");
+  }
+}
+
+nlohmann::json describe(const PlanesOptions& options, const std::vector<SymmetryPlane>& planes, std::size_t num_points,
+                        const std::vector<std::pair<std::string, double>>& timing_ms) {
+  nlohmann::json json{{"file", options.input},
+                      {"num_points", num_points},
+                      {"planes", nlohmann::json::array()},
+                      {"axes", nlohmann::json::array()},
+                      {"timing_ms", nlohmann::json::object()}};
+  for (const SymmetryPlane& plane : planes) {
+    json["planes"].push_back({{"coefficients", toJson(plane.coefficients())},
+                              {"score", plane.score},
+                              {"support", plane.support},
+                              {"approximate", plane.approximate},
+                              {"residual", plane.residual},
+                              {"iterations", plane.iterations},
+                              {"converged", plane.converged}});
+  }
+  for (const auto& [stage, ms] : timing_ms) json["timing_ms"][stage] = ms;
+  return json;
+}
+
+/// The input with the fields that it had, and one more for each plane.
+pcl::PCLPointCloud2 withSupport(const pcl::PCLPointCloud2& input, const std::vector<std::vector<float>>& support) {
+  pcl::PCLPointCloud2 extra;
+  extra.width = input.width;
+  extra.height = input.height;
+  extra.is_dense = input.is_dense;
+  extra.is_bigendian = input.is_bigendian;
+  for (std::size_t k = 0; k < support.size(); ++k) {
+    pcl::PCLPointField field;
+    field.name = "support_" + std::to_string(k + 1);
+    field.offset = static_cast<std::uint32_t>(k * sizeof(float));
+    field.datatype = pcl::PCLPointField::FLOAT32;
+    field.count = 1;
+    extra.fields.push_back(field);
+  }
+  extra.point_step = static_cast<std::uint32_t>(support.size() * sizeof(float));
+  extra.row_step = extra.point_step * extra.width;
+  extra.data.resize(static_cast<std::size_t>(extra.row_step) * extra.height);
+  for (std::size_t k = 0; k < support.size(); ++k)
+    for (std::size_t i = 0; i < support[k].size(); ++i)
+      std::memcpy(&extra.data[i * extra.point_step + k * sizeof(float)], &support[k][i], sizeof(float));
+  pcl::PCLPointCloud2 output;
+  if (support.empty()) return input;
+  if (!pcl::concatenateFields(input, extra, output)) throw InputError("support: fields could not be joined");
+  return output;
+}
+
+PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const std::vector<SymmetryPlane>& planes,
+                       const std::vector<std::vector<float>>& support) {
+  PictureScene scene;
+  scene.points = cloud;
+  for (std::size_t k = 0; k < std::min(planes.size(), kMaxPanels); ++k) {
+    PicturePanel panel;
+    char label[96];
+    std::snprintf(label, sizeof(label), "plane %zu%s: support %.2f, score %.2f", k + 1,
+                  planes[k].approximate ? " (approximate)" : "", planes[k].support, planes[k].score);
+    panel.label = label;
+    panel.support.assign(support[k].begin(), support[k].end());
+    PlanePatch patch;
+    patch.normal = planes[k].normal();
+    patch.offset = planes[k].offset();
+    patch.color = distinctColor(k);
+    panel.planes = {patch};
+    scene.panels.push_back(panel);
+  }
+  if (scene.panels.empty()) scene.panels.push_back({"no symmetry plane"});
+  // Off the normals of the planes shown, so that none is seen edge on or face on; see ViewpointSelection for more.
+  if (!planes.empty()) {
+    const Eigen::Vector3d n = planes[0].normal();
+    Eigen::Vector3d across = Eigen::Vector3d::UnitZ() - n.z() * n;
+    if (across.norm() < 0.3) across = Eigen::Vector3d::UnitX() - n.x() * n;
+    across.normalize();
+    const Eigen::Vector3d along = n.cross(across);
+    scene.view = 0.75 * n + along + 0.55 * across;
+    scene.up = across;
+  }
+  return scene;
+}
+
+int run(int argc, char** argv) {
+  PlanesOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  if (options.support_path) checkCloudExtension(*options.support_path);
+  const Console console(options.common.quiet);
+
+  Step loading(console, "Loading " + options.input);
+  Shape shape = loadShape(options.input);
+  const bool from_mesh = shape.mesh.has_value();
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud = shape.points;
+  if (from_mesh) cloud = sampleMesh(*shape.mesh, options.mesh_points, options.common.seed + 1);
+  const double loading_ms = loading.done(std::to_string(cloud->size()) + " points");
+
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  DetectionOptions& detection = options.detection;
+  detection.seed = options.common.seed + 1;
+  detection.num_threads = detection.edt.num_threads = options.common.threads;
+  detection.edt.num_cells = options.common.grid;
+  detection.edt.sigma = options.sigma.value_or(0.0);
+  Step searching(console, "Searching planes");
+  std::vector<SymmetryPlane> planes;
+  try {
+    refinement.setOptions(detection);
+    refinement.setInputCloud(cloud);
+    planes = refinement.compute();
+  } catch (const pcl::BadArgumentException& error) {
+    throw InputError(options.input + ": " + error.detailedMessage());
+  }
+  const double searching_ms = searching.done(std::to_string(planes.size()) + " planes");
+
+  std::vector<std::vector<float>> support;
+  if (options.support_path || options.png_path)
+    for (const SymmetryPlane& plane : planes) support.push_back(refinement.computePointSupport(plane));
+
+  printTable(planes);
+  if (options.common.json_path) {
+    auto timing_ms = refinement.getTiming();
+    timing_ms.emplace_back("load", loading_ms);
+    timing_ms.emplace_back("total", searching_ms);
+    writeText(*options.common.json_path,
+              describe(options, planes, refinement.getUsedIndices().size(), timing_ms).dump(2) + "\n");
+  }
+  if (options.support_path) {
+    pcl::PCLPointCloud2 base = shape.cloud;
+    if (from_mesh) pcl::toPCLPointCloud2(*cloud, base);
+    saveCloud(*options.support_path, withSupport(base, support), shape.sensor_origin, shape.sensor_orientation);
+  }
+  if (options.png_path) {
+    Step drawing(console, "Drawing " + *options.png_path);
+    PictureScene scene = makeScene(cloud, planes, support);
+    renderPicture(scene, *options.png_path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
+    drawing.done();
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}
