@@ -7,9 +7,9 @@ if(NOT TARGET FLANN::FLANN)
   find_package(FLANN REQUIRED)
 endif()
 
-# pcl_symmetry_pcl: include directories and the libraries of the named PCL components.
+# Include directories and libraries of the named PCL components; installed targets get them from the imported targets.
 function(pcl_symmetry_link_pcl target scope)
-  target_include_directories(${target} SYSTEM ${scope} ${PCL_INCLUDE_DIRS})
+  target_include_directories(${target} SYSTEM ${scope} "$<BUILD_INTERFACE:${PCL_INCLUDE_DIRS}>")
   foreach(component IN LISTS ARGN)
     string(TOUPPER ${component} upper)
     target_link_libraries(${target} ${scope} ${PCL_${upper}_LIBRARIES})

@@ -1,0 +1,47 @@
+# What `cmake --install` puts down: headers, libraries, find_package(pcl_symmetry) and pkg-config files.
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcl_symmetry)
+
+# Two export sets, so that the core can be had without PCL.
+install(TARGETS pcl_symmetry_core EXPORT pcl_symmetry_core_targets)
+install(TARGETS pcl_symmetry EXPORT pcl_symmetry_pcl_targets)
+install(EXPORT pcl_symmetry_core_targets NAMESPACE pcl_symmetry:: DESTINATION ${package_dir})
+install(EXPORT pcl_symmetry_pcl_targets NAMESPACE pcl_symmetry:: DESTINATION ${package_dir})
+install(DIRECTORY include/pcl_symmetry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# What a static core leaves to be linked by its users; a shared one has linked it.
+get_target_property(core_type pcl_symmetry_core TYPE)
+set(static_core OFF)
+set(core_link_flags "")
+if(core_type STREQUAL STATIC_LIBRARY)
+  set(static_core ON)
+  set(core_link_flags "-llz4 ${OpenMP_CXX_FLAGS}")
+endif()
+if(PCL_SYMMETRY_SANITIZE)
+  string(APPEND core_link_flags " -fsanitize=${PCL_SYMMETRY_SANITIZE}")
+endif()
+
+configure_package_config_file(cmake/pcl_symmetry-config.cmake.in ${PROJECT_BINARY_DIR}/pcl_symmetry-config.cmake
+                              INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/pcl_symmetry-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/pcl_symmetry-config.cmake ${PROJECT_BINARY_DIR}/pcl_symmetry-config-version.cmake
+        DESTINATION ${package_dir})
+
+# Paths relative to the .pc file where the installation can be moved.
+if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}" OR IS_ABSOLUTE "${CMAKE_INSTALL_INCLUDEDIR}")
+  set(pc_prefix "${CMAKE_INSTALL_PREFIX}")
+  set(pc_libdir "${CMAKE_INSTALL_FULL_LIBDIR}")
+  set(pc_includedir "${CMAKE_INSTALL_FULL_INCLUDEDIR}")
+else()
+  file(RELATIVE_PATH to_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+  string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
+  set(pc_prefix "\${pcfiledir}/${to_prefix}")
+  set(pc_libdir "\${prefix}/${CMAKE_INSTALL_LIBDIR}")
+  set(pc_includedir "\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}")
+endif()
+foreach(name pcl_symmetry_core pcl_symmetry)
+  configure_file(cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
