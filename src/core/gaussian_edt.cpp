@@ -40,6 +40,16 @@ void lowerSlice(float* sq_distances, int num_cells, float x, float y, float sq_d
   }
 }
 
+/// One row of GaussianEdt::sharpened, without its ends.
+PCL_SYMMETRY_MULTIVERSION
+void sharpenRow(const float* f, std::ptrdiff_t num_cells, std::ptrdiff_t slice_size, float weight, float* sharpened) {
+  for (std::ptrdiff_t x = 1; x + 1 < num_cells; ++x) {
+    const float laplacian =
+        f[x - 1] + f[x + 1] + f[x - num_cells] + f[x + num_cells] + f[x - slice_size] + f[x + slice_size] - 6.0f * f[x];
+    sharpened[x] = std::max(0.0f, f[x] - weight * laplacian);
+  }
+}
+
 /// Typical distance between neighbouring samples of a surface, 1 / sqrt(density): twice the mean distance to the
 /// nearest other point, over a fixed number of probes; 0 for clouds too large to be sparse.
 double sampleSpacing(const PointsRef& points) {
@@ -121,7 +131,7 @@ GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& opti
   }
   origin_ = center_ - Eigen::Vector3d::Constant((half - 0.5) * cell_size_);
   computeDistances(points, options.num_threads);
-  interpolation_ = sharpened(1.0 / 12.0);
+  interpolation_ = sharpened(1.0 / 12.0, options.num_threads);
 }
 
 void GaussianEdt::computeDistances(const PointsRef& points, int num_threads) {
@@ -183,23 +193,16 @@ double GaussianEdt::operator()(const Eigen::Vector3d& x) const {
   return near + t.z() * (far - near);
 }
 
-std::vector<float> GaussianEdt::sharpened(double c) const {
+std::vector<float> GaussianEdt::sharpened(double c, int num_threads) const {
   const int n = num_cells_;
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;
   std::vector<float> result(values_);
-  const float weight = static_cast<float>(c);
-  for (int z = 1; z + 1 < n; ++z) {
+  parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
     for (int y = 1; y + 1 < n; ++y) {
-      const std::size_t row = static_cast<std::size_t>(z) * slice_size + static_cast<std::size_t>(y) * n;
-      const float* f = values_.data() + row;
-      float* out = result.data() + row;
-      for (int x = 1; x + 1 < n; ++x) {
-        const float laplacian = f[x - 1] + f[x + 1] + f[x - n] + f[x + n] +
-                                (f + x)[-static_cast<std::ptrdiff_t>(slice_size)] + f[x + slice_size] - 6.0f * f[x];
-        out[x] = std::max(0.0f, f[x] - weight * laplacian);
-      }
+      const std::size_t row = (slice + 1) * slice_size + static_cast<std::size_t>(y) * n;
+      sharpenRow(values_.data() + row, n, slice_size, static_cast<float>(c), result.data() + row);
     }
-  }
+  });
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "check.h"
+#include "pcl_symmetry/core/parallel.h"
 
 namespace pcl_symmetry {
 
@@ -100,7 +101,16 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
     x.col(i) = surface.points.col(samples[i]);
     reflected.col(i) = plane.reflect(x.col(i).cast<double>()).cast<float>();
   }
-  surface.search.search(reflected, 1, step.closest, step.sq_distances);
+  constexpr std::size_t kBlockSize = 1024;
+  step.closest.resize(samples.size());
+  step.sq_distances.resize(samples.size());
+  parallelRanges(samples.size(), kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> closest;
+    std::vector<float> sq_distances;
+    surface.search.search(reflected.middleCols(begin, end - begin), 1, closest, sq_distances);
+    std::copy(closest.begin(), closest.end(), step.closest.begin() + static_cast<std::ptrdiff_t>(begin));
+    std::copy(sq_distances.begin(), sq_distances.end(), step.sq_distances.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
   std::vector<double> weights(samples.size());
   double sum = 0.0, sq_sum = 0.0;
   for (Eigen::Index i = 0; i < size; ++i) {

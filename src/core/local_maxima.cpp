@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check.h"
+#include "pcl_symmetry/core/parallel.h"
 
 namespace pcl_symmetry {
 
@@ -30,6 +31,7 @@ double laplacian(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
 
 void LocalMaximaOptions::validate() const {
   check(strength >= 0.0 && strength <= 1.0, "strength", strength, "in [0, 1]");
+  checkNumThreads(num_threads);
   check(laplacian >= 0.0 && laplacian <= 1.0, "laplacian", laplacian, "in [0, 1]");
 }
 
@@ -41,7 +43,10 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
   const double strength = options.strength * map[strongest];
   const double curvature = options.laplacian * -laplacian(map, map.grid.bin(strongest));
   const PlaneGrid& grid = map.grid;
-  for (int t = 0; t < grid.numTheta(); ++t) {
+  std::vector<std::vector<LocalMaximum>> rows(grid.numTheta());
+  parallelBlocks(rows.size(), options.num_threads, [&](std::size_t row) {
+    const int t = static_cast<int>(row);
+    const std::size_t next_phi = grid.numRadius(), next_theta = next_phi * grid.numPhi();
     for (int p = 0; p < grid.numPhi(); ++p) {
       const double center_offset = grid.normal(t, p).dot(map.center_of_mass - grid.center());
       for (int k = 0; k < grid.numRadius(); ++k) {
@@ -53,13 +58,16 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
         // Most bins fail at a neighbour that is quickly reached.
         if (k > 0 && map[index - 1] > value) continue;
         if (k + 1 < grid.numRadius() && map[index + 1] > value) continue;
-        if (p > 0 && map[index - grid.numRadius()] > value) continue;
-        if (p + 1 < grid.numPhi() && map[index + grid.numRadius()] > value) continue;
+        if (p > 0 && map[index - next_phi] > value) continue;
+        if (p + 1 < grid.numPhi() && map[index + next_phi] > value) continue;
+        if (t > 0 && map[index - next_theta] > value) continue;
+        if (t + 1 < grid.numTheta() && map[index + next_theta] > value) continue;
         if (!isLocalMaximum(map, index) || -laplacian(map, bin) < curvature) continue;
-        maxima.push_back({bin, grid.plane(bin), value});
+        rows[row].push_back({bin, grid.plane(bin), value});
       }
     }
-  }
+  });
+  for (const auto& row : rows) maxima.insert(maxima.end(), row.begin(), row.end());
   std::stable_sort(maxima.begin(), maxima.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
   return maxima;
 }

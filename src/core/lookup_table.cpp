@@ -1,24 +1,36 @@
 #include "lookup_table.h"
 
-#include <algorithm>
+#include "pcl_symmetry/core/parallel.h"
+#include "simd.h"
 
 namespace pcl_symmetry {
 
-LookupTable::LookupTable(const GaussianEdt& edt, double sharpening) {
+namespace {
+
+PCL_SYMMETRY_MULTIVERSION
+void quantizeRow(const float* values, int num_cells, std::uint8_t* out) {
+  for (int x = 1; x + 1 < num_cells; ++x) {
+    const float scaled = values[x] * static_cast<float>(LookupTable::kOne) + 0.5f;
+    out[x] = static_cast<std::uint8_t>(static_cast<int>(scaled < 255.0f ? scaled : 255.0f));
+  }
+}
+
+}  // namespace
+
+LookupTable::LookupTable(const GaussianEdt& edt, double sharpening, int num_threads) {
   const int n = edt.numCells();
   while ((1 << bits_) < n) ++bits_;
   padding_ = ((1 << bits_) - n) / 2;
-  const std::vector<float> values = edt.sharpened(sharpening);
+  const std::vector<float> values = edt.sharpened(sharpening, num_threads);
   const std::size_t side = std::size_t{1} << bits_;
   table_.assign(side * side * side + sizeof(std::uint32_t), 0);  // a gather reads four bytes
-  for (int z = 1; z + 1 < n; ++z) {
+  parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
     for (int y = 1; y + 1 < n; ++y) {
-      const float* row = values.data() + (static_cast<std::size_t>(z) * n + y) * n;
-      std::uint8_t* out = table_.data() + ((z + padding_) * side + (y + padding_)) * side + padding_;
-      for (int x = 1; x + 1 < n; ++x)
-        out[x] = static_cast<std::uint8_t>(std::min(255.0f, row[x] * static_cast<float>(kOne) + 0.5f));
+      const float* row = values.data() + ((slice + 1) * n + y) * n;
+      std::uint8_t* out = table_.data() + ((slice + 1 + padding_) * side + (y + padding_)) * side + padding_;
+      quantizeRow(row, n, out);
     }
-  }
+  });
 }
 
 }  // namespace pcl_symmetry

@@ -17,7 +17,7 @@ public:
   static constexpr double kOne = 200.0;  ///< sharpening lifts f a little above 1
 
   /// \param sharpening see GaussianEdt::sharpened.
-  LookupTable(const GaussianEdt& edt, double sharpening);
+  LookupTable(const GaussianEdt& edt, double sharpening, int num_threads);
 
   int bits() const { return bits_; }
   const std::uint8_t* data() const { return table_.data(); }

@@ -22,7 +22,7 @@ constexpr double kCandidateAngle = 0.1;        // radians: maxima closer than th
 constexpr double kCandidateOffset = 0.06;      // ... in angle and radii share one basin of refinement
 constexpr double kFinalSigmaInSpacings = 3.0;  // weights at the end: well above the spacing, well below sigma
 constexpr double kLeastValue = 0.45;           // of D in a bin that may hold a plane of min_support: half the peak
-constexpr double kCoarseSlack = 0.3, kCloseSlack = 0.1;     // of support after the stages, below min_support
+constexpr double kCoarseSlack = 0.3, kCloseSlack = 0.05;    // of support after the stages, below min_support
 constexpr int kCoarseIterations = 5, kCloseIterations = 6;  // symmetries converge in fewer
 constexpr std::size_t kMaxClosed = 16;  // planes whose group is completed; more belong to a continuous family
 
@@ -80,7 +80,9 @@ std::vector<int> drawSamples(int size, int num_samples, std::uint64_t seed) {
 std::vector<Candidate> gatherCandidates(const SymmetryMap& map, const Points& points, const NormalizedFrame& frame,
                                         const DetectionOptions& options) {
   std::vector<Candidate> candidates;
-  for (const LocalMaximum& maximum : findLocalMaxima(map, options.maxima)) {
+  LocalMaximaOptions maxima = options.maxima;
+  maxima.num_threads = options.num_threads;
+  for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
     if (static_cast<int>(candidates.size()) >= options.max_candidates) break;
     if (!options.approximate && maximum.value < kLeastValue) break;
     const ReflectionPlane plane = frame.toNormalized(maximum.plane);
@@ -162,7 +164,7 @@ public:
         points_(normalizePoints(points, frame_.center, frame_.scale)),
         search_(search ? search : makeFlannSearch(points_)),
         geometry_(localGeometry(points_, *search_, kNumSupportNeighbours, options.num_threads)),
-        surface_{points_, geometry_.normals, *search_},
+        surface_{points_, geometry_.normals, *search_, options.num_threads},
         sigma_(edt.sigma() / frame_.scale) {
     std::vector<float> spacing = geometry_.spacing;
     std::nth_element(spacing.begin(), spacing.begin() + spacing.size() / 2, spacing.end());
@@ -194,6 +196,7 @@ public:
         std::clamp(final_sigma_, 0.5 * sigma_, sigma_), final_sigma_,
         std::min(kCloseIterations, options_.max_iterations));
     candidates = distinct(std::move(candidates), kCloseSlack);
+    if (static_cast<int>(candidates.size()) > options_.max_planes) candidates.resize(options_.max_planes);
   }
 
   /// All samples; the precision of the planes is decided here.
@@ -204,7 +207,7 @@ public:
     std::vector<SymmetryPlane> planes(candidates.size());
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       const Candidate& candidate = candidates[i];
-      const bool seen_all = options_.num_refine_samples >= points_.cols();
+      const bool seen_all = static_cast<Eigen::Index>(candidate.last.last.closest.size()) == points_.cols();
       const IspStep step =
           seen_all ? candidate.last.last
                    : iterateSymmetricPoints(surface_, all, candidate.plane, final_sigma_, IspUpdate::PointToPoint);
@@ -273,7 +276,11 @@ private:
 
   void run(std::vector<Candidate>& candidates, int num_samples, double sigma, double final_sigma,
            int max_iterations) const {
-    const std::vector<int> samples = drawSamples(static_cast<int>(points_.cols()), num_samples, options_.seed);
+    const int size = static_cast<int>(points_.cols());
+    const std::vector<int> samples = drawSamples(size, num_samples, options_.seed);
+    // Matches of an approximate symmetry never settle: a fifth of the samples places it as well as it can be placed.
+    const std::vector<int> fewer =
+        drawSamples(size, std::min(num_samples, options_.num_refine_samples / 5), options_.seed);
     IspOptions isp;
     isp.update = options_.update;
     isp.sigma = sigma;
@@ -281,7 +288,9 @@ private:
     isp.max_iterations = max_iterations;
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       Candidate& candidate = candidates[i];
-      candidate.last = refineSymmetricPoints(surface_, samples, candidate.plane, isp);
+      const bool settles = candidate.iterations == 0 || candidate.support >= options_.min_support - kCloseSlack;
+      const std::vector<int>& used = settles ? samples : fewer;
+      candidate.last = refineSymmetricPoints(surface_, used, candidate.plane, isp);
       candidate.plane = candidate.last.plane;
       candidate.iterations += candidate.last.iterations;
       candidate.support =

@@ -34,7 +34,7 @@ std::uint32_t mortonPart(std::uint32_t v) {
 /// Points of the EDT in cells from its first cell center: a cell drawn by f, then a uniform place in it. One point
 /// falls in each of num_samples equal shares of sum f along a space-filling curve, so that the points are spread
 /// evenly.
-Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64_t seed) {
+Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads) {
   constexpr int kBlockBits = 3, kBlock = 1 << kBlockBits;
   static const auto kCurve = mortonCurve<kBlockBits>();
   const int n = edt.numCells();
@@ -53,16 +53,18 @@ Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64
       for (int x = 0; x < side; ++x)
         blocks[(static_cast<std::size_t>(z) * side + y) * side + x] = {
             mortonPart(x) | mortonPart(y) << 1 | mortonPart(z) << 2, x * kBlock, y * kBlock, z * kBlock, 0.0};
-  for (int z = 0; z < n; ++z) {
-    for (int y = 0; y < n; ++y) {
-      Block* row = &blocks[(static_cast<std::size_t>(z / kBlock) * side + y / kBlock) * side];
-      for (int x = 0; x < n; x += kBlock) {
-        float sum = 0.0f;
-        for (int i = x; i < std::min(n, x + kBlock); ++i) sum += f[cell(i, y, z)];
-        row[x / kBlock].sum += sum;
+  parallelBlocks(side, num_threads, [&](std::size_t layer) {
+    for (int z = static_cast<int>(layer) * kBlock; z < std::min(n, static_cast<int>(layer + 1) * kBlock); ++z) {
+      for (int y = 0; y < n; ++y) {
+        Block* row = &blocks[(layer * side + y / kBlock) * side];
+        for (int x = 0; x < n; x += kBlock) {
+          float sum = 0.0f;
+          for (int i = x; i < std::min(n, x + kBlock); ++i) sum += f[cell(i, y, z)];
+          row[x / kBlock].sum += sum;
+        }
       }
     }
-  }
+  });
   std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.code < b.code; });
   double total = 0.0;
   for (const Block& block : blocks) total += block.sum;
@@ -99,8 +101,8 @@ void SampledTransformOptions::validate() const {
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options) {
   options.validate();
   // Jitter within the cell and look-up of the nearest cell: two boxes.
-  const LookupTable table(edt, 1.0 / 12.0);
-  const Eigen::Matrix3Xf points = drawPoints(edt, options.num_samples, options.seed);
+  const LookupTable table(edt, 1.0 / 12.0, options.num_threads);
+  const Eigen::Matrix3Xf points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
   const LineKernel accumulate = lineKernel(options.simd);
 
   // Everything below is in cells, relative to the middle of the EDT's cube.

@@ -18,9 +18,9 @@ constexpr double kPi = 3.14159265358979323846;
 /// the cell, whose blur f is sharpened against; input frame.
 class PointSampler {
 public:
-  explicit PointSampler(const GaussianEdt& edt) : edt_(edt) {
+  PointSampler(const GaussianEdt& edt, int num_threads) : edt_(edt) {
     std::vector<double> share;
-    const std::vector<float> f = edt.sharpened(1.0 / 24.0);
+    const std::vector<float> f = edt.sharpened(1.0 / 24.0, num_threads);
     for (std::size_t i = 0; i < f.size(); ++i) {
       if (f[i] <= 0.0f) continue;
       cells_.push_back(edt.cellCenter(i).cast<float>());
@@ -77,7 +77,7 @@ void VotingTransformOptions::validate() const {
 
 SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options) {
   options.validate();
-  const PointSampler sampler(edt);
+  const PointSampler sampler(edt, options.num_threads);
   const double cell = edt.cellSize();
   const double near_distance = options.near_distance * cell;
   const bool split = near_distance > 0.0;

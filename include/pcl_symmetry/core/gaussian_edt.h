@@ -55,7 +55,7 @@ public:
   /// Laplacian to its mean, trilinear interpolation adds twice as much; the coefficients take that away again. With
   /// sigma of two cells, a plain look-up would understate D at a perfect symmetry by 2 to 4 per cent.
   /// \param c 1/24 for each box, 1/12 for trilinear interpolation or two boxes.
-  std::vector<float> sharpened(double c) const;
+  std::vector<float> sharpened(double c, int num_threads = 0) const;
 
 private:
   void computeDistances(const PointsRef& points, int num_threads);

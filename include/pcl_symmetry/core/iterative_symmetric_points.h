@@ -36,6 +36,7 @@ struct IspSurface {
   const Points& points;
   const Points& normals;  ///< 3 x N unit normals of any sign; may be empty with PointToPoint
   const ClosestPointSearch& search;
+  int num_threads = 1;  ///< for the searches of one iteration; 0 = one per core
 };
 
 /// What one iteration saw and did: everything that a picture of it needs (Figure 7).

@@ -10,6 +10,7 @@ namespace pcl_symmetry {
 struct LocalMaximaOptions {
   double strength = 0.1;   ///< keeps D >= strength * D_strongest * (1 - r / R), in [0, 1]
   double laplacian = 0.1;  ///< keeps -Laplacian >= laplacian * -Laplacian_strongest, in [0, 1]
+  int num_threads = 0;     ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

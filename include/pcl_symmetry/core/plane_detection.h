@@ -54,7 +54,7 @@ struct DetectionOptions {
   double min_support = 0.85;
   /// Reports the maxima below min_support too: approximate symmetries and symmetries of parts.
   bool approximate = false;
-  int max_planes = 32;  ///< >= 1
+  int max_planes = 20;  ///< >= 1
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 

@@ -77,7 +77,8 @@ public:
     const std::size_t self = index(bin);
     for (int dt = -1; dt <= 1; ++dt) {
       const int reach = phiReach(step(bin, dt, 0, 0)->theta);
-      for (int dp = -reach; dp <= reach; ++dp) {
+      for (int i = 0; i <= 2 * reach; ++i) {
+        const int dp = i % 2 ? (i + 1) / 2 : -i / 2;  // 0, 1, -1, 2, -2 ...: the nearest first
         for (int dk = -1; dk <= 1; ++dk) {
           const auto to = step(bin, dt, dp, dk);
           if (to && index(*to) != self && !visit(index(*to))) return false;
