@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pcl/impl/pcl_base.hpp>
+
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/mesh_sampling.h"

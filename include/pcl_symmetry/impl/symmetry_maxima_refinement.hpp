@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pcl/impl/pcl_base.hpp>
+
 #include <algorithm>
 #include <limits>
 #include <mutex>
