@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Sets up, builds and tests everything: from a fresh Debian 12 to one line of counts.
+set -uo pipefail
+
+usage() {
+  cat <<'END'
+usage: bash test/run.sh [-h] [--no-sanitize] [--filter REGEX]
+
+Installs missing packages, builds libraries, tools and tests into build/ and runs the tests; then builds the libraries
+and their tests with the address and undefined-behaviour sanitizers into build-sanitize/ and runs those. The last line
+says "N passed, N failed, N skipped"; a step that fails before its tests counts as one failure. Exit status 0 if tests
+ran and none failed.
+
+  --no-sanitize   leave out the second build
+  --filter REGEX  only tests whose name matches
+
+example: bash test/run.sh --no-sanitize --filter consumer
+END
+}
+
+sanitize=true
+filter=.
+while (($# > 0)); do
+  case "$1" in
+    -h | --help) usage; exit 0 ;;
+    --no-sanitize) sanitize=false ;;
+    --filter)
+      if [[ -z ${2-} ]]; then echo "run.sh: --filter needs a regular expression" >&2; exit 2; fi
+      filter=$2
+      shift ;;
+    *) echo "run.sh: unknown option $1" >&2; usage >&2; exit 2 ;;
+  esac
+  shift
+done
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
+jobs=$(nproc)
+passed=0 failed=0 skipped=0
+
+say() {
+  printf '\n== %s (%d s)\n' "$*" "$SECONDS"
+}
+
+finish() {
+  printf '\n%d passed, %d failed, %d skipped\n' "$passed" "$failed" "$skipped"
+  ((failed == 0 && passed > 0))
+  exit
+}
+
+# Runs a step; where it fails, nothing after it makes sense.
+step() {
+  "$@" </dev/null && return
+  echo "run.sh: failed: $*" >&2
+  ((++failed))
+  finish
+}
+
+# Adds what a JUnit report of ctest holds. A test that could not be started has failed; "notrun" is also what ctest
+# says of one that skipped itself.
+count() {
+  local counts
+  counts=$(awk '
+    /<testcase / { status = $0; sub(/.* status="/, "", status); sub(/".*/, "", status) }
+    /<testcase / && status == "run" { passed++ }
+    /<testcase / && status == "fail" { failed++ }
+    /<testcase / && status == "disabled" { skipped++ }
+    /<skipped / && status == "notrun" { if (/message="SKIP_/) skipped++; else failed++ }
+    END { print passed + 0, failed + 0, skipped + 0 }' "$1") || return
+  local p f s
+  read -r p f s <<<"$counts"
+  ((passed += p, failed += f, skipped += s, 1))
+}
+
+# build_and_test PRESET FOLDER [ctest options]
+build_and_test() {
+  local preset=$1 folder=$2
+  shift 2
+  say "Building into $folder"
+  step cmake --preset "$preset" --log-level=WARNING
+  step cmake --build "$folder" --parallel "$jobs"
+  say "Testing $folder"
+  rm -f "$folder/tests.xml"
+  ctest --preset "$preset" --parallel "$jobs" --tests-regex "$filter" --output-junit tests.xml "$@" </dev/null
+  local status=$? failed_before=$failed
+  if [[ ! -s $folder/tests.xml ]] || ! count "$folder/tests.xml" || { ((status != 0)) && ((failed == failed_before)); }; then
+    echo "run.sh: ctest ended with status $status" >&2
+    ((++failed))
+  fi
+}
+
+say "Installing packages"
+step bash cmake/install_dependencies.sh
+build_and_test release build
+if $sanitize; then
+  build_and_test sanitize build-sanitize --label-regex '^(core|pcl)$'
+fi
+finish
