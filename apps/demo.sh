@@ -68,7 +68,8 @@ fetch_bull() {
 # find_planes INPUT NAME: a table here, NAME_planes.json and NAME_planes.png in the demo folder.
 find_planes() {
   say "Symmetry planes of $1"
-  local command=(build/apps/pcl_symmetry_planes "$1" -approximate -json "$demo/$2_planes.json" -png "$demo/$2_planes.png")
+  local command=(build/apps/pcl_symmetry_planes "$1" -approximate -max_planes 5
+    -json "$demo/$2_planes.json" -png "$demo/$2_planes.png")
   echo "${command[*]}"
   "${command[@]}"
   echo "Picture: $demo/$2_planes.png   report: $demo/$2_planes.json"
@@ -78,7 +79,7 @@ say "Packages"
 bash cmake/install_dependencies.sh
 
 say "Tools"
-cmake --preset release --log-level=WARNING
+cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_scan pcl_symmetry_planes
 
 if [[ -n $file ]]; then

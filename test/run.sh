@@ -71,12 +71,16 @@ count() {
   ((passed += p, failed += f, skipped += s, 1))
 }
 
+configure() {
+  cmake --preset "$1" --log-level=WARNING >/dev/null
+}
+
 # build_and_test PRESET FOLDER [ctest options]
 build_and_test() {
   local preset=$1 folder=$2
   shift 2
   say "Building into $folder"
-  step cmake --preset "$preset" --log-level=WARNING
+  step configure "$preset"
   step cmake --build "$folder" --parallel "$jobs"
   say "Testing $folder"
   rm -f "$folder/tests.xml"
