@@ -44,6 +44,8 @@ CommandLine commandLine(PlanesOptions& options) {
             "also report approximate symmetries and symmetries of parts, marked as such")
       .number("min_support", options.detection.min_support, Range::closed(0, 1),
               "share of the surface that a symmetry must map onto the surface")
+      .number("min_score", options.detection.min_score, Range::closed(0, 1),
+              "correlation with its reflection that a symmetry must have")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "planes reported at most")
       .number("sigma", options.sigma, Range::above(0), "width of the Gaussian, input units (two cells)")
       .number("points", options.mesh_points, Range::closed(100, 10'000'000), "points spread over a mesh")

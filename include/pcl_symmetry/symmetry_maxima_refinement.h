@@ -30,8 +30,10 @@ public:
   void setOptions(const DetectionOptions& options);
   const DetectionOptions& getOptions() const { return options_; }
 
-  /// Planes of at least this support are symmetries, in [0, 1]; default 0.85.
+  /// Planes of at least this support are symmetries, in [0, 1]; default 0.9.
   void setMinSupport(double min_support);
+  /// And of at least this score, in [0, 1]; default 0.9.
+  void setMinScore(double min_score);
   /// Also reports maxima below that: approximate symmetries and symmetries of parts, marked as such; default false.
   void setApproximate(bool approximate);
   void setMaxPlanes(int max_planes);
@@ -45,8 +47,8 @@ public:
   /// Of larger clouds so many points are drawn, >= 2; default 50 000.
   void setMaxPoints(std::size_t max_points);
 
-  /// Any PCL search in place of our own FLANN tree. It is given the cloud and the indices of the points used, and is
-  /// called from one thread at a time.
+  /// Any PCL search in place of our own FLANN tree, except OrganizedNeighbor (reflected points lie behind what the
+  /// sensor saw). It is given a cloud of the points used, and is called from one thread at a time.
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
 
   /// Maxima of this map in place of one made here.

@@ -126,6 +126,7 @@ void DetectionOptions::validate() const {
   check(merge_angle >= 0.0, "merge_angle", merge_angle, ">= 0");
   check(merge_offset >= 0.0, "merge_offset", merge_offset, ">= 0");
   check(min_support >= 0.0 && min_support <= 1.0, "min_support", min_support, "in [0, 1]");
+  check(min_score >= 0.0 && min_score <= 1.0, "min_score", min_score, "in [0, 1]");
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");
   checkNumThreads(num_threads);
 }
@@ -219,7 +220,7 @@ public:
       plane.iterations = candidate.iterations;
       plane.converged = candidate.last.converged;
       plane.residual = step.residual * frame_.scale;
-      plane.approximate = plane.support < options_.min_support;
+      plane.approximate = plane.support < options_.min_support || plane.score < options_.min_score;
     });
     return planes;
   }

@@ -14,15 +14,16 @@
 namespace pcl_symmetry {
 
 /// A pcl::search::Search seen from the normalised frame of the refinement.
+///
+/// It is given a cloud of just the points used: with indices, PCL's searches disagree on what the numbers that they
+/// return count (FlannSearch: positions among the indices; the others: points of the cloud).
 template <typename PointT>
 class PCLPointSearch : public ClosestPointSearch {
 public:
-  PCLPointSearch(const typename pcl::search::Search<PointT>::Ptr& search,
-                 const typename pcl::PointCloud<PointT>::ConstPtr& cloud, const pcl::Indices& used,
-                 const GaussianEdt& edt)
-      : search_(search), center_(edt.center()), scale_(edt.radius()), position_(cloud->size(), -1) {
-    for (std::size_t i = 0; i < used.size(); ++i) position_[used[i]] = static_cast<int>(i);
-    search_->setInputCloud(cloud, pcl::make_shared<pcl::Indices>(used));
+  PCLPointSearch(const typename pcl::search::Search<PointT>::Ptr& search, const pcl::PointCloud<PointT>& cloud,
+                 const pcl::Indices& used, const GaussianEdt& edt)
+      : search_(search), center_(edt.center()), scale_(edt.radius()) {
+    search_->setInputCloud(pcl::make_shared<pcl::PointCloud<PointT>>(cloud, used));
   }
 
   void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
@@ -38,7 +39,7 @@ public:
       if (search_->nearestKSearch(query, num_neighbours, found, found_sq_distances) < num_neighbours)
         throw std::invalid_argument("search method: found fewer neighbours than points, must find all");
       for (int k = 0; k < num_neighbours; ++k) {
-        indices[i * num_neighbours + k] = position_[found[k]];
+        indices[i * num_neighbours + k] = static_cast<int>(found[k]);
         sq_distances[i * num_neighbours + k] = static_cast<float>(found_sq_distances[k] / (scale_ * scale_));
       }
     }
@@ -48,7 +49,6 @@ private:
   typename pcl::search::Search<PointT>::Ptr search_;
   Eigen::Vector3d center_;
   double scale_;
-  std::vector<int> position_;
   mutable std::mutex mutex_;
 };
 
@@ -62,6 +62,13 @@ template <typename PointT>
 void SymmetryMaximaRefinement<PointT>::setMinSupport(double min_support) {
   DetectionOptions options = options_;
   options.min_support = min_support;
+  setOptions(options);
+}
+
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setMinScore(double min_score) {
+  DetectionOptions options = options_;
+  options.min_score = min_score;
   setOptions(options);
 }
 
@@ -127,7 +134,7 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     used_indices_ = std::move(selected.indices);
     used_points_ = std::move(selected.points);
     const auto search = [&](const GaussianEdt& edt) -> ClosestPointSearch::Ptr {
-      return search_ ? std::make_shared<PCLPointSearch<PointT>>(search_, input_, used_indices_, edt) : nullptr;
+      return search_ ? std::make_shared<PCLPointSearch<PointT>>(search_, *input_, used_indices_, edt) : nullptr;
     };
     Detection detection = edt_ ? refineMaxima(used_points_, *edt_, map_, options_, search(*edt_))
                                : detectPlanes(used_points_, options_, search);

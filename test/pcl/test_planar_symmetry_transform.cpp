@@ -1,0 +1,138 @@
+#include "pcl_symmetry/planar_symmetry_transform.h"
+
+#include <gtest/gtest.h>
+#include <pcl/conversions.h>
+#include <pcl/exceptions.h>
+
+#include "clouds.h"
+#include "pcl_symmetry/mesh_sampling.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using test::Sampling;
+
+template <typename Body>
+std::string messageOf(const Body& body) {
+  try {
+    body();
+  } catch (const pcl::BadArgumentException& error) {
+    return error.what();
+  }
+  return "no exception";
+}
+
+pcl::PolygonMesh boxMesh() {
+  pcl::PointCloud<pcl::PointXYZ> corners;
+  for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1 ? 1.0f : -1.0f, i & 2 ? 0.7f : -0.7f, i & 4 ? 0.4f : -0.4f);
+  pcl::PolygonMesh mesh;
+  pcl::toPCLPointCloud2(corners, mesh.cloud);
+  for (const auto& quad : {std::array<pcl::index_t, 4>{0, 2, 3, 1},
+                           {4, 5, 7, 6},
+                           {0, 1, 5, 4},
+                           {2, 6, 7, 3},
+                           {0, 4, 6, 2},
+                           {1, 3, 7, 5}}) {
+    mesh.polygons.emplace_back();
+    mesh.polygons.back().vertices.assign(quad.begin(), quad.end());
+  }
+  return mesh;
+}
+
+TEST(PlanarSymmetryTransform, FindsThePlanesOfABoxWithEveryMethod) {
+  const auto box = test::box(3000, Sampling::Random, 1);
+  for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {
+    PlanarSymmetryTransform<pcl::PointXYZ> transform;
+    transform.setInputCloud(test::toCloud(box));
+    transform.setMethod(method);
+    transform.setGridSize(32);
+    const SymmetryMap map = transform.compute();
+    ASSERT_EQ(map.values.size(), 32u * 32u * 32u);
+    EXPECT_EQ(map.method, method);
+    const ReflectionPlane strongest = map.grid.plane(map.grid.bin(map.strongest()));
+    double closest = 1.0;
+    for (const ReflectionPlane& plane : box.planes) closest = std::min(closest, plane.angleTo(strongest));
+    // Half the diagonal of a bin of 2.8 by 11.25 degrees at the equator, and a bin for the noise of voting.
+    EXPECT_LT(closest, 12.0 * test::kDegree) << "method " << static_cast<int>(method);
+    EXPECT_GT(map[map.strongest()], 0.6f);
+  }
+}
+
+TEST(PlanarSymmetryTransform, HonoursIndicesAndLeavesOutPointsThatAreNotFinite) {
+  const auto cloud = test::toCloud(test::box(2000, Sampling::Random, 2));
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  transform.setGridSize(16);
+  transform.setInputCloud(cloud);
+  const SymmetryMap expected = transform.compute();
+
+  PlanarSymmetryTransform<pcl::PointXYZ> holes;
+  holes.setGridSize(16);
+  holes.setInputCloud(test::withHoles(*cloud, 7));
+  EXPECT_EQ(holes.compute().values, expected.values);
+
+  auto crowded = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*cloud);
+  auto indices = pcl::make_shared<pcl::Indices>();
+  for (std::size_t i = 0; i < cloud->size(); ++i) indices->push_back(static_cast<pcl::index_t>(i));
+  for (int i = 0; i < 500; ++i) crowded->emplace_back(9.0f + 0.01f * i, 3.0f, -2.0f);
+  PlanarSymmetryTransform<pcl::PointXYZ> part;
+  part.setGridSize(16);
+  part.setInputCloud(crowded);
+  part.setIndices(indices);
+  const SymmetryMap map = part.compute();
+  EXPECT_EQ(map.values, expected.values);
+  EXPECT_EQ(map.grid.radius(), expected.grid.radius());
+}
+
+TEST(PlanarSymmetryTransform, TakesMeshesByArea) {
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  transform.setInputMesh(boxMesh(), 5000);
+  const SymmetryMap map = transform.compute();
+  EXPECT_LT(map.center_of_mass.norm(), 0.02);
+  EXPECT_NEAR(map.grid.radius(), Eigen::Vector3d(1.0, 0.7, 0.4).norm(), 0.03);
+
+  const auto samples = sampleMesh(boxMesh(), 40000, 3);
+  int top = 0;
+  for (const auto& point : *samples) top += std::abs(point.z) == 0.4f ? 1 : 0;
+  const double share = 1.0 * 0.7 / (1.0 * 0.7 + 1.0 * 0.4 + 0.7 * 0.4);
+  EXPECT_NEAR(top / 40000.0, share, 0.001) << "stratified: far less scatter than sqrt(p (1 - p) / n) = 0.0025";
+}
+
+TEST(PlanarSymmetryTransform, DrawsFromLargeCloudsAndDoesNotDependOnThreads) {
+  const auto cloud = test::toCloud(test::box(20000, Sampling::Random, 4));
+  std::vector<float> values;
+  for (const int num_threads : {1, 2, 8}) {
+    PlanarSymmetryTransform<pcl::PointXYZ> transform;
+    transform.setInputCloud(cloud);
+    transform.setMaxPoints(1500);
+    transform.setGridSize(16);
+    transform.setNumberOfThreads(num_threads);
+    const SymmetryMap map = transform.compute();
+    if (values.empty()) values = map.values;
+    EXPECT_EQ(map.values, values) << num_threads << " threads";
+  }
+}
+
+TEST(PlanarSymmetryTransform, SaysWhatIsWrongWithFieldValueAndRule) {
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  EXPECT_NE(messageOf([&] { transform.compute(); }).find("input cloud: not set"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setGridSize(4); }).find("num_cells = 4, must be in [8, 512]"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setMapSize(8, 7, 8); }).find("num_phi = 7, must be even"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setSigma(-1.0); }).find("sigma = -1, must be"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setNumSamples(0); }).find("num_samples = 0, must be"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setNumPairs(0); }).find("num_pairs = 0, must be"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setMaxPoints(1); }).find("max_points = 1, must be >= 2"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setNumberOfThreads(-2); }).find("num_threads = -2, must be >= 0"),
+            std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setBounds(Eigen::Vector3d::Zero(), 0.0); }).find("radius = 0, must be"),
+            std::string::npos);
+
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  transform.setInputCloud(cloud);
+  EXPECT_NE(messageOf([&] { transform.compute(); }).find("points: 0 given"), std::string::npos);
+  cloud->resize(5, pcl::PointXYZ(1.0f, 2.0f, 3.0f));
+  EXPECT_NE(messageOf([&] { transform.compute(); }).find("points: all at one place"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setInputMesh(pcl::PolygonMesh()); }).find("total area"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry

@@ -1,0 +1,169 @@
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+
+#include <gtest/gtest.h>
+#include <pcl/exceptions.h>
+#include <pcl/search/brute_force.h>
+#include <pcl/search/flann_search.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/search/octree.h>
+#include <pcl/search/impl/brute_force.hpp>
+#include <pcl/search/impl/flann_search.hpp>
+
+#include "clouds.h"
+#include "pcl_symmetry/planar_symmetry_transform.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using test::Sampling;
+
+/// Number of the shape's planes that are among those found within an angle and an offset.
+int numFound(const test::Shape& shape, const std::vector<SymmetryPlane>& found, double angle, double offset) {
+  int count = 0;
+  const Eigen::Vector3d middle = shape.points.rowwise().mean();
+  for (const ReflectionPlane& plane : shape.planes) {
+    count += std::any_of(found.begin(), found.end(), [&](const SymmetryPlane& candidate) {
+      const auto error = test::planeError(plane, candidate, middle);
+      return error.angle <= angle && error.offset <= offset;
+    });
+  }
+  return count;
+}
+
+void expectSamePlanes(const std::vector<SymmetryPlane>& a, const std::vector<SymmetryPlane>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].coefficients(), b[i].coefficients());
+    EXPECT_EQ(a[i].support, b[i].support);
+    EXPECT_EQ(a[i].point_support, b[i].point_support);
+  }
+}
+
+TEST(DetectSymmetryPlanes, NeedsOneLine) {
+  const auto shape = test::moved(test::box(4000, Sampling::Mirrored, 1), test::randomPose(5));
+  const auto planes = detectSymmetryPlanes(*test::toCloud(shape));
+  EXPECT_EQ(planes.size(), 3u);
+  EXPECT_EQ(numFound(shape, planes, 0.001 * test::kDegree, 1e-5 * test::diagonal(shape.cloud())), 3);
+  for (const SymmetryPlane& plane : planes) {
+    EXPECT_GT(plane.support, 0.99);
+    EXPECT_GT(plane.score, 0.98);
+    EXPECT_TRUE(plane.converged);
+    EXPECT_FALSE(plane.approximate);
+  }
+}
+
+TEST(DetectSymmetryPlanes, SaysNoneWhereThereIsNone) {
+  EXPECT_TRUE(detectSymmetryPlanes(*test::toCloud(test::scaleneTetrahedron(4000, 2))).empty());
+  EXPECT_TRUE(detectSymmetryPlanes(*test::toCloud(test::asymmetricBlob(4000, 2))).empty());
+}
+
+TEST(SymmetryMaximaRefinement, WorksOnEveryPointTypeAlike) {
+  const auto shape = test::box(2000, Sampling::Random, 3);
+  const auto expected = detectSymmetryPlanes(*test::toCloud<pcl::PointXYZ>(shape));
+  expectSamePlanes(detectSymmetryPlanes(*test::toCloud<pcl::PointXYZRGB>(shape)), expected);
+  expectSamePlanes(detectSymmetryPlanes(*test::toCloud<pcl::PointNormal>(shape)), expected);
+}
+
+TEST(SymmetryMaximaRefinement, HonoursIndicesAndLeavesOutPointsThatAreNotFinite) {
+  const auto cloud = test::toCloud(test::box(2000, Sampling::Random, 4));
+  const auto expected = detectSymmetryPlanes(*cloud);
+  const auto holes = test::withHoles(*cloud, 5);
+  expectSamePlanes(detectSymmetryPlanes(*holes), expected);
+
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(holes);
+  expectSamePlanes(refinement.compute(), expected);
+  const pcl::Indices& used = refinement.getUsedIndices();
+  ASSERT_EQ(used.size(), cloud->size());
+  const std::vector<float> support = refinement.computePointSupport(expected[0]);
+  ASSERT_EQ(support.size(), holes->size());
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    EXPECT_TRUE(pcl::isXYZFinite((*holes)[used[i]]));
+    // The plane moved by a last step that no longer mattered, and with it the least of the support.
+    EXPECT_NEAR(support[used[i]], expected[0].point_support[i], 0.05);
+  }
+  EXPECT_EQ(
+      static_cast<std::size_t>(std::count_if(support.begin(), support.end(), [](float s) { return std::isnan(s); })),
+      holes->size() - cloud->size());
+}
+
+TEST(SymmetryMaximaRefinement, TakesAnySearchMethod) {
+  const auto shape = test::moved(test::box(1500, Sampling::Random, 5), test::randomPose(6));
+  const auto cloud = test::withHoles(*test::toCloud(shape), 9);
+  const std::vector<pcl::search::Search<pcl::PointXYZ>::Ptr> searches = {
+      pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>(),
+      pcl::make_shared<pcl::search::Octree<pcl::PointXYZ>>(0.05),
+      pcl::make_shared<pcl::search::BruteForce<pcl::PointXYZ>>(),
+      pcl::make_shared<pcl::search::FlannSearch<pcl::PointXYZ>>()};
+  for (const auto& search : searches) {
+    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+    refinement.setInputCloud(cloud);
+    refinement.setSearchMethod(search);
+    EXPECT_EQ(numFound(shape, refinement.compute(), 0.2 * test::kDegree, 0.003), 3) << search->getName();
+  }
+}
+
+TEST(SymmetryMaximaRefinement, TakesAMapMadeBefore) {
+  const auto shape = test::moved(test::cube(3000, Sampling::Mirrored, 6), test::randomPose(7));
+  const auto cloud = test::toCloud(shape);
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  transform.setInputCloud(cloud);
+  transform.setMethod(TransformMethod::Convolution);
+  const SymmetryMap map = transform.compute();
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(cloud);
+  refinement.setSymmetryMap(map, transform.getDistanceTransform());
+  const auto planes = refinement.compute();
+  EXPECT_EQ(planes.size(), 9u);
+  EXPECT_EQ(numFound(shape, planes, 0.001 * test::kDegree, 1e-5 * test::diagonal(shape.cloud())), 9);
+}
+
+TEST(SymmetryMaximaRefinement, GivesTheSameBytesForAnyNumberOfThreads) {
+  const auto cloud = test::toCloud(test::prism(5, 2500, Sampling::Random, 7));
+  std::vector<SymmetryPlane> expected;
+  for (const int num_threads : {1, 2, 8}) {
+    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+    refinement.setInputCloud(cloud);
+    refinement.setApproximate(true);
+    refinement.setNumberOfThreads(num_threads);
+    const auto planes = refinement.compute();
+    if (expected.empty()) expected = planes;
+    EXPECT_GE(planes.size(), 6u);
+    expectSamePlanes(planes, expected);
+  }
+}
+
+TEST(SymmetryMaximaRefinement, MarksApproximateSymmetries) {
+  auto shape = test::box(4000, Sampling::Random, 8);
+  for (Eigen::Index i = 0; i < shape.points.cols(); ++i)
+    if (shape.points(0, i) > 0.3 && shape.points(1, i) > 0.0) shape.points(2, i) *= 1.5;  // a raised quarter
+  const auto cloud = test::toCloud(shape);
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(cloud);
+  const auto trusted = refinement.compute();
+  refinement.setApproximate(true);
+  const auto all = refinement.compute();
+  EXPECT_GT(all.size(), trusted.size());
+  for (const SymmetryPlane& plane : all) EXPECT_EQ(plane.approximate, plane.support < 0.9 || plane.score < 0.9);
+  EXPECT_TRUE(
+      std::is_sorted(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.support > b.support; }));
+  refinement.setMaxPlanes(2);
+  EXPECT_EQ(refinement.compute().size(), 2u);
+}
+
+TEST(SymmetryMaximaRefinement, RefusesWhatHasNoExtent) {
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  EXPECT_THROW(refinement.compute(), pcl::BadArgumentException);
+  EXPECT_THROW(refinement.computePointSupport(ReflectionPlane()), pcl::BadArgumentException);
+  EXPECT_THROW(refinement.setMinSupport(1.5), pcl::BadArgumentException);
+  EXPECT_THROW(refinement.setMinScore(-0.1), pcl::BadArgumentException);
+  EXPECT_THROW(refinement.setMaxPlanes(0), pcl::BadArgumentException);
+  EXPECT_THROW(refinement.setNumberOfThreads(-1), pcl::BadArgumentException);
+  EXPECT_THROW(refinement.setSymmetryMap(SymmetryMap(), nullptr), pcl::BadArgumentException);
+  EXPECT_THROW(detectSymmetryPlanes(pcl::PointCloud<pcl::PointXYZ>()), pcl::BadArgumentException);
+  pcl::PointCloud<pcl::PointXYZ> nothing(4, 1, pcl::PointXYZ(NAN, NAN, NAN));
+  EXPECT_THROW(detectSymmetryPlanes(nothing), pcl::BadArgumentException);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry
