@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -67,6 +68,25 @@ std::string readLine(int descriptor, Clock::time_point deadline) {
   _exit(127);
 }
 
+/// Servers that start at the same moment may choose the same number, and one of them goes down again with whoever is
+/// connected to it: the tools of one user start theirs one after the other.
+class StartLock {
+public:
+  StartLock() {
+    const std::string path = "/tmp/.pcl_symmetry_display_" + std::to_string(getuid());
+    descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (descriptor_ >= 0) flock(descriptor_, LOCK_EX);
+  }
+  ~StartLock() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  StartLock(const StartLock&) = delete;
+  StartLock& operator=(const StartLock&) = delete;
+
+private:
+  int descriptor_ = -1;
+};
+
 }  // namespace
 
 PrivateDisplay::PrivateDisplay() {
@@ -75,8 +95,19 @@ PrivateDisplay::PrivateDisplay() {
   had_display_ = display != nullptr;
   if (display) old_display_ = display;
 
+  const StartLock lock;
+  constexpr int kNumAttempts = 4;  // a server that somebody else starts may still take the number
+  for (int attempt = 0; attempt < kNumAttempts; ++attempt) {
+    if (start()) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50 << attempt));
+  }
+  throw InputError(
+      "cannot draw: there is no display, and Xvfb is missing or does not start (Debian package xvfb); try xvfb-run");
+}
+
+bool PrivateDisplay::start() {
   int channel[2];
-  if (pipe2(channel, O_CLOEXEC) != 0) throw InputError("cannot draw: no pipe to Xvfb");
+  if (pipe2(channel, O_CLOEXEC) != 0) return false;
   const pid_t parent = getpid();
   server_ = fork();
   if (server_ == 0) becomeServer(parent, channel[0], channel[1]);
@@ -86,10 +117,10 @@ PrivateDisplay::PrivateDisplay() {
   const std::string name = ":" + number;
   if (number.empty() || !canDraw(name.c_str())) {
     stop();
-    throw InputError(
-        "cannot draw: there is no display, and Xvfb is missing or does not start (Debian package xvfb); try xvfb-run");
+    return false;
   }
   setenv("DISPLAY", name.c_str(), 1);
+  return true;
 }
 
 PrivateDisplay::~PrivateDisplay() {

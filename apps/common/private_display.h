@@ -23,6 +23,8 @@ public:
   bool started() const { return server_ > 0; }
 
 private:
+  /// \return whether a server of our own runs now and DISPLAY names it.
+  bool start();
   void stop();
 
   pid_t server_ = -1;
