@@ -63,8 +63,9 @@ std::string readLine(int descriptor, Clock::time_point deadline) {
     fcntl(3, F_SETFD, 0);
   }
   setpgid(0, 0);
-  execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "1280x1024x24", "-nolisten", "tcp", "+extension", "GLX",
-         static_cast<char*>(nullptr));
+  // Without -noreset the server starts anew whenever its last client leaves, and turns away who comes meanwhile.
+  execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "1280x1024x24", "-nolisten", "tcp", "-noreset",
+         "+extension", "GLX", static_cast<char*>(nullptr));
   _exit(127);
 }
 
