@@ -1,0 +1,392 @@
+/// From points to planes: shapes whose planes are known, moved, scaled, disturbed and degenerate.
+#include "pcl_symmetry/core/plane_detection.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+/// How the planes that were found compare with those that are there.
+struct Comparison {
+  std::size_t num_matched = 0;  ///< planes of the shape with a found plane within 3 degrees
+  double worst_angle = 0.0;     ///< radians, of those
+  double worst_offset = 0.0;    ///< of the points' center, divided by the diagonal
+};
+
+Comparison compare(const Detection& detection, const Shape& shape) {
+  const Points cloud = shape.cloud();
+  const Eigen::Vector3d center = centerOfMass(cloud);
+  const double size = diagonal(cloud);
+  Comparison comparison;
+  for (const ReflectionPlane& expected : shape.planes) {
+    PlaneError nearest{10.0, 0.0};
+    for (const ReflectionPlane& found : detection.planes) {
+      const PlaneError error = planeError(found, expected, center);
+      if (error.angle < nearest.angle) nearest = error;
+    }
+    if (nearest.angle > 3.0 * kDegree) continue;
+    ++comparison.num_matched;
+    comparison.worst_angle = std::max(comparison.worst_angle, nearest.angle);
+    comparison.worst_offset = std::max(comparison.worst_offset, nearest.offset / size);
+  }
+  return comparison;
+}
+
+struct NamedShape {
+  std::string name;
+  Shape shape;
+};
+
+std::vector<NamedShape> symmetricShapes(int num_points, Sampling sampling) {
+  std::vector<NamedShape> shapes = {{"box", box(num_points, sampling, 1)}, {"cube", cube(num_points, sampling, 2)}};
+  for (const int n : {3, 4, 5, 6, 8, 12})
+    shapes.push_back({"prism of " + std::to_string(n), prism(n, num_points, sampling, 10 + n)});
+  return shapes;
+}
+
+void expectConsistent(const Detection& detection, const Points& cloud) {
+  for (std::size_t i = 0; i < detection.planes.size(); ++i) {
+    const SymmetryPlane& plane = detection.planes[i];
+    EXPECT_NEAR(plane.normal().norm(), 1.0, 1e-12);
+    EXPECT_EQ(plane.normal(), plane.canonical().normal());
+    EXPECT_TRUE(std::isfinite(plane.offset()));
+    EXPECT_GE(plane.score, 0.0);
+    EXPECT_LE(plane.score, 1.0);
+    EXPECT_GE(plane.residual, 0.0);
+    EXPECT_GE(plane.iterations, 1);
+    ASSERT_EQ(plane.point_support.size(), static_cast<std::size_t>(cloud.cols()));
+    double sum = 0.0;
+    for (const float support : plane.point_support) {
+      EXPECT_GE(support, 0.0f);
+      EXPECT_LE(support, 1.0f);
+      sum += support;
+    }
+    EXPECT_NEAR(plane.support, sum / static_cast<double>(cloud.cols()), 1e-6);
+    if (i > 0) EXPECT_LE(plane.support, detection.planes[i - 1].support);
+  }
+}
+
+TEST(DetectPlanes, MirroredSamplesGiveExactlyThePlanes) {
+  for (const auto& [name, shape] : symmetricShapes(10'000, Sampling::Mirrored)) {
+    for (std::uint64_t pose = 1; pose <= 4; ++pose) {
+      const Shape posed = moved(shape, randomPose(pose));
+      const Points cloud = posed.cloud();
+      const Detection detection = detectPlanes(cloud);
+      const Comparison comparison = compare(detection, posed);
+      EXPECT_EQ(detection.planes.size(), posed.planes.size()) << name << ", pose " << pose;
+      EXPECT_EQ(comparison.num_matched, posed.planes.size()) << name << ", pose " << pose;
+      EXPECT_LT(comparison.worst_angle, 0.001 * kDegree) << name << ", pose " << pose;
+      EXPECT_LT(comparison.worst_offset, 1e-5) << name << ", pose " << pose;
+      expectConsistent(detection, cloud);
+    }
+  }
+}
+
+TEST(DetectPlanes, RandomSamplesGiveThePlanesToTheirNoise) {
+  for (const auto& [name, shape] : symmetricShapes(10'000, Sampling::Random)) {
+    for (std::uint64_t pose = 1; pose <= 3; ++pose) {
+      const Shape posed = moved(shape, randomPose(pose));
+      const Detection detection = detectPlanes(posed.cloud());
+      const Comparison comparison = compare(detection, posed);
+      EXPECT_EQ(detection.planes.size(), posed.planes.size()) << name << ", pose " << pose;
+      EXPECT_EQ(comparison.num_matched, posed.planes.size()) << name << ", pose " << pose;
+      EXPECT_LT(comparison.worst_angle, 0.3 * kDegree) << name << ", pose " << pose;
+      EXPECT_LT(comparison.worst_offset, 1e-3) << name << ", pose " << pose;
+    }
+  }
+}
+
+TEST(DetectPlanes, AsymmetricShapesHaveNone) {
+  for (std::uint64_t pose = 1; pose <= 3; ++pose) {
+    EXPECT_TRUE(detectPlanes(moved(scaleneTetrahedron(10'000, pose), randomPose(pose)).cloud()).planes.empty()) << pose;
+    EXPECT_TRUE(detectPlanes(moved(asymmetricBlob(10'000, pose), randomPose(pose)).cloud()).planes.empty()) << pose;
+  }
+}
+
+TEST(DetectPlanes, ApproximateOnesComeWhenAskedFor) {
+  DetectionOptions options;
+  options.approximate = true;
+  const Detection detection = detectPlanes(scaleneTetrahedron(5000, 1).cloud(), options);
+  ASSERT_FALSE(detection.planes.empty());
+  for (const SymmetryPlane& plane : detection.planes) {
+    EXPECT_TRUE(plane.approximate);
+    EXPECT_LT(plane.support, options.min_support);
+  }
+  for (const SymmetryPlane& plane : detectPlanes(box(5000, Sampling::Random, 1).cloud()).planes)
+    EXPECT_FALSE(plane.approximate);
+}
+
+TEST(DetectPlanes, BodiesOfRevolutionHavePlanesThroughTheirAxis) {
+  const Eigen::Isometry3d pose = randomPose(5);
+  const Eigen::Vector3d axis = pose.linear().col(2), center = pose.translation();
+  const Detection cylinder_planes = detectPlanes(moved(cylinder(10'000, 1), pose).cloud());
+  EXPECT_GE(cylinder_planes.planes.size(), 2u);
+  int num_across = 0;
+  for (const SymmetryPlane& plane : cylinder_planes.planes) {
+    const double along = std::abs(plane.normal().dot(axis));
+    EXPECT_LT(std::min(along, std::abs(1.0 - along)), std::sin(0.5 * kDegree));  // through the axis or across it
+    EXPECT_LT(std::abs(plane.signedDistance(center)), 0.01);
+    num_across += along > 0.5;
+  }
+  EXPECT_EQ(num_across, 1);
+  const Detection sphere_planes = detectPlanes(moved(sphere(10'000, 2), pose).cloud());
+  EXPECT_FALSE(sphere_planes.planes.empty());
+  for (const SymmetryPlane& plane : sphere_planes.planes) EXPECT_LT(std::abs(plane.signedDistance(center)), 0.01);
+}
+
+TEST(DetectPlanes, MovesWithThePoints) {
+  // The grid does not turn with the points, so that other samples are drawn: equal up to what refinement leaves.
+  const Shape shape = box(5000, Sampling::Random, 6);
+  const Detection still = detectPlanes(shape.cloud());
+  ASSERT_EQ(still.planes.size(), 3u);
+  for (std::uint64_t pose = 1; pose <= 3; ++pose) {
+    const Eigen::Isometry3d motion = randomPose(pose);
+    Shape expected = moved(shape, motion);
+    expected.planes.clear();
+    for (const SymmetryPlane& plane : still.planes) expected.planes.push_back(plane.transformed(motion));
+    const Comparison comparison = compare(detectPlanes(expected.cloud()), expected);
+    EXPECT_EQ(comparison.num_matched, 3u);
+    EXPECT_LT(comparison.worst_angle, 0.05 * kDegree);
+    EXPECT_LT(comparison.worst_offset, 3e-4);
+  }
+}
+
+TEST(DetectPlanes, ScalesWithThePoints) {
+  const Shape shape = moved(box(4000, Sampling::Mirrored, 7), randomPose(7));
+  for (const double scale : {1e-12, 1e-9, 1e-3, 1.0, 1e3, 1e9, 1e12}) {
+    const Shape expected = scaled(shape, scale);
+    const Points cloud = expected.cloud();
+    const Detection detection = detectPlanes(cloud);
+    const Comparison comparison = compare(detection, expected);
+    EXPECT_EQ(detection.planes.size(), 3u) << scale;
+    EXPECT_EQ(comparison.num_matched, 3u) << scale;
+    EXPECT_LT(comparison.worst_angle, 0.001 * kDegree) << scale;
+    EXPECT_LT(comparison.worst_offset, 1e-5) << scale;
+    for (const SymmetryPlane& plane : detection.planes) EXPECT_LT(plane.residual, 1e-4 * diagonal(cloud)) << scale;
+  }
+}
+
+TEST(DetectPlanes, ScalingByAPowerOfTwoChangesNothingElse) {
+  const Points cloud = moved(box(3000, Sampling::Random, 8), randomPose(8)).cloud();
+  const Detection one = detectPlanes(cloud), other = detectPlanes(cloud * 1024.0f);
+  ASSERT_EQ(one.planes.size(), other.planes.size());
+  for (std::size_t i = 0; i < one.planes.size(); ++i) {
+    EXPECT_EQ(one.planes[i].normal(), other.planes[i].normal());
+    EXPECT_EQ(one.planes[i].offset() * 1024.0, other.planes[i].offset());
+    EXPECT_EQ(one.planes[i].support, other.planes[i].support);
+  }
+}
+
+TEST(DetectPlanes, SurvivesAFarOrigin) {
+  // At 1e6, floats lie 1/16 apart: a box of 200 units keeps its planes to a fraction of that.
+  Shape shape = scaled(box(10'000, Sampling::Mirrored, 9), 100.0);
+  shape = moved(shape, Eigen::Translation3d(1e6, -1e6, 5e5) * Eigen::Isometry3d::Identity());
+  const Comparison comparison = compare(detectPlanes(shape.cloud()), shape);
+  EXPECT_EQ(comparison.num_matched, 3u);
+  EXPECT_LT(comparison.worst_angle * 100.0, 1.0 / 16.0);
+  EXPECT_LT(comparison.worst_offset * diagonal(shape.cloud()), 1.0 / 16.0);
+}
+
+TEST(DetectPlanes, SmallNoiseMovesAPlaneALittle) {
+  const Shape shape = moved(box(10'000, Sampling::Mirrored, 10), randomPose(10));
+  const double size = diagonal(shape.cloud());
+  for (const double noise : {1e-5, 1e-4, 1e-3, 5e-3}) {
+    Shape noisy = shape;
+    RandomStream random(11);
+    for (Eigen::Index i = 0; i < noisy.points.size(); ++i) noisy.points.data()[i] += noise * size * gaussian(random);
+    const Comparison comparison = compare(detectPlanes(noisy.cloud()), noisy);
+    EXPECT_EQ(comparison.num_matched, 3u) << noise;
+    // Averaged over 10^4 points the noise moves a plane by noise / 100; wrong pairs and edges make it worse. Ten times
+    // that is asked for, in radians and in diagonals.
+    EXPECT_LT(comparison.worst_angle, 0.001 * kDegree + 0.3 * noise) << noise;
+    EXPECT_LT(comparison.worst_offset, 1e-5 + 0.1 * noise) << noise;
+  }
+}
+
+TEST(DetectPlanes, DuplicatedPointsChangeNothing) {
+  const Shape shape = moved(box(4000, Sampling::Mirrored, 12), randomPose(12));
+  for (const int copies : {2, 5, 20}) {
+    Shape repeated = shape;
+    repeated.points = shape.points.replicate(1, copies);
+    const Detection detection = detectPlanes(repeated.cloud());
+    const Comparison comparison = compare(detection, repeated);
+    EXPECT_EQ(detection.planes.size(), 3u) << copies;
+    EXPECT_EQ(comparison.num_matched, 3u) << copies;
+    EXPECT_LT(comparison.worst_angle, 0.001 * kDegree) << copies;
+    EXPECT_LT(comparison.worst_offset, 1e-5) << copies;
+  }
+}
+
+TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {
+  const Points cloud = moved(prism(5, 4000, Sampling::Random, 13), randomPose(13)).cloud();
+  const auto detect = [&](int num_threads) {
+    DetectionOptions options;
+    options.num_threads = options.edt.num_threads = num_threads;
+    return detectPlanes(cloud, options);
+  };
+  const Detection one = detect(1);
+  EXPECT_EQ(one.planes.size(), 6u);
+  for (const int num_threads : {2, 8}) {
+    const Detection many = detect(num_threads);
+    EXPECT_EQ(many.map.values, one.map.values);
+    ASSERT_EQ(many.planes.size(), one.planes.size());
+    for (std::size_t i = 0; i < one.planes.size(); ++i) {
+      EXPECT_EQ(many.planes[i].coefficients(), one.planes[i].coefficients());
+      EXPECT_EQ(many.planes[i].score, one.planes[i].score);
+      EXPECT_EQ(many.planes[i].support, one.planes[i].support);
+      EXPECT_EQ(many.planes[i].point_support, one.planes[i].point_support);
+      EXPECT_EQ(many.planes[i].residual, one.planes[i].residual);
+      EXPECT_EQ(many.planes[i].iterations, one.planes[i].iterations);
+    }
+  }
+}
+
+TEST(DetectPlanes, PointToPointFindsThemToo) {
+  const Shape shape = moved(box(6000, Sampling::Mirrored, 14), randomPose(14));
+  DetectionOptions options;
+  options.update = IspUpdate::PointToPoint;
+  options.max_iterations = 100;
+  const Detection detection = detectPlanes(shape.cloud(), options);
+  const Comparison comparison = compare(detection, shape);
+  EXPECT_EQ(detection.planes.size(), 3u);
+  EXPECT_EQ(comparison.num_matched, 3u);
+  EXPECT_LT(comparison.worst_angle, 0.001 * kDegree);
+  EXPECT_LT(comparison.worst_offset, 1e-5);
+}
+
+TEST(DetectPlanes, NeedsNoPrincipalAxes) {
+  const Shape shape = moved(box(10'000, Sampling::Mirrored, 15), randomPose(15));
+  DetectionOptions options;
+  options.principal_planes = false;
+  EXPECT_EQ(compare(detectPlanes(shape.cloud(), options), shape).num_matched, 3u);
+}
+
+TEST(DetectPlanes, MaxPlanesKeepsTheBest) {
+  const Points cloud = cube(5000, Sampling::Random, 16).cloud();
+  DetectionOptions options;
+  const Detection all = detectPlanes(cloud, options);
+  ASSERT_EQ(all.planes.size(), 9u);
+  options.max_planes = 2;
+  const Detection two = detectPlanes(cloud, options);
+  ASSERT_EQ(two.planes.size(), 2u);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(two.planes[i].coefficients(), all.planes[i].coefficients());
+}
+
+TEST(DetectPlanes, ReportsStagesInOrder) {
+  const Detection detection = detectPlanes(box(1000, Sampling::Random, 17).cloud());
+  ASSERT_GE(detection.timing_ms.size(), 3u);
+  EXPECT_EQ(detection.timing_ms[0].first, "distance_transform");
+  EXPECT_EQ(detection.timing_ms[1].first, "transform");
+  for (const auto& [stage, milliseconds] : detection.timing_ms) EXPECT_GE(milliseconds, 0.0) << stage;
+  EXPECT_EQ(detection.map.values.size(), detection.map.grid.size());
+}
+
+TEST(RefineMaxima, IsTheSecondHalfOfDetection) {
+  const Points cloud = moved(box(3000, Sampling::Random, 18), randomPose(18)).cloud();
+  const Detection whole = detectPlanes(cloud);
+  const Detection half = refineMaxima(cloud, GaussianEdt(cloud), whole.map);
+  ASSERT_EQ(half.planes.size(), whole.planes.size());
+  for (std::size_t i = 0; i < whole.planes.size(); ++i)
+    EXPECT_EQ(half.planes[i].coefficients(), whole.planes[i].coefficients());
+  EXPECT_TRUE(half.map.empty());
+}
+
+TEST(DetectPlanes, PointsWithoutExtentAreRefused) {
+  EXPECT_THROW(detectPlanes(Points(3, 0)), std::invalid_argument);
+  EXPECT_THROW(detectPlanes(Points::Constant(3, 1, 1.0f)), std::invalid_argument);
+  EXPECT_THROW(detectPlanes(Points::Constant(3, 1000, -1e9f)), std::invalid_argument);
+  EXPECT_THROW(detectPlanes(Points::Constant(3, 1000, 0.0f)), std::invalid_argument);
+  Points cloud = box(100, Sampling::Random, 19).cloud();
+  cloud(2, 5) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(detectPlanes(cloud), std::invalid_argument);
+}
+
+TEST(DetectPlanes, TwoPointsHaveThePlaneBetweenThem) {
+  const Eigen::Vector3d a(1.0, 2.0, 3.0), b(2.0, 2.5, 2.0);
+  Points cloud(3, 2);
+  cloud << a.cast<float>(), b.cast<float>();
+  const Detection detection = detectPlanes(cloud);
+  expectConsistent(detection, cloud);
+  // That plane, or one of the many that hold both points.
+  for (const SymmetryPlane& plane : detection.planes) {
+    const double distance = std::min((plane.reflect(a) - b).norm(), (plane.reflect(a) - a).norm());
+    EXPECT_LT(distance, 0.1 * (b - a).norm());
+  }
+  Shape pair{cloud.cast<double>(), {ReflectionPlane::between(a, b)}};
+  EXPECT_EQ(compare(detection, pair).num_matched, 1u);
+}
+
+TEST(DetectPlanes, ThreePointsHaveTheirOwnPlane) {
+  const Points cloud = (Points(3, 3) << 0.0f, 1.0f, 0.2f, 0.0f, 0.1f, 0.7f, 0.0f, 0.3f, -0.2f).finished();
+  const Detection detection = detectPlanes(cloud);
+  expectConsistent(detection, cloud);
+  const Eigen::Vector3d normal = cloud.col(1).cross(cloud.col(2)).cast<double>();
+  const Shape triangle{cloud.cast<double>(), {ReflectionPlane(normal, 0.0)}};
+  EXPECT_EQ(compare(detection, triangle).num_matched, 1u);
+}
+
+TEST(DetectPlanes, ALineHasThePlaneAcrossItsMiddle) {
+  RandomStream random(20);
+  const Eigen::Vector3d direction = Eigen::Vector3d(1.0, 2.0, -1.0).normalized();
+  Shape line{Eigen::Matrix3Xd(3, 1000), {ReflectionPlane(direction, 0.0)}};
+  for (int i = 0; i < 500; ++i) {
+    line.points.col(2 * i) = random.uniform() * direction;
+    line.points.col(2 * i + 1) = -line.points.col(2 * i);
+  }
+  const Detection detection = detectPlanes(line.cloud());
+  expectConsistent(detection, line.cloud());
+  const Comparison comparison = compare(detection, line);
+  EXPECT_EQ(comparison.num_matched, 1u);
+  EXPECT_LT(comparison.worst_angle, 0.5 * kDegree);
+  // All others hold the line.
+  for (const SymmetryPlane& plane : detection.planes) {
+    const double along = std::abs(plane.normal().dot(direction));
+    EXPECT_LT(std::min(along, 1.0 - along), 0.05);
+  }
+}
+
+TEST(DetectPlanes, AFlatRectangleHasThree) {
+  const Shape flat = moved(box({1.0, 0.6, 0.0}, 4000, Sampling::Mirrored, 21), randomPose(21));
+  const Points cloud = flat.cloud();
+  const Detection detection = detectPlanes(cloud);
+  expectConsistent(detection, cloud);
+  const Comparison comparison = compare(detection, flat);
+  EXPECT_EQ(detection.planes.size(), 3u);
+  EXPECT_EQ(comparison.num_matched, 3u);
+  EXPECT_LT(comparison.worst_angle, 0.001 * kDegree);
+  EXPECT_LT(comparison.worst_offset, 1e-5);
+}
+
+TEST(DetectionOptions, RefusesBadOnes) {
+  const Points cloud = box(100, Sampling::Random, 22).cloud();
+  const auto refused = [&](auto&& change) {
+    DetectionOptions options;
+    change(options);
+    EXPECT_THROW(detectPlanes(cloud, options), std::invalid_argument);
+  };
+  refused([](auto& o) { o.edt.num_cells = 1; });
+  refused([](auto& o) { o.maxima.strength = 2.0; });
+  refused([](auto& o) { o.num_theta = 0; });
+  refused([](auto& o) { o.num_phi = 3; });
+  refused([](auto& o) { o.num_radius = 0; });
+  refused([](auto& o) { o.max_candidates = 0; });
+  refused([](auto& o) { o.max_drift = -1.0; });
+  refused([](auto& o) { o.num_coarse_samples = 9; });
+  refused([](auto& o) { o.num_refine_samples = 9; });
+  refused([](auto& o) { o.max_iterations = 0; });
+  refused([](auto& o) { o.merge_angle = -1.0; });
+  refused([](auto& o) { o.merge_offset = -1.0; });
+  refused([](auto& o) { o.min_support = 1.5; });
+  refused([](auto& o) { o.max_planes = 0; });
+  refused([](auto& o) { o.num_threads = -1; });
+}
+
+}  // namespace
