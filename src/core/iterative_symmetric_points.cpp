@@ -1,6 +1,7 @@
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -40,7 +41,7 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
 ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
                                     const PointsRef& y_normals, const std::vector<double>& weights,
                                     const ReflectionPlane& plane) {
-  constexpr double kLeastStiffness = 1e-3;  // of the stiffest direction; softer ones are free
+  constexpr double kLeastStiffness = 1e-3;  // of the stiffest direction; the surface leaves softer ones free
   constexpr double kLongestStep = 0.2;      // radians, or times the extent of the samples
   const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
   double sum = 0.0, sq_extent = 0.0;
@@ -57,8 +58,8 @@ ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, cons
   if (!(extent > 0.0)) return plane;
 
   // Unknowns: n moves by (a u + b v), the plane's distance from the middle of the samples by extent * c.
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero(), h_points = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero(), g_points = Eigen::Vector3d::Zero();
   const double offset = plane.offset() - n.dot(middle);
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     if (weights[i] == 0.0) continue;
@@ -73,17 +74,27 @@ ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, cons
     m.normalize();
     const double weight = weights[i] * cosine * cosine;
     const double error = m.dot(reflected - q);
-    const Eigen::Vector3d slope(-2.0 * (u.dot(p) * m.dot(n) + height * m.dot(u)),
-                                -2.0 * (v.dot(p) * m.dot(n) + height * m.dot(v)), 2.0 * extent * m.dot(n));
+    Eigen::Matrix3d slopes;  // of the reflected point
+    slopes.col(0) = -2.0 * (u.dot(p) * n + height * u);
+    slopes.col(1) = -2.0 * (v.dot(p) * n + height * v);
+    slopes.col(2) = 2.0 * extent * n;
+    const Eigen::Vector3d slope = slopes.transpose() * m;
     h += weight * slope * slope.transpose();
     g += weight * error * slope;
+    h_points += weights[i] * slopes.transpose() * slopes;
+    g_points += weights[i] * slopes.transpose() * (reflected - q);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);
+  const Eigen::Vector3d& stiffness = solver.eigenvalues();  // ascending
+  int num_soft = 0;
+  while (num_soft < 3 && !(stiffness[num_soft] > kLeastStiffness * stiffness[2])) ++num_soft;
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
-  for (int i = 0; i < 3; ++i) {
-    const double stiffness = solver.eigenvalues()[i];
-    if (stiffness > kLeastStiffness * solver.eigenvalues()[2] && stiffness > 0.0)
-      step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness);
+  for (int i = num_soft; i < 3; ++i)
+    step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness[i]);
+  if (num_soft > 0) {
+    const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
+    const Eigen::MatrixXd reduced = soft.transpose() * h_points * soft;
+    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * g_points);
   }
   const double length = step.norm();
   if (!std::isfinite(length)) return plane;
@@ -136,6 +147,7 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
 
 IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
                                 const ReflectionPlane& plane, const IspOptions& options) {
+  constexpr double kRest = 0.1;  // sigmas
   options.validate();
   const double size = static_cast<double>(samples.size());
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -153,11 +165,12 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     const ReflectionPlane& next = result.last.plane;
     const double moved =
         std::abs(std::abs(next.signedDistance(middle)) - std::abs(result.plane.signedDistance(middle)));
+    const double angle = next.angleTo(result.plane);
     const double tolerance = options.tolerance * extent + options.error_share * result.last.residual / std::sqrt(size);
-    result.converged =
-        sigma == options.final_sigma && moved <= tolerance && next.angleTo(result.plane) * extent <= tolerance;
+    result.converged = sigma == options.final_sigma && moved <= tolerance && angle * extent <= tolerance;
     result.plane = next;
-    sigma = std::max(options.final_sigma, 0.5 * sigma);
+    // Narrower weights only where the plane has come to rest at these: it must not lose what it moves towards.
+    if (moved + angle * extent <= kRest * sigma) sigma = std::max(options.final_sigma, 0.5 * sigma);
   }
   return result;
 }

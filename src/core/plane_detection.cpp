@@ -22,8 +22,11 @@ constexpr double kCandidateAngle = 0.1;        // radians: maxima closer than th
 constexpr double kCandidateOffset = 0.06;      // ... in angle and radii share one basin of refinement
 constexpr double kFinalSigmaInSpacings = 3.0;  // weights at the end: well above the spacing, well below sigma
 constexpr double kLeastValue = 0.45;           // of D in a bin that may hold a plane of min_support: half the peak
-constexpr double kCoarseSlack = 0.3, kCloseSlack = 0.05;    // of support after the stages, below min_support
+constexpr double kCoarseSlack = 0.3, kCloseSlack = 0.05;    // of support below min_support after the stages
 constexpr int kCoarseIterations = 5, kCloseIterations = 6;  // symmetries converge in fewer
+constexpr double kSlopeAngle = 0.2, kSlopeOffset = 0.15;    // radians, radii: how far a slope may reach
+constexpr double kSlopeDip = 0.005;                         // of D: what counts as falling
+constexpr int kFewestKept = 12;
 constexpr std::size_t kMaxClosed = 16;  // planes whose group is completed; more belong to a continuous family
 
 class Stopwatch {
@@ -197,7 +200,9 @@ public:
         std::clamp(final_sigma_, 0.5 * sigma_, sigma_), final_sigma_,
         std::min(kCloseIterations, options_.max_iterations));
     candidates = distinct(std::move(candidates), kCloseSlack);
-    if (static_cast<int>(candidates.size()) > options_.max_planes) candidates.resize(options_.max_planes);
+    // Some of them still run into others: twice as many as asked for are enough.
+    const std::size_t enough = static_cast<std::size_t>(std::max(2 * options_.max_planes, kFewestKept));
+    if (candidates.size() > enough) candidates.erase(candidates.begin() + enough, candidates.end());
   }
 
   /// All samples; the precision of the planes is decided here.
@@ -257,7 +262,7 @@ public:
       if (static_cast<int>(reported.size()) >= options_.max_planes) break;
       if (plane.approximate && !options_.approximate) continue;
       const bool known = std::any_of(reported.begin(), reported.end(), [&](const SymmetryPlane& other) {
-        return same(frame_.toNormalized(other), frame_.toNormalized(plane));
+        return same(frame_.toNormalized(other), frame_.toNormalized(plane)) || onSlopeOf(other, plane);
       });
       if (!known) reported.push_back(std::move(plane));
     }
@@ -273,6 +278,17 @@ private:
 
   bool same(const ReflectionPlane& a, const ReflectionPlane& b) const {
     return samePlane(a, b, options_.merge_angle, options_.merge_offset);
+  }
+
+  /// Refinement can come to rest on the way to a maximum, where few points say how to go on (on flat pieces, say): a
+  /// plane is a maximum of its own only if D falls on the way to a better one nearby.
+  bool onSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane) const {
+    const ReflectionPlane a = frame_.toNormalized(better), b = frame_.toNormalized(plane);
+    if (!samePlane(a, b, kSlopeAngle, kSlopeOffset)) return false;
+    const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
+    const Eigen::Vector3d normal = a.normal() + sign * b.normal();
+    const ReflectionPlane between(normal, 0.5 * normal.norm() * (a.offset() + sign * b.offset()));
+    return correlation(edt_, frame_.toInput(between)) > plane.score - kSlopeDip;
   }
 
   void run(std::vector<Candidate>& candidates, int num_samples, double sigma, double final_sigma,

@@ -18,7 +18,7 @@ struct IspOptions {
   IspUpdate update = IspUpdate::PointToPlane;
   double sigma = 0.0;  ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
   double final_sigma =
-      0.0;  ///< width at the end, input units, in (0, sigma]; the width halves in every iteration until then
+      0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane rests
   int max_iterations = 30;  ///< >= 1
   /// Converged when the plane moves by less than this, in radians and in input units divided by the extent of the
   /// samples (the root mean square distance from their mean), >= 0 ...
@@ -64,7 +64,8 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
                                    const ReflectionPlane& fallback);
 
 /// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2, m the mean direction of the normals at y and of the
-/// reflected normal at x. Directions that the pairs leave free (those of a sphere, say) do not move.
+/// reflected normal at x. Directions that this leaves free (a flat piece of surface says nothing about planes across it)
+/// move by a step on sum w |x' - y|^2.
 /// \param x,y,x_normals,y_normals 3 x M. \param weights M values >= 0.
 ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
                                     const PointsRef& y_normals, const std::vector<double>& weights,
