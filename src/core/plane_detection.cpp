@@ -21,7 +21,7 @@ namespace {
 constexpr double kCandidateAngle = 0.1;        // radians: maxima closer than this ...
 constexpr double kCandidateOffset = 0.06;      // ... in angle and radii share one basin of refinement
 constexpr double kFinalSigmaInSpacings = 3.0;  // weights at the end: well above the spacing, well below sigma
-constexpr double kLeastValue = 0.45;           // of D in a bin that may hold a plane of min_support: half the peak
+constexpr double kLeastShare = 0.5;  // of min_score in a bin that may hold a plane of it: off its center D is half
 constexpr double kCoarseSlack = 0.3, kCloseSlack = 0.05;    // of support below min_support after the stages
 constexpr int kCoarseIterations = 5, kCloseIterations = 6;  // symmetries converge in fewer
 constexpr double kSlopeAngle = 0.2, kSlopeOffset = 0.15;    // radians, radii: how far a slope may reach
@@ -87,7 +87,7 @@ std::vector<Candidate> gatherCandidates(const SymmetryMap& map, const Points& po
   maxima.num_threads = options.num_threads;
   for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
     if (static_cast<int>(candidates.size()) >= options.max_candidates) break;
-    if (!options.approximate && maximum.value < kLeastValue) break;
+    if (!options.approximate && maximum.value < kLeastShare * options.min_score) break;
     const ReflectionPlane plane = frame.toNormalized(maximum.plane);
     const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
       return samePlane(c.plane, plane, kCandidateAngle, kCandidateOffset);
