@@ -15,6 +15,8 @@ endif()
 if(PCL_SYMMETRY_SANITIZE)
   add_compile_options(-fsanitize=${PCL_SYMMETRY_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${PCL_SYMMETRY_SANITIZE})
+  # Eigen changes its allocation under the address sanitizer; PCL's libraries, compiled without, free what we allocate.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 # Warnings for our own targets only.
