@@ -10,6 +10,7 @@
 #include <vtkPNGWriter.h>
 #include <vtkPen.h>
 #include <vtkPlotPoints.h>
+#include <vtkRect.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkTable.h>
@@ -75,6 +76,8 @@ void writeErrorPlot(const std::string& file, const std::vector<Series>& series) 
   view->GetRenderer()->SetBackground(1.0, 1.0, 1.0);
   vtkNew<vtkChartXY> chart;
   view->GetScene()->AddItem(chart);
+  chart->SetAutoSize(false);
+  chart->SetSize(vtkRectf(0, 0, kWidth - 30, kHeight));  // room for the last label
   chart->SetTitle("Error of PRST against time, mean of the models");
   chart->GetTitleProperties()->SetFontSize(24);
   chart->SetShowLegend(true);
