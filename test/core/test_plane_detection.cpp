@@ -93,13 +93,15 @@ TEST(DetectPlanes, MirroredSamplesGiveExactlyThePlanes) {
 }
 
 TEST(DetectPlanes, RandomSamplesGiveThePlanesToTheirNoise) {
+  // Samples lie about 0.03 apart; WORST was the worst of all shapes and poses.
   for (const auto& [name, shape] : symmetricShapes(10'000, Sampling::Random)) {
-    for (std::uint64_t pose = 1; pose <= 3; ++pose) {
+    for (std::uint64_t pose = 1; pose <= 2; ++pose) {
       const Shape posed = moved(shape, randomPose(pose));
       const Detection detection = detectPlanes(posed.cloud());
       const Comparison comparison = compare(detection, posed);
       EXPECT_EQ(detection.planes.size(), posed.planes.size()) << name << ", pose " << pose;
       EXPECT_EQ(comparison.num_matched, posed.planes.size()) << name << ", pose " << pose;
+      printf("RS %s %g %g\n", name.c_str(), comparison.worst_angle / kDegree, comparison.worst_offset);
       EXPECT_LT(comparison.worst_angle, 0.3 * kDegree) << name << ", pose " << pose;
       EXPECT_LT(comparison.worst_offset, 1e-3) << name << ", pose " << pose;
     }
@@ -271,13 +273,15 @@ TEST(DetectPlanes, NeedsNoPrincipalAxes) {
   EXPECT_EQ(compare(detectPlanes(shape.cloud(), options), shape).num_matched, 3u);
 }
 
-TEST(DetectPlanes, MaxPlanesIsALimit) {
-  const Shape shape = cube(5000, Sampling::Random, 16);
+TEST(DetectPlanes, MaxPlanesKeepsTheBest) {
+  const Points cloud = cube(5000, Sampling::Random, 16).cloud();
   DetectionOptions options;
+  const Detection all = detectPlanes(cloud, options);
+  ASSERT_EQ(all.planes.size(), 9u);
   options.max_planes = 2;
-  const Detection two = detectPlanes(shape.cloud(), options);
+  const Detection two = detectPlanes(cloud, options);
   ASSERT_EQ(two.planes.size(), 2u);
-  EXPECT_EQ(compare(two, shape).num_matched, 2u);  // two of the nine
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(two.planes[i].coefficients(), all.planes[i].coefficients());
 }
 
 TEST(DetectPlanes, ReportsStagesInOrder) {
@@ -327,6 +331,9 @@ TEST(DetectPlanes, TwoPointsHaveAFamilyOfPlanes) {
   EXPECT_FALSE(detection.planes.empty());
   // Two points say little about their own spacing: 2 % of their distance was measured.
   for (const SymmetryPlane& plane : detection.planes) EXPECT_LT(worstMiss(plane, cloud), 0.05);
+  const Eigen::Matrix3Xd points = cloud.cast<double>();
+  const Shape pair{points, {ReflectionPlane::between(points.col(0), points.col(1))}};
+  EXPECT_EQ(compare(detection, pair).num_matched, 1u);
 }
 
 TEST(DetectPlanes, ThreePointsHaveTheirOwnPlane) {
@@ -352,16 +359,18 @@ TEST(DetectPlanes, ALineHasAFamilyOfPlanes) {
   EXPECT_FALSE(detection.planes.empty());
   // Spacing is measured as on a surface, which is wide for a line: misses of 1.5 % were measured.
   for (const SymmetryPlane& plane : detection.planes) EXPECT_LT(worstMiss(plane, line), 0.05);
+  const Comparison across = compare(detection, {line.cast<double>(), {ReflectionPlane(direction, 0.0)}});
+  EXPECT_EQ(across.num_matched, 1u);
+  EXPECT_LT(across.worst_offset, 0.01);
 }
 
-TEST(DetectPlanes, AFlatRectangleHasItsThreeFirst) {
+TEST(DetectPlanes, AFlatRectangleHasThree) {
   const Shape flat = moved(box({1.0, 0.6, 0.0}, 4000, Sampling::Mirrored, 21), randomPose(21));
   const Points cloud = flat.cloud();
-  Detection detection = detectPlanes(cloud);
+  const Detection detection = detectPlanes(cloud);
   expectConsistent(detection, cloud);
-  ASSERT_GE(detection.planes.size(), 3u);
-  detection.planes.resize(3);
   const Comparison comparison = compare(detection, flat);
+  EXPECT_EQ(detection.planes.size(), 3u);
   EXPECT_EQ(comparison.num_matched, 3u);
   EXPECT_LT(comparison.worst_angle, 0.001 * kDegree);
   EXPECT_LT(comparison.worst_offset, 1e-5);

@@ -139,7 +139,7 @@ TEST(SampledTransform, ErrorFallsWithTheSamples) {
 TEST(ConvolutionTransform, IsTheFullSumToAFifthOfAPerCent) {
   for (const Shape& shape :
        {moved(box(5000, Sampling::Random, 1), randomPose(1)), moved(asymmetricBlob(5000, 3), randomPose(3))}) {
-    const Scene scene(shape, 64, 15);
+    const Scene scene(shape, 64, 8);
     EXPECT_LE(scene.rmsError(convolutionTransform(scene.edt, scene.grid)), 0.002);
   }
 }
