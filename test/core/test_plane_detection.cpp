@@ -93,7 +93,8 @@ TEST(DetectPlanes, MirroredSamplesGiveExactlyThePlanes) {
 }
 
 TEST(DetectPlanes, RandomSamplesGiveThePlanesToTheirNoise) {
-  // Samples lie about 0.03 apart; WORST was the worst of all shapes and poses.
+  // Faces are flat, so that only samples near edges disturb a plane: 0.0144 degrees (prism of 12) and 9.3e-6 of the
+  // diagonal (cube) were the worst measured; twice that is allowed.
   for (const auto& [name, shape] : symmetricShapes(10'000, Sampling::Random)) {
     for (std::uint64_t pose = 1; pose <= 2; ++pose) {
       const Shape posed = moved(shape, randomPose(pose));
@@ -101,9 +102,8 @@ TEST(DetectPlanes, RandomSamplesGiveThePlanesToTheirNoise) {
       const Comparison comparison = compare(detection, posed);
       EXPECT_EQ(detection.planes.size(), posed.planes.size()) << name << ", pose " << pose;
       EXPECT_EQ(comparison.num_matched, posed.planes.size()) << name << ", pose " << pose;
-      printf("RS %s %g %g\n", name.c_str(), comparison.worst_angle / kDegree, comparison.worst_offset);
-      EXPECT_LT(comparison.worst_angle, 0.3 * kDegree) << name << ", pose " << pose;
-      EXPECT_LT(comparison.worst_offset, 1e-3) << name << ", pose " << pose;
+      EXPECT_LT(comparison.worst_angle, 0.029 * kDegree) << name << ", pose " << pose;
+      EXPECT_LT(comparison.worst_offset, 2e-5) << name << ", pose " << pose;
     }
   }
 }
@@ -131,7 +131,7 @@ TEST(DetectPlanes, ApproximateOnesComeWhenAskedFor) {
 TEST(DetectPlanes, BodiesOfRevolutionHavePlanesThroughTheirAxis) {
   const Eigen::Isometry3d pose = randomPose(5);
   const Eigen::Vector3d axis = pose.linear().col(2), center = pose.translation();
-  const Detection cylinder_planes = detectPlanes(moved(cylinder(10'000, 1), pose).cloud());
+  const Detection cylinder_planes = detectPlanes(moved(cylinder(5000, 1), pose).cloud());
   EXPECT_GE(cylinder_planes.planes.size(), 2u);
   int num_across = 0;
   for (const SymmetryPlane& plane : cylinder_planes.planes) {
@@ -141,7 +141,7 @@ TEST(DetectPlanes, BodiesOfRevolutionHavePlanesThroughTheirAxis) {
     num_across += along > 0.5;
   }
   EXPECT_EQ(num_across, 1);
-  const Detection sphere_planes = detectPlanes(moved(sphere(10'000, 2), pose).cloud());
+  const Detection sphere_planes = detectPlanes(moved(sphere(5000, 2), pose).cloud());
   EXPECT_FALSE(sphere_planes.planes.empty());
   for (const SymmetryPlane& plane : sphere_planes.planes) EXPECT_LT(std::abs(plane.signedDistance(center)), 0.01);
 }
