@@ -163,11 +163,19 @@ void GaussianEdt::computeDistances(const PointsRef& points, int num_threads) {
       const float dz = static_cast<float>(z) - point.z();
       lowerSlice(values, n, point.x(), point.y(), dz * dz, reach, width);
     }
+    double sum = 0.0, sq_sum = 0.0;
     for (std::size_t i = 0; i < slice_size; ++i) {
-      values[i] = values[i] < reach * reach ? static_cast<float>(std::exp(scale * values[i])) : 0.0f;
-      sums[z] += values[i];
-      sq_sums[z] += static_cast<double>(values[i]) * values[i];
+      if (values[i] >= reach * reach) {
+        values[i] = 0.0f;
+        continue;
+      }
+      const double value = std::exp(scale * values[i]);
+      values[i] = static_cast<float>(value);
+      sum += value;
+      sq_sum += value * value;
     }
+    sums[z] = sum;
+    sq_sums[z] = sq_sum;
   });
   sum_ = std::accumulate(sums.begin(), sums.end(), 0.0);
   sq_norm_ = std::accumulate(sq_sums.begin(), sq_sums.end(), 0.0);

@@ -58,43 +58,46 @@ ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, cons
   if (!(extent > 0.0)) return plane;
 
   // Unknowns: n moves by (a u + b v), the plane's distance from the middle of the samples by extent * c.
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero(), h_points = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g = Eigen::Vector3d::Zero(), g_points = Eigen::Vector3d::Zero();
   const double offset = plane.offset() - n.dot(middle);
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     if (weights[i] == 0.0) continue;
     const Eigen::Vector3d p = x.col(i).cast<double>() - middle, q = y.col(i).cast<double>() - middle;
     const double height = n.dot(p) - offset;
-    const Eigen::Vector3d reflected = p - 2.0 * height * n;
-    const Eigen::Vector3d x_normal = x_normals.col(i).cast<double>();
+    const Eigen::Vector3d x_normal = x_normals.col(i).cast<double>(), y_normal = y_normals.col(i).cast<double>();
     const Eigen::Vector3d turned = x_normal - 2.0 * n.dot(x_normal) * n;
-    const Eigen::Vector3d y_normal = y_normals.col(i).cast<double>();
     const double cosine = turned.dot(y_normal);
-    Eigen::Vector3d m = y_normal + (cosine < 0.0 ? -turned : turned);
-    m.normalize();
-    const double weight = weights[i] * cosine * cosine;
-    const double error = m.dot(reflected - q);
-    Eigen::Matrix3d slopes;  // of the reflected point
-    slopes.col(0) = -2.0 * (u.dot(p) * n + height * u);
-    slopes.col(1) = -2.0 * (v.dot(p) * n + height * v);
-    slopes.col(2) = 2.0 * extent * n;
-    const Eigen::Vector3d slope = slopes.transpose() * m;
-    h += weight * slope * slope.transpose();
-    g += weight * error * slope;
-    h_points += weights[i] * slopes.transpose() * slopes;
-    g_points += weights[i] * slopes.transpose() * (reflected - q);
+    const Eigen::Vector3d m = (y_normal + (cosine < 0.0 ? -turned : turned)).normalized();
+    const double m_n = m.dot(n), weight = weights[i] * cosine * cosine;
+    const Eigen::Vector3d slope(-2.0 * (u.dot(p) * m_n + height * m.dot(u)),
+                                -2.0 * (v.dot(p) * m_n + height * m.dot(v)), 2.0 * extent * m_n);
+    h.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
+    g += weight * m.dot(p - 2.0 * height * n - q) * slope;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);
-  const Eigen::Vector3d& stiffness = solver.eigenvalues();  // ascending
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);  // reads the lower half
+  const Eigen::Vector3d& stiffness = solver.eigenvalues();         // ascending
   int num_soft = 0;
   while (num_soft < 3 && !(stiffness[num_soft] > kLeastStiffness * stiffness[2])) ++num_soft;
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int i = num_soft; i < 3; ++i)
     step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness[i]);
   if (num_soft > 0) {
+    h.setZero();
+    g.setZero();
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      const Eigen::Vector3d p = x.col(i).cast<double>() - middle, q = y.col(i).cast<double>() - middle;
+      const double height = n.dot(p) - offset;
+      Eigen::Matrix3d slopes;  // of the reflected point
+      slopes.col(0) = -2.0 * (u.dot(p) * n + height * u);
+      slopes.col(1) = -2.0 * (v.dot(p) * n + height * v);
+      slopes.col(2) = 2.0 * extent * n;
+      h += weights[i] * slopes.transpose() * slopes;
+      g += weights[i] * slopes.transpose() * (p - 2.0 * height * n - q);
+    }
     const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
-    const Eigen::MatrixXd reduced = soft.transpose() * h_points * soft;
-    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * g_points);
+    const Eigen::MatrixXd reduced = soft.transpose() * h * soft;
+    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * g);
   }
   const double length = step.norm();
   if (!std::isfinite(length)) return plane;

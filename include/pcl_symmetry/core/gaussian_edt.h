@@ -24,7 +24,7 @@ struct GaussianEdtOptions {
 ///
 /// The distance at every cell center is exact with respect to the points' true positions (not to occupied cells) where
 /// f > 1.2e-3 and f is 0 beyond. Clouds with many points to a cell are thinned to one point per 1/64 cell first, which
-/// moves the distance by less than a quarter of a cell along the surface and hardly across it.
+/// adds at most 0.43 cells to a distance, and lowers the sum of f by less than 1 % at 32 cells a side and more.
 class GaussianEdt {
 public:
   /// \param points 3 x N, finite, input units, N >= 1, not all equal unless options.radius is set.

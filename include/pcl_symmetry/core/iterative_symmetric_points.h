@@ -16,16 +16,15 @@ enum class IspUpdate {
 
 struct IspOptions {
   IspUpdate update = IspUpdate::PointToPlane;
-  double sigma = 0.0;  ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
-  double final_sigma =
-      0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane rests
-  int max_iterations = 30;  ///< >= 1
+  double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
+  double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane rests
+  int max_iterations = 30;   ///< >= 1
   /// Converged when the plane moves by less than this, in radians and in input units divided by the extent of the
   /// samples (the root mean square distance from their mean), >= 0 ...
   double tolerance = 1e-7;
   /// ... or by less than this share of its own standard error, residual / sqrt(number of samples), >= 0: beyond that,
   /// matches that change sides keep a plane of sampled points in motion without making it better.
-  double error_share = 0.3;
+  double error_share = 0.5;
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -64,9 +63,8 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
                                    const ReflectionPlane& fallback);
 
 /// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2, m the mean direction of the normals at y and of the
-/// reflected normal at x. Directions that this leaves free (a flat piece of surface says nothing about planes across it)
-/// move by a step on sum w |x' - y|^2.
-/// \param x,y,x_normals,y_normals 3 x M. \param weights M values >= 0.
+/// reflected normal at x. Directions that this leaves free (a flat piece of surface says nothing about planes across
+/// it) move by a step on sum w |x' - y|^2. \param x,y,x_normals,y_normals 3 x M. \param weights M values >= 0.
 ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
                                     const PointsRef& y_normals, const std::vector<double>& weights,
                                     const ReflectionPlane& plane);
