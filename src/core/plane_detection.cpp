@@ -26,6 +26,9 @@ constexpr double kCoarseSlack = 0.3, kCloseSlack = 0.05;    // of support below 
 constexpr int kCoarseIterations = 5, kCloseIterations = 6;  // symmetries converge in fewer
 constexpr double kSlopeAngle = 0.2, kSlopeOffset = 0.15;    // radians, radii: how far a slope may reach
 constexpr double kSlopeDip = 0.005;                         // of D: what counts as falling
+// Gauss-Newton steps of a symmetry shrink about tenfold: after one of this many standard errors, what is left is below
+// a third of one.
+constexpr double kSettledErrorShare = 3.0;
 constexpr int kFewestKept = 12;
 constexpr std::size_t kMaxClosed = 16;  // planes whose group is completed; more belong to a continuous family
 
@@ -307,7 +310,9 @@ private:
       Candidate& candidate = candidates[i];
       const bool settles = candidate.iterations == 0 || candidate.support >= options_.min_support - kCloseSlack;
       const std::vector<int>& used = settles ? samples : fewer;
-      candidate.last = refineSymmetricPoints(surface_, used, candidate.plane, isp);
+      IspOptions own = isp;
+      if (settles && options_.update == IspUpdate::PointToPlane) own.error_share = kSettledErrorShare;
+      candidate.last = refineSymmetricPoints(surface_, used, candidate.plane, own);
       candidate.plane = candidate.last.plane;
       candidate.iterations += candidate.last.iterations;
       candidate.support =
