@@ -1,37 +1,25 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "shape_input.h"
-#include "temporary_folder.h"
+#include "tool_run.h"
 
 namespace {
 
 using namespace pcl_symmetry::apps;
 
-class PlanesTool : public testing::Test {
+class PlanesTool : public ToolTest {
 protected:
-  /// \return the exit code; what the tool printed is in output_ and error_ then.
-  int run(const std::string& arguments) {
-    const std::string command =
-        std::string(PLANES_TOOL) + " " + arguments + " >" + (folder_ / "stdout") + " 2>" + (folder_ / "stderr");
-    const int status = std::system(command.c_str());
-    output_ = contentOf(folder_ / "stdout");
-    error_ = contentOf(folder_ / "stderr");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
+  PlanesTool() : ToolTest(PLANES_TOOL) {}
 
-  const TemporaryFolder folder_;
   const std::string box_ =
       folder_.write("box.off",
                     "OFF\n8 6 12\n-1 -1.5 -2\n1 -1.5 -2\n1 1.5 -2\n-1 1.5 -2\n-1 -1.5 2\n1 -1.5 2\n1 1.5 2\n-1 1.5 2\n"
                     "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
   const std::string tetrahedron_ = folder_.write(
       "t.off", "OFF\n4 4 6\n0 0 0\n2 0.1 0\n0.4 1.3 0.1\n0.7 0.2 0.9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
-  std::string output_, error_;
 };
 
 TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
