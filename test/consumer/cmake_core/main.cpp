@@ -1,7 +1,7 @@
 /// A user's program without PCL: points in an Eigen matrix.
+#include <pcl_symmetry/core/plane_detection.h>
 #include <cmath>
 #include <cstdio>
-#include <pcl_symmetry/core/plane_detection.h>
 
 int main() {
   // An ellipsoid with the half axes 3, 2 and 1; the samples come in mirrored octuples.

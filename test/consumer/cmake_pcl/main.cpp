@@ -14,8 +14,8 @@ struct LidarPoint {
   std::uint16_t ring;
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
-POINT_CLOUD_REGISTER_POINT_STRUCT(LidarPoint,
-                                  (float, x, x)(float, y, y)(float, z, z)(float, range, range)(std::uint16_t, ring, ring))
+POINT_CLOUD_REGISTER_POINT_STRUCT(LidarPoint, (float, x, x)(float, y, y)(float, z, z)(float, range,
+                                                                                      range)(std::uint16_t, ring, ring))
 
 /// A box of 4 x 3 x 2 around (10, 0, 0), whose samples have its three planes of symmetry.
 pcl::PointCloud<LidarPoint>::Ptr makeBox() {

@@ -2,10 +2,10 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
-#include <cmath>
-#include <cstdio>
 #include <pcl_symmetry/planar_symmetry_transform.h>
 #include <pcl_symmetry/symmetry_maxima_refinement.h>
+#include <cmath>
+#include <cstdio>
 
 int main() {
   // An elliptic cylinder, cut slantwise: the plane y = 0.5 alone is a symmetry.
