@@ -26,8 +26,8 @@ constexpr double kCoarseSlack = 0.3, kCloseSlack = 0.05;    // of support below 
 constexpr int kCoarseIterations = 5, kCloseIterations = 6;  // symmetries converge in fewer
 constexpr double kSlopeAngle = 0.2, kSlopeOffset = 0.15;    // radians, radii: how far a slope may reach
 constexpr double kSlopeDip = 0.005;                         // of D: what counts as falling
-// Gauss-Newton steps of a symmetry shrink about tenfold: after one of this many standard errors, what is left is below
-// a third of one.
+// In standard errors: once a Gauss-Newton step of a symmetry is this short, another one over all points leaves the
+// errors of boxes and prisms (exact and sampled) where they are.
 constexpr double kSettledErrorShare = 3.0;
 constexpr int kFewestKept = 12;
 constexpr std::size_t kMaxClosed = 16;  // planes whose group is completed; more belong to a continuous family

@@ -7,6 +7,7 @@
 #include "models.h"
 #include "pcl_symmetry/core/convolution_transform.h"
 #include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/random.h"
 #include "pcl_symmetry/core/sampled_transform.h"
 
 namespace {
@@ -96,6 +97,18 @@ void BM_CloudToPlanes(benchmark::State& state) {
   detect(state, cloud(model, kManyPoints), {});
 }
 
+/// The most planes that a convex body of flat faces usually has: nine, each of which is refined on all points.
+void BM_CubeToPlanes(benchmark::State& state) {
+  Points points(3, kManyPoints);
+  RandomStream random(1);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) points(axis, i) = static_cast<float>(2.0 * random.uniform() - 1.0);
+    float& across = points(static_cast<Eigen::Index>(random.below(3)), i);
+    across = across < 0.0f ? -1.0f : 1.0f;
+  }
+  detect(state, points, {});
+}
+
 BENCHMARK(BM_GaussianEdt)
     ->ArgNames({"points", "cells", "threads"})
     ->ArgsProduct({{1'000, 10'000, 100'000, 1'000'000}, {64}, {0}})
@@ -123,6 +136,8 @@ BENCHMARK(BM_Detection)
     ->Args({10'000, 64, 1})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+BENCHMARK(BM_CubeToPlanes)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 BENCHMARK(BM_CloudToPlanes)->ArgName("model")->DenseRange(0, 4)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -85,6 +87,9 @@ TEST(DetectPlanes, MirroredSamplesGiveExactlyThePlanes) {
       const Comparison comparison = compare(detection, posed);
       EXPECT_EQ(detection.planes.size(), posed.planes.size()) << name << ", pose " << pose;
       EXPECT_EQ(comparison.num_matched, posed.planes.size()) << name << ", pose " << pose;
+      std::printf("%-12s pose %d: %zu planes, worst %.1e degrees, %.1e of the diagonal\n", name.c_str(),
+                  static_cast<int>(pose), detection.planes.size(), comparison.worst_angle / kDegree,
+                  comparison.worst_offset);
       EXPECT_LT(comparison.worst_angle, 0.001 * kDegree) << name << ", pose " << pose;
       EXPECT_LT(comparison.worst_offset, 1e-5) << name << ", pose " << pose;
       expectConsistent(detection, cloud);
