@@ -42,49 +42,97 @@ CommandLine commandLine(PlanesOptions& options) {
             "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane")
       .flag("approximate", options.detection.approximate,
             "also report approximate symmetries and symmetries of parts, marked as such")
-      .number("min_support", options.detection.min_support, Range::closed(0, 1),
-              "share of the surface that a symmetry must map onto the surface")
-      .number("min_score", options.detection.min_score, Range::closed(0, 1),
-              "correlation with its reflection that a symmetry must have")
+      .number("min_confidence", options.detection.min_confidence, Range::closed(0, 1),
+              "probability from which on a plane is called a symmetry")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "planes reported at most")
       .number("sigma", options.sigma, Range::above(0), "width of the Gaussian, input units (two cells)")
       .number("points", options.mesh_points, Range::closed(100, 10'000'000), "points spread over a mesh")
-      .common(options.common, kJson | kSeed | kThreads | kGrid | kQuiet);
+      .common(options.common, kAllCommonFlags);
   return line;
 }
 
-nlohmann::json toJson(const Eigen::Vector4d& v) {
-  return {v[0], v[1], v[2], v[3]};
+/// What was found, best first.
+struct Findings {
+  std::vector<SymmetryPlane> planes;
+  std::vector<SymmetryAxis> axes;
+  std::vector<SymmetryCenter> centers;
+
+  bool empty() const { return planes.empty() && axes.empty() && centers.empty(); }
+};
+
+const char* toString(PlaneKind kind) {
+  switch (kind) {
+    case PlaneKind::Symmetry:
+      return "symmetry";
+    case PlaneKind::Possible:
+      return "possible";
+    case PlaneKind::Local:
+      return "local";
+    case PlaneKind::Approximate:
+      break;
+  }
+  return "approximate";
 }
 
-void printTable(const std::vector<SymmetryPlane>& planes) {
-  if (planes.empty()) {
+nlohmann::json toJson(const Eigen::VectorXd& v) {
+  return std::vector<double>(v.data(), v.data() + v.size());
+}
+
+void printTable(const Findings& findings) {
+  if (findings.empty()) {
     std::printf("no symmetry plane\n");
     return;
   }
-  std::printf("%5s %11s %11s %11s %13s %8s %8s  %s\n", "plane", "a", "b", "c", "d", "score", "support", "kind");
+  for (const SymmetryCenter& center : findings.centers)
+    std::printf("center of all planes: %.6g %.6g %.6g, confidence %.3f\n", center.point.x(), center.point.y(),
+                center.point.z(), center.confidence);
+  for (const SymmetryAxis& axis : findings.axes)
+    std::printf("axis of revolution: through %.6g %.6g %.6g along %.6f %.6f %.6f, confidence %.3f\n", axis.point.x(),
+                axis.point.y(), axis.point.z(), axis.direction.x(), axis.direction.y(), axis.direction.z(),
+                axis.confidence);
+  const std::vector<SymmetryPlane>& planes = findings.planes;
+  if (planes.empty()) return;
+  std::printf("%5s %10s %10s %10s %12s %10s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence", "support",
+              "score", "seen", "kind");
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const Eigen::Vector4d c = planes[i].coefficients();
-    std::printf("%5zu %11.6f %11.6f %11.6f %13.6g %8.3f %8.3f  %s\n", i + 1, c[0], c[1], c[2], c[3], planes[i].score,
-                planes[i].support, planes[i].approximate ? "approximate" : "symmetry");
+    std::printf("%5zu %10.6f %10.6f %10.6f %12.6g %10.3f %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2], c[3],
+                planes[i].confidence, planes[i].support, planes[i].score, planes[i].seen, toString(planes[i].kind));
   }
 }
 
-nlohmann::json describe(const PlanesOptions& options, const std::vector<SymmetryPlane>& planes, std::size_t num_points,
-                        const std::vector<std::pair<std::string, double>>& timing_ms) {
+nlohmann::json describe(const PlanesOptions& options, const Findings& findings, std::size_t num_points,
+                        bool used_viewpoint, const std::vector<std::pair<std::string, double>>& timing_ms) {
   nlohmann::json json{{"file", options.input},
                       {"num_points", num_points},
+                      {"partial", used_viewpoint},
                       {"planes", nlohmann::json::array()},
                       {"axes", nlohmann::json::array()},
+                      {"centers", nlohmann::json::array()},
                       {"timing_ms", nlohmann::json::object()}};
-  for (const SymmetryPlane& plane : planes) {
+  for (const SymmetryPlane& plane : findings.planes) {
     json["planes"].push_back({{"coefficients", toJson(plane.coefficients())},
+                              {"kind", toString(plane.kind)},
+                              {"confidence", plane.confidence},
                               {"score", plane.score},
                               {"support", plane.support},
-                              {"approximate", plane.approximate},
+                              {"seen", plane.seen},
                               {"residual", plane.residual},
                               {"iterations", plane.iterations},
                               {"converged", plane.converged}});
+  }
+  for (const SymmetryAxis& axis : findings.axes) {
+    json["axes"].push_back({{"point", toJson(axis.point)},
+                            {"direction", toJson(axis.direction)},
+                            {"confidence", axis.confidence},
+                            {"score", axis.score},
+                            {"support", axis.support}});
+  }
+  for (const SymmetryCenter& center : findings.centers) {
+    json["centers"].push_back({{"point", toJson(center.point)},
+                               {"confidence", center.confidence},
+                               {"score", center.score},
+                               {"support", center.support}});
   }
   for (const auto& [stage, ms] : timing_ms) json["timing_ms"][stage] = ms;
   return json;
@@ -117,15 +165,32 @@ pcl::PCLPointCloud2 withSupport(const pcl::PCLPointCloud2& input, const std::vec
   return output;
 }
 
-PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const std::vector<SymmetryPlane>& planes,
+PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const Findings& findings,
                        const std::vector<std::vector<float>>& support) {
   PictureScene scene;
   scene.points = cloud;
-  for (std::size_t k = 0; k < std::min(planes.size(), kMaxPanels); ++k) {
+  const std::vector<SymmetryPlane>& planes = findings.planes;
+  for (const SymmetryAxis& axis : findings.axes) {
     PicturePanel panel;
     char label[96];
-    std::snprintf(label, sizeof(label), "plane %zu%s: support %.2f, score %.2f", k + 1,
-                  planes[k].approximate ? " (approximate)" : "", planes[k].support, planes[k].score);
+    std::snprintf(label, sizeof(label), "axis of revolution: confidence %.2f", axis.confidence);
+    panel.label = label;
+    panel.axes = {{axis.point, axis.direction}};
+    scene.panels.push_back(panel);
+  }
+  for (const SymmetryCenter& center : findings.centers) {
+    PicturePanel panel;
+    char label[96];
+    std::snprintf(label, sizeof(label), "every plane through the center: confidence %.2f", center.confidence);
+    panel.label = label;
+    for (int k = 0; k < 3; ++k) panel.axes.push_back({center.point, Eigen::Vector3d::Unit(k)});
+    scene.panels.push_back(panel);
+  }
+  for (std::size_t k = 0; k < planes.size() && scene.panels.size() < kMaxPanels; ++k) {
+    PicturePanel panel;
+    char label[96];
+    std::snprintf(label, sizeof(label), "plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(planes[k].kind),
+                  planes[k].confidence, planes[k].support);
     panel.label = label;
     panel.support.assign(support[k].begin(), support[k].end());
     PlanePatch patch;
@@ -169,28 +234,37 @@ int run(int argc, char** argv) {
   detection.num_threads = detection.edt.num_threads = options.common.threads;
   detection.edt.num_cells = options.common.grid;
   detection.edt.sigma = options.sigma.value_or(0.0);
+  const Viewpoint& viewpoint = options.common.viewpoint;
+  refinement.setViewpointMode(viewpoint.mode);
+  if (viewpoint.mode == Viewpoint::Mode::Given) refinement.setViewpoint(viewpoint.position);
   Step searching(console, "Searching planes");
-  std::vector<SymmetryPlane> planes;
+  Findings findings;
   try {
     refinement.setOptions(detection);
     refinement.setInputCloud(cloud);
-    planes = refinement.compute();
+    findings.planes = refinement.compute();
+    findings.axes = refinement.getAxes();
+    findings.centers = refinement.getCenters();
   } catch (const pcl::BadArgumentException& error) {
     throw InputError(options.input + ": " + error.detailedMessage());
   }
-  const double searching_ms = searching.done(std::to_string(planes.size()) + " planes");
+  const std::vector<SymmetryPlane>& planes = findings.planes;
+  std::string summary = std::to_string(planes.size()) + (planes.size() == 1 ? " plane" : " planes");
+  if (!findings.axes.empty()) summary += ", " + std::to_string(findings.axes.size()) + " axes";
+  if (refinement.usedViewpoint()) summary += ", seen from one side";
+  const double searching_ms = searching.done(summary);
 
   std::vector<std::vector<float>> support;
   if (options.support_path || options.png_path)
     for (const SymmetryPlane& plane : planes) support.push_back(refinement.computePointSupport(plane));
 
-  printTable(planes);
+  printTable(findings);
   if (options.common.json_path) {
     auto timing_ms = refinement.getTiming();
     timing_ms.emplace_back("load", loading_ms);
     timing_ms.emplace_back("total", searching_ms);
     writeText(*options.common.json_path,
-              describe(options, planes, refinement.getUsedIndices().size(), timing_ms).dump(2) + "\n");
+              describe(options, findings, refinement.getUsedIndices().size(), refinement.usedViewpoint(), timing_ms).dump(2) + "\n");
   }
   if (options.support_path) {
     pcl::PCLPointCloud2 base = shape.cloud;
@@ -199,7 +273,7 @@ int run(int argc, char** argv) {
   }
   if (options.png_path) {
     Step drawing(console, "Drawing " + *options.png_path);
-    PictureScene scene = makeScene(cloud, planes, support);
+    PictureScene scene = makeScene(cloud, findings, support);
     renderPicture(scene, *options.png_path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
     drawing.done();
   }

@@ -89,6 +89,14 @@ std::int64_t parseInteger(const std::string& name, const std::string& text, cons
   return value;
 }
 
+std::vector<double> parseNumbers(const std::string& name, const std::string& text, const Range& range) {
+  std::vector<std::string> parts;
+  boost::algorithm::split(parts, text, boost::is_any_of(","));
+  std::vector<double> values;
+  for (const std::string& part : parts) values.push_back(parseNumber(name, part, range));
+  return values;
+}
+
 Eigen::Vector3d parseVector(const std::string& name, const std::string& text) {
   std::vector<std::string> parts;
   boost::algorithm::split(parts, text, boost::is_any_of(","));
@@ -104,11 +112,11 @@ Eigen::Vector3d parseVector(const std::string& name, const std::string& text) {
   return value;
 }
 
-ViewpointChoice parseViewpoint(const std::string& name, const std::string& text) {
+Viewpoint parseViewpoint(const std::string& name, const std::string& text) {
   if (text == "auto") return {};
-  if (text == "none") return {ViewpointChoice::Mode::None, Eigen::Vector3d::Zero()};
+  if (text == "none") return {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
   try {
-    return {ViewpointChoice::Mode::Given, parseVector(name, text)};
+    return {Viewpoint::Mode::Given, parseVector(name, text)};
   } catch (const UsageError&) {
     reject(name, text, "must be auto, none or X,Y,Z");
   }
@@ -128,6 +136,12 @@ CommandLine& CommandLine::positional(const std::string& name, std::string& value
 CommandLine& CommandLine::positional(const std::string& name, std::optional<std::string>& value,
                                      const std::string& help) {
   positionals_.push_back({name, help, false, [&value](const std::string& text) { value = text; }});
+  return *this;
+}
+
+CommandLine& CommandLine::positionals(const std::string& name, std::vector<std::string>& values,
+                                      const std::string& help) {
+  positionals_.push_back({name, help, true, [&values](const std::string& text) { values.push_back(text); }, true});
   return *this;
 }
 
@@ -203,6 +217,14 @@ CommandLine& CommandLine::number(const std::string& name, std::uint64_t& value, 
   });
 }
 
+CommandLine& CommandLine::numbers(const std::string& name, std::vector<double>& values, const Range& range,
+                                  const std::string& help) {
+  std::vector<std::string> defaults;
+  for (const double value : values) defaults.push_back(shortest(value));
+  return add(name, "A,B,...", help + " (" + boost::algorithm::join(defaults, ",") + ")",
+             [&values, range, name](const std::string& text) { values = parseNumbers("-" + name, text, range); });
+}
+
 CommandLine& CommandLine::vector(const std::string& name, std::optional<Eigen::Vector3d>& value,
                                  const std::string& help) {
   return add(name, "X,Y,Z", help, [&value, name](const std::string& text) { value = parseVector("-" + name, text); });
@@ -264,15 +286,17 @@ bool CommandLine::parse(int argc, const char* const* argv) {
   if (values_.count("positional arguments")) {
     arguments = values_["positional arguments"].as<std::vector<std::string>>();
   }
-  if (arguments.size() > positionals_.size()) {
+  const bool repeated = !positionals_.empty() && positionals_.back().repeated;
+  if (arguments.size() > positionals_.size() && !repeated) {
     throw UsageError("unexpected argument '" + arguments[positionals_.size()] + "'");
   }
-  for (std::size_t i = 0; i < positionals_.size(); ++i) {
+  for (std::size_t i = 0; i < std::max(arguments.size(), positionals_.size()); ++i) {
+    const Positional& positional = positionals_[std::min(i, positionals_.size() - 1)];
     if (i < arguments.size()) {
-      if (arguments[i].empty()) throw UsageError("argument '" + positionals_[i].name + "' is empty");
-      positionals_[i].assign(arguments[i]);
-    } else if (positionals_[i].required) {
-      throw UsageError("missing argument '" + positionals_[i].name + "'");
+      if (arguments[i].empty()) throw UsageError("argument '" + positional.name + "' is empty");
+      positional.assign(arguments[i]);
+    } else if (positional.required) {
+      throw UsageError("missing argument '" + positional.name + "'");
     }
   }
   for (const auto& [name, target] : switches_) {
@@ -293,6 +317,7 @@ std::string CommandLine::usage() const {
   text << summary_ << "\n\nUsage: " << tool_;
   for (const Positional& argument : positionals_) {
     text << (argument.required ? " " + argument.name : " [" + argument.name + "]");
+    if (argument.repeated) text << " [" << argument.name << " ...]";
   }
   text << " [-flag value]\n\n";
   std::size_t width = 0;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pcl_symmetry/viewpoint.h"
 #include "tool_errors.h"
 
 namespace pcl_symmetry::apps {
@@ -32,20 +33,13 @@ struct Range {
   std::string rule() const;
 };
 
-/// Where the scanner stood: decided from the data, not at all, or at a given point of the input frame.
-struct ViewpointChoice {
-  enum class Mode { Auto, None, Given };
-  Mode mode = Mode::Auto;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-};
-
 /// The values of the flags that have the same meaning in every tool.
 struct CommonOptions {
   std::optional<std::string> json_path;
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = all
   int grid = 64;    ///< cells along an edge
-  ViewpointChoice viewpoint;
+  Viewpoint viewpoint;
   bool quiet = false;
 };
 
@@ -70,6 +64,8 @@ public:
   /// Arguments without a flag, in the order of declaration; required ones come first.
   CommandLine& positional(const std::string& name, std::string& value, const std::string& help);
   CommandLine& positional(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  /// One or more, to the end of the command line; declared last.
+  CommandLine& positionals(const std::string& name, std::vector<std::string>& values, const std::string& help);
 
   CommandLine& flag(const std::string& name, bool& value, const std::string& help);
   CommandLine& text(const std::string& name, const std::string& placeholder, std::optional<std::string>& value,
@@ -82,6 +78,9 @@ public:
   CommandLine& number(const std::string& name, int& value, const Range& range, const std::string& help);
   CommandLine& number(const std::string& name, std::optional<int>& value, const Range& range, const std::string& help);
   CommandLine& number(const std::string& name, std::uint64_t& value, const std::string& help);
+  /// A list "A,B,C" of one number or more, which replaces the default as a whole.
+  CommandLine& numbers(const std::string& name, std::vector<double>& values, const Range& range,
+                       const std::string& help);
   CommandLine& vector(const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help);
   CommandLine& common(CommonOptions& options, unsigned flags = kAllCommonFlags);
 
@@ -102,6 +101,7 @@ private:
     std::string help;
     bool required;
     std::function<void(const std::string&)> assign;
+    bool repeated = false;
   };
 
   CommandLine& add(const std::string& name, const std::string& placeholder, const std::string& help,
@@ -121,11 +121,14 @@ private:
 double parseNumber(const std::string& name, const std::string& text, const Range& range = {});
 std::int64_t parseInteger(const std::string& name, const std::string& text, const Range& range = {});
 
+/// \return the numbers spelled "A,B,C", at least one. \throws UsageError starting with `name = text`.
+std::vector<double> parseNumbers(const std::string& name, const std::string& text, const Range& range = {});
+
 /// \return the vector spelled "X,Y,Z", all finite. \throws UsageError starting with `name = text`.
 Eigen::Vector3d parseVector(const std::string& name, const std::string& text);
 
 /// \return the choice spelled "auto", "none" or "X,Y,Z". \throws UsageError otherwise.
-ViewpointChoice parseViewpoint(const std::string& name, const std::string& text);
+Viewpoint parseViewpoint(const std::string& name, const std::string& text);
 
 /// Runs the body of a tool and turns what it throws into one line on standard error and an exit code: 0 done (or what
 /// the body returns), 1 could not be done, 2 wrong usage.

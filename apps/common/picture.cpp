@@ -79,6 +79,11 @@ void checkScene(const PictureScene& scene, int width, int height) {
       throw std::invalid_argument("support holds " + std::to_string(panel.support.size()) + " values, must be " +
                                   std::to_string(scene.points->size()) + ", one per point");
     }
+    for (const AxisLine& axis : panel.axes) {
+      if (!axis.point.allFinite() || !axis.direction.allFinite() || !(axis.direction.norm() > 0)) {
+        throw std::invalid_argument("an axis is not finite or its direction is zero");
+      }
+    }
     for (const PlanePatch& plane : panel.planes) {
       if (!plane.normal.allFinite() || !(plane.normal.norm() > 0) || !std::isfinite(plane.offset) ||
           !plane.center.allFinite() || !(plane.half_size >= 0) || !std::isfinite(plane.half_size)) {
@@ -249,6 +254,37 @@ std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eige
   return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
 }
 
+/// As long as the points reach along it, and a tenth more.
+void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
+             double line_width) {
+  const Eigen::Vector3d direction = axis.direction.normalized();
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const pcl::PointXYZ& point : *scene.points) {
+    if (!pcl::isXYZFinite(point)) continue;
+    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
+    low = std::min(low, along);
+    high = std::max(high, along);
+  }
+  const double margin = 0.1 * (high - low);
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(normalize(axis.point + (low - margin) * direction).data());
+  points->InsertNextPoint(normalize(axis.point + (high + margin) * direction).data());
+  const vtkIdType ends[] = {0, 1};
+  vtkNew<vtkCellArray> line;
+  line->InsertNextCell(2, ends);
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetLines(line);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(axis.color.x(), axis.color.y(), axis.color.z());
+  actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
+  actor->GetProperty()->LightingOff();
+  renderer.AddActor(actor);
+}
+
 void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,
               double line_width) {
   vtkNew<vtkPoints> points;
@@ -398,6 +434,7 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, int width, in
     renderer->SetOcclusionRatio(0.0);
     if (scene.mesh) renderer->AddActor(meshActor(*scene.mesh, normalize));
     renderer->AddActor(cloudActor(scene, panel, normalize, brightness, panel_pixels));
+    for (const AxisLine& axis : panel.axes) addAxis(*renderer, axis, scene, normalize, panel_pixels / 120);
     for (const PlanePatch& plane : panel.planes) addPlane(*renderer, plane, scene, normalize, panel_pixels / 250);
     const bool has_bar = scene.show_color_bar && !panel.support.empty();
     fitCamera(*renderer, scene, double(panel_width) / panel_height, has_bar ? 0.12 : 0.0);

@@ -23,11 +23,19 @@ struct PlanePatch {
   Eigen::Vector3d color = {0.90, 0.62, 0.0};  ///< red, green, blue in [0, 1]
 };
 
+/// A straight line through the whole scene.
+struct AxisLine {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d color = {0.84, 0.37, 0.0};  ///< red, green, blue in [0, 1]
+};
+
 /// One view among several in a picture.
 struct PicturePanel {
   std::string label;                 ///< drawn at the top; empty for none
   std::vector<double> support = {};  ///< one value in [0, 1] per point, cividis colours; empty for one plain colour
   std::vector<PlanePatch> planes = {};
+  std::vector<AxisLine> axes = {};
 };
 
 /// What a picture shows: the same shape in every panel.

@@ -1,8 +1,6 @@
 #include "virtual_scanner.h"
 
-#include <embree3/rtcore.h>
 #include <omp.h>
-#include <pcl/conversions.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +9,9 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "random_numbers.h"
+#include "triangle_scene.h"
 
 namespace pcl_symmetry::apps {
 
@@ -22,17 +23,6 @@ constexpr double kAcceptedCountError = 0.01;
 
 [[noreturn]] void reject(const char* field, double value, const char* rule) {
   throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + ", " + rule);
-}
-
-/// Uniform in [0, 1), the same on every platform.
-double uniform(std::mt19937_64& generator) {
-  return static_cast<double>(generator() >> 11) * 0x1.0p-53;
-}
-
-/// Standard normal by Box and Muller, the same wherever the elementary functions are.
-double normal(std::mt19937_64& generator) {
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(generator)));
-  return radius * std::cos(2.0 * M_PI * uniform(generator));
 }
 
 /// Right, down, forward: the columns of the sensor's rotation. The picture's up is z, or y for a vertical view.
@@ -59,10 +49,6 @@ struct Camera {
   }
 };
 
-struct Triangle {
-  Eigen::Vector3d a, b, c;
-};
-
 }  // namespace
 
 void VirtualScannerOptions::validate() const {
@@ -74,73 +60,13 @@ void VirtualScannerOptions::validate() const {
   if (resolution && (*resolution < 1 || *resolution > kMaxResolution)) {
     reject("resolution", *resolution, "must be >= 1 and <= 8192");
   }
+  if (max_resolution < 1 || max_resolution > kMaxResolution) {
+    reject("max_resolution", max_resolution, "must be >= 1 and <= 8192");
+  }
 }
 
-/// The triangles in a frame of their own, centred and with unit diagonal, where single precision is enough to find
-/// which one is hit; where exactly is computed in double precision.
-struct VirtualScanner::Scene {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double diagonal = 0;
-  std::vector<Triangle> triangles;
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-
-  ~Scene() {
-    if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
-  }
-
-  void collectTriangles(const pcl::PolygonMesh& mesh) {
-    pcl::PointCloud<pcl::PointXYZ> vertices;
-    pcl::fromPCLPointCloud2(mesh.cloud, vertices);
-    const auto corner = [&](pcl::index_t index) -> Eigen::Vector3d {
-      return vertices.at(static_cast<std::size_t>(index)).getVector3fMap().cast<double>();
-    };
-    Eigen::AlignedBox3d box;
-    for (const pcl::Vertices& polygon : mesh.polygons) {
-      for (std::size_t k = 2; k < polygon.vertices.size(); ++k) {
-        const Triangle triangle{corner(polygon.vertices[0]), corner(polygon.vertices[k - 1]),
-                                corner(polygon.vertices[k])};
-        if (!triangle.a.allFinite() || !triangle.b.allFinite() || !triangle.c.allFinite()) continue;
-        box.extend(triangle.a).extend(triangle.b).extend(triangle.c);
-        triangles.push_back(triangle);
-      }
-    }
-    if (triangles.empty()) throw std::invalid_argument("mesh has no faces to scan");
-    center = box.center();
-    diagonal = box.diagonal().norm();
-    if (!(diagonal > 0)) throw std::invalid_argument("mesh has no extent, all its corners are equal");
-    for (Triangle& triangle : triangles) {
-      for (Eigen::Vector3d* point : {&triangle.a, &triangle.b, &triangle.c}) *point = (*point - center) / diagonal;
-    }
-  }
-
-  /// One thread builds the tree, so that it is the same tree for any number of threads.
-  void buildTree() {
-    device = rtcNewDevice("threads=1");
-    if (!device) throw std::runtime_error("Embree cannot start");
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * triangles.size()));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                   3 * sizeof(unsigned), triangles.size()));
-    if (!positions || !indices) {
-      rtcReleaseGeometry(geometry);
-      throw std::bad_alloc();
-    }
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      Eigen::Map<Eigen::Matrix3f>(positions + 9 * i) << triangles[i].a.cast<float>(), triangles[i].b.cast<float>(),
-          triangles[i].c.cast<float>();
-      for (unsigned k = 0; k < 3; ++k) indices[3 * i + k] = static_cast<unsigned>(3 * i + k);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its tree");
-  }
+struct VirtualScanner::Scene : TriangleScene {
+  using TriangleScene::TriangleScene;
 
   /// \return the distance to the first triangle along a unit ray, infinite if there is none.
   double distanceAlong(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
@@ -153,9 +79,9 @@ struct VirtualScanner::Scene {
     query.ray.tfar = std::numeric_limits<float>::infinity();
     query.ray.mask = ~0u;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context, &query);
+    rtcIntersect1(embree(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::numeric_limits<double>::infinity();
-    const Triangle& triangle = triangles[query.hit.primID];
+    const Triangle& triangle = triangles()[query.hit.primID];
     const Eigen::Vector3d normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
     const double distance = normal.dot(triangle.a - origin) / normal.dot(direction);
     const double coarse = query.ray.tfar;
@@ -195,20 +121,17 @@ bool touchesBorder(const std::vector<double>& distances, int resolution) {
 
 }  // namespace
 
-VirtualScanner::VirtualScanner(const pcl::PolygonMesh& mesh) : scene_(std::make_unique<Scene>()) {
-  scene_->collectTriangles(mesh);
-  scene_->buildTree();
-}
+VirtualScanner::VirtualScanner(const pcl::PolygonMesh& mesh) : scene_(std::make_unique<Scene>(mesh)) {}
 
 VirtualScanner::~VirtualScanner() = default;
 VirtualScanner::VirtualScanner(VirtualScanner&&) noexcept = default;
 VirtualScanner& VirtualScanner::operator=(VirtualScanner&&) noexcept = default;
 
 Eigen::Vector3d VirtualScanner::center() const {
-  return scene_->center;
+  return scene_->center();
 }
 double VirtualScanner::diagonal() const {
-  return scene_->diagonal;
+  return scene_->diagonal();
 }
 
 VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options) const {
@@ -218,7 +141,7 @@ VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const Virtual
   }
   const Eigen::Vector3d towards_scanner = direction.normalized();
   Camera camera{options.distance * towards_scanner, lookAlong(-towards_scanner), std::tan(options.field_of_view / 2),
-                options.resolution.value_or(kFirstResolution)};
+                options.resolution.value_or(std::min(kFirstResolution, options.max_resolution))};
 
   std::vector<double> distances = scene_->takePicture(camera, options.num_threads);
   int num_hits = countHits(distances);
@@ -229,8 +152,8 @@ VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const Virtual
     for (int round = 0; round < 8 && error(countHits(best_distances)) > kAcceptedCountError; ++round) {
       const double wanted = camera.resolution * std::sqrt(double(options.num_points) / std::max(num_hits, 1));
       const int previous = camera.resolution;
-      camera.resolution = static_cast<int>(std::clamp(std::round(wanted), 1.0, double(kMaxResolution)));
-      if (num_hits == 0) camera.resolution = std::min(4 * previous, kMaxResolution);
+      camera.resolution = static_cast<int>(std::clamp(std::round(wanted), 1.0, double(options.max_resolution)));
+      if (num_hits == 0) camera.resolution = std::min(4 * previous, options.max_resolution);
       if (camera.resolution == previous) break;
       distances = scene_->takePicture(camera, options.num_threads);
       num_hits = countHits(distances);
@@ -251,11 +174,11 @@ VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const Virtual
   result.num_points = num_hits;
   result.cropped = touchesBorder(distances, camera.resolution);
   if (options.random_pose) {
-    result.T_scan_model = randomPose(options.seed, scene_->diagonal);
-    result.T_scan_model.translation() -= result.T_scan_model.linear() * scene_->center;
+    result.T_scan_model = randomPose(options.seed, scene_->diagonal());
+    result.T_scan_model.translation() -= result.T_scan_model.linear() * scene_->center();
   }
   const auto to_scan = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
-    return result.T_scan_model * (scene_->center + scene_->diagonal * point);
+    return result.T_scan_model * (scene_->center() + scene_->diagonal() * point);
   };
   result.T_scan_sensor.linear() = result.T_scan_model.linear() * camera.axes;
   result.T_scan_sensor.translation() = to_scan(camera.origin);
@@ -269,7 +192,7 @@ VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const Virtual
         point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
         continue;
       }
-      if (options.noise > 0) distance += options.noise * normal(generator);
+      if (options.noise > 0) distance += options.noise * standardNormal(generator);
       point.getVector3fMap() = to_scan(camera.origin + distance * camera.rayThrough(column, row)).cast<float>();
     }
   }

@@ -23,6 +23,7 @@ struct VirtualScannerOptions {
   std::uint64_t noise_stream = 0;      ///< tells scans of one pose apart, so that their noise is not the same
   int num_threads = 0;                 ///< 0 = all; does not change the result
   std::optional<int> resolution = {};  ///< edge of the picture in pixels, 1 to 8192; chosen by num_points if not set
+  int max_resolution = 8192;           ///< that may be chosen, 1 to 8192; thin shapes then give fewer points
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

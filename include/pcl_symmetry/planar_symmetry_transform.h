@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry {
 
@@ -54,6 +55,13 @@ public:
   /// 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads);
 
+  /// Where the scanner stood; by default the data decide, as in SymmetryMaximaRefinement. With a viewpoint the map holds
+  /// seenSymmetry() of D and of its counterpart for the space that the scanner saw to be empty.
+  void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
+  /// The scanner stood here, input frame.
+  void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
+  const Viewpoint& getViewpoint() const { return viewpoint_; }
+
   /// Takes points spread over the mesh by area in place of a cloud (PointT needs nothing but x, y and z).
   void setInputMesh(const pcl::PolygonMesh& mesh, int num_points = 50'000);
 
@@ -72,6 +80,7 @@ protected:
 private:
   GaussianEdtOptions edt_options_;
   PlanarTransformOptions transform_;
+  Viewpoint viewpoint_;
   int num_theta_ = 64, num_phi_ = 64, num_radius_ = 64;
   std::size_t max_points_ = 200'000;
   std::shared_ptr<const GaussianEdt> edt_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry {
 
@@ -30,10 +31,8 @@ public:
   void setOptions(const DetectionOptions& options);
   const DetectionOptions& getOptions() const { return options_; }
 
-  /// Planes of at least this support are symmetries, in [0, 1]; default 0.9.
-  void setMinSupport(double min_support);
-  /// And of at least this score, in [0, 1]; default 0.9.
-  void setMinScore(double min_score);
+  /// Planes of at least this confidence are symmetries, in [0, 1]; default 0.5.
+  void setMinConfidence(double min_confidence);
   /// Also reports maxima below that: approximate symmetries and symmetries of parts, marked as such; default false.
   void setApproximate(bool approximate);
   void setMaxPlanes(int max_planes);
@@ -46,6 +45,14 @@ public:
   void setNumberOfThreads(int num_threads);
   /// Of larger clouds so many points are drawn, >= 2; default 50 000.
   void setMaxPoints(std::size_t max_points);
+
+  /// Where the scanner stood. By default the data decide: an organized cloud tells by its own rays, another one by its
+  /// sensor_origin_ if the points can have been seen from there. Reflections that land in space that the scanner saw to
+  /// be empty then speak against a plane, those that land behind the surface do not.
+  void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
+  /// The scanner stood here, input frame.
+  void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
+  const Viewpoint& getViewpoint() const { return viewpoint_; }
 
   /// Any PCL search in place of our own FLANN tree, except OrganizedNeighbor (reflected points lie behind what the
   /// sensor saw). It is given a cloud of the points used, and is called from one thread at a time.
@@ -63,6 +70,12 @@ public:
   /// finite. Follows a compute().
   std::vector<float> computePointSupport(const ReflectionPlane& plane) const;
 
+  /// Of the last compute(): axes of revolution, best first, in the frame of the input.
+  const std::vector<SymmetryAxis>& getAxes() const { return axes_; }
+  /// Of the last compute(): centers of spheres.
+  const std::vector<SymmetryCenter>& getCenters() const { return centers_; }
+  /// Of the last compute(): whether a viewpoint was used.
+  bool usedViewpoint() const { return used_viewpoint_; }
   /// Of the last compute(): the points used, in the order of SymmetryPlane::point_support.
   const pcl::Indices& getUsedIndices() const { return used_indices_; }
   /// Of the last compute(): stages and their milliseconds, in order.
@@ -77,10 +90,14 @@ private:
   DetectionOptions options_;
   std::size_t max_points_ = 50'000;
   SearchPtr search_;
+  Viewpoint viewpoint_;
+  bool used_viewpoint_ = false;
   SymmetryMap map_;
   std::shared_ptr<const GaussianEdt> edt_;
   pcl::Indices used_indices_;
   Points used_points_;
+  std::vector<SymmetryAxis> axes_;
+  std::vector<SymmetryCenter> centers_;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };
 

@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "check.h"
 #include "pcl_symmetry/core/parallel.h"
@@ -116,18 +117,30 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
     reflected.col(i) = plane.reflect(x.col(i).cast<double>()).cast<float>();
   }
   constexpr std::size_t kBlockSize = 1024;
-  step.closest.resize(samples.size());
-  step.sq_distances.resize(samples.size());
+  constexpr double kReach = 3.0;  // sigmas: beyond, weights are below 1.3e-4
+  step.closest.assign(samples.size(), -1);
+  step.sq_distances.assign(samples.size(), std::numeric_limits<float>::infinity());
+  const float bound = surface.far ? surface.far->bound(kReach * sigma) : 0.0f;
   parallelRanges(samples.size(), kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<Eigen::Index> near;
+    for (std::size_t i = begin; i < end; ++i)
+      if (!surface.far || !(*surface.far)(reflected.col(i).cast<double>(), bound)) near.push_back(i);
+    Points queries(3, near.size());
+    for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = reflected.col(near[i]);
     std::vector<int> closest;
     std::vector<float> sq_distances;
-    surface.search.search(reflected.middleCols(begin, end - begin), 1, closest, sq_distances);
-    std::copy(closest.begin(), closest.end(), step.closest.begin() + static_cast<std::ptrdiff_t>(begin));
-    std::copy(sq_distances.begin(), sq_distances.end(), step.sq_distances.begin() + static_cast<std::ptrdiff_t>(begin));
+    surface.search.search(queries, 1, closest, sq_distances);
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      step.closest[near[i]] = closest[i];
+      step.sq_distances[near[i]] = sq_distances[i];
+    }
   });
   std::vector<double> weights(samples.size());
   double sum = 0.0, sq_sum = 0.0;
   for (Eigen::Index i = 0; i < size; ++i) {
+    const bool matched = step.closest[i] >= 0;
+    y.col(i) = reflected.col(i);
+    if (!matched) continue;
     y.col(i) = surface.points.col(step.closest[i]);
     weights[i] = std::exp(-step.sq_distances[i] / (sigma * sigma));
     sum += weights[i];
@@ -141,7 +154,7 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
     Points x_normals(3, size), y_normals(3, size);
     for (Eigen::Index i = 0; i < size; ++i) {
       x_normals.col(i) = surface.normals.col(samples[i]);
-      y_normals.col(i) = surface.normals.col(step.closest[i]);
+      y_normals.col(i) = surface.normals.col(step.closest[i] >= 0 ? step.closest[i] : samples[i]);
     }
     step.plane = stepReflectionPlane(x, y, x_normals, y_normals, weights, plane);
   }

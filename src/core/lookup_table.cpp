@@ -17,11 +17,11 @@ void quantizeRow(const float* values, int num_cells, std::uint8_t* out) {
 
 }  // namespace
 
-LookupTable::LookupTable(const GaussianEdt& edt, double sharpening, int num_threads) {
-  const int n = edt.numCells();
+LookupTable::LookupTable(const std::vector<float>& values, int num_cells, int num_threads) {
+  const int n = num_cells;
+  if (n == 0) return;
   while ((1 << bits_) < n) ++bits_;
   padding_ = ((1 << bits_) - n) / 2;
-  const std::vector<float> values = edt.sharpened(sharpening, num_threads);
   const std::size_t side = std::size_t{1} << bits_;
   table_.assign(side * side * side + sizeof(std::uint32_t), 0);  // a gather reads four bytes
   parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {

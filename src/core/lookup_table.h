@@ -1,23 +1,22 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
-
-#include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
 
 /// f as bytes for the hot loops: positions are fixed-point numbers of cells, a look-up is three shifts and a load.
 ///
 /// The table is padded to a power of two along each side, with at least one empty cell all around, so that a clipped
-/// line needs no further test. Values are f sharpened for the blur of the look-ups, times kOne.
+/// line needs no further test. Values are multiplied by kOne; f is given sharpened for the blur of the look-ups.
 class LookupTable {
 public:
   static constexpr int kFractionBits = 16;
   static constexpr double kOne = 200.0;  ///< sharpening lifts f a little above 1
 
-  /// \param sharpening see GaussianEdt::sharpened.
-  LookupTable(const GaussianEdt& edt, double sharpening, int num_threads);
+  /// \param values of the cells of an EDT, num_cells along each side, in [0, 255 / kOne].
+  LookupTable(const std::vector<float>& values, int num_cells, int num_threads);
 
   int bits() const { return bits_; }
   const std::uint8_t* data() const { return table_.data(); }

@@ -9,11 +9,11 @@ void PlanarTransformOptions::validate() const {
 }
 
 SymmetryMap planarTransform(const GaussianEdt& edt, const PlaneGrid& grid, const Eigen::Vector3d& center_of_mass,
-                            const PlanarTransformOptions& options) {
+                            const PlanarTransformOptions& options, const std::vector<float>& free_space) {
   SymmetryMap map;
   switch (options.method) {
     case TransformMethod::Sampled:
-      map = sampledTransform(edt, grid, options.sampled);
+      map = sampledTransform(edt, grid, options.sampled, free_space);
       break;
     case TransformMethod::Convolution:
       map = convolutionTransform(edt, grid, options.convolution);
@@ -22,6 +22,8 @@ SymmetryMap planarTransform(const GaussianEdt& edt, const PlaneGrid& grid, const
       map = votingTransform(edt, grid, options.voting);
       break;
   }
+  if (!free_space.empty() && options.method != TransformMethod::Sampled)
+    weighSeen(map, freeOverlap(edt, grid, free_space, options.sampled));
   map.center_of_mass = center_of_mass;
   return map;
 }

@@ -15,12 +15,45 @@ std::vector<float> pointSupport(const std::vector<int>& closest, const std::vect
   constexpr float kLeastReach = 1e-6f;  // of the radius of the points: below it all samples are one
   std::vector<float> support(closest.size());
   for (std::size_t i = 0; i < closest.size(); ++i) {
+    if (closest[i] < 0) continue;
     const float reach = kReach * spacing[closest[i]];
     const float distance = std::sqrt(sq_distances[i]);
     const float excess = distance <= reach ? 0.0f : (distance - reach) / std::max(reach, kLeastReach);
     support[i] = std::exp(-excess * excess);
   }
   return support;
+}
+
+PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
+                            const std::vector<float>& sq_distances, const Points& samples,
+                            const LocalGeometry& geometry, const Visibility* visibility) {
+  constexpr float kReach = 1.25f;       // spacings, along the surface
+  constexpr float kNormalReach = 0.01f, kRoughReach = 3.0f;  // across the surface: of the radius, of the roughness
+  constexpr float kRoughShare = 0.25f;  // of the spacing: from there on normals mean nothing
+  const std::size_t size = closest.size();
+  PointEvidence evidence{std::vector<float>(size), std::vector<float>(size)};
+  for (std::size_t i = 0; i < size; ++i) {
+    const int j = closest[i];
+    if (j < 0) {
+      evidence.conflict[i] = !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0 ? 1.0f : 0.0f;
+      continue;
+    }
+    const float reach = std::max(1e-6f, kReach * geometry.spacing[j]);
+    const float along = std::max(0.0f, std::sqrt(sq_distances[i]) / reach - 1.0f);
+    const float normal_reach = std::max(kNormalReach, kRoughReach * geometry.roughness[j]);
+    const auto normal = geometry.normals.col(j);
+    const float across = std::max(0.0f, std::abs(normal.dot(reflected.col(i) - samples.col(j))) / normal_reach - 1.0f);
+    float turned = 0.0f;
+    if (geometry.roughness[j] < kRoughShare * geometry.spacing[j]) {
+      const float cosine = std::abs(normal.dot(reflected_normals.col(i)));
+      turned = std::max(0.0f, std::acos(std::min(1.0f, cosine)) / 0.5f - 1.0f);
+    }
+    const float worst = along * along + across * across + turned * turned;
+    evidence.support[i] = std::exp(-worst);
+    const bool seen = !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0;
+    evidence.conflict[i] = seen ? 1.0f - evidence.support[i] : 0.0f;
+  }
+  return evidence;
 }
 
 std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,

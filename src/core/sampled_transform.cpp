@@ -9,6 +9,7 @@
 #include "lookup_table.h"
 #include "pcl_symmetry/core/parallel.h"
 #include "pcl_symmetry/core/random.h"
+#include "pcl_symmetry/core/visibility.h"
 #include "simd.h"
 
 namespace pcl_symmetry {
@@ -90,18 +91,12 @@ Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64
   return points;
 }
 
-}  // namespace
-
-void SampledTransformOptions::validate() const {
-  check(num_samples >= 1 && num_samples <= 10'000'000, "num_samples", num_samples, "in [1, 10000000]");
-  checkNumThreads(num_threads);
-  check(simdSupported(simd), "simd", static_cast<int>(simd), "one that this processor supports");
-}
-
-SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options) {
+/// (S / |f|^2) mean g(gamma x_i) at every bin for each function g.
+/// \param tables the functions, values of all cells made into tables of one size.
+std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
+                                            const SampledTransformOptions& options,
+                                            const std::vector<LookupTable>& tables) {
   options.validate();
-  // Jitter within the cell and look-up of the nearest cell: two boxes.
-  const LookupTable table(edt, 1.0 / 12.0, options.num_threads);
   const Eigen::Matrix3Xf points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
   const LineKernel accumulate = lineKernel(options.simd);
 
@@ -112,15 +107,10 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
   const float radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());
   const float first_offset = static_cast<float>(grid.offset(0) / edt.cellSize());
   const float sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
-  const Eigen::Vector3f to_table = table.toTable(Eigen::Vector3d::Constant(middle)).cast<float>();
+  const Eigen::Vector3f to_table = tables[0].toTable(Eigen::Vector3d::Constant(middle)).cast<float>();
   const float one = static_cast<float>(1 << LookupTable::kFractionBits);
 
-  SymmetryMap map;
-  map.grid = grid;
-  map.method = TransformMethod::Sampled;
-  map.sigma = edt.sigma();
-  map.center_of_mass = grid.center();
-  map.values.resize(grid.size());
+  std::vector<std::vector<float>> means(tables.size(), std::vector<float>(grid.size()));
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const int num_radius = grid.numRadius();
   constexpr std::size_t kDirectionsPerBlock = 32;
@@ -136,7 +126,7 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
                     lines.data() + 4 * kChunk,
                     0,
                     {}};
-        std::vector<double> totals(num_radius);
+        std::vector<std::vector<double>> totals(tables.size(), std::vector<double>(num_radius));
         for (std::size_t direction = begin; direction < end; ++direction) {
           const Eigen::Vector3f n =
               grid.normal(static_cast<int>(direction / grid.numPhi()), static_cast<int>(direction % grid.numPhi()))
@@ -144,20 +134,66 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
           const float offset = n.dot(center) + first_offset;  // of the first plane from the middle of the cube
           for (int axis = 0; axis < 3; ++axis)
             batch.step[axis] = static_cast<std::int32_t>(std::lround(2.0f * radius_step * n[axis] * one));
-          std::fill(totals.begin(), totals.end(), 0.0);
+          for (auto& total : totals) std::fill(total.begin(), total.end(), 0.0);
           for (int first = 0; first < options.num_samples; first += kChunk) {
             batch.size = std::min(kChunk, options.num_samples - first);
             setUpLines(points.data() + 3 * first, static_cast<float>(middle), n.data(), offset, radius_step, num_radius,
                        sq_clip, to_table[0], one, batch);
-            std::fill(sums.begin(), sums.end(), 0);
-            accumulate(batch, table.data(), table.bits(), sums.data());
-            for (int k = 0; k < num_radius; ++k) totals[k] += sums[k];
+            for (std::size_t g = 0; g < tables.size(); ++g) {
+              std::fill(sums.begin(), sums.end(), 0);
+              accumulate(batch, tables[g].data(), tables[g].bits(), sums.data());
+              for (int k = 0; k < num_radius; ++k) totals[g][k] += sums[k];
+            }
           }
-          float* values = map.values.data() + direction * num_radius;
-          for (int k = 0; k < num_radius; ++k) values[k] = static_cast<float>(scale * totals[k]);
+          for (std::size_t g = 0; g < tables.size(); ++g)
+            for (int k = 0; k < num_radius; ++k)
+              means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
         }
       });
+  return means;
+}
+
+LookupTable tableOf(const GaussianEdt& edt, int num_threads) {
+  // Jitter within the cell and look-up of the nearest cell: two boxes.
+  return LookupTable(edt.sharpened(1.0 / 12.0, num_threads), edt.numCells(), num_threads);
+}
+
+LookupTable tableOf(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads) {
+  check(free_space.size() == edt.values().size(), "free_space size", free_space.size(), "one value per cell");
+  return LookupTable(free_space, edt.numCells(), num_threads);
+}
+
+}  // namespace
+
+void SampledTransformOptions::validate() const {
+  check(num_samples >= 1 && num_samples <= 10'000'000, "num_samples", num_samples, "in [1, 10000000]");
+  checkNumThreads(num_threads);
+  check(simdSupported(simd), "simd", static_cast<int>(simd), "one that this processor supports");
+}
+
+SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options,
+                             const std::vector<float>& free_space) {
+  std::vector<LookupTable> tables{tableOf(edt, options.num_threads)};
+  if (!free_space.empty()) tables.push_back(tableOf(edt, free_space, options.num_threads));
+  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, tables);
+  SymmetryMap map;
+  map.grid = grid;
+  map.values = std::move(means[0]);
+  map.method = TransformMethod::Sampled;
+  map.sigma = edt.sigma();
+  map.center_of_mass = grid.center();
+  if (!free_space.empty()) weighSeen(map, means[1]);
   return map;
+}
+
+std::vector<float> freeOverlap(const GaussianEdt& edt, const PlaneGrid& grid, const std::vector<float>& free_space,
+                               const SampledTransformOptions& options) {
+  return std::move(sampleMeans(edt, grid, options, {tableOf(edt, free_space, options.num_threads)})[0]);
+}
+
+void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap) {
+  for (std::size_t i = 0; i < map.values.size(); ++i)
+    map.values[i] = static_cast<float>(seenSymmetry(map.values[i], free_overlap[i]));
 }
 
 }  // namespace pcl_symmetry

@@ -14,13 +14,18 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
   constexpr std::size_t kBlockSize = 512;
   const auto size = static_cast<std::size_t>(points.cols());
   const int count = static_cast<int>(std::min<std::size_t>(size, num_neighbours + 1));  // with the point itself
-  LocalGeometry geometry{Points(3, points.cols()), std::vector<float>(size, 0.0f)};
+  const std::vector<float> zeros(size, 0.0f);
+  LocalGeometry geometry{Points(3, points.cols()), zeros, std::vector<int>(size), zeros, zeros};
   parallelRanges(size, kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> indices;
     std::vector<float> sq_distances;
     search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
     for (std::size_t i = begin; i < end; ++i) {
       const int* neighbours = indices.data() + (i - begin) * count;
+      // The point itself comes first or second: coincident points tie.
+      const int other = std::min(neighbours[0] == static_cast<int>(i) ? 1 : 0, count - 1);
+      geometry.nearest[i] = neighbours[other];
+      geometry.nearest_sq_distance[i] = sq_distances[(i - begin) * count + other];
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
       for (int k = 0; k < count; ++k) {
@@ -34,6 +39,8 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
       const Eigen::Vector3f normal = solver.eigenvectors().col(0);
       const bool usable = normal.allFinite() && std::abs(normal.squaredNorm() - 1.0f) < 0.1f;
       geometry.normals.col(i) = usable ? normal : Eigen::Vector3f(Eigen::Vector3f::UnitZ());
+      const float sq_residual = usable ? normal.dot(covariance * normal) : covariance.trace();
+      geometry.roughness[i] = std::sqrt(std::max(0.0f, sq_residual) / static_cast<float>(std::max(1, count - 3)));
       const double sq_radius = sq_distances[(i - begin) * count + count - 1];
       geometry.spacing[i] = static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
     }

@@ -7,6 +7,7 @@
 namespace {
 
 using namespace pcl_symmetry::apps;
+using pcl_symmetry::Viewpoint;
 
 struct Values {
   std::string input;
@@ -61,7 +62,7 @@ TEST(Options, DefaultsStayWhenNothingIsGiven) {
   EXPECT_EQ(values.ratio, 0.5);
   EXPECT_EQ(values.common.grid, 64);
   EXPECT_EQ(values.common.threads, 0);
-  EXPECT_EQ(values.common.viewpoint.mode, ViewpointChoice::Mode::Auto);
+  EXPECT_EQ(values.common.viewpoint.mode, Viewpoint::Mode::Auto);
   EXPECT_FALSE(values.common.quiet);
 }
 
@@ -69,13 +70,13 @@ TEST(Options, NegativeVectorsAreValuesNotFlags) {
   Values values;
   ASSERT_TRUE(parse(values, {"in.pcd", "-direction", "-1,0,-0.25", "-viewpoint", "-1,2,0.5"}));
   EXPECT_EQ(values.direction.value(), Eigen::Vector3d(-1, 0, -0.25));
-  EXPECT_EQ(values.common.viewpoint.mode, ViewpointChoice::Mode::Given);
+  EXPECT_EQ(values.common.viewpoint.mode, Viewpoint::Mode::Given);
   EXPECT_EQ(values.common.viewpoint.position, Eigen::Vector3d(-1, 2, 0.5));
 }
 
 TEST(Options, ViewpointKnowsItsWords) {
-  EXPECT_EQ(parseViewpoint("-viewpoint", "none").mode, ViewpointChoice::Mode::None);
-  EXPECT_EQ(parseViewpoint("-viewpoint", "auto").mode, ViewpointChoice::Mode::Auto);
+  EXPECT_EQ(parseViewpoint("-viewpoint", "none").mode, Viewpoint::Mode::None);
+  EXPECT_EQ(parseViewpoint("-viewpoint", "auto").mode, Viewpoint::Mode::Auto);
   EXPECT_EQ(complaintAbout({"a", "-viewpoint", "never"}), "-viewpoint = never, must be auto, none or X,Y,Z");
   EXPECT_EQ(complaintAbout({"a", "-viewpoint", "1,2"}), "-viewpoint = 1,2, must be auto, none or X,Y,Z");
 }
@@ -113,6 +114,26 @@ TEST(Options, HelpShowsFlagsAndExample) {
     }
     EXPECT_EQ(text.find(" --"), std::string::npos);
   }
+}
+
+TEST(Options, ListsOfNumbersAndOfArguments) {
+  std::vector<std::string> folders;
+  std::vector<double> noise = {0.5};
+  const auto parseLists = [&](std::vector<const char*> arguments) {
+    CommandLine line("tool", "Does.", "tool a");
+    line.positionals("folder", folders, "some").numbers("noise", noise, Range::atLeast(0), "levels");
+    arguments.insert(arguments.begin(), "tool");
+    folders.clear();
+    return line.parse(static_cast<int>(arguments.size()), arguments.data());
+  };
+  EXPECT_TRUE(parseLists({"a", "b", "c"}));
+  EXPECT_EQ(folders, (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(noise, std::vector<double>{0.5});
+  EXPECT_TRUE(parseLists({"a", "-noise", "0,0.01,2"}));
+  EXPECT_EQ(folders, std::vector<std::string>{"a"});
+  EXPECT_EQ(noise, (std::vector<double>{0.0, 0.01, 2.0}));
+  for (const char* bad : {"", "1,", "1,x", "1,-1", "1;2"}) EXPECT_THROW(parseLists({"a", "-noise", bad}), UsageError);
+  EXPECT_THROW(parseLists({}), UsageError);
 }
 
 int exitCodeOf(const std::function<int(int, char**)>& body, std::string& message) {

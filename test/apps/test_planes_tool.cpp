@@ -34,7 +34,8 @@ TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
     EXPECT_NEAR(c[3], 0.0, 0.005);
     for (int axis = 0; axis < 3; ++axis) along[axis] += std::abs(c[axis]) > std::cos(0.0017) ? 1 : 0;
     EXPECT_GT(plane["support"].get<double>(), 0.98);
-    EXPECT_FALSE(plane["approximate"].get<bool>());
+    EXPECT_EQ(plane["kind"], "symmetry");
+    EXPECT_GT(plane["confidence"].get<double>(), 0.9);
   }
   EXPECT_EQ(along, (std::array<int, 3>{1, 1, 1})) << "each axis once, within 0.1 degrees";
   EXPECT_TRUE(report["axes"].is_array());
@@ -127,8 +128,8 @@ TEST_F(PlanesTool, AnswersBadInputWithOneLineAndAnExitCode) {
   }
   EXPECT_EQ(contentOf(folder_ / "never.json"), "");
   EXPECT_EQ(run(folder_ / "missing.pcd"), 1);
-  EXPECT_EQ(run(box_ + " -min_support 2"), 2);
-  EXPECT_NE(error_.find("min_support"), std::string::npos);
+  EXPECT_EQ(run(box_ + " -min_confidence 2"), 2);
+  EXPECT_NE(error_.find("min_confidence"), std::string::npos);
   EXPECT_EQ(run(box_ + " -nonsense"), 2);
   EXPECT_EQ(run(""), 2);
   EXPECT_EQ(run("-h"), 0);

@@ -91,6 +91,15 @@ TEST_F(BoxScan, HitsTheWantedNumberOfPoints) {
   }
 }
 
+TEST_F(BoxScan, TakesNoLargerPictureThanAllowed) {
+  VirtualScannerOptions options;
+  options.num_points = 100'000;
+  options.max_resolution = 100;
+  const VirtualScan scan = scanner_.scan({1, 1, 1}, options);
+  EXPECT_EQ(scan.cloud->width, 100u);
+  EXPECT_LT(scan.num_points, 10'000);
+}
+
 TEST_F(BoxScan, SameBytesForAnyNumberOfThreads) {
   VirtualScannerOptions options;
   options.noise = 0.01;
@@ -190,6 +199,7 @@ TEST(VirtualScanner, RefusesWhatItCannotScan) {
   refused([](VirtualScannerOptions& o) { o.noise = -1; });
   refused([](VirtualScannerOptions& o) { o.num_threads = -1; });
   refused([](VirtualScannerOptions& o) { o.resolution = 0; });
+  refused([](VirtualScannerOptions& o) { o.max_resolution = 0; });
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <functional>
 #include <optional>
 
-#include "error_plot.h"
+#include "chart.h"
 #include "models.h"
 #include "options.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -211,8 +211,9 @@ void writeCsv(const std::string& file, const std::vector<Measurement>& all) {
 }
 
 /// Root mean square error and mean time over the models for each setting.
-Series meanCurve(const std::vector<Measurement>& all, const std::string& method, double Measurement::*error) {
-  Series series{method, {}, {}};
+apps::ChartSeries meanCurve(const std::vector<Measurement>& all, const std::string& method,
+                            double Measurement::*error) {
+  apps::ChartSeries series{method, {}, {}};
   const auto selected = select(all, "", method);
   for (const Measurement& first : select(all, all.front().model, method)) {
     double sq_error = 0.0, time = 0.0;
@@ -223,8 +224,8 @@ Series meanCurve(const std::vector<Measurement>& all, const std::string& method,
       time += m.best_ms;
       ++count;
     }
-    series.milliseconds.push_back(time / count);
-    series.error.push_back(std::sqrt(sq_error / count));
+    series.x.push_back(time / count);
+    series.y.push_back(std::sqrt(sq_error / count));
   }
   return series;
 }
@@ -256,10 +257,17 @@ int run(int argc, char** argv) {
   printTargets(all, models);
   if (settings.csv) writeCsv(*settings.csv, all);
   if (settings.png) {
-    writeErrorPlot(*settings.png,
-                   {meanCurve(all, "sampled", &Measurement::rms), meanCurve(all, "convolution", &Measurement::rms),
+    apps::Chart chart;
+    chart.title = "Error of PRST against time, mean of the models";
+    chart.x = {"time [ms]", true, {}};
+    chart.y = {"root mean square error of PRST", true, {}};
+    chart.series = {meanCurve(all, "sampled", &Measurement::rms), meanCurve(all, "convolution", &Measurement::rms),
                     meanCurve(all, "voting", &Measurement::rms_average),
-                    meanCurve(all, "voting, as written", &Measurement::rms_average)});
+                    meanCurve(all, "voting, as written", &Measurement::rms_average)};
+    apps::ChartSeries target{"1 %", {1e-3, 1e9}, {kTarget, kTarget}};
+    target.reference = true;
+    chart.series.push_back(target);
+    apps::writeChart(chart, *settings.png);
   }
   return 0;
 }

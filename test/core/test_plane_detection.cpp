@@ -126,11 +126,11 @@ TEST(DetectPlanes, ApproximateOnesComeWhenAskedFor) {
   const Detection detection = detectPlanes(scaleneTetrahedron(5000, 1).cloud(), options);
   ASSERT_FALSE(detection.planes.empty());
   for (const SymmetryPlane& plane : detection.planes) {
-    EXPECT_TRUE(plane.approximate);
-    EXPECT_LT(plane.support, options.min_support);
+    EXPECT_TRUE(plane.kind == PlaneKind::Approximate || plane.kind == PlaneKind::Local);
+    EXPECT_LT(plane.confidence, options.min_confidence);
   }
   for (const SymmetryPlane& plane : detectPlanes(box(5000, Sampling::Random, 1).cloud()).planes)
-    EXPECT_FALSE(plane.approximate);
+    EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
 }
 
 TEST(DetectPlanes, BodiesOfRevolutionHavePlanesThroughTheirAxis) {
@@ -400,7 +400,7 @@ TEST(DetectionOptions, RefusesBadOnes) {
   refused([](auto& o) { o.max_iterations = 0; });
   refused([](auto& o) { o.merge_angle = -1.0; });
   refused([](auto& o) { o.merge_offset = -1.0; });
-  refused([](auto& o) { o.min_support = 1.5; });
+  refused([](auto& o) { o.min_confidence = 1.5; });
   refused([](auto& o) { o.max_planes = 0; });
   refused([](auto& o) { o.num_threads = -1; });
 }

@@ -48,7 +48,7 @@ TEST(DetectSymmetryPlanes, NeedsOneLine) {
     EXPECT_GT(plane.support, 0.99);
     EXPECT_GT(plane.score, 0.98);
     EXPECT_TRUE(plane.converged);
-    EXPECT_FALSE(plane.approximate);
+    EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
   }
 }
 
@@ -144,9 +144,10 @@ TEST(SymmetryMaximaRefinement, MarksApproximateSymmetries) {
   refinement.setApproximate(true);
   const auto all = refinement.compute();
   EXPECT_GT(all.size(), trusted.size());
-  for (const SymmetryPlane& plane : all) EXPECT_EQ(plane.approximate, plane.support < 0.9 || plane.score < 0.9);
-  EXPECT_TRUE(
-      std::is_sorted(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.support > b.support; }));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].kind == PlaneKind::Symmetry, i < trusted.size());
+    EXPECT_EQ(all[i].kind == PlaneKind::Symmetry, all[i].confidence >= 0.5);
+  }
   refinement.setMaxPlanes(2);
   EXPECT_EQ(refinement.compute().size(), 2u);
 }
@@ -155,8 +156,7 @@ TEST(SymmetryMaximaRefinement, RefusesWhatHasNoExtent) {
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   EXPECT_THROW(refinement.compute(), pcl::BadArgumentException);
   EXPECT_THROW(refinement.computePointSupport(ReflectionPlane()), pcl::BadArgumentException);
-  EXPECT_THROW(refinement.setMinSupport(1.5), pcl::BadArgumentException);
-  EXPECT_THROW(refinement.setMinScore(-0.1), pcl::BadArgumentException);
+  EXPECT_THROW(refinement.setMinConfidence(1.5), pcl::BadArgumentException);
   EXPECT_THROW(refinement.setMaxPlanes(0), pcl::BadArgumentException);
   EXPECT_THROW(refinement.setNumberOfThreads(-1), pcl::BadArgumentException);
   EXPECT_THROW(refinement.setSymmetryMap(SymmetryMap(), nullptr), pcl::BadArgumentException);

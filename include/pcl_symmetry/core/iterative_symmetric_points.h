@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/reflection_plane.h"
 
@@ -30,11 +33,44 @@ struct IspOptions {
   void validate() const;
 };
 
+/// Tells from a distance transform, without a search, that a point is far from the surface.
+class FarTest {
+public:
+  /// \param edt of the surface, must outlive this object. \param center,scale of the frame of the questions: points are
+  /// (x - center) / scale.
+  FarTest(const GaussianEdt& edt, const Eigen::Vector3d& center, double scale)
+      : edt_(edt), center_(center), scale_(scale) {}
+
+  /// The least f that a cell has that holds a point within \p distance of the surface.
+  float bound(double distance) const {
+    const double half_diagonal = 0.5 * std::sqrt(3.0) * edt_.cellSize();
+    const double reach = (distance * scale_ + half_diagonal) / edt_.sigma();
+    return static_cast<float>(std::exp(-reach * reach));
+  }
+
+  /// Whether \p x is farther away than the distance of \p bound (or outside the grid).
+  bool operator()(const Eigen::Vector3d& x, float bound) const {
+    const Eigen::Array3d cell = ((x * scale_ + center_ - edt_.origin()) / edt_.cellSize()).array() + 0.5;
+    const int n = edt_.numCells();
+    if (!(cell >= 0.0).all() || !(cell < static_cast<double>(n)).all()) return true;
+    const auto index = (static_cast<std::size_t>(cell.z()) * n + static_cast<std::size_t>(cell.y())) * n +
+                       static_cast<std::size_t>(cell.x());
+    return edt_.values()[index] <= std::min(bound, kFarthest);
+  }
+
+private:
+  static constexpr float kFarthest = 1e-3f;  // the transform is cut off there
+  const GaussianEdt& edt_;
+  Eigen::Vector3d center_;
+  double scale_;
+};
+
 /// The surface that reflected samples are matched to.
 struct IspSurface {
   const Points& points;
   const Points& normals;  ///< 3 x N unit normals of any sign; may be empty with PointToPoint
   const ClosestPointSearch& search;
+  const FarTest* far = nullptr;  ///< spares the search for points that would get no weight
   int num_threads = 1;  ///< for the searches of one iteration; 0 = one per core
 };
 
@@ -43,8 +79,8 @@ struct IspStep {
   ReflectionPlane plane;            ///< the plane after the step
   double residual = 0.0;            ///< weighted root mean square distance of the pairs before the step, input units
   double weight = 0.0;              ///< mean weight of the pairs, in [0, 1]
-  std::vector<int> closest;         ///< for each sample the closest point to its reflection
-  std::vector<float> sq_distances;  ///< and its squared distance
+  std::vector<int> closest;         ///< for each sample the closest point to its reflection; -1: none within 3 sigma
+  std::vector<float> sq_distances;  ///< and its squared distance; infinite where there is none
 };
 
 struct IspResult {

@@ -10,23 +10,51 @@
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/symmetry_map.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 
+/// What a plane is of the shape.
+enum class PlaneKind {
+  Symmetry,     ///< of the whole object, confidence >= min_confidence
+  Possible,     ///< of a scan: what the scanner saw neither bears it out nor rules it out
+  Approximate,  ///< nearly a symmetry
+  Local         ///< a symmetry of a part: of the points that support it, not of the others
+};
+
 /// A refined local maximum of the transform. Canonical: theta of the normal in [0, pi/2].
 struct SymmetryPlane : ReflectionPlane {
+  PlaneKind kind = PlaneKind::Approximate;
+  /// Probability that this is a symmetry of the object, in [0, 1]; comparable between objects, densities, noise levels,
+  /// whole and partial clouds. How it was calibrated: README, "What the numbers mean".
+  double confidence = 0.0;
   /// D(f, gamma) at this very plane, the paper's measure: the correlation of the GEDT with its reflection, in [0, 1].
   double score = 0.0;
-  /// Share of the points whose reflection lies on the cloud within the spacing of its samples, in [0, 1]: the mean of
-  /// point_support. Does not depend on sigma.
+  /// Share of what was seen of the surface that the plane maps onto the surface, within its sampling and noise, [0, 1].
   double support = 0.0;
+  /// Share of the points whose reflection falls where the scanner could see, in [0, 1]; 1 without a viewpoint.
+  double seen = 1.0;
   /// One value in [0, 1] per point used, in their order: 1 where the reflection meets the surface as closely as samples
   /// of the surface themselves lie, falling to 0 beyond.
   std::vector<float> point_support;
-  int iterations = 0;        ///< of Iterative Symmetric Points, all stages
-  bool converged = false;    ///< the plane stood still
-  bool approximate = false;  ///< below DetectionOptions::min_support or min_score
+  int iterations = 0;       ///< of Iterative Symmetric Points, all stages
+  bool converged = false;   ///< the plane stood still
   double residual = 0.0;  ///< weighted root mean square distance of the reflected points from the surface, input units
+};
+
+/// All planes through a line are symmetries: a body of revolution.
+struct SymmetryAxis {
+  Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
+  Eigen::Vector3d direction;  ///< unit
+  double confidence = 0.0;    ///< as of SymmetryPlane, of planes at eight angles together
+  double score = 0.0;         ///< mean D of these
+  double support = 0.0;       ///< mean support of these
+};
+
+/// All planes through a point are symmetries: a sphere.
+struct SymmetryCenter {
+  Eigen::Vector3d point;  ///< input frame
+  double confidence = 0.0, score = 0.0, support = 0.0;  ///< as of SymmetryAxis
 };
 
 struct DetectionOptions {
@@ -49,13 +77,12 @@ struct DetectionOptions {
   int max_iterations = 30;          ///< of each stage, >= 1
   double merge_angle = 0.035;       ///< radians, >= 0: planes closer than this in angle ...
   double merge_offset = 0.02;       ///< ... and this share of the radius in offset are one, >= 0
-  /// A plane is a symmetry of the shape where support and score reach these two, in [0, 1]. Set by hand on few shapes:
-  /// sampled boxes have 0.999 and 0.97 and more from 1000 points on; the best plane of a scalene tetrahedron and of a
-  /// sphere with five bumps has at most 0.90 and 0.86 from 4000 points on, and with 1000, whose spacing lets nearly
-  /// everything pass, a score below 0.87. One-sided scans of symmetric objects mostly stay below.
-  double min_support = 0.9;
-  double min_score = 0.9;
-  /// Reports the other maxima too: approximate symmetries and symmetries of parts.
+  double min_confidence = 0.5;      ///< confidence >= min_confidence: the plane is a symmetry; in [0, 1]
+  /// Of scans, planes with confidence >= min_possible are reported as possible, in [0, 1].
+  double min_possible = 0.02;
+  int max_possible = 5;   ///< symmetries and possible planes of a scan together, >= 1
+  bool families = true;   ///< planes through one axis or one center are reported as such in place of single planes
+  /// Reports the other maxima too, after the symmetries: nearly symmetries of the whole, and symmetries of parts.
   bool approximate = false;
   int max_planes = 20;  ///< >= 1
   std::uint64_t seed = 1;
@@ -66,22 +93,27 @@ struct DetectionOptions {
 };
 
 struct Detection {
-  std::vector<SymmetryPlane> planes;                      ///< best first: by support, then by score
+  std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
+  std::vector<SymmetryAxis> axes;     ///< best first; their planes are not among planes
+  std::vector<SymmetryCenter> centers;
   SymmetryMap map;                                        ///< empty where one was given
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
 /// From points to planes: transform, maxima, refinement (Sections 4.1 to 4.4).
 /// \param points 3 x N, finite, input units; at least two different ones.
-/// \throws std::invalid_argument for bad options or points without extent.
 /// \param make_search makes the search of refineMaxima for the distance transform of these points; null = FLANN.
+/// \param visibility what a scanner saw; null = the points show the object from all sides.
+/// \throws std::invalid_argument for bad options or points without extent.
 Detection detectPlanes(const PointsRef& points, const DetectionOptions& options = {},
-                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr);
+                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr,
+                       const Visibility* visibility = nullptr);
 
 /// The same from a map that was made before.
 /// \param edt,map of these points. \param search closest points among \p points divided by edt.radius() after taking
-/// away edt.center(); null = FLANN.
+/// away edt.center(); null = FLANN. \param visibility as in detectPlanes.
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
-                       const DetectionOptions& options = {}, ClosestPointSearch::Ptr search = nullptr);
+                       const DetectionOptions& options = {}, ClosestPointSearch::Ptr search = nullptr,
+                       const Visibility* visibility = nullptr);
 
 }  // namespace pcl_symmetry

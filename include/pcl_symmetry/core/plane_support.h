@@ -4,6 +4,8 @@
 
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/surface_normals.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 
@@ -18,6 +20,20 @@ namespace pcl_symmetry {
 /// \return one value in [0, 1] per reflected point.
 std::vector<float> pointSupport(const std::vector<int>& closest, const std::vector<float>& sq_distances,
                                 const std::vector<float>& spacing);
+
+/// What the points of a surface say about a reflection, one value in [0, 1] per reflected point each.
+struct PointEvidence {
+  std::vector<float> support;   ///< its reflection lies on the surface
+  std::vector<float> conflict;  ///< its reflection lies where the scanner saw that there is nothing
+};
+
+/// \param points,normals 3 x M, the points and their normals, reflected. \param closest,sq_distances of each the closest
+/// sample of the surface and its squared distance.
+/// \param samples 3 x N, the surface, normalised to the unit ball, \p geometry of it. \param visibility what was seen, in
+/// the same frame; null = everything.
+PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
+                            const std::vector<float>& sq_distances, const Points& samples,
+                            const LocalGeometry& geometry, const Visibility* visibility);
 
 /// The same from the points: the support of each of \p points on the surface that \p samples describe.
 /// \param points 3 x M, finite. \param samples 3 x N, finite, not all equal, in the same frame.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/symmetry_map.h"
@@ -29,8 +30,16 @@ struct SampledTransformOptions {
 /// Unlike pairs that vote (Section 4.3) it needs no weights, has no singularity at coincident points, and gives values
 /// at bin centers. For one direction all radii of a sample lie on a straight line through the grid.
 /// \param edt the function f. \param grid the planes, in the frame of the EDT.
-/// \return D at the bin centers.
-SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid,
-                             const SampledTransformOptions& options = {});
+/// \param free_space of a scan, see freeSpace(); empty: every point has been seen.
+/// \return D at the bin centers; with free space, seenSymmetry() of D and of F, the same mean over the free space.
+SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options = {},
+                             const std::vector<float>& free_space = {});
+
+/// The same mean over the free space of a scan: F = (S / |f|^2) mean free(gamma x_i) at the bin centers, >= 0.
+std::vector<float> freeOverlap(const GaussianEdt& edt, const PlaneGrid& grid, const std::vector<float>& free_space,
+                               const SampledTransformOptions& options = {});
+
+/// Makes seenSymmetry(D, F) of every D in the map.
+void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap);
 
 }  // namespace pcl_symmetry

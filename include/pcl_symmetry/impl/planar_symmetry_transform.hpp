@@ -4,6 +4,7 @@
 
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/seen_space.hpp"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 
@@ -99,7 +100,9 @@ SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
         selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, transform_.sampled.seed);
     edt_ = std::make_shared<GaussianEdt>(selected.points, edt_options_);
     const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
-    return planarTransform(*edt_, grid, centerOfMass(selected.points), transform_);
+    const std::optional<Visibility> seen = seenSpace(*input_, selected.points, viewpoint_);
+    return planarTransform(*edt_, grid, centerOfMass(selected.points), transform_,
+                           seen ? freeSpace(*edt_, *seen, edt_options_.num_threads) : std::vector<float>());
   });
 }
 

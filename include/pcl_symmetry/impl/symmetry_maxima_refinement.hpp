@@ -9,6 +9,7 @@
 #include "pcl_symmetry/core/plane_support.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/seen_space.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace pcl_symmetry {
@@ -59,16 +60,9 @@ void SymmetryMaximaRefinement<PointT>::setOptions(const DetectionOptions& option
 }
 
 template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setMinSupport(double min_support) {
+void SymmetryMaximaRefinement<PointT>::setMinConfidence(double min_confidence) {
   DetectionOptions options = options_;
-  options.min_support = min_support;
-  setOptions(options);
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setMinScore(double min_score) {
-  DetectionOptions options = options_;
-  options.min_score = min_score;
+  options.min_confidence = min_confidence;
   setOptions(options);
 }
 
@@ -136,8 +130,13 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     const auto search = [&](const GaussianEdt& edt) -> ClosestPointSearch::Ptr {
       return search_ ? std::make_shared<PCLPointSearch<PointT>>(search_, *input_, used_indices_, edt) : nullptr;
     };
-    Detection detection = edt_ ? refineMaxima(used_points_, *edt_, map_, options_, search(*edt_))
-                               : detectPlanes(used_points_, options_, search);
+    const std::optional<Visibility> seen = seenSpace(*input_, used_points_, viewpoint_);
+    used_viewpoint_ = seen.has_value();
+    const Visibility* visibility = seen ? &*seen : nullptr;
+    Detection detection = edt_ ? refineMaxima(used_points_, *edt_, map_, options_, search(*edt_), visibility)
+                               : detectPlanes(used_points_, options_, search, visibility);
+    axes_ = std::move(detection.axes);
+    centers_ = std::move(detection.centers);
     timing_ms_ = std::move(detection.timing_ms);
     return std::move(detection.planes);
   });

@@ -1,0 +1,46 @@
+/// Measures the methods of this library, and those of others, on data with known answers.
+#include <cstdio>
+#include <string>
+
+#include "options.h"
+#include "planes.h"
+
+namespace {
+
+using namespace pcl_symmetry::apps;
+
+struct SubCommand {
+  const char* name;
+  const char* summary;
+  int (*run)(int argc, char** argv);
+};
+
+constexpr SubCommand kSubCommands[] = {{"planes", "how well symmetry planes are found", evaluatePlanes}};
+
+void printUsage() {
+  std::printf(
+      "Measures how well symmetries are found, on data with known answers.\n\n"
+      "Usage: pcl_symmetry_evaluate COMMAND [-flag value]\n\n");
+  for (const SubCommand& command : kSubCommands) std::printf("  %-14s %s\n", command.name, command.summary);
+  std::printf(
+      "\npcl_symmetry_evaluate COMMAND -h tells the flags of a command.\n\nExample:\n"
+      "  pcl_symmetry_evaluate planes meshes -csv clouds.csv\n");
+}
+
+int run(int argc, char** argv) {
+  if (argc < 2) throw UsageError("missing argument 'COMMAND'");
+  const std::string name = argv[1];
+  if (name == "-h" || name == "-help" || name == "--help") {
+    printUsage();
+    return 0;
+  }
+  for (const SubCommand& command : kSubCommands)
+    if (name == command.name) return command.run(argc - 1, argv + 1);
+  throw UsageError("unknown command '" + name + "'");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}
