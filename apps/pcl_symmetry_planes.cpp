@@ -22,7 +22,7 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
-constexpr std::size_t kMaxPanels = 4;
+constexpr std::size_t kMaxPanels = 9;
 
 struct PlanesOptions {
   std::string input;

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr int kRoundPrism = 8;  // planes through one line
+constexpr std::size_t kRoundPrism = 8;  // planes through one line
 
 /// The closest of a kind of references within the limits.
 struct Match {
@@ -22,25 +21,35 @@ public:
   Matcher(const ReferenceSymmetries& references, const MatchLimits& limits)
       : references_(references), limits_(limits) {}
 
-  /// \return the reference in planes, then axes, then centers, counted through; none if the answer is not right.
-  std::optional<Match> findReference(const Answer& answer) const {
-    std::size_t first = 0;
-    if (const auto match = closestPlane(answer, references_.planes)) return match;
-    first += references_.planes.size();
-    if (const auto match = closestAxis(answer, references_.axes)) return Match{first + match->index, match->error};
-    first += references_.axes.size();
-    if (const auto match = closestCenter(answer)) return Match{first + match->index, match->error};
-    return std::nullopt;
+  /// \return what the answer is right about, numbered in planes, then axes, then centers: at most one reference, or all
+  /// planes of a prism around an axis.
+  std::vector<Match> findReferences(const Answer& answer) const {
+    const std::size_t num_planes = references_.planes.size(), num_axes = references_.axes.size();
+    if (const auto match = closestPlane(answer, references_.planes)) return {*match};
+    if (const auto match = closestAxis(answer, references_.axes)) return {{num_planes + match->index, match->error}};
+    if (const auto match = closestCenter(answer)) return {{num_planes + num_axes + match->index, match->error}};
+    return planesAround(answer);
   }
 
   bool isNear(const Answer& answer) const {
-    return closestPlane(answer, references_.near_planes) || closestAxis(answer, references_.near_axes) ||
-           isAxisOfRoundPrism(answer);
+    return closestPlane(answer, references_.near_planes) || closestAxis(answer, references_.near_axes);
   }
 
 private:
-  Difference scaled(const Difference& difference) const {
-    return {difference.angle, difference.offset / references_.diagonal};
+  /// \return the reference planes that an axis stands for: where only few meet, it is wrong, and they are none.
+  std::vector<Match> planesAround(const Answer& answer) const {
+    std::vector<Match> around;
+    if (answer.type != Answer::Type::Axis) return around;
+    for (std::size_t i = 0; i < references_.planes.size(); ++i) {
+      const Difference error = scaled(difference(references_.planes[i].plane, answer.axis, references_.center));
+      if (error.within(limits_.max_axis_angle * kDegree, limits_.max_offset)) around.push_back({i, error});
+    }
+    if (around.size() < kRoundPrism) around.clear();
+    return around;
+  }
+
+  Difference scaled(const Difference& d) const {
+    return {d.angle, d.offset / references_.diagonal};
   }
 
   template <typename References, typename DifferenceTo>
@@ -93,14 +102,6 @@ private:
     });
   }
 
-  bool isAxisOfRoundPrism(const Answer& answer) const {
-    if (answer.type != Answer::Type::Axis) return false;
-    return std::count_if(references_.planes.begin(), references_.planes.end(), [&](const ReferencePlane& reference) {
-             return scaled(difference(reference.plane, answer.axis, references_.center))
-                 .within(limits_.max_axis_angle * kDegree, limits_.max_offset);
-           }) >= kRoundPrism;
-  }
-
   const ReferenceSymmetries& references_;
   const MatchLimits& limits_;
 };
@@ -134,23 +135,32 @@ MatchResult matchAnswers(const std::vector<Answer>& answers, const ReferenceSymm
                          const MatchLimits& limits) {
   const Matcher matcher(references, limits);
   MatchResult result;
-  const std::size_t num_planes = references.planes.size();
-  result.num_references = static_cast<int>(num_planes + references.axes.size() + references.centers.size());
+  const std::size_t num_planes = references.planes.size(), num_axes = references.axes.size();
+  result.num_references = static_cast<int>(num_planes + num_axes + references.centers.size());
   std::vector<bool> found(static_cast<std::size_t>(result.num_references));
-  std::vector<bool> found_by_axis(references.axes.size());
+  std::vector<bool> in_family = found;  // found together with others: further answers there are not wrong
+  std::vector<bool> axis_found = found;
   int rank = 0;
   for (const Answer& answer : answers) {
     Judgement judgement;
-    if (const auto match = matcher.findReference(answer)) {
-      const bool in_family = match->index >= num_planes;
-      judgement.verdict = !found[match->index] ? Verdict::Right : in_family ? Verdict::Neutral : Verdict::False;
-      judgement.error = match->error;
-      found[match->index] = true;
-      if (answer.type == Answer::Type::Axis && in_family && match->index - num_planes < references.axes.size()) {
-        found_by_axis[match->index - num_planes] = true;
-        if (!result.first_axis_error) result.first_axis_error = match->error;
-      }
-    } else if (matcher.isNear(answer)) {
+    const std::vector<Match> matches = matcher.findReferences(answer);
+    bool repeats_family = false;
+    for (const Match& match : matches) {
+      const bool is_axis =
+          answer.type == Answer::Type::Axis && match.index >= num_planes && match.index < num_planes + num_axes;
+      if (is_axis && !result.first_axis_error) result.first_axis_error = match.error;
+      result.num_axes_found += is_axis && !axis_found[match.index] ? 1 : 0;
+      judgement.num_found += found[match.index] ? 0 : 1;
+      judgement.error.angle = std::max(judgement.error.angle, match.error.angle);
+      judgement.error.offset = std::max(judgement.error.offset, match.error.offset);
+      repeats_family = repeats_family || in_family[match.index];
+      found[match.index] = true;
+      in_family[match.index] = in_family[match.index] || match.index >= num_planes || matches.size() > 1;
+      axis_found[match.index] = axis_found[match.index] || is_axis;
+    }
+    if (judgement.num_found > 0) {
+      judgement.verdict = Verdict::Right;
+    } else if (repeats_family || (matches.empty() && matcher.isNear(answer))) {
       judgement.verdict = Verdict::Neutral;
     }
     result.num_right += judgement.verdict == Verdict::Right ? 1 : 0;
@@ -164,7 +174,6 @@ MatchResult matchAnswers(const std::vector<Answer>& answers, const ReferenceSymm
     result.judgements.push_back(judgement);
   }
   result.num_found = static_cast<int>(std::count(found.begin(), found.end(), true));
-  result.num_axes_found = static_cast<int>(std::count(found_by_axis.begin(), found_by_axis.end(), true));
   return result;
 }
 

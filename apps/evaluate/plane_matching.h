@@ -33,13 +33,14 @@ struct MatchLimits {
 
 enum class Verdict {
   Right,    ///< finds a reference that no better answer found
-  Neutral,  ///< a near symmetry, or a further plane of a family that was found before
+  Neutral,  ///< a near symmetry, or one more plane of a family that was found before
   False     ///< also a second answer for the same plane
 };
 
 struct Judgement {
   Verdict verdict = Verdict::False;
-  Difference error;  ///< where it matches a reference: radians and diagonals
+  int num_found = 0;  ///< references that no better answer found
+  Difference error;   ///< where it matches a reference: radians and diagonals
 };
 
 struct MatchResult {
@@ -56,8 +57,8 @@ struct MatchResult {
 /// \param answers best first. \param references in the frame of the answers.
 ///
 /// A plane is right at a reference plane, through a reference axis and through a reference center; an axis at a
-/// reference axis and through a reference center. Where many planes of a regular prism meet in a line, an axis there is
-/// neutral: the shape is round but for its corners.
+/// reference axis and through a reference center. Where eight or more reference planes meet in a line, an axis there is
+/// right too and finds them all: a prism that is round but for its corners.
 MatchResult matchAnswers(const std::vector<Answer>& answers, const ReferenceSymmetries& references,
                          const MatchLimits& limits = {});
 

@@ -84,6 +84,7 @@ std::vector<PrecisionRecall> precisionRecall(const CloudResults& results) {
   struct Scored {
     double score;
     bool right;
+    int num_found;
   };
   std::vector<Scored> answers;
   int num_references = 0;
@@ -91,18 +92,20 @@ std::vector<PrecisionRecall> precisionRecall(const CloudResults& results) {
     if (result->kind == SymmetryKind::NearlySymmetric) continue;
     num_references += result->match.num_references;
     for (std::size_t i = 0; i < result->match.judgements.size(); ++i) {
-      const Verdict verdict = result->match.judgements[i].verdict;
-      if (verdict != Verdict::Neutral) answers.push_back({result->answers.answers[i].score, verdict == Verdict::Right});
+      const Judgement& judgement = result->match.judgements[i];
+      if (judgement.verdict == Verdict::Neutral) continue;
+      answers.push_back({result->answers.answers[i].score, judgement.verdict == Verdict::Right, judgement.num_found});
     }
   }
   std::stable_sort(answers.begin(), answers.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
   std::vector<PrecisionRecall> curve;
   if (num_references == 0) return curve;
-  int num_right = 0;
+  int num_right = 0, num_found = 0;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     num_right += answers[i].right ? 1 : 0;
+    num_found += answers[i].num_found;
     if (i + 1 < answers.size() && answers[i + 1].score == answers[i].score) continue;  // equal scores are one choice
-    curve.push_back({answers[i].score, ratio(num_right, static_cast<double>(i + 1)), ratio(num_right, num_references)});
+    curve.push_back({answers[i].score, ratio(num_right, static_cast<double>(i + 1)), ratio(num_found, num_references)});
   }
   return curve;
 }

@@ -14,7 +14,8 @@ double seenSupport(const PlaneEvidence& evidence) {
 /// Calibrated on 200 models of the training half of the Princeton Shape Benchmark (every fourth by name, from the third
 /// on), as whole clouds of 500 to 10 000 points with noise of 0 to 2 % of the diagonal and as single-view scans;
 /// symmetric: a plane maps 97 % of the area onto the surface within half a per cent of the diagonal; asymmetric: no
-/// plane maps 90 %. The first and the last were rounded from logistic regressions, the second is one as it came out.
+/// plane maps 90 %. All are logistic regressions rounded by hand, the intercepts
+/// of the last two so that few of the asymmetric models pass.
 double planeConfidence(const PlaneEvidence& evidence) {
   const double unexplained = 1.0 - seenSupport(evidence);
   const double lost = 1.0 - evidence.score;
@@ -22,7 +23,7 @@ double planeConfidence(const PlaneEvidence& evidence) {
   if (evidence.partial) {
     logit = -5.5 - 14.0 * std::sqrt(unexplained) - 3.3 * std::log(evidence.support + 1e-3) + 10.5 * evidence.score;
   } else if (evidence.volume) {
-    logit = 3.5 - 46.0 * (1.0 - evidence.support) - 77.0 * lost;
+    logit = 4.3 - 46.0 * (1.0 - evidence.support) - 77.0 * lost;
   } else {
     // Both in units of what sampling alone makes of a symmetry: normals of rough surfaces are uncertain, and the
     // distance transform of fewer points is noisier.

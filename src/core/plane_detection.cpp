@@ -131,6 +131,11 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   timed("closure");
   if (options.families) refinement.collectFamilies(detection);
   timed("families");
+  if (options.approximate) {
+    std::vector<SymmetryPlane> parts = refinement.findParts(detection.planes);
+    std::move(parts.begin(), parts.end(), std::back_inserter(detection.planes));
+  }
+  timed("parts");
   detection.planes = refinement.report(std::move(detection.planes));
   if (repeated) {
     for (SymmetryPlane& plane : detection.planes) {

@@ -12,7 +12,6 @@ namespace {
 constexpr std::size_t kMostPlanes = 8;       // whose common lines are looked at
 constexpr double kLeastAngle = 0.17;         // radians between planes that tell their common line
 constexpr double kContainedAngle = 0.0524;   // radians, 3 degrees
-constexpr double kAllowance = 0.03;          // of the share: sampling; a handle is more
 constexpr int kScreening = 3, kFitted = 6, kTested = 8;
 constexpr double kGoldenRatio = 0.61803398874989485;
 
@@ -90,9 +89,9 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()), Eigen::EigenvaluesOnly);
   if (solver.eigenvalues()[0] < 0.02) return std::nullopt;  // all through one line
   Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
-  const double least = std::max(test.min_share, test.share(planes[0]) - kAllowance);
+  const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
   const auto at = [&](int k) { return planeThrough(point, k, kTested); };
-  if (meanShare(at, kScreening, least - 2.0 * kAllowance, test.rough_share) == 0.0) return std::nullopt;
+  if (meanShare(at, kScreening, least - 2.0 * test.allowance, test.rough_share) == 0.0) return std::nullopt;
   std::vector<ReflectionPlane> refined;
   for (int k = 0; k < kFitted; ++k) refined.push_back(test.refine(planeThrough(point, k, kFitted)));
   point = commonPoint(refined, point);
@@ -117,10 +116,10 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
       if (known) continue;
       tried.push_back(line);
       const double least =
-          std::max(test.min_share, std::max(test.share(planes[i]), test.share(planes[j])) - kAllowance);
+          std::max(test.min_share, std::max(test.share(planes[i]), test.share(planes[j])) - test.allowance);
       const auto at = [&](int k) { return planeThrough(line, k); };
       // A line of two rough planes may be off by a little, the refined one has to stand the test.
-      if (meanShare(at, kScreening, least - 2.0 * kAllowance, test.rough_share) == 0.0) continue;
+      if (meanShare(at, kScreening, least - 2.0 * test.allowance, test.rough_share) == 0.0) continue;
       std::vector<ReflectionPlane> refined;
       for (int k = 0; k < kFitted; ++k) refined.push_back(test.refine(planeThrough(line, k)));
       line = commonLine(refined);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numeric>
 
 #include "pcl_symmetry/core/parallel.h"
@@ -31,10 +33,16 @@ constexpr double kVolumeRoughness = 0.36;  // of the spacing: neighbours on all 
 constexpr double kDensityBandwidth = 1.5;  // spacings
 constexpr int kDensityIterations = 6, kDensitySampleFactor = 10;  // a sample costs a tenth of a closest point
 constexpr double kFamilyShare = 0.92, kSeenFamilyShare = 0.98;    // of all planes of a family; where only a part is seen
+constexpr double kAllowance = 0.03, kDensityAllowance = 0.008;    // of the share, from the best plane to its family
 constexpr double kFamilyTolerance = 0.03;                         // radii
 constexpr int kFamilySamples = 1500;
 constexpr double kUnseen = 0.02;  // of the points: less that is seen of a reflection says nothing
-constexpr double kPartShare = 0.05, kPartQuality = 0.8;  // of the points; of those around the part
+constexpr int kNumSeeds = 24, kPartDirections = 8;
+constexpr double kPartRadii[] = {0.25, 0.35, 0.5};       // radii of the points
+constexpr double kLeastPart = 0.04, kLargestPart = 0.6;  // of the points; more is nearly the whole
+constexpr double kPartQuality = 0.8;                     // support among the points of a part
+constexpr double kSharedPart = 0.5;                      // of a part that better ones may have
+constexpr std::size_t kPartSamples = 400;
 
 double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -228,14 +236,14 @@ void Refinement::collectFamilies(Detection& detection) const {
 }
 
 std::vector<SymmetryPlane> Refinement::report(std::vector<SymmetryPlane> planes) const {
-  // Nearly symmetries and symmetries of parts by their strength, as the paper lists local maxima.
+  // Nearly symmetries and symmetries of parts come last, those that more of the surface supports first.
   const auto rank = [](const SymmetryPlane& p) {
     return p.kind == PlaneKind::Symmetry ? 0 : p.kind == PlaneKind::Possible ? 1 : 2;
   };
   std::stable_sort(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
     if (rank(a) != rank(b)) return rank(a) < rank(b);
     if (rank(a) < 2 && a.confidence != b.confidence) return a.confidence > b.confidence;
-    return a.score > b.score;
+    return a.support > b.support;
   });
   std::vector<SymmetryPlane> reported;
   for (SymmetryPlane& plane : planes) {
@@ -246,7 +254,6 @@ std::vector<SymmetryPlane> Refinement::report(std::vector<SymmetryPlane> planes)
       return same(toNormalized(other), toNormalized(plane)) || onSlopeOf(other, plane);
     });
     if (known) continue;
-    if (rank(plane) == 2) findPart(plane);
     reported.push_back(std::move(plane));
   }
   return reported;
@@ -381,6 +388,7 @@ double Refinement::familyShare(const ReflectionPlane& plane, const std::vector<i
 FamilyTest Refinement::familyTest(const std::vector<int>& samples) const {
   FamilyTest test;
   test.min_share = visibility_ ? kSeenFamilyShare : kFamilyShare;
+  test.allowance = density_ ? kDensityAllowance : kAllowance;
   test.tolerance = kFamilyTolerance;
   test.share = [this, samples](const ReflectionPlane& plane) { return familyShare(plane, samples); };
   const std::vector<int> fewer(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 5));
@@ -416,57 +424,103 @@ SymmetryAxis Refinement::judgedFamily(const std::vector<ReflectionPlane>& planes
   return family;
 }
 
-/// A plane is one of a part where its support is a connected piece of the surface with little else around it. It is
-/// then refined on that piece alone.
-void Refinement::findPart(SymmetryPlane& plane) const {
-  std::vector<int> neighbours;
-  std::vector<float> sq_distances;
-  const int count = static_cast<int>(std::min<Eigen::Index>(points_.cols(), kNumSupportNeighbours + 1));
-  search_->search(points_, count, neighbours, sq_distances);
-  const auto size = static_cast<std::size_t>(points_.cols());
-  const auto largestPiece = [&](const std::vector<float>& support) {
-    std::vector<char> visited(size, 0);
-    std::vector<int> largest, piece;
-    for (std::size_t start = 0; start < size; ++start) {
-      if (visited[start] || support[start] < 0.5f) continue;
-      piece.assign(1, static_cast<int>(start));
-      visited[start] = 1;
-      for (std::size_t next = 0; next < piece.size(); ++next) {
-        for (int k = 0; k < count; ++k) {
-          const int to = neighbours[static_cast<std::size_t>(piece[next]) * count + k];
-          if (visited[to] || support[to] < 0.5f) continue;
-          visited[to] = 1;
-          piece.push_back(to);
-        }
-      }
-      if (piece.size() > largest.size()) largest = piece;
-    }
-    return largest;
+/// A part is what lies in a ball. Planes through its middle are refined on its points alone; the ball then moves to
+/// where the support is. Of planes whose parts overlap the best remains, as a limb has many.
+std::vector<SymmetryPlane> Refinement::findParts(const std::vector<SymmetryPlane>& known) const {
+  struct Part {
+    ReflectionPlane plane;
+    std::vector<int> points;
+    double quality = 0.0;
+    int iterations = 0;
   };
-  const std::vector<int> piece = largestPiece(plane.point_support);
-  if (static_cast<double>(piece.size()) < kPartShare * static_cast<double>(size)) return;
-  const Points part = pointsAt(points_, piece);
-  const Eigen::Vector3f middle = part.rowwise().mean();
-  const float sq_radius = 2.25f * (part.colwise() - middle).colwise().squaredNorm().mean();
-  std::vector<int> around;
-  double supported = 0.0;
-  for (std::size_t i = 0; i < size; ++i) {
-    if ((points_.col(static_cast<Eigen::Index>(i)) - middle).squaredNorm() > sq_radius) continue;
-    around.push_back(static_cast<int>(i));
-    supported += plane.point_support[i];
+  const Eigen::Index size = points_.cols();
+  const auto within = [&](const Eigen::Vector3f& center, double radius) {
+    std::vector<int> inside;
+    for (Eigen::Index i = 0; i < size; ++i)
+      if ((points_.col(i) - center).squaredNorm() <= radius * radius) inside.push_back(static_cast<int>(i));
+    return inside;
+  };
+  // Seeds far from each other.
+  std::vector<Eigen::Vector3f> seeds;
+  Eigen::VectorXf sq_distances = Eigen::VectorXf::Constant(size, std::numeric_limits<float>::infinity());
+  for (int next = 0, k = 0; k < kNumSeeds; ++k) {
+    seeds.push_back(points_.col(next));
+    sq_distances = sq_distances.cwiseMin((points_.colwise() - seeds.back()).colwise().squaredNorm().transpose());
+    sq_distances.maxCoeff(&next);
   }
-  if (supported < kPartQuality * static_cast<double>(around.size())) return;
-  plane.kind = PlaneKind::Local;
-  IspOptions isp;
-  isp.update = options_.update;
-  isp.sigma = isp.final_sigma = final_sigma_;
-  isp.max_iterations = options_.max_iterations;
-  const IspResult result = refineSymmetricPoints(surface_, around, toNormalized(plane), isp);
-  if (!samePlane(result.plane, toNormalized(plane), kCandidateAngle, kCandidateOffset)) return;
-  static_cast<ReflectionPlane&>(plane) = toInput(result.plane).canonical();
-  plane.iterations += result.iterations;
-  judge(plane, sharesOf(result.plane, allOf(points_.cols())));
-  plane.kind = PlaneKind::Local;
+  std::vector<std::vector<Part>> found(seeds.size() * std::size(kPartRadii));
+  parallelBlocks(found.size(), options_.num_threads, [&](std::size_t task) {
+    const double radius = kPartRadii[task % std::size(kPartRadii)];
+    std::vector<int> ball = within(seeds[task / std::size(kPartRadii)], radius);
+    const Points start = pointsAt(points_, ball);
+    const Eigen::Vector3d middle = centerOfMass(start);
+    ball = within(middle.cast<float>(), radius);
+    const auto is_part = [&](std::size_t count) {
+      return static_cast<double>(count) >= kLeastPart * static_cast<double>(size) &&
+             static_cast<double>(count) <= kLargestPart * static_cast<double>(size);
+    };
+    if (!is_part(ball.size())) return;
+    IspOptions isp;
+    isp.update = options_.update;
+    isp.sigma = sigma_;
+    isp.final_sigma = final_sigma_;
+    isp.max_iterations = kCloseIterations;
+    const auto thinned = [&](const std::vector<int>& all) {
+      std::vector<int> some;
+      const std::size_t stride = 1 + all.size() / kPartSamples;
+      for (std::size_t i = 0; i < all.size(); i += stride) some.push_back(all[i]);
+      return some;
+    };
+    std::vector<ReflectionPlane> starts = principalPlanes(principalAxes(pointsAt(points_, ball)));
+    for (int k = 0; k < kPartDirections; ++k) {
+      const double z = (k + 0.5) / kPartDirections, angle = 2.0 * M_PI * 0.61803398874989485 * k;
+      const Eigen::Vector3d n(std::sqrt(1.0 - z * z) * std::cos(angle), std::sqrt(1.0 - z * z) * std::sin(angle), z);
+      starts.emplace_back(n, n.dot(middle));
+    }
+    Part best;
+    for (const ReflectionPlane& plane : starts) {
+      std::vector<int> samples = thinned(ball);
+      IspResult result = refineSymmetricPoints(surface_, samples, plane, isp);
+      // The ball about the place of the plane that is nearest: a ball is cut as symmetrically as it can be.
+      const Eigen::Vector3d center = middle - result.plane.signedDistance(middle) * result.plane.normal();
+      const std::vector<int> moved = within(center.cast<float>(), radius);
+      if (!is_part(moved.size())) continue;
+      samples = thinned(moved);
+      IspOptions fine = isp;
+      fine.sigma = fine.final_sigma;
+      result = refineSymmetricPoints(surface_, samples, result.plane, fine);
+      if (std::abs(result.plane.signedDistance(middle)) > 0.5 * radius) continue;
+      const double quality = std::min(1.0, sharesOf(result.plane, samples).support / baseline_);
+      if (quality > best.quality) best = {result.plane, moved, quality, result.iterations};
+    }
+    if (best.quality >= kPartQuality) found[task].push_back(std::move(best));
+  });
+  std::vector<Part> parts;
+  for (auto& list : found) parts.insert(parts.end(), list.begin(), list.end());
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return a.quality * static_cast<double>(a.points.size()) > b.quality * static_cast<double>(b.points.size());
+  });
+  std::vector<char> taken(static_cast<std::size_t>(size), 0);
+  std::vector<SymmetryPlane> planes;
+  for (const Part& part : parts) {
+    const auto num_taken = std::count_if(part.points.begin(), part.points.end(), [&](int i) { return taken[i] != 0; });
+    if (static_cast<double>(num_taken) > kSharedPart * static_cast<double>(part.points.size())) continue;
+    const bool is_known = std::any_of(known.begin(), known.end(), [&](const SymmetryPlane& other) {
+      return samePlane(toNormalized(other), part.plane, kCandidateAngle, kCandidateOffset);
+    });
+    for (const int i : part.points) taken[i] = 1;
+    if (is_known) continue;
+    SymmetryPlane plane;
+    static_cast<ReflectionPlane&>(plane) = toInput(part.plane).canonical();
+    const std::vector<int> all = allOf(size);
+    const IspStep step = iterateSymmetricPoints(surface_, all, part.plane, final_sigma_, IspUpdate::PointToPoint);
+    judge(plane, sharesOf(part.plane, all, step));
+    plane.kind = PlaneKind::Local;
+    plane.iterations = part.iterations;
+    plane.residual = step.residual * scale_;
+    planes.push_back(std::move(plane));
+  }
+  return planes;
 }
 
 }  // namespace pcl_symmetry

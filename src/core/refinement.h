@@ -47,6 +47,9 @@ public:
   /// Moves planes that belong to a family from the planes to axes and centers.
   void collectFamilies(Detection& detection) const;
 
+  /// Symmetries of parts of the surface, other than those known.
+  std::vector<SymmetryPlane> findParts(const std::vector<SymmetryPlane>& known) const;
+
   /// Best first, each once, as the options ask.
   std::vector<SymmetryPlane> report(std::vector<SymmetryPlane> planes) const;
 
@@ -73,7 +76,6 @@ private:
   FamilyTest familyTest(const std::vector<int>& samples) const;
   double familyShare(const ReflectionPlane& plane, const std::vector<int>& samples) const;
   SymmetryAxis judgedFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
-  void findPart(SymmetryPlane& plane) const;
 
   const GaussianEdt& edt_;
   const DetectionOptions& options_;

@@ -118,13 +118,18 @@ TEST(PlaneMatching, ASphereHasEveryPlaneAndAxisThroughItsCenter) {
   EXPECT_EQ(verdictsOf({Answer::ofAxis({100.0, 0.0, 3.0}, {0.0, 0.0, 1.0}, 1.0)}, sphere).front(), Verdict::Right);
 }
 
-TEST(PlaneMatching, AnAxisOfAPrismOfManyCornersIsNeutral) {
+TEST(PlaneMatching, AnAxisStandsForThePlanesOfAPrismOfManyCorners) {
   for (const int num_planes : {4, 12}) {
     ReferenceSymmetries prism = onePlane();
     prism.planes.clear();
     for (int k = 0; k < num_planes; ++k) prism.planes.push_back({through(180.0 * k / num_planes, 0.0), 1.0});
-    EXPECT_EQ(verdictsOf({Answer::ofAxis({100.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 1.0)}, prism).front(),
-              num_planes == 12 ? Verdict::Neutral : Verdict::False);
+    const std::vector<Answer> answers = {Answer::ofAxis({100.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 1.0),
+                                         Answer::ofPlane(through(0.0, 0.0), 1.0)};
+    const MatchResult match = matchAnswers(answers, prism);
+    EXPECT_EQ(match.num_found, num_planes == 12 ? 12 : 1);
+    EXPECT_EQ(match.judgements[0].verdict, num_planes == 12 ? Verdict::Right : Verdict::False);
+    EXPECT_EQ(match.judgements[1].verdict, num_planes == 12 ? Verdict::Neutral : Verdict::Right);
+    EXPECT_EQ(match.num_axes_found, 0) << "no axis among the references";
   }
 }
 
