@@ -189,8 +189,8 @@ PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, co
   for (std::size_t k = 0; k < planes.size() && scene.panels.size() < kMaxPanels; ++k) {
     PicturePanel panel;
     char label[96];
-    std::snprintf(label, sizeof(label), "plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(planes[k].kind),
-                  planes[k].confidence, planes[k].support);
+    std::snprintf(label, sizeof(label), "plane %zu (%s): confidence %.2f, support %.2f", k + 1,
+                  toString(planes[k].kind), planes[k].confidence, planes[k].support);
     panel.label = label;
     panel.support.assign(support[k].begin(), support[k].end());
     PlanePatch patch;
@@ -263,8 +263,10 @@ int run(int argc, char** argv) {
     auto timing_ms = refinement.getTiming();
     timing_ms.emplace_back("load", loading_ms);
     timing_ms.emplace_back("total", searching_ms);
-    writeText(*options.common.json_path,
-              describe(options, findings, refinement.getUsedIndices().size(), refinement.usedViewpoint(), timing_ms).dump(2) + "\n");
+    writeText(
+        *options.common.json_path,
+        describe(options, findings, refinement.getUsedIndices().size(), refinement.usedViewpoint(), timing_ms).dump(2) +
+            "\n");
   }
   if (options.support_path) {
     pcl::PCLPointCloud2 base = shape.cloud;

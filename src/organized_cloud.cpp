@@ -12,11 +12,11 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kLargestError = 0.7;         // pixels, root mean square
-constexpr double kLargestSkew = 0.05;         // of the focal length; and difference of the two focal lengths
-constexpr std::size_t kFewestPoints = 50;     // that a projection is estimated from
-constexpr std::size_t kMostPoints = 20'000;   // more make it no better
-constexpr double kSmallHole = 0.01;           // of the picture: a larger one shows that there is nothing
+constexpr double kLargestError = 0.7;        // pixels, root mean square
+constexpr double kLargestSkew = 0.05;        // of the focal length; and difference of the two focal lengths
+constexpr std::size_t kFewestPoints = 50;    // that a projection is estimated from
+constexpr std::size_t kMostPoints = 20'000;  // more make it no better
+constexpr double kSmallHole = 0.01;          // of the picture: a larger one shows that there is nothing
 
 /// Depths without a point: large regions and those at the border are background, small ones are missing measurements.
 void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
@@ -65,7 +65,8 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
   // The estimate is a matter of the units: it is made of coordinates of about one.
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(width, height);
   const Points normalized = normalizePoints(points, ball.center, ball.radius);
-  for (std::size_t i = 0; i < used.size(); ++i) (*cloud)[used[i]].getVector3fMap() = normalized.col(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < used.size(); ++i)
+    (*cloud)[used[i]].getVector3fMap() = normalized.col(static_cast<Eigen::Index>(i));
   Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
   if (!(pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used) >= 0.0) || !estimate.allFinite())
     return std::nullopt;

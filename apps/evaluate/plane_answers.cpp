@@ -40,8 +40,10 @@ PlaneAnswers answersFromJson(const std::string& path) {
     answers.push_back(Answer::ofCenter(vectorFrom(center.at("point")), score(center)));
   for (const json& axis : listOf("axes"))
     answers.push_back(Answer::ofAxis(vectorFrom(axis.at("point")), vectorFrom(axis.at("direction")), score(axis)));
-  for (const json& plane : content.at("planes"))
+  for (const json& plane : content.at("planes")) {
     answers.push_back(Answer::ofPlane(planeFrom(plane.at("coefficients").get<std::array<double, 4>>()), score(plane)));
+    answers.back().possible = plane.value("kind", "symmetry") == "possible";
+  }
   const json timing = content.value("timing_ms", json::object());
   if (timing.contains("total")) result.milliseconds = timing["total"].get<double>();
   return result;
@@ -82,7 +84,10 @@ PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud
       result.answers.push_back(Answer::ofCenter(center.point, center.confidence));
     for (const SymmetryAxis& axis : refinement.getAxes())
       result.answers.push_back(Answer::ofAxis(axis.point, axis.direction, axis.confidence));
-    for (const SymmetryPlane& plane : planes) result.answers.push_back(Answer::ofPlane(plane, plane.confidence));
+    for (const SymmetryPlane& plane : planes) {
+      result.answers.push_back(Answer::ofPlane(plane, plane.confidence));
+      result.answers.back().possible = plane.kind == PlaneKind::Possible;
+    }
   } catch (const pcl::BadArgumentException&) {  // a cloud without extent
     result.failed = true;
   }

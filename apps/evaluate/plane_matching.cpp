@@ -48,9 +48,7 @@ private:
     return around;
   }
 
-  Difference scaled(const Difference& d) const {
-    return {d.angle, d.offset / references_.diagonal};
-  }
+  Difference scaled(const Difference& d) const { return {d.angle, d.offset / references_.diagonal}; }
 
   template <typename References, typename DifferenceTo>
   std::optional<Match> closest(const References& references, double max_angle,

@@ -18,6 +18,7 @@ struct Answer {
   Line3d axis{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< of an axis
   Eigen::Vector3d point = Eigen::Vector3d::Zero();                 ///< of a center
   double score = 0.0;                                              ///< larger is surer, comparable between clouds
+  bool possible = false;  ///< the detector does not call it a symmetry, but lists it as one that may be
 
   static Answer ofPlane(const ReflectionPlane& plane, double score);
   static Answer ofAxis(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double score);

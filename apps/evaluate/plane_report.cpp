@@ -100,21 +100,21 @@ std::vector<CloudGroup> groupResults(const std::vector<CloudResult>& results, Sw
 }
 
 void printTable(const std::vector<CloudGroup>& groups) {
-  std::printf("%-22s %5s %6s %6s %6s %6s | %6s %6s %6s %6s | %6s | %5s %6s | %5s %6s | %5s %7s %7s\n", "", "sym.",
-              "first", "in 5", "none", "recall", "angle", "90 %", "offset", "90 %", "false", "asym.", "none", "axes",
-              "found", "AP", "time", "95 %");
-  std::printf("%-22s %5s %6s %6s %6s %6s | %6s %6s %6s %6s | %6s | %5s %6s | %5s %6s | %5s %7s %7s\n", "clouds", "",
-              "%", "%", "%", "%", "deg", "deg", "% diag", "% diag", "/cloud", "", "%", "", "%", "", "ms", "ms");
+  std::printf("%-22s %5s %6s %6s %6s %6s %6s | %6s %6s %6s %6s | %6s | %5s %6s | %5s %6s | %5s %7s %7s\n", "", "sym.",
+              "first", "sure", "in 5", "none", "recall", "angle", "90 %", "offset", "90 %", "false", "asym.", "none",
+              "axes", "found", "AP", "time", "95 %");
+  std::printf("%-22s %5s %6s %6s %6s %6s %6s | %6s %6s %6s %6s | %6s | %5s %6s | %5s %6s | %5s %7s %7s\n", "clouds", "",
+              "%", "%", "%", "%", "%", "deg", "deg", "% diag", "% diag", "/cloud", "", "%", "", "%", "", "ms", "ms");
   for (const CloudGroup& group : groups) {
     const PlaneStatistics& s = group.statistics;
-    std::printf("%-22s %5d %6s %6s %6s %6s | %6s %6s %6s %6s | %6s | %5d %6s | %5d %6s | %5s %7s %7s\n",
+    std::printf("%-22s %5d %6s %6s %6s %6s %6s | %6s %6s %6s %6s | %6s | %5d %6s | %5d %6s | %5s %7s %7s\n",
                 group.label.c_str(), s.num_symmetric, fixed(s.first_rate, 1, 100).c_str(),
-                fixed(s.five_rate, 1, 100).c_str(), fixed(s.no_answer_rate, 1, 100).c_str(),
-                fixed(s.recall, 1, 100).c_str(), fixed(s.median_angle, 3).c_str(), fixed(s.p90_angle, 3).c_str(),
-                fixed(s.median_offset, 3, 100).c_str(), fixed(s.p90_offset, 3, 100).c_str(),
-                fixed(s.false_per_cloud, 2).c_str(), s.num_asymmetric, fixed(s.none_rate, 1, 100).c_str(), s.num_axes,
-                fixed(s.axis_rate, 1, 100).c_str(), fixed(s.average_precision, 3).c_str(),
-                fixed(s.median_ms, 1).c_str(), fixed(s.p95_ms, 1).c_str());
+                fixed(s.sure_first_rate, 1, 100).c_str(), fixed(s.five_rate, 1, 100).c_str(),
+                fixed(s.no_answer_rate, 1, 100).c_str(), fixed(s.recall, 1, 100).c_str(),
+                fixed(s.median_angle, 3).c_str(), fixed(s.p90_angle, 3).c_str(), fixed(s.median_offset, 3, 100).c_str(),
+                fixed(s.p90_offset, 3, 100).c_str(), fixed(s.false_per_cloud, 2).c_str(), s.num_asymmetric,
+                fixed(s.none_rate, 1, 100).c_str(), s.num_axes, fixed(s.axis_rate, 1, 100).c_str(),
+                fixed(s.average_precision, 3).c_str(), fixed(s.median_ms, 1).c_str(), fixed(s.p95_ms, 1).c_str());
   }
 }
 
@@ -129,6 +129,7 @@ nlohmann::json toJson(const std::vector<CloudGroup>& groups) {
                     {"num_nearly_symmetric", s.num_nearly},
                     {"num_failed", s.num_failed},
                     {"first_rate", s.first_rate},
+                    {"sure_first_rate", s.sure_first_rate},
                     {"five_rate", s.five_rate},
                     {"no_answer_rate", s.no_answer_rate},
                     {"recall", s.recall},

@@ -16,6 +16,14 @@ double degrees(double radians) {
   return radians * 180.0 / M_PI;
 }
 
+/// Whether the first answer that is not neutral is called a symmetry.
+bool firstIsSure(const CloudResult& result) {
+  const auto& judgements = result.match.judgements;
+  for (std::size_t i = 0; i < judgements.size(); ++i)
+    if (judgements[i].verdict != Verdict::Neutral) return !result.answers.answers[i].possible;
+  return false;
+}
+
 }  // namespace
 
 double quantile(std::vector<double> values, double share) {
@@ -29,7 +37,7 @@ double quantile(std::vector<double> values, double share) {
 
 PlaneStatistics summarize(const CloudResults& results) {
   PlaneStatistics statistics;
-  int num_first = 0, num_five = 0, num_no_answer = 0, num_false = 0, num_none = 0;
+  int num_first = 0, num_sure_first = 0, num_five = 0, num_no_answer = 0, num_false = 0, num_none = 0;
   int num_references = 0, num_found = 0, num_axes_found = 0;
   std::vector<double> angles, offsets, axis_angles, axis_offsets, times;
   for (const CloudResult* result : results) {
@@ -40,13 +48,17 @@ PlaneStatistics summarize(const CloudResults& results) {
       ++statistics.num_nearly;
     } else if (result->kind == SymmetryKind::Asymmetric) {
       ++statistics.num_asymmetric;
-      num_none += result->answers.answers.empty() && !result->answers.failed ? 1 : 0;
+      const auto& answers = result->answers.answers;
+      const bool none = std::all_of(answers.begin(), answers.end(), [](const Answer& a) { return a.possible; });
+      num_none += none && !result->answers.failed ? 1 : 0;
     } else {
       ++statistics.num_symmetric;
       num_first += result->firstIsRight() ? 1 : 0;
+      num_sure_first += result->firstIsRight() && firstIsSure(*result) ? 1 : 0;
       num_five += match.rank && *match.rank <= 5 ? 1 : 0;
       num_no_answer += result->answers.answers.empty() ? 1 : 0;
-      num_false += match.num_false;
+      for (std::size_t i = 0; i < match.judgements.size(); ++i)
+        num_false += match.judgements[i].verdict == Verdict::False && !result->answers.answers[i].possible ? 1 : 0;
       num_references += match.num_references;
       num_found += match.num_found;
       statistics.num_axes += result->num_reference_axes;
@@ -62,6 +74,7 @@ PlaneStatistics summarize(const CloudResults& results) {
     }
   }
   statistics.first_rate = ratio(num_first, statistics.num_symmetric);
+  statistics.sure_first_rate = ratio(num_sure_first, statistics.num_symmetric);
   statistics.five_rate = ratio(num_five, statistics.num_symmetric);
   statistics.no_answer_rate = ratio(num_no_answer, statistics.num_symmetric);
   statistics.false_per_cloud = ratio(num_false, statistics.num_symmetric);

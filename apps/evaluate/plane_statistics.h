@@ -30,11 +30,12 @@ struct CloudResult {
 struct PlaneStatistics {
   int num_symmetric = 0, num_asymmetric = 0, num_nearly = 0, num_failed = 0;
   double first_rate = 0.0;       ///< symmetric clouds whose first answer is right; neutral answers do not count
+  double sure_first_rate = 0.0;  ///< of them those whose first answer is called a symmetry, not just possible
   double five_rate = 0.0;        ///< symmetric clouds with a right answer among the first five
   double no_answer_rate = 0.0;   ///< symmetric clouds without any
   double recall = 0.0;           ///< references found
-  double false_per_cloud = 0.0;  ///< on symmetric clouds
-  double none_rate = 0.0;        ///< asymmetric clouds that rightly got no answer
+  double false_per_cloud = 0.0;  ///< on symmetric clouds, called symmetries
+  double none_rate = 0.0;        ///< asymmetric clouds where rightly nothing is called a symmetry
   double median_angle = 0.0, p90_angle = 0.0;                ///< degrees, of the best-ranked right answers
   double median_offset = 0.0, p90_offset = 0.0;              ///< diagonals
   int num_axes = 0;                                          ///< axes among the references

@@ -55,8 +55,8 @@ public:
   /// 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads);
 
-  /// Where the scanner stood; by default the data decide, as in SymmetryMaximaRefinement. With a viewpoint the map holds
-  /// seenSymmetry() of D and of its counterpart for the space that the scanner saw to be empty.
+  /// Where the scanner stood; by default the data decide, as in SymmetryMaximaRefinement. With a viewpoint the map
+  /// holds seenSymmetry() of D and of its counterpart for the space that the scanner saw to be empty.
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
   /// The scanner stood here, input frame.
   void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }

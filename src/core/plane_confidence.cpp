@@ -29,7 +29,7 @@ double planeConfidence(const PlaneEvidence& evidence) {
     // distance transform of fewer points is noisier.
     const double excess = (unexplained - 0.03 * evidence.roughness) / (0.01 + 0.3 * evidence.spacing);
     const double lost_excess = lost / (0.003 + 2.0 * evidence.spacing * evidence.spacing);
-    logit = 4.5 - 2.0 * excess - 0.2 * lost_excess;
+    logit = 4.25 - 2.0 * excess - 0.2 * lost_excess;
   }
   return 1.0 / (1.0 + std::exp(-logit));
 }

@@ -9,9 +9,9 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t kMostPlanes = 8;       // whose common lines are looked at
-constexpr double kLeastAngle = 0.17;         // radians between planes that tell their common line
-constexpr double kContainedAngle = 0.0524;   // radians, 3 degrees
+constexpr std::size_t kMostPlanes = 8;      // whose common lines are looked at
+constexpr double kLeastAngle = 0.17;        // radians between planes that tell their common line
+constexpr double kContainedAngle = 0.0524;  // radians, 3 degrees
 constexpr int kScreening = 3, kFitted = 6, kTested = 8;
 constexpr double kGoldenRatio = 0.61803398874989485;
 
@@ -86,7 +86,8 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   if (planes.size() < 3) return std::nullopt;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()), Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()),
+                                                              Eigen::EigenvaluesOnly);
   if (solver.eigenvalues()[0] < 0.02) return std::nullopt;  // all through one line
   Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
   const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);

@@ -21,7 +21,8 @@ struct FamilyTest {
   /// The plane after refinement.
   std::function<ReflectionPlane(const ReflectionPlane&)> refine;
   double min_share;  ///< of a symmetry
-  double allowance;  ///< by which a family may be worse than the planes that were found: what sampling does, not a handle
+  double
+      allowance;  ///< by which a family may be worse than the planes that were found: what sampling does, not a handle
   double tolerance;  ///< offset within which planes pass through a point, units of the planes' frame
 };
 

@@ -27,15 +27,16 @@ std::vector<float> pointSupport(const std::vector<int>& closest, const std::vect
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
                             const std::vector<float>& sq_distances, const Points& samples,
                             const LocalGeometry& geometry, const Visibility* visibility) {
-  constexpr float kReach = 1.25f;       // spacings, along the surface
+  constexpr float kReach = 1.25f;                            // spacings, along the surface
   constexpr float kNormalReach = 0.01f, kRoughReach = 3.0f;  // across the surface: of the radius, of the roughness
-  constexpr float kRoughShare = 0.25f;  // of the spacing: from there on normals mean nothing
+  constexpr float kRoughShare = 0.25f;                       // of the spacing: from there on normals mean nothing
   const std::size_t size = closest.size();
   PointEvidence evidence{std::vector<float>(size), std::vector<float>(size)};
   for (std::size_t i = 0; i < size; ++i) {
     const int j = closest[i];
     if (j < 0) {
-      evidence.conflict[i] = !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0 ? 1.0f : 0.0f;
+      evidence.conflict[i] =
+          !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0 ? 1.0f : 0.0f;
       continue;
     }
     const float reach = std::max(1e-6f, kReach * geometry.spacing[j]);

@@ -11,10 +11,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kMostCells = 160;        // along the longest side
-constexpr double kMargin = 4.0;        // bandwidths around the points
-constexpr double kStep = 0.5;          // bandwidths that the farthest points move by in a difference
-constexpr double kSettled = 0.01;      // bandwidths
+constexpr int kMostCells = 160;    // along the longest side
+constexpr double kMargin = 4.0;    // bandwidths around the points
+constexpr double kStep = 0.5;      // bandwidths that the farthest points move by in a difference
+constexpr double kSettled = 0.01;  // bandwidths
 
 }  // namespace
 
@@ -52,7 +52,8 @@ PointDensity::PointDensity(const PointsRef& points, double bandwidth, int num_th
   std::vector<float> kernel(2 * reach + 1);
   double sum = 0.0;
   for (int k = -reach; k <= reach; ++k) sum += std::exp(-0.5 * k * k / (blur * blur));
-  for (int k = -reach; k <= reach; ++k) kernel[k + reach] = static_cast<float>(std::exp(-0.5 * k * k / (blur * blur)) / sum);
+  for (int k = -reach; k <= reach; ++k)
+    kernel[k + reach] = static_cast<float>(std::exp(-0.5 * k * k / (blur * blur)) / sum);
   for (int axis = 0; axis < 3; ++axis) {
     const int along = size_[axis], across = size_[(axis + 1) % 3], deep = size_[(axis + 2) % 3];
     parallelBlocks(deep, num_threads, [&](std::size_t d) {

@@ -15,26 +15,28 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kCandidateAngle = 0.1;                     // radians: maxima closer than this ...
-constexpr double kCandidateOffset = 0.06;                   // ... in angle and radii share one basin of refinement
-constexpr double kFinalSigmaInSpacings = 3.0;               // weights at the end: well above the spacing, below sigma
+constexpr double kCandidateAngle = 0.1;        // radians: maxima closer than this ...
+constexpr double kCandidateOffset = 0.06;      // ... in angle and radii share one basin of refinement
+constexpr double kFinalSigmaInSpacings = 3.0;  // weights at the end: well above the spacing, below sigma
 constexpr int kCoarseIterations = 5, kCloseIterations = 6, kFullIterations = 8;  // symmetries converge in fewer
-constexpr int kRoughIterations = 4; // of planes that will never settle
-constexpr double kLeastMerit = 0.93;                        // of a symmetry of a whole cloud
-constexpr double kCoarseSlack = 0.4, kCloseSlack = 0.1;     // of merit below that after the stages
-constexpr std::size_t kKeptCoarsely = 14, kKeptClosely = 6;  // of planes that have less
-constexpr double kSlopeAngle = 0.2, kSlopeOffset = 0.15;    // radians, radii: how far a slope may reach
-constexpr double kSlopeDip = 0.005;                         // of D: what counts as falling
+constexpr int kRoughIterations = 4;                                              // of planes that will never settle
+constexpr double kLeastMerit = 0.93;                                             // of a symmetry of a whole cloud
+constexpr double kCoarseSlack = 0.4, kCloseSlack = 0.1;                          // of merit below that after the stages
+constexpr std::size_t kKeptCoarsely = 14, kKeptClosely = 6;                      // of planes that have less
+constexpr double kSlopeAngle = 0.2, kSlopeOffset = 0.15;  // radians, radii: how far a slope may reach
+constexpr double kSlopeDip = 0.005;                       // of D: what counts as falling
 // In standard errors: once a Gauss-Newton step of a symmetry is this short, another one over all points leaves the
 // errors of boxes and prisms (exact and sampled) where they are.
 constexpr double kSettledErrorShare = 3.0;
-constexpr std::size_t kMaxClosed = 16;  // planes whose group is completed; more belong to a continuous family
+constexpr int kRoughShare = 10;            // of them for planes that will never settle, one in so many
+constexpr int kScanShare = 4;              // of the samples of the last stage, one in so many
+constexpr std::size_t kMaxClosed = 16;     // planes whose group is completed; more belong to a continuous family
 constexpr double kVolumeRoughness = 0.36;  // of the spacing: neighbours on all sides (0.42) rather than on a surface
 constexpr double kDensityBandwidth = 1.5;  // spacings
 constexpr int kDensityIterations = 6, kDensitySampleFactor = 10;  // a sample costs a tenth of a closest point
-constexpr double kFamilyShare = 0.92, kSeenFamilyShare = 0.98;    // of all planes of a family; where only a part is seen
-constexpr double kAllowance = 0.03, kDensityAllowance = 0.008;    // of the share, from the best plane to its family
-constexpr double kFamilyTolerance = 0.03;                         // radii
+constexpr double kFamilyShare = 0.92, kSeenFamilyShare = 0.98;  // of all planes of a family; where only a part is seen
+constexpr double kAllowance = 0.03, kDensityAllowance = 0.008;  // of the share, from the best plane to its family
+constexpr double kFamilyTolerance = 0.03;                       // radii
 constexpr int kFamilySamples = 1500;
 constexpr double kUnseen = 0.02;  // of the points: less that is seen of a reflection says nothing
 constexpr int kNumSeeds = 24, kPartDirections = 8;
@@ -149,18 +151,23 @@ void Refinement::refineCoarsely(const SymmetryMap& map, std::vector<Candidate>& 
 
 void Refinement::refineClosely(std::vector<Candidate>& candidates, double least_merit) const {
   run(candidates, std::min(4 * options_.num_coarse_samples, options_.num_refine_samples),
-      std::clamp(final_sigma_, 0.5 * sigma_, sigma_), final_sigma_, std::min(kCloseIterations, options_.max_iterations));
+      std::clamp(final_sigma_, 0.5 * sigma_, sigma_), final_sigma_,
+      std::min(kCloseIterations, options_.max_iterations));
   candidates = distinct(std::move(candidates), std::max(least_merit, leastMerit(kCloseSlack)), kKeptClosely);
 }
 
 std::vector<SymmetryPlane> Refinement::finish(std::vector<Candidate>& candidates) const {
-  run(candidates, options_.num_refine_samples, final_sigma_, final_sigma_,
+  // Of a scan, what is not seen limits a plane, not the number of points.
+  run(candidates, options_.num_refine_samples / (visibility_ ? kScanShare : 1), final_sigma_, final_sigma_,
       std::min(kFullIterations, options_.max_iterations));
-  const std::vector<int> all = allOf(points_.cols());
+  // A plane of a scan is judged by fewer, as many are judged and few reported.
+  const std::vector<int> all =
+      visibility_ ? drawSamples(points_.cols(), options_.num_refine_samples / kScanShare, options_.seed)
+                  : allOf(points_.cols());
   std::vector<SymmetryPlane> planes(candidates.size());
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     const Candidate& candidate = candidates[i];
-    const bool seen_all = static_cast<Eigen::Index>(candidate.last.last.closest.size()) == points_.cols();
+    const bool seen_all = candidate.last.last.closest.size() == all.size();
     const IspStep step =
         seen_all ? candidate.last.last
                  : iterateSymmetricPoints(surface_, all, candidate.plane, final_sigma_, IspUpdate::PointToPoint);
@@ -202,27 +209,26 @@ void Refinement::collectFamilies(Detection& detection) const {
   for (const SymmetryPlane& plane : detection.planes)
     if (isSymmetry(plane)) symmetries.push_back(&plane);
   if (symmetries.size() < 2) return;
-  std::stable_sort(symmetries.begin(), symmetries.end(), [](const auto* a, const auto* b) {
-    return a->confidence > b->confidence;
-  });
+  std::stable_sort(symmetries.begin(), symmetries.end(),
+                   [](const auto* a, const auto* b) { return a->confidence > b->confidence; });
   std::vector<ReflectionPlane> planes;
   for (const SymmetryPlane* plane : symmetries) {
     const ReflectionPlane normalized = toNormalized(*plane);
-    const bool known =
-        std::any_of(planes.begin(), planes.end(), [&](const ReflectionPlane& other) { return same(other, normalized); });
+    const bool known = std::any_of(planes.begin(), planes.end(),
+                                   [&](const ReflectionPlane& other) { return same(other, normalized); });
     if (!known) planes.push_back(normalized);
   }
   const std::vector<int> samples = drawSamples(points_.cols(), kFamilySamples, options_.seed);
   const FamilyTest test = familyTest(samples);
   const auto drop = [&](const auto& belongs) {
     auto& list = detection.planes;
-    list.erase(std::remove_if(list.begin(), list.end(), [&](const SymmetryPlane& p) { return belongs(toNormalized(p)); }),
-               list.end());
+    list.erase(
+        std::remove_if(list.begin(), list.end(), [&](const SymmetryPlane& p) { return belongs(toNormalized(p)); }),
+        list.end());
   };
   if (const auto center = findCenter(planes, test)) {
     const SymmetryAxis judged = judgedFamily(center->planes, samples);
-    detection.centers.push_back(
-        {center->point * scale_ + center_, judged.confidence, judged.score, judged.support});
+    detection.centers.push_back({center->point * scale_ + center_, judged.confidence, judged.score, judged.support});
     drop([&](const ReflectionPlane& p) { return std::abs(p.signedDistance(center->point)) <= test.tolerance; });
     return;
   }
@@ -254,6 +260,8 @@ std::vector<SymmetryPlane> Refinement::report(std::vector<SymmetryPlane> planes)
       return same(toNormalized(other), toNormalized(plane)) || onSlopeOf(other, plane);
     });
     if (known) continue;
+    if (plane.point_support.size() != static_cast<std::size_t>(points_.cols()))
+      plane.point_support = sharesOf(toNormalized(plane), allOf(points_.cols())).point_support;
     reported.push_back(std::move(plane));
   }
   return reported;
@@ -290,7 +298,9 @@ void Refinement::run(std::vector<Candidate>& candidates, int num_samples, double
   const std::vector<int> samples = drawSamples(points_.cols(), num_samples, options_.seed);
   // Matches of an approximate symmetry never settle: a tenth of the samples places it as well as it can be placed.
   const std::vector<int> fewer =
-      drawSamples(points_.cols(), std::min(num_samples, options_.num_refine_samples / 10), options_.seed);
+      drawSamples(points_.cols(),
+                  std::min(num_samples, options_.num_refine_samples / (visibility_ ? 2 * kRoughShare : kRoughShare)),
+                  options_.seed);
   IspOptions isp;
   isp.update = options_.update;
   isp.sigma = sigma;
@@ -298,7 +308,8 @@ void Refinement::run(std::vector<Candidate>& candidates, int num_samples, double
   isp.max_iterations = max_iterations;
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
-    const bool settles = candidate.iterations == 0 || candidate.merit >= kLeastMerit - (visibility_ ? 0.0 : kCloseSlack);
+    const bool settles =
+        candidate.iterations == 0 || candidate.merit >= kLeastMerit - (visibility_ ? 0.0 : kCloseSlack);
     const std::vector<int>& used = settles ? samples : fewer;
     IspOptions own = isp;
     if (!settles) own.max_iterations = std::min(own.max_iterations, kRoughIterations);
@@ -369,14 +380,15 @@ std::vector<Candidate> Refinement::distinct(std::vector<Candidate> candidates, d
 void Refinement::judge(SymmetryPlane& plane, const Shares& shares) const {
   plane.point_support = shares.point_support;
   plane.score = correlation(edt_, plane);
-  const PlaneEvidence evidence{shares.support, shares.conflict,        plane.score,         density_ ? 1.0 : baseline_,
-                               spacing_,       roughness_,             visibility_.has_value(), density_.has_value()};
+  const PlaneEvidence evidence{
+      shares.support, shares.conflict,         plane.score,         density_ ? 1.0 : baseline_, spacing_,
+      roughness_,     visibility_.has_value(), density_.has_value()};
   plane.support = seenSupport(evidence);
   plane.seen = std::min(1.0, shares.support + shares.conflict);
   plane.confidence = planeConfidence(evidence);
-  plane.kind = plane.confidence >= options_.min_confidence                   ? PlaneKind::Symmetry
+  plane.kind = plane.confidence >= options_.min_confidence                ? PlaneKind::Symmetry
                : visibility_ && plane.confidence >= options_.min_possible ? PlaneKind::Possible
-                                                                             : PlaneKind::Approximate;
+                                                                          : PlaneKind::Approximate;
 }
 
 double Refinement::familyShare(const ReflectionPlane& plane, const std::vector<int>& samples) const {
@@ -417,8 +429,14 @@ SymmetryAxis Refinement::judgedFamily(const std::vector<ReflectionPlane>& planes
     conflict += shares.conflict / count;
     family.score += correlation(edt_, toInput(plane)) / count;
   }
-  const PlaneEvidence evidence{support,  conflict,   family.score,            density_ ? 1.0 : baseline_,
-                               spacing_, roughness_, visibility_.has_value(), density_.has_value()};
+  const PlaneEvidence evidence{support,
+                               conflict,
+                               family.score,
+                               density_ ? 1.0 : baseline_,
+                               spacing_,
+                               roughness_,
+                               visibility_.has_value(),
+                               density_.has_value()};
   family.support = seenSupport(evidence);
   family.confidence = planeConfidence(evidence);
   return family;

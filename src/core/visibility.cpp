@@ -48,8 +48,7 @@ void closeHoles(std::vector<float>& depths, int width, int height) {
 
 }  // namespace
 
-Visibility::Visibility(const Projection& projection, int width, int height, std::vector<float> depths,
-                       float outside)
+Visibility::Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside)
     : projection_(projection), width_(width), height_(height), depths_(std::move(depths)), outside_(outside) {
   if (width < 1 || height < 1 || depths_.size() != static_cast<std::size_t>(width) * height)
     throw std::invalid_argument("depths: size " + std::to_string(depths_.size()) + ", must be width * height > 0");
@@ -89,7 +88,8 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
     std::vector<char> filled(static_cast<std::size_t>(width) * height, 0);
     for (const Eigen::Array2d& p : places) filled[static_cast<std::size_t>(row(p)) * width + column(p)] = 1;
     const auto num_filled = std::count(filled.begin(), filled.end(), 1);
-    const double wanted = std::sqrt(kPointsPerPixel * static_cast<double>(num_filled) / static_cast<double>(points.cols()));
+    const double wanted =
+        std::sqrt(kPointsPerPixel * static_cast<double>(num_filled) / static_cast<double>(points.cols()));
     if (round == 3 || (wanted > 0.95 && wanted < 1.05)) break;
     pixel *= wanted;
   }

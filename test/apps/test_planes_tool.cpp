@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "lathe_mesh.h"
 #include "shape_input.h"
 #include "tool_run.h"
 
@@ -36,9 +37,13 @@ TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
     EXPECT_GT(plane["support"].get<double>(), 0.98);
     EXPECT_EQ(plane["kind"], "symmetry");
     EXPECT_GT(plane["confidence"].get<double>(), 0.9);
+    EXPECT_LE(plane["confidence"].get<double>(), 1.0);
+    EXPECT_NEAR(plane["seen"].get<double>(), 1.0, 1e-6);
   }
   EXPECT_EQ(along, (std::array<int, 3>{1, 1, 1})) << "each axis once, within 0.1 degrees";
-  EXPECT_TRUE(report["axes"].is_array());
+  EXPECT_TRUE(report["axes"].is_array() && report["axes"].empty());
+  EXPECT_TRUE(report["centers"].is_array() && report["centers"].empty());
+  EXPECT_EQ(report["partial"], false);
   EXPECT_GT(report["timing_ms"]["total"].get<double>(), 0.0);
   EXPECT_NE(output_.find("symmetry"), std::string::npos);
 }
@@ -106,6 +111,76 @@ TEST_F(PlanesTool, GivesTheSameBytesForAnyNumberOfThreads) {
     if (expected.empty()) expected = report.dump();
     EXPECT_EQ(report.dump(), expected) << threads << " threads";
   }
+}
+
+TEST_F(PlanesTool, ReportsAnAxisOfRevolution) {
+  const std::string cylinder =
+      folder_.write("cylinder.off", latheOFF({{0.001, -1.0}, {0.6, -1.0}, {0.6, 1.0}, {0.001, 1.0}}, 128));
+  ASSERT_EQ(run(cylinder + " -json " + (folder_ / "c.json")), 0) << error_;
+  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "c.json"));
+  ASSERT_EQ(report["axes"].size(), 1u);
+  const auto& axis = report["axes"][0];
+  const auto direction = axis["direction"].get<std::vector<double>>(), point = axis["point"].get<std::vector<double>>();
+  EXPECT_GT(std::abs(direction.at(2)), std::cos(0.01));
+  EXPECT_LT(std::hypot(point.at(0), point.at(1)), 0.01);
+  EXPECT_GE(axis["confidence"].get<double>(), 0.5);
+  EXPECT_GT(axis["support"].get<double>(), 0.9);
+  EXPECT_GT(axis["score"].get<double>(), 0.9);
+  EXPECT_TRUE(report["centers"].empty());
+  ASSERT_EQ(report["planes"].size(), 1u);
+  EXPECT_GT(std::abs(report["planes"][0]["coefficients"][2].get<double>()), std::cos(0.01));
+  EXPECT_NE(output_.find("axis of revolution"), std::string::npos);
+
+  const std::string ball = folder_.write("ball.off", sphereOFF());
+  ASSERT_EQ(run(ball + " -json " + (folder_ / "b.json")), 0) << error_;
+  const nlohmann::json round = nlohmann::json::parse(contentOf(folder_ / "b.json"));
+  ASSERT_EQ(round["centers"].size(), 1u);
+  EXPECT_TRUE(round["planes"].empty());
+  EXPECT_TRUE(round["axes"].empty());
+  for (const double x : round["centers"][0]["point"].get<std::vector<double>>()) EXPECT_NEAR(x, 0.0, 0.01);
+}
+
+TEST_F(PlanesTool, TakesTheViewpoint) {
+  // The three faces of the box of half sizes 1, 1.5 and 2 that are seen from (8, 9, 10).
+  const std::string input = folder_.write("scan.pcd", [] {
+    std::string text =
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3000\nHEIGHT 1\n"
+        "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3000\nDATA ascii\n";
+    for (int i = 0; i < 3000; ++i) {
+      const double u = std::fmod(i * 0.754877666, 1.0), v = std::fmod(i * 0.569840291, 1.0);
+      const double p[3][3] = {{1, 3 * v - 1.5, 4 * u - 2}, {2 * u - 1, 1.5, 4 * v - 2}, {2 * u - 1, 3 * v - 1.5, 2}};
+      const auto* q = p[i % 3];
+      text += std::to_string(q[0]) + " " + std::to_string(q[1]) + " " + std::to_string(q[2]) + "\n";
+    }
+    return text;
+  }());
+  const auto report = [&](const std::string& viewpoint) {
+    EXPECT_EQ(run(input + viewpoint + " -json " + (folder_ / "v.json")), 0) << viewpoint << ": " << error_;
+    return nlohmann::json::parse(contentOf(folder_ / "v.json"));
+  };
+  EXPECT_EQ(report("")["partial"], false) << "the origin is in the middle of the box";
+  EXPECT_EQ(report(" -viewpoint auto")["partial"], false);
+  EXPECT_EQ(report(" -viewpoint none")["partial"], false);
+  const nlohmann::json seen = report(" -viewpoint 8,9,10");
+  EXPECT_EQ(seen["partial"], true);
+  ASSERT_FALSE(seen["planes"].empty());
+  std::array<int, 3> along{};
+  for (const auto& plane : seen["planes"]) {
+    EXPECT_TRUE(plane["kind"] == "symmetry" || plane["kind"] == "possible");
+    EXPECT_GE(plane["confidence"].get<double>(), 0.0);
+    EXPECT_LE(plane["confidence"].get<double>(), 1.0);
+    EXPECT_GT(plane["seen"].get<double>(), 0.0);
+    EXPECT_LE(plane["seen"].get<double>(), 1.0);
+    const auto c = plane["coefficients"].get<std::vector<double>>();
+    for (int axis = 0; axis < 3; ++axis) along[axis] += std::abs(c[axis]) > std::cos(0.03) && std::abs(c[3]) < 0.1;
+  }
+  EXPECT_EQ(along, (std::array<int, 3>{1, 1, 1}));
+  for (const char* wrong : {"never", "1,2", "1,2,3,4", "1,2,x", "\"\""}) {
+    EXPECT_EQ(run(input + " -viewpoint " + wrong), 2) << wrong;
+    EXPECT_NE(error_.find("-viewpoint"), std::string::npos) << wrong << ": " << error_;
+  }
+  EXPECT_EQ(run(input + " -viewpoint 0,0,0 -quiet"), 1) << "among the points";
+  EXPECT_NE(error_.find("viewpoint"), std::string::npos) << error_;
 }
 
 TEST_F(PlanesTool, AnswersBadInputWithOneLineAndAnExitCode) {

@@ -264,8 +264,9 @@ TEST(DetectPlanes, NoiseBeyondTheSpacingLeavesTheSymmetries) {
     const Comparison comparison = compare(detection, shape);
     EXPECT_EQ(detection.planes.size(), 3u) << seed;
     EXPECT_EQ(comparison.num_matched, 3u) << seed;
+    // 0.30 degrees and 4.9e-4 of the diagonal were measured.
     EXPECT_LT(comparison.worst_angle, 1.5 * kDegree) << seed;
-    EXPECT_LT(comparison.worst_offset, 0.01) << seed;
+    EXPECT_LT(comparison.worst_offset, 0.002) << seed;
     for (const SymmetryPlane& plane : detection.planes) EXPECT_EQ(plane.kind, PlaneKind::Symmetry) << seed;
     worst_angle = std::max(worst_angle, comparison.worst_angle);
     worst_offset = std::max(worst_offset, comparison.worst_offset);

@@ -18,7 +18,7 @@ const AxisLine kLine(Eigen::Vector3d(0.1, -0.05, 0.0), Eigen::Vector3d(0.3, 0.2,
 /// Nothing is a symmetry but what \p is_symmetry says; refinement leaves planes alone.
 FamilyTest testOf(const std::function<bool(const ReflectionPlane&)>& is_symmetry) {
   const auto share = [is_symmetry](const ReflectionPlane& plane) { return is_symmetry(plane) ? 1.0 : 0.6; };
-  return {share, share, [](const ReflectionPlane& plane) { return plane; }, 0.92, 0.03};
+  return {share, share, [](const ReflectionPlane& plane) { return plane; }, 0.92, 0.03, 0.03};
 }
 
 ReflectionPlane through(const AxisLine& line, double angle) {
@@ -151,9 +151,9 @@ TEST(Families, ACylinderOfManySidesIsOneAndAPrismIsNone) {
 }
 
 TEST(Families, AHandleLeavesACupItsOnePlane) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const Eigen::Isometry3d pose = randomPose(10 + seed);
-    const Shape with = moved(cup(true, 10'000, seed), pose);
+    const Shape with = moved(cup(true, 8000, seed), pose);
     const Detection one = detectPlanes(with.cloud());
     EXPECT_TRUE(one.axes.empty()) << seed;
     ASSERT_EQ(one.planes.size(), 1u) << seed;
@@ -162,7 +162,7 @@ TEST(Families, AHandleLeavesACupItsOnePlane) {
     EXPECT_LT(error.angle, 0.5 * kDegree) << seed;
     EXPECT_LT(error.offset, 0.01) << seed;
 
-    const Detection all = detectPlanes(moved(cup(false, 10'000, seed), pose).cloud());
+    const Detection all = detectPlanes(moved(cup(false, 8000, seed), pose).cloud());
     ASSERT_EQ(all.axes.size(), 1u) << seed;
     EXPECT_TRUE(all.planes.empty()) << seed << ": it is open at one end";
     EXPECT_GT(std::abs(all.axes[0].direction.dot(pose.linear().col(2))), std::cos(0.5 * kDegree)) << seed;

@@ -1,13 +1,13 @@
 /// Planes of scans: what was seen from one side bears out the true planes and rules out others.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <numeric>
 #include <optional>
 
 #include "pcl_symmetry/core/plane_detection.h"
 #include "pcl_symmetry/core/plane_support.h"
-#include "plane_confidence.h"
 #include "scans.h"
 
 namespace {
@@ -90,8 +90,9 @@ TEST(Scans, TruePlanesAreSupportedWhereSeenAndMeetNoConflict) {
     const Evidence evidence(scan.cloud(), scan.visibility());
     for (const ReflectionPlane& plane : scan.planes) {
       const auto shares = evidence.of(plane);
-      std::printf("%-6s support %.3f conflict %.3f\n", name.c_str(), shares.support, shares.conflict);
-      EXPECT_LT(shares.conflict, 0.05) << name;
+      // Support from 0.485 (a face that is seen on one side only says nothing) to 0.942, conflict up to 0.007 measured.
+      EXPECT_GT(shares.support, 0.4) << name;
+      EXPECT_LT(shares.conflict, 0.02) << name;
     }
   }
 }
@@ -121,8 +122,6 @@ TEST(Scans, APlaneToWhereNobodyLookedIsNoSymmetry) {
     const ReflectionPlane behind(forward, farthest + 0.02);
     const auto shares = evidence.of(behind);
     EXPECT_LT(shares.support, 0.05) << name;
-    const PlaneEvidence seen{0.0, 0.0, 0.0, 1.0, 0.02, 0.05, true, false};
-    EXPECT_LT(planeConfidence(seen), 0.02) << name;
     const Visibility visibility = scan.visibility();
     for (const SymmetryPlane& plane : detectPlanes(cloud, {}, nullptr, &visibility).planes) {
       const PlaneError error = planeError(plane, behind, centerOfMass(cloud));
@@ -147,10 +146,11 @@ TEST(Scans, TruePlanesAreAmongTheAnswers) {
       found_here += found ? 1 : 0;
       num_certain += found && found->kind == PlaneKind::Symmetry ? 1 : 0;
       num_without += unseen ? 1 : 0;
-      if (found && unseen) {
-        EXPECT_LE(unseen->confidence, found->confidence) << name;
+      if (unseen) {
+        EXPECT_NE(unseen->kind, PlaneKind::Symmetry) << name << ": half a shape has none of its planes";
       }
     }
+    double best_wrong = 0.0, best_true = 0.0;
     for (const SymmetryPlane& plane : detection.planes) {
       EXPECT_TRUE(plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible) << name;
       EXPECT_GT(plane.seen, 0.0) << name;
@@ -161,17 +161,17 @@ TEST(Scans, TruePlanesAreAmongTheAnswers) {
         is_true |= error.angle < 2.0 * kDegree && error.offset < 0.02 * diagonal(cloud);
       }
       num_wrong += plane.kind == PlaneKind::Symmetry && !is_true ? 1 : 0;
-      std::printf("%-6s %s conf %.3f support %.3f seen %.3f score %.3f kind %d  n %.2f %.2f %.2f r %.3f\n",
-                  name.c_str(), is_true ? "true " : "wrong", plane.confidence, plane.support, plane.seen, plane.score,
-                  static_cast<int>(plane.kind), plane.normal().x(), plane.normal().y(), plane.normal().z(),
-                  plane.offset());
+      double& best = is_true ? best_true : best_wrong;
+      best = std::max(best, plane.confidence);
     }
     EXPECT_GE(found_here, 1) << name << " from " << scan.viewpoint.transpose();
+    EXPECT_GT(best_true, best_wrong) << name << " from " << scan.viewpoint.transpose();
     num_planes += static_cast<int>(scan.planes.size());
     num_found += found_here;
   }
   std::printf("%d of %d true planes, %d called symmetries (wrongly %d); %d without the viewpoint\n", num_found,
               num_planes, num_certain, num_wrong, num_without);
+  EXPECT_EQ(num_found, num_planes);
 }
 
 TEST(Scans, SameBytesForAnyNumberOfThreads) {

@@ -77,11 +77,13 @@ TEST(SymmetryMaximaRefinement, HonoursIndicesAndLeavesOutPointsThatAreNotFinite)
   ASSERT_EQ(used.size(), cloud->size());
   const std::vector<float> support = refinement.computePointSupport(expected[0]);
   ASSERT_EQ(support.size(), holes->size());
+  double worst = 0.0;
   for (std::size_t i = 0; i < used.size(); ++i) {
     EXPECT_TRUE(pcl::isXYZFinite((*holes)[used[i]]));
-    // The plane moved by a last step that no longer mattered, and with it the least of the support.
-    EXPECT_NEAR(support[used[i]], expected[0].point_support[i], 0.05);
+    worst = std::max<double>(worst, std::abs(support[used[i]] - expected[0].point_support[i]));
   }
+  // The plane moved by a last step that no longer mattered, and with it the least of the support.
+  EXPECT_LT(worst, 0.05);
   EXPECT_EQ(
       static_cast<std::size_t>(std::count_if(support.begin(), support.end(), [](float s) { return std::isnan(s); })),
       holes->size() - cloud->size());

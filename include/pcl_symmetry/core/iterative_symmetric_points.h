@@ -71,7 +71,7 @@ struct IspSurface {
   const Points& normals;  ///< 3 x N unit normals of any sign; may be empty with PointToPoint
   const ClosestPointSearch& search;
   const FarTest* far = nullptr;  ///< spares the search for points that would get no weight
-  int num_threads = 1;  ///< for the searches of one iteration; 0 = one per core
+  int num_threads = 1;           ///< for the searches of one iteration; 0 = one per core
 };
 
 /// What one iteration saw and did: everything that a picture of it needs (Figure 7).

@@ -19,8 +19,8 @@ struct PlanarTransformOptions {
 
 /// The planar-reflective symmetry transform of f by the method of the options.
 /// \param grid the planes, in the frame of the EDT. \param center_of_mass of the points, in the same frame.
-/// \param free_space of a scan, see freeSpace(): the map then holds seenSymmetry() of D, by the method of the options, and
-/// of F, by sampling.
+/// \param free_space of a scan, see freeSpace(): the map then holds seenSymmetry() of D, by the method of the options,
+/// and of F, by sampling.
 SymmetryMap planarTransform(const GaussianEdt& edt, const PlaneGrid& grid, const Eigen::Vector3d& center_of_mass,
                             const PlanarTransformOptions& options = {}, const std::vector<float>& free_space = {});
 

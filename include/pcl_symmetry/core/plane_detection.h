@@ -37,9 +37,9 @@ struct SymmetryPlane : ReflectionPlane {
   /// One value in [0, 1] per point used, in their order: 1 where the reflection meets the surface as closely as samples
   /// of the surface themselves lie, falling to 0 beyond.
   std::vector<float> point_support;
-  int iterations = 0;       ///< of Iterative Symmetric Points, all stages
-  bool converged = false;   ///< the plane stood still
-  double residual = 0.0;  ///< weighted root mean square distance of the reflected points from the surface, input units
+  int iterations = 0;      ///< of Iterative Symmetric Points, all stages
+  bool converged = false;  ///< the plane stood still
+  double residual = 0.0;   ///< weighted root mean square distance of the reflected points from the surface, input units
 };
 
 /// All planes through a line are symmetries: a body of revolution.
@@ -53,7 +53,7 @@ struct SymmetryAxis {
 
 /// All planes through a point are symmetries: a sphere.
 struct SymmetryCenter {
-  Eigen::Vector3d point;  ///< input frame
+  Eigen::Vector3d point;                                ///< input frame
   double confidence = 0.0, score = 0.0, support = 0.0;  ///< as of SymmetryAxis
 };
 
@@ -80,8 +80,8 @@ struct DetectionOptions {
   double min_confidence = 0.5;      ///< confidence >= min_confidence: the plane is a symmetry; in [0, 1]
   /// Of scans, planes with confidence >= min_possible are reported as possible, in [0, 1].
   double min_possible = 0.02;
-  int max_possible = 5;   ///< symmetries and possible planes of a scan together, >= 1
-  bool families = true;   ///< planes through one axis or one center are reported as such in place of single planes
+  int max_possible = 5;  ///< symmetries and possible planes of a scan together, >= 1
+  bool families = true;  ///< planes through one axis or one center are reported as such in place of single planes
   /// Reports the other maxima too, after the symmetries: nearly symmetries of the whole, and symmetries of parts.
   bool approximate = false;
   int max_planes = 20;  ///< >= 1

@@ -27,10 +27,9 @@ struct PointEvidence {
   std::vector<float> conflict;  ///< its reflection lies where the scanner saw that there is nothing
 };
 
-/// \param points,normals 3 x M, the points and their normals, reflected. \param closest,sq_distances of each the closest
-/// sample of the surface and its squared distance.
-/// \param samples 3 x N, the surface, normalised to the unit ball, \p geometry of it. \param visibility what was seen, in
-/// the same frame; null = everything.
+/// \param points,normals 3 x M, the points and their normals, reflected. \param closest,sq_distances of each the
+/// closest sample of the surface and its squared distance. \param samples 3 x N, the surface, normalised to the unit
+/// ball, \p geometry of it. \param visibility what was seen, in the same frame; null = everything.
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
                             const std::vector<float>& sq_distances, const Points& samples,
                             const LocalGeometry& geometry, const Visibility* visibility);

@@ -33,8 +33,8 @@ private:
   float cell_size_;
   Eigen::Array3i size_;
   std::vector<float> values_;
-  double own_part_;   // of a sample in the density at its place
-  double mean_;       // over the points, without their own parts
+  double own_part_;  // of a sample in the density at its place
+  double mean_;      // over the points, without their own parts
   Eigen::Vector3d middle_;
   double extent_;
 };

@@ -25,7 +25,8 @@ std::optional<Visibility> seenSpace(const pcl::PointCloud<PointT>& cloud, const 
   if (viewpoint.mode == Viewpoint::Mode::None) return std::nullopt;
   if (viewpoint.mode == Viewpoint::Mode::Given) {
     std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);
-    if (!seen) throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
+    if (!seen)
+      throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
     return seen;
   }
   if (cloud.isOrganized() && cloud.width > 1) {

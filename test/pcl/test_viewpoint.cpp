@@ -1,0 +1,255 @@
+/// Where the scanner stood: told by the rays of an organized cloud, by sensor_origin_, or by the user.
+#include "pcl_symmetry/viewpoint.h"
+
+#include <gtest/gtest.h>
+#include <pcl/exceptions.h>
+
+#include <algorithm>
+#include <string>
+
+#include "clouds.h"
+#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/planar_symmetry_transform.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "scans.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using test::Sampling;
+using test::Scan;
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+/// A box seen from a random side that shows three faces (one alone fits many cameras), with a random roll.
+Scan randomScan(std::uint64_t seed) {
+  RandomStream random(seed, 21);
+  Eigen::Vector3d from;
+  for (int axis = 0; axis < 3; ++axis)
+    from[axis] = (random.uniform() < 0.5 ? -1.0 : 1.0) * (1.6 + 2.0 * random.uniform());
+  return test::scan(test::blockBox(), from, 6.0 * random.uniform());
+}
+
+Cloud::Ptr organized(const Scan& scan, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
+  auto cloud = pcl::make_shared<Cloud>(scan.width, scan.height);
+  for (std::size_t i = 0; i < cloud->size(); ++i)
+    (*cloud)[i].getVector3fMap() = (pose * scan.pixels.col(static_cast<Eigen::Index>(i)).cast<double>()).cast<float>();
+  cloud->is_dense = false;
+  return cloud;
+}
+
+Cloud::Ptr unorganized(const Scan& scan) {
+  auto cloud = pcl::make_shared<Cloud>();
+  const Points points = scan.cloud();
+  for (Eigen::Index i = 0; i < points.cols(); ++i) cloud->emplace_back(points(0, i), points(1, i), points(2, i));
+  return cloud;
+}
+
+void setOrigin(Cloud& cloud, const Eigen::Vector3d& origin) {
+  cloud.sensor_origin_ << origin.cast<float>(), 0.0f;
+}
+
+bool recognised(const Cloud::ConstPtr& cloud) {
+  return seenSpace(*cloud, selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{}).has_value();
+}
+
+bool contains(const std::vector<SymmetryPlane>& planes, const ReflectionPlane& plane, const Eigen::Vector3d& about) {
+  return std::any_of(planes.begin(), planes.end(), [&](const SymmetryPlane& found) {
+    const auto error = test::planeError(found, plane, about);
+    return error.angle < 2.0 * test::kDegree && error.offset < 0.05;
+  });
+}
+
+template <typename Body>
+std::string messageOf(const Body& body) {
+  try {
+    body();
+  } catch (const pcl::BadArgumentException& error) {
+    return error.what();
+  }
+  return "no exception";
+}
+
+TEST(Viewpoint, AnOrganizedCloudTellsByItsOwnRays) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Scan scan = randomScan(seed);
+    EXPECT_TRUE(recognised(organized(scan, scan.T_camera_object))) << seed << ": in the frame of the camera";
+    const Eigen::Isometry3d away = test::randomPose(seed, 0.2) * scan.T_camera_object;
+    EXPECT_TRUE(seenByOrganizedCloud((away * scan.pixels.cast<double>()).cast<float>(), scan.width, scan.height))
+        << seed << ": from the rays alone";
+    // Here sensor_origin_ = 0 lies in the middle of the box.
+    EXPECT_TRUE(recognised(organized(scan))) << seed << ": in the frame of the object";
+    EXPECT_TRUE(recognised(organized(scan, test::randomPose(seed)))) << seed << ": in any other";
+  }
+}
+
+TEST(Viewpoint, TheRaysOfAnOrganizedCloudAreThoseOfItsCamera) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Scan scan = randomScan(seed);
+    const auto seen = seenByOrganizedCloud(scan.pixels, scan.width, scan.height);
+    EXPECT_TRUE(seen) << seed;
+    if (!seen) continue;
+    const Visibility truth = scan.visibility();
+    EXPECT_EQ(seen->width(), scan.width);
+    RandomStream random(seed);
+    int num_same = 0;
+    constexpr int kTrials = 5000;
+    for (int i = 0; i < kTrials; ++i) {
+      const Eigen::Vector3d x =
+          1.3 * Eigen::Vector3d(test::symmetric(random), test::symmetric(random), test::symmetric(random));
+      num_same += (seen->depthBehind(x) < 0.0) == (truth.depthBehind(x) < 0.0) ? 1 : 0;
+    }
+    EXPECT_GT(num_same, 0.99 * kTrials) << seed << ": all but those at the borders of pixels";
+    for (Eigen::Index i = 0; i < scan.pixels.cols(); i += 7)
+      if (scan.pixels.col(i).allFinite()) {
+        ASSERT_NEAR(seen->depth(static_cast<int>(i % scan.width), static_cast<int>(i / scan.width)),
+                    truth.depth(static_cast<int>(i % scan.width), static_cast<int>(i / scan.width)), 0.02)
+            << seed;
+      }
+  }
+}
+
+TEST(Viewpoint, RowsAndColumnsThatAreNoPictureAreNone) {
+  auto whole = test::toCloud(test::box(4000, Sampling::Random, 1));
+  whole->width = 80;
+  whole->height = 50;
+  EXPECT_FALSE(recognised(whole));
+  // The pixels of a scan in a wrong order.
+  const Scan scan = randomScan(1);
+  auto shuffled = organized(scan);
+  RandomStream random(3);
+  for (std::size_t i = shuffled->size() - 1; i > 0; --i) std::swap((*shuffled)[i], (*shuffled)[random.below(i + 1)]);
+  EXPECT_FALSE(recognised(shuffled));
+  EXPECT_FALSE(seenByOrganizedCloud(Points::Constant(3, 200, NAN), 20, 10));
+}
+
+TEST(Viewpoint, AnUnorganizedScanTellsByItsSensorOrigin) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Scan scan = randomScan(seed);
+    auto cloud = unorganized(scan);
+    EXPECT_FALSE(recognised(cloud)) << seed << ": the origin is in the middle of the box";
+    setOrigin(*cloud, scan.viewpoint);
+    EXPECT_TRUE(recognised(cloud)) << seed;
+  }
+}
+
+TEST(Viewpoint, AWholeCloudIsNotTakenForAScan) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    RandomStream random(seed);
+    for (const auto& shape :
+         {test::box(5000, Sampling::Random, seed), test::cylinder(5000, seed), test::scaleneTetrahedron(5000, seed)}) {
+      auto cloud = test::toCloud(shape);
+      EXPECT_FALSE(recognised(cloud));
+      for (const double distance : {0.5, 1.5, 3.0, 10.0, 500.0}) {
+        setOrigin(*cloud, distance * test::randomDirection(random));
+        EXPECT_FALSE(recognised(cloud)) << distance;
+      }
+      auto away = test::toCloud(test::moved(shape, test::randomPose(seed, 10.0)));
+      EXPECT_FALSE(recognised(away)) << "origin outside";
+    }
+  }
+}
+
+TEST(SymmetryMaximaRefinement, UsesTheRaysOfAnOrganizedCloud) {
+  const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
+  for (const Eigen::Isometry3d& pose :
+       {Eigen::Isometry3d(Eigen::Isometry3d::Identity()), scan.T_camera_object, test::randomPose(9)}) {
+    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+    refinement.setInputCloud(organized(scan, pose));
+    const auto planes = refinement.compute();
+    EXPECT_TRUE(refinement.usedViewpoint());
+    for (const ReflectionPlane& plane : scan.planes)
+      EXPECT_TRUE(contains(planes, plane.transformed(pose), pose.translation()));
+    for (const SymmetryPlane& plane : planes) {
+      EXPECT_TRUE(plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible);
+      EXPECT_LE(plane.seen, 1.0);
+    }
+    refinement.setViewpointMode(Viewpoint::Mode::None);
+    const auto without = refinement.compute();
+    EXPECT_FALSE(refinement.usedViewpoint());
+    EXPECT_TRUE(without.empty()) << "half a box has none of its planes";
+    refinement.setViewpointMode(Viewpoint::Mode::Auto);
+    refinement.compute();
+    EXPECT_TRUE(refinement.usedViewpoint());
+  }
+}
+
+TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
+  const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(unorganized(scan));
+  refinement.compute();
+  EXPECT_FALSE(refinement.usedViewpoint());
+  refinement.setViewpoint(scan.viewpoint);
+  EXPECT_EQ(refinement.getViewpoint().mode, Viewpoint::Mode::Given);
+  EXPECT_EQ(refinement.getViewpoint().position, scan.viewpoint);
+  const auto planes = refinement.compute();
+  EXPECT_TRUE(refinement.usedViewpoint());
+  for (const ReflectionPlane& plane : scan.planes)
+    EXPECT_TRUE(contains(planes, plane, Eigen::Vector3d::Zero())) << plane.normal().transpose();
+  // A viewpoint among the points is none.
+  refinement.setViewpoint(Eigen::Vector3d::Zero());
+  EXPECT_NE(messageOf([&] { refinement.compute(); }).find("viewpoint"), std::string::npos);
+  refinement.setViewpoint(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_NE(messageOf([&] { refinement.compute(); }).find("viewpoint"), std::string::npos);
+}
+
+TEST(SymmetryMaximaRefinement, AScanWithSensorOriginIsOneWithItsViewpointGiven) {
+  const Scan scan = test::scan(test::blockL(), {2.5, -3.0, 2.0});
+  auto cloud = unorganized(scan);
+  SymmetryMaximaRefinement<pcl::PointXYZ> given;
+  given.setInputCloud(cloud);
+  given.setViewpoint(scan.viewpoint.cast<float>().cast<double>());
+  const auto expected = given.compute();
+  setOrigin(*cloud, scan.viewpoint);
+  SymmetryMaximaRefinement<pcl::PointXYZ> own;
+  own.setInputCloud(cloud);
+  const auto planes = own.compute();
+  EXPECT_TRUE(own.usedViewpoint());
+  ASSERT_EQ(planes.size(), expected.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) EXPECT_EQ(planes[i].coefficients(), expected[i].coefficients());
+}
+
+TEST(SymmetryMaximaRefinement, ReportsAxesAndCenters) {
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(test::toCloud(test::cylinder(4000, 3)));
+  refinement.compute();
+  ASSERT_EQ(refinement.getAxes().size(), 1u);
+  EXPECT_GT(std::abs(refinement.getAxes()[0].direction.z()), std::cos(0.5 * test::kDegree));
+  EXPECT_TRUE(refinement.getCenters().empty());
+  refinement.setInputCloud(test::toCloud(test::sphere(4000, 3)));
+  EXPECT_TRUE(refinement.compute().empty());
+  EXPECT_TRUE(refinement.getAxes().empty()) << "those of the last input are gone";
+  ASSERT_EQ(refinement.getCenters().size(), 1u);
+  EXPECT_LT(refinement.getCenters()[0].point.norm(), 0.01);
+}
+
+TEST(PlanarSymmetryTransform, TakesAwayWhatFreeSpaceRulesOut) {
+  const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  transform.setGridSize(32);
+  transform.setInputCloud(unorganized(scan));
+  const SymmetryMap without = transform.compute();
+  transform.setViewpoint(scan.viewpoint);
+  for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {
+    transform.setMethod(method);
+    const SymmetryMap with = transform.compute();
+    EXPECT_NE(with.values, without.values);
+    for (const float value : with.values) {
+      ASSERT_GE(value, -0.05f);
+      ASSERT_LE(value, 1.05f) << "1 but for the error of the estimate of D";
+    }
+  }
+  transform.setViewpointMode(Viewpoint::Mode::None);
+  transform.setMethod(TransformMethod::Sampled);
+  EXPECT_EQ(transform.compute().values, without.values);
+  transform.setViewpoint(Eigen::Vector3d::Zero());
+  EXPECT_NE(messageOf([&] { transform.compute(); }).find("viewpoint"), std::string::npos);
+  // The map of the organized cloud has its viewpoint without being told.
+  PlanarSymmetryTransform<pcl::PointXYZ> automatic;
+  automatic.setGridSize(32);
+  automatic.setInputCloud(organized(scan));
+  EXPECT_NE(automatic.compute().values, without.values);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry
