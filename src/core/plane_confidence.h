@@ -18,7 +18,7 @@ struct PlaneEvidence {
 double seenSupport(const PlaneEvidence& evidence);
 
 /// Probability that the plane is a symmetry of the object, in [0, 1]: logistic functions of a few of the values above,
-/// eleven numbers in all, calibrated once (see the definition).
+/// fifteen numbers in all, calibrated once (see the definition).
 double planeConfidence(const PlaneEvidence& evidence);
 
 }  // namespace pcl_symmetry
