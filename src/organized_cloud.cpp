@@ -68,8 +68,9 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
   for (std::size_t i = 0; i < used.size(); ++i)
     (*cloud)[used[i]].getVector3fMap() = normalized.col(static_cast<Eigen::Index>(i));
   Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
-  if (!(pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used) >= 0.0) || !estimate.allFinite())
-    return std::nullopt;
+  // What it returns is a residual that may be a little below 0: the error in pixels below decides.
+  pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used);
+  if (!estimate.allFinite()) return std::nullopt;
   Visibility::Projection projection = estimate.cast<double>();
   const double length = projection.block<1, 3>(2, 0).norm();
   if (!(length > 0.0)) return std::nullopt;

@@ -142,6 +142,7 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
     y.col(i) = reflected.col(i);
     if (!matched) continue;
     y.col(i) = surface.points.col(step.closest[i]);
+    if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
     weights[i] = std::exp(-step.sq_distances[i] / (sigma * sigma));
     sum += weights[i];
     sq_sum += weights[i] * step.sq_distances[i];

@@ -21,7 +21,10 @@ double planeConfidence(const PlaneEvidence& evidence) {
   const double lost = 1.0 - evidence.score;
   double logit = 0.0;
   if (evidence.partial) {
-    logit = -5.5 - 14.0 * std::sqrt(unexplained) - 3.3 * std::log(evidence.support + 1e-3) + 10.5 * evidence.score;
+    // A high D is worth less where much of the surface finds a counterpart anyway; below 0.42 support would count
+    // against a plane, which was not meant.
+    logit =
+        -5.5 - 14.0 * std::sqrt(unexplained) - 3.3 * std::log(std::max(evidence.support, 0.42)) + 10.5 * evidence.score;
   } else if (evidence.volume) {
     logit = 4.3 - 46.0 * (1.0 - evidence.support) - 77.0 * lost;
   } else {
@@ -29,7 +32,7 @@ double planeConfidence(const PlaneEvidence& evidence) {
     // distance transform of fewer points is noisier.
     const double excess = (unexplained - 0.03 * evidence.roughness) / (0.01 + 0.3 * evidence.spacing);
     const double lost_excess = lost / (0.003 + 2.0 * evidence.spacing * evidence.spacing);
-    logit = 4.25 - 2.0 * excess - 0.2 * lost_excess;
+    logit = 4.5 - 2.0 * excess - 0.2 * lost_excess;
   }
   return 1.0 / (1.0 + std::exp(-logit));
 }

@@ -29,7 +29,8 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
                             const LocalGeometry& geometry, const Visibility* visibility) {
   constexpr float kReach = 1.25f;                            // spacings, along the surface
   constexpr float kNormalReach = 0.01f, kRoughReach = 3.0f;  // across the surface: of the radius, of the roughness
-  constexpr float kRoughShare = 0.25f;                       // of the spacing: from there on normals mean nothing
+  constexpr float kRoughShare = 0.25f, kTrustWidth = 0.1f;   // of the spacing: from there on normals mean nothing
+  constexpr float kNormalAngle = 0.5f;                       // radians between normals that agree
   const std::size_t size = closest.size();
   PointEvidence evidence{std::vector<float>(size), std::vector<float>(size)};
   for (std::size_t i = 0; i < size; ++i) {
@@ -44,11 +45,11 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
     const float normal_reach = std::max(kNormalReach, kRoughReach * geometry.roughness[j]);
     const auto normal = geometry.normals.col(j);
     const float across = std::max(0.0f, std::abs(normal.dot(reflected.col(i) - samples.col(j))) / normal_reach - 1.0f);
-    float turned = 0.0f;
-    if (geometry.roughness[j] < kRoughShare * geometry.spacing[j]) {
-      const float cosine = std::abs(normal.dot(reflected_normals.col(i)));
-      turned = std::max(0.0f, std::acos(std::min(1.0f, cosine)) / 0.5f - 1.0f);
-    }
+    // Normals count as far as they can be trusted, without a jump.
+    const float rough = geometry.roughness[j] / std::max(geometry.spacing[j], 1e-6f);
+    const float trust = std::clamp((kRoughShare - rough) / kTrustWidth, 0.0f, 1.0f);
+    const float cosine = std::min(1.0f, std::abs(normal.dot(reflected_normals.col(i))));
+    const float turned = trust > 0.0f ? trust * std::max(0.0f, std::acos(cosine) / kNormalAngle - 1.0f) : 0.0f;
     const float worst = along * along + across * across + turned * turned;
     evidence.support[i] = std::exp(-worst);
     const bool seen = !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0;
@@ -64,18 +65,25 @@ std::vector<float> planeSupport(const PointsRef& points, const PointsRef& sample
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
   const auto search = makeFlannSearch(surface);
-  const std::vector<float> spacing = localGeometry(surface, *search, kNumSupportNeighbours, num_threads).spacing;
+  const LocalGeometry geometry = localGeometry(surface, *search, kNumSupportNeighbours, num_threads);
+  const Eigen::Vector3f n = plane.normal().cast<float>();
   std::vector<float> support(points.cols());
   parallelRanges(points.cols(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
-    Points reflected(3, end - begin);
-    for (std::size_t i = begin; i < end; ++i)
-      reflected.col(i - begin) =
-          ((plane.reflect(points.col(i).cast<double>()) - ball.center) / ball.radius).cast<float>();
+    const auto size = static_cast<Eigen::Index>(end - begin);
+    const Points own = normalizePoints(points.middleCols(begin, size), ball.center, ball.radius);
+    Points reflected(3, size), normals(3, size);
     std::vector<int> closest;
     std::vector<float> sq_distances;
+    search->search(own, 1, closest, sq_distances);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Eigen::Vector3d x = points.col(begin + i).cast<double>();
+      reflected.col(i) = ((plane.reflect(x) - ball.center) / ball.radius).cast<float>();
+      const Eigen::Vector3f normal = geometry.normals.col(closest[i]);
+      normals.col(i) = normal - 2.0f * n.dot(normal) * n;
+    }
     search->search(reflected, 1, closest, sq_distances);
-    const auto part = pointSupport(closest, sq_distances, spacing);
-    std::copy(part.begin(), part.end(), support.begin() + static_cast<std::ptrdiff_t>(begin));
+    const PointEvidence part = pointEvidence(reflected, normals, closest, sq_distances, surface, geometry, nullptr);
+    std::copy(part.support.begin(), part.support.end(), support.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return support;
 }

@@ -34,9 +34,9 @@ constexpr std::size_t kMaxClosed = 16;     // planes whose group is completed; m
 constexpr double kVolumeRoughness = 0.36;  // of the spacing: neighbours on all sides (0.42) rather than on a surface
 constexpr double kDensityBandwidth = 1.5;  // spacings
 constexpr int kDensityIterations = 6, kDensitySampleFactor = 10;  // a sample costs a tenth of a closest point
-constexpr double kFamilyShare = 0.92, kSeenFamilyShare = 0.98;  // of all planes of a family; where only a part is seen
-constexpr double kAllowance = 0.03, kDensityAllowance = 0.008;  // of the share, from the best plane to its family
-constexpr double kFamilyTolerance = 0.03;                       // radii
+constexpr double kFamilyShare = 0.92, kSeenFamilyShare = 0.98;   // of all planes of a family; where only a part is seen
+constexpr double kAllowance = 0.015, kDensityAllowance = 0.004;  // of the share, from the best plane to its family
+constexpr double kFamilyTolerance = 0.03;                        // radii
 constexpr int kFamilySamples = 1500;
 constexpr double kUnseen = 0.02;  // of the points: less that is seen of a reflection says nothing
 constexpr int kNumSeeds = 24, kPartDirections = 8;
@@ -104,7 +104,8 @@ Refinement::Refinement(const PointsRef& points, const GaussianEdt& edt, const De
       search_(search ? std::move(search) : makeFlannSearch(points_)),
       geometry_(localGeometry(points_, *search_, kNumSupportNeighbours, options.num_threads)),
       far_(edt, center_, scale_),
-      surface_{points_, geometry_.normals, *search_, &far_, options.num_threads},
+      surface_{points_, geometry_.normals,  *search_, visibility ? &geometry_.at_border : nullptr,
+               &far_,   options.num_threads},
       sigma_(edt.sigma() / scale_),
       spacing_(median(geometry_.spacing)),
       roughness_(median(geometry_.roughness) / std::max(spacing_, 1e-6)) {
@@ -312,6 +313,8 @@ void Refinement::run(std::vector<Candidate>& candidates, int num_samples, double
         candidate.iterations == 0 || candidate.merit >= kLeastMerit - (visibility_ ? 0.0 : kCloseSlack);
     const std::vector<int>& used = settles ? samples : fewer;
     IspOptions own = isp;
+    if (visibility_ && num_samples > options_.num_coarse_samples && final_sigma < sigma)
+      own.update = IspUpdate::PointToPoint;
     if (!settles) own.max_iterations = std::min(own.max_iterations, kRoughIterations);
     if (settles && options_.update == IspUpdate::PointToPlane) own.error_share = kSettledErrorShare;
     candidate.last = refineSymmetricPoints(surface_, used, candidate.plane, own);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "pcl_symmetry/core/planar_transform.h"
@@ -42,7 +43,7 @@ std::vector<Eigen::Vector3d> hits() {
 TEST(Visibility, FrontIsFreeBehindIsUnknownBesideIsFree) {
   const auto seen = Visibility::fromPoints(sphereScan(), kViewpoint);
   ASSERT_TRUE(seen);
-  // Pixels hold 2.5 of 10^4 points on the half sphere of area 2 pi: they are 0.028 to 0.04 wide. A surface that slants
+  // Pixels hold 4 of 10^4 points on the half sphere of area 2 pi: they are 0.028 to 0.04 wide. A surface that slants
   // by 0.75 and more (rays diverge) is 0.03 deep in one, and twice as deep where the closing looked a pixel farther.
   constexpr double kPixelDepth = 0.06;
   for (const Eigen::Vector3d& hit : hits()) {
@@ -152,9 +153,9 @@ TEST(Visibility, RefusesAPictureThatDoesNotFit) {
 
 TEST(Visibility, HiddenShareTellsAScanFromAWhole) {
   const Points half = sphereScan(), whole = spherePoints();
-  // A pixel 0.04 wide is deeper than that where the surface slants by more than 68 degrees, on the outer 0.37 of the
-  // half sphere: 0.058 was measured.
-  EXPECT_LT(Visibility::fromPoints(half, kViewpoint)->hiddenShare(half, 0.1), 0.08);
+  // A pixel 0.05 wide is deeper than that where the surface slants by more than 63 degrees, on the outer 0.37 of the
+  // half sphere: 0.10 was measured with pixels of 4 points.
+  EXPECT_LT(Visibility::fromPoints(half, kViewpoint)->hiddenShare(half, 0.1), 0.12);
   // Of a sphere half lies behind, all of it but a rim of height 0.1 or so: 0.45.
   const double hidden = Visibility::fromPoints(whole, kViewpoint)->hiddenShare(whole, 0.1);
   EXPECT_GT(hidden, 0.3);
@@ -186,10 +187,9 @@ TEST(RecognizeViewpoint, RefusesWholeObjectsFromAnywhere) {
   }
 }
 
-TEST(RecognizeViewpoint, RefusesTheWrongSideOfAScan) {
-  // From the far side of the box its visible faces are seen from within, and one hides none of the other.
+TEST(RecognizeViewpoint, RefusesAPlaceAmongThePointsOfAScan) {
   const Points cloud = scan(blockChair(), {2.0, -3.0, 1.5}).cloud();
-  EXPECT_FALSE(recognizeViewpoint(cloud, Eigen::Vector3d(0.1, 0.1, 0.3))) << "among the points";
+  EXPECT_FALSE(recognizeViewpoint(cloud, Eigen::Vector3d(0.1, 0.1, 0.3)));
 }
 
 TEST(FreeSpace, IsFreeInFrontAndBesideAndNothingBehind) {

@@ -70,6 +70,9 @@ struct IspSurface {
   const Points& points;
   const Points& normals;  ///< 3 x N unit normals of any sign; may be empty with PointToPoint
   const ClosestPointSearch& search;
+  /// Matches to these points get no weight: at the rim of a scan the true match may just not have been seen. Null:
+  /// none.
+  const std::vector<char>* at_border = nullptr;
   const FarTest* far = nullptr;  ///< spares the search for points that would get no weight
   int num_threads = 1;           ///< for the searches of one iteration; 0 = one per core
 };

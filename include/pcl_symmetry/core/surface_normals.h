@@ -8,9 +8,10 @@ namespace pcl_symmetry {
 
 /// What the neighbourhood of each point of a cloud says about the surface it was sampled from.
 struct LocalGeometry {
-  Points normals;                          ///< 3 x N, unit, of any sign
-  std::vector<float> roughness;            ///< N, root mean square distance of the neighbours from the tangent plane
-  std::vector<int> nearest;                ///< N, the closest other sample (itself where there is none)
+  Points normals;                ///< 3 x N, unit, of any sign
+  std::vector<float> roughness;  ///< N, root mean square distance of the neighbours from the tangent plane
+  std::vector<char> at_border;   ///< N, 1 where the neighbours lie to one side: the rim of a scan, or a sharp edge
+  std::vector<int> nearest;      ///< N, the closest other sample (itself where there is none)
   std::vector<float> nearest_sq_distance;  ///< N, its squared distance
   /// N, 1 / sqrt(density): the distance at which a surface sample has 1 / pi of a neighbour
   std::vector<float> spacing;

@@ -70,10 +70,8 @@ inline double seenSymmetry(double d, double f) {
   return (1.0 + kDoubt) * d / (d + f + kDoubt);
 }
 
-/// Finds out whether points were measured from a viewpoint: they lie in front of it, and not more than a tenth of them
-/// behind others.
-/// \param points 3 x N, finite, N >= 1.
-/// \return the space seen, or nothing.
+/// Finds out whether points were measured from a viewpoint: they lie in front of it, and hardly any of them behind
+/// others. \param points 3 x N, finite, N >= 1. \return the space seen, or nothing.
 std::optional<Visibility> recognizeViewpoint(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 }  // namespace pcl_symmetry
