@@ -313,6 +313,7 @@ void Refinement::run(std::vector<Candidate>& candidates, int num_samples, double
         candidate.iterations == 0 || candidate.merit >= kLeastMerit - (visibility_ ? 0.0 : kCloseSlack);
     const std::vector<int>& used = settles ? samples : fewer;
     IspOptions own = isp;
+    // On the way to narrow weights a scan is led by whole distances: across flat pieces alone it would slide.
     if (visibility_ && num_samples > options_.num_coarse_samples && final_sigma < sigma)
       own.update = IspUpdate::PointToPoint;
     if (!settles) own.max_iterations = std::min(own.max_iterations, kRoughIterations);

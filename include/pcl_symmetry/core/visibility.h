@@ -30,7 +30,7 @@ public:
   Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside = kNoRay);
 
   /// A range image of points without order: the nearest point in each pixel, pixels as wide as the points are apart as
-  /// seen from there, holes of single pixels closed.
+  /// seen from there, small gaps between the points closed.
   /// \param points 3 x N, finite, N >= 1. \param viewpoint in the same frame.
   /// \return nothing where the points do not lie in a cone of 75 degrees around one direction: seen from inside.
   static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
@@ -71,7 +71,8 @@ inline double seenSymmetry(double d, double f) {
 }
 
 /// Finds out whether points were measured from a viewpoint: they lie in front of it, and hardly any of them behind
-/// others. \param points 3 x N, finite, N >= 1. \return the space seen, or nothing.
+/// others. Whole objects that are thin as seen from there pass too: nothing of them lies far behind. \param points 3 x
+/// N, finite, N >= 1. \return the space seen, or nothing.
 std::optional<Visibility> recognizeViewpoint(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 }  // namespace pcl_symmetry
