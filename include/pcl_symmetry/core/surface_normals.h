@@ -26,4 +26,9 @@ constexpr int kNumSupportNeighbours = 8;
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
                             int num_threads);
 
+/// LocalGeometry::roughness at a few places of the surface.
+/// \param places 3 x M, among \p points. \return M values.
+std::vector<float> localRoughness(const Points& points, const ClosestPointSearch& search, const Points& places,
+                                  int num_neighbours = kNumSupportNeighbours);
+
 }  // namespace pcl_symmetry
