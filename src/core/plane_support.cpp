@@ -9,21 +9,6 @@
 
 namespace pcl_symmetry {
 
-std::vector<float> pointSupport(const std::vector<int>& closest, const std::vector<float>& sq_distances,
-                                const std::vector<float>& spacing) {
-  constexpr float kReach = 1.25f;       // spacings
-  constexpr float kLeastReach = 1e-6f;  // of the radius of the points: below it all samples are one
-  std::vector<float> support(closest.size());
-  for (std::size_t i = 0; i < closest.size(); ++i) {
-    if (closest[i] < 0) continue;
-    const float reach = kReach * spacing[closest[i]];
-    const float distance = std::sqrt(sq_distances[i]);
-    const float excess = distance <= reach ? 0.0f : (distance - reach) / std::max(reach, kLeastReach);
-    support[i] = std::exp(-excess * excess);
-  }
-  return support;
-}
-
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
                             const std::vector<float>& sq_distances, const Points& samples,
                             const LocalGeometry& geometry, const Visibility* visibility) {

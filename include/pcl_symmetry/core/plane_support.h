@@ -15,13 +15,7 @@ namespace pcl_symmetry {
 /// density of the samples alone: beyond 1.25 spacings (1 / sqrt(density), measured at that sample) lies 1 in 130. Up to
 /// there the support is 1; beyond it falls as a Gaussian. So it needs no threshold in input units.
 
-/// \param closest,sq_distances for each reflected point the closest sample and its squared distance.
-/// \param spacing of every sample, in the units of the distances.
-/// \return one value in [0, 1] per reflected point.
-std::vector<float> pointSupport(const std::vector<int>& closest, const std::vector<float>& sq_distances,
-                                const std::vector<float>& spacing);
-
-/// What the points of a surface say about a reflection, one value in [0, 1] per reflected point each.
+/// One value in [0, 1] per reflected point each.
 struct PointEvidence {
   std::vector<float> support;   ///< its reflection lies on the surface
   std::vector<float> conflict;  ///< its reflection lies where the scanner saw that there is nothing
