@@ -61,7 +61,7 @@ private:
   vtkNew<MessageCollector> collector_;
 };
 
-void checkScene(const PictureScene& scene, int width, int height) {
+void checkScene(const PictureScene& scene) {
   if (!scene.points) throw std::invalid_argument("points is not set");
   if (scene.panels.empty()) throw std::invalid_argument("panels is empty, must hold at least one");
   for (const PicturePanel& panel : scene.panels) {
@@ -84,6 +84,9 @@ void checkScene(const PictureScene& scene, int width, int height) {
   if (!scene.view.allFinite() || !(scene.view.cross(scene.up).norm() > 1e-6)) {
     throw std::invalid_argument("view and up must be finite and not parallel");
   }
+}
+
+void checkSize(int width, int height) {
   for (const int edge : {width, height}) {
     if (edge < 16 || edge > 16384) {
       throw std::invalid_argument("picture edge = " + std::to_string(edge) + ", must be >= 16 and <= 16384");
@@ -130,9 +133,8 @@ void fitCamera(vtkRenderer& renderer, const PictureScene& scene, double aspect, 
   renderer.ResetCameraClippingRange();
 }
 
-int numColumns(const PictureScene& scene, int width, int height) {
-  const int num_panels = static_cast<int>(scene.panels.size());
-  if (scene.num_columns > 0) return std::min(scene.num_columns, num_panels);
+int numColumns(int num_panels, int wanted, int width, int height) {
+  if (wanted > 0) return std::min(wanted, num_panels);
   int best = 1;
   double best_edge = 0;
   for (int columns = 1; columns <= num_panels; ++columns) {
@@ -146,20 +148,33 @@ int numColumns(const PictureScene& scene, int width, int height) {
   return best;
 }
 
-void addPanels(vtkRenderWindow& window, const PictureScene& scene, int width, int height) {
-  const int columns = numColumns(scene, width, height);
-  const int rows = (static_cast<int>(scene.panels.size()) + columns - 1) / columns;
-  const int panel_width = width / columns, panel_height = height / rows;
-  const double panel_pixels = std::min(panel_width, panel_height);
+/// Where the panels of a picture lie, row by row.
+struct PanelGrid {
+  int columns, rows, panel_width, panel_height;
+
+  PanelGrid(int num_panels, int wanted_columns, int width, int height)
+      : columns(numColumns(num_panels, wanted_columns, width, height)),
+        rows((num_panels + columns - 1) / columns),
+        panel_width(width / columns),
+        panel_height(height / rows) {}
+
+  void place(vtkRenderer& renderer, int panel) const {
+    const int column = panel % columns, row = panel / columns;
+    renderer.SetViewport(double(column) / columns, 1.0 - double(row + 1) / rows, double(column + 1) / columns,
+                         1.0 - double(row) / rows);
+  }
+};
+
+/// \param first_panel of the scene among those of the picture.
+void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGrid& grid, int first_panel) {
+  const double panel_pixels = std::min(grid.panel_width, grid.panel_height);
   const int font_size = std::max(8, static_cast<int>(std::lround(panel_pixels * 0.036)));
   const Normalization normalize = normalizationOf(scene);
   const std::vector<double> brightness = shading(scene, normalize);
   for (std::size_t i = 0; i < scene.panels.size(); ++i) {
     const PicturePanel& panel = scene.panels[i];
-    const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
     vtkNew<vtkRenderer> renderer;
-    renderer->SetViewport(double(column) / columns, 1.0 - double(row + 1) / rows, double(column + 1) / columns,
-                          1.0 - double(row) / rows);
+    grid.place(*renderer, first_panel + static_cast<int>(i));
     renderer->SetBackground(1, 1, 1);
     renderer->SetUseDepthPeeling(true);
     renderer->SetMaximumNumberOfPeels(16);
@@ -169,10 +184,10 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, int width, in
     for (const AxisLine& axis : panel.axes) addAxis(*renderer, axis, scene, normalize, panel_pixels / 120);
     for (const PlanePatch& plane : panel.planes) addPlane(*renderer, plane, scene, normalize, panel_pixels / 250);
     const bool has_bar = scene.show_color_bar && !panel.support.empty();
-    fitCamera(*renderer, scene, double(panel_width) / panel_height, has_bar ? 0.12 : 0.0);
+    fitCamera(*renderer, scene, double(grid.panel_width) / grid.panel_height, has_bar ? 0.12 : 0.0);
     if (!panel.label.empty()) renderer->AddActor2D(labelActor(panel.label, font_size));
     if (has_bar) {
-      renderer->AddActor2D(colorBar(panel_width, panel_height, std::max(8, font_size * 3 / 4)));
+      renderer->AddActor2D(colorBar(grid.panel_width, grid.panel_height, std::max(8, font_size * 3 / 4)));
     }
     window.AddRenderer(renderer);
   }
@@ -200,7 +215,18 @@ Eigen::Vector3d cividis(double value) {
 }
 
 void renderPicture(const PictureScene& scene, const std::string& path, int width, int height) {
-  checkScene(scene, width, height);
+  renderPicture(std::vector<PictureScene>{scene}, path, width, height, scene.num_columns);
+}
+
+void renderPicture(const std::vector<PictureScene>& scenes, const std::string& path, int width, int height,
+                   int num_columns) {
+  if (scenes.empty()) throw std::invalid_argument("scenes is empty, must hold at least one");
+  int num_panels = 0;
+  for (const PictureScene& scene : scenes) {
+    checkScene(scene);
+    num_panels += static_cast<int>(scene.panels.size());
+  }
+  checkSize(width, height);
   writeAtomically(path, [&](const std::string& temporary) {
     const PrivateDisplay display;
     const CollectedMessages messages;
@@ -210,7 +236,12 @@ void renderPicture(const PictureScene& scene, const std::string& path, int width
     window->SetMultiSamples(0);
     window->SetAlphaBitPlanes(1);
     window->SetSize(factor * width, factor * height);
-    addPanels(*window, scene, factor * width, factor * height);
+    const PanelGrid grid(num_panels, num_columns, factor * width, factor * height);
+    int next_panel = 0;
+    for (const PictureScene& scene : scenes) {
+      addPanels(*window, scene, grid, next_panel);
+      next_panel += static_cast<int>(scene.panels.size());
+    }
     if (!window->SupportsOpenGL()) throw InputError(path + ": cannot be drawn, the display has no OpenGL 3.2");
     window->Render();
 
