@@ -82,9 +82,7 @@ Refinement::Refinement(const PointsRef& points, const GaussianEdt& edt, const De
       roughness_(median(geometry_.roughness) / std::max(spacing_, 1e-6)) {
   if (visibility) visibility_ = visibility->normalized(center_, scale_);
   final_sigma_ = std::min(sigma_, std::max(1e-6, kFinalSigmaInSpacings * spacing_));
-  const PointEvidence own = pointEvidence(points_, geometry_.normals, geometry_.nearest, geometry_.nearest_sq_distance,
-                                          points_, geometry_, nullptr);
-  baseline_ = std::max(mean(own.support), 1e-3);
+  baseline_ = std::max(mean(ownSupport(points_, geometry_)), 1e-3);
   if (roughness_ > kVolumeRoughness && !visibility_)
     density_.emplace(points_, kDensityBandwidth * spacing_, options.num_threads);
 }
@@ -320,8 +318,8 @@ Refinement::Shares Refinement::sharesOf(const ReflectionPlane& plane, const std:
     const Eigen::Vector3f normal = geometry_.normals.col(samples[i]);
     normals.col(i) = normal - 2.0f * n.dot(normal) * n;
   }
-  PointEvidence evidence = pointEvidence(reflected, normals, step.closest, step.sq_distances, points_, geometry_,
-                                         visibility_ ? &*visibility_ : nullptr);
+  PointEvidence evidence =
+      pointEvidence(reflected, normals, step.closest, points_, geometry_, visibility_ ? &*visibility_ : nullptr);
   Shares shares{mean(evidence.support), mean(evidence.conflict), std::move(evidence.support)};
   if (density_) {
     shares.support = density_->overlap(pointsAt(points_, samples), plane);

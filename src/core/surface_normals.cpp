@@ -53,18 +53,17 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
   const auto size = static_cast<std::size_t>(points.cols());
   const int count = countWithin(points.cols(), num_neighbours);
   const std::vector<float> zeros(size, 0.0f);
-  LocalGeometry geometry{Points(3, points.cols()), zeros, std::vector<char>(size),
-                         std::vector<int>(size),   zeros, zeros};
+  LocalGeometry geometry{Points(3, points.cols()), zeros, std::vector<char>(size), {}, zeros};
+  geometry.nearest.resize(size);
   parallelRanges(size, kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> indices;
     std::vector<float> sq_distances;
     search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
     for (std::size_t i = begin; i < end; ++i) {
       const int* neighbours = indices.data() + (i - begin) * count;
-      // The point itself comes first or second: coincident points tie.
-      const int other = std::min(neighbours[0] == static_cast<int>(i) ? 1 : 0, count - 1);
-      geometry.nearest[i] = neighbours[other];
-      geometry.nearest_sq_distance[i] = sq_distances[(i - begin) * count + other];
+      geometry.nearest[i].fill(static_cast<int>(i));
+      for (int k = 0, next = 0; k < count && next < kNumWitnesses; ++k)
+        if (neighbours[k] != static_cast<int>(i)) geometry.nearest[i][next++] = neighbours[k];
       const TangentPlane plane = fitTangentPlane(points, points.col(i), neighbours, count);
       geometry.normals.col(i) = plane.normal;
       geometry.roughness[i] = plane.roughness;

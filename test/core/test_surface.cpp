@@ -246,18 +246,17 @@ TEST(PlaneSupport, IsOneOnTheSurfaceAndFallsOffIt) {
   EXPECT_NEAR(supportAt(0.97, 0.02 * radius), std::exp(-1.0f), 1e-3f);
   EXPECT_EQ(supportAt(2.1, 0.0), 1.0f);
   EXPECT_GT(supportAt(2.2, 0.0), supportAt(2.3, 0.0));
-  EXPECT_LT(supportAt(2.5, 0.0), 1e-3f);
+  EXPECT_LT(supportAt(3.0, 0.0), 1e-3f);
 }
 
 TEST(PlaneSupport, OfASymmetryIsThatOfASecondSample) {
-  // 1 in 130 lies beyond the reach along the surface, where the second sample is independent; as many fall to edges,
-  // where neighbours do not lie in one plane (0.9898 measured).
+  // 1 in 130 lies beyond the reach along the surface, where the second sample is independent.
   const Shape shape = box(6000, Sampling::Random, 8);
   const Points points = shape.cloud();
   for (const ReflectionPlane& plane : shape.planes) {
     const std::vector<float> support = planeSupport(points, points, plane, 1);
     const double mean = std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
-    EXPECT_GT(mean, 1.0 - 2.0 / 130.0);
+    EXPECT_GT(mean, 1.0 - 1.0 / 130.0);
     EXPECT_EQ(planeSupport(points, points, plane, 8), support);
   }
   const std::vector<float> wrong = planeSupport(points, points, ReflectionPlane({1.0, 1.0, 0.0}, 0.0), 1);
