@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "part_search.h"
 #include "pcl_symmetry/core/parallel.h"
@@ -287,11 +288,25 @@ void Refinement::run(std::vector<Candidate>& candidates, int num_samples, double
       own.update = IspUpdate::PointToPoint;
     if (!settles) own.max_iterations = std::min(own.max_iterations, kRoughIterations);
     if (settles && options_.update == IspUpdate::PointToPlane) own.error_share = kSettledErrorShare;
-    candidate.last = refineSymmetricPoints(surface_, used, candidate.plane, own);
+    const ReflectionPlane start = candidate.plane;
+    candidate.last = refineSymmetricPoints(surface_, used, start, own);
     candidate.plane = candidate.last.plane;
     candidate.iterations += candidate.last.iterations;
     candidate.merit = meritOf(sharesOf(candidate.plane, used, candidate.last.last));
+    if (visibility_ && final_sigma == sigma) returnIfSlid(candidate, start, used, sigma);
   });
+}
+
+/// Distances across the surface say nothing about a plane along flat pieces, and half a shape may have little else: the
+/// plane takes one step by whole distances instead if what is seen then speaks for it more.
+void Refinement::returnIfSlid(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
+                              double sigma) const {
+  IspStep step = iterateSymmetricPoints(surface_, samples, start, sigma, IspUpdate::PointToPoint);
+  const double merit = meritOf(sharesOf(step.plane, samples, step));
+  if (merit <= candidate.merit) return;
+  candidate.plane = step.plane;
+  candidate.merit = merit;
+  candidate.last.last = std::move(step);
 }
 
 void Refinement::runByDensity(std::vector<Candidate>& candidates, int num_samples) const {
