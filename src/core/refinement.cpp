@@ -450,6 +450,7 @@ std::vector<SymmetryPlane> Refinement::findParts(const std::vector<SymmetryPlane
     static_cast<ReflectionPlane&>(plane) = toInput(part.plane).canonical();
     const IspStep step = iterateSymmetricPoints(surface_, all, part.plane, final_sigma_, IspUpdate::PointToPoint);
     judge(plane, sharesOf(part.plane, all, step));
+    if (isSymmetry(plane)) continue;  // one of a family, which is known as its axis or center
     plane.kind = PlaneKind::Local;
     plane.iterations = part.iterations;
     plane.residual = step.residual * scale_;
