@@ -4,6 +4,7 @@
 
 #include "options.h"
 #include "planes.h"
+#include "registration.h"
 
 namespace {
 
@@ -15,7 +16,9 @@ struct SubCommand {
   int (*run)(int argc, char** argv);
 };
 
-constexpr SubCommand kSubCommands[] = {{"planes", "how well symmetry planes are found", evaluatePlanes}};
+constexpr SubCommand kSubCommands[] = {
+    {"planes", "how well symmetry planes are found", evaluatePlanes},
+    {"registration", "how well scans are brought to models of their objects", evaluateRegistration}};
 
 void printUsage() {
   std::printf(

@@ -1,6 +1,7 @@
 #include "pcl_symmetry/core/visibility.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -167,6 +168,10 @@ Visibility Visibility::normalized(const Eigen::Vector3d& center, double scale) c
   result.projection_.col(3) = (projection_.leftCols<3>() * center + projection_.col(3)) / scale;
   for (float& depth : result.depths_) depth = static_cast<float>(depth / scale);
   return result;
+}
+
+Eigen::Vector3d Visibility::viewpoint() const {
+  return -projection_.leftCols<3>().inverse() * projection_.col(3);
 }
 
 std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility& visibility, int num_threads) {
