@@ -148,10 +148,6 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   return Visibility(to_pixels * projection, width, height, std::move(depths), kBackground);
 }
 
-Eigen::Vector3d Visibility::viewpoint() const {
-  return -projection_.leftCols<3>().inverse() * projection_.col(3);
-}
-
 double Visibility::depthBehind(const Eigen::Vector3d& x) const {
   const Eigen::Vector3d image = projection_.leftCols<3>() * x + projection_.col(3);
   if (!(image.z() > 0.0)) return std::numeric_limits<double>::infinity();

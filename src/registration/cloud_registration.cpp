@@ -5,6 +5,7 @@
 #include <pcl/search/kdtree.h>
 
 #include <algorithm>
+#include "pcl_symmetry/core/frame_hypotheses.h"
 #include <chrono>
 #include <stdexcept>
 
@@ -126,8 +127,27 @@ CloudRegistration registerClouds(const Points& source, std::optional<Visibility>
   const auto turnedRound = [&](const Eigen::Isometry3d& pose) { return swapped ? pose.inverse() : pose; };
   done("prepare");
 
-  const std::vector<Eigen::Isometry3d> hypotheses = {turnedRound(frames.toSearch(guess))};
-  const std::vector<RankedPose> poses = searchPoses(scan, model, hypotheses, search);
+  std::vector<Eigen::Isometry3d> hypotheses = {turnedRound(frames.toSearch(guess))};
+  if (!getenv("NOSYM")) {
+  const auto frameOf = [&](const PosedSurface& surface) {
+    FrameOptions fo; fo.num_threads=fo.edt.num_threads=search.num_threads;
+    return symmetryFrame(surface.points, fo, surface.seen ? &*surface.seen : nullptr);
+  };
+  const auto fs = frameOf(scan);
+  done("scan_frame");
+  const auto fm = frameOf(model);
+  done("model_frame");
+  for (const auto& hypothesis : frameHypotheses(fs, fm)) {
+    if (getenv("SYMCENTER")) hypotheses.push_back(hypothesis);
+    else hypotheses.push_back(poseFromRotation(hypothesis.linear(), scan, model));
+  }
+  }
+  PoseSearchOptions search2 = search;
+  if (getenv("NROT")) search2.num_rotations = atoi(getenv("NROT"));
+  if (getenv("NSCR")) search2.num_screened = atoi(getenv("NSCR"));
+  if (getenv("NREF")) search2.num_refined = atoi(getenv("NREF"));
+  if (getenv("NPOS")) search2.max_poses = atoi(getenv("NPOS"));
+  const std::vector<RankedPose> poses = searchPoses(scan, model, hypotheses, search2);
   done("search");
 
   const double accuracy = std::max(scan.accuracy, model.accuracy);
@@ -146,6 +166,7 @@ CloudRegistration registerClouds(const Points& source, std::optional<Visibility>
     }
   }
   done("refine");
+  if (getenv("TIMING")) { for (auto& [n,ms] : result.timing_ms) fprintf(stderr,"%s %.0f ", n.c_str(), ms); fprintf(stderr,"\n"); }
   result.T_target_source = frames.toInput(turnedRound(best.T_model_scan));
   result.score = best.score;
   return result;
