@@ -58,17 +58,17 @@ CommandLine commandLine(EvaluateRegistrationOptions& o) {
       .number("missing", o.missing, Range{0, 1, false, true}, "share of a scan that is lost, in patches")
       .number("max_angle", o.max_angle, Range::open(0, 180), "of a registration that is right, degrees")
       .number("max_distance", o.max_distance, Range::open(0, 1), "and at the center of the model, in diagonals")
-      .text("methods", "A,B,...", o.methods, "symmetry, pca, features; all if not given")
+      .text("methods", "A,B,...", o.methods,
+            "of symmetry, frames, rotations, pca, features; default symmetry,pca,features")
       .flag("impostors", o.impostors, "also try each scan with the mesh before its own, where nothing should fit")
       .text("csv", "FILE", o.csv, "a row for each scan and method")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }
 
-std::vector<RegistrationMethod> chosenMethods(const std::optional<std::string>& names) {
-  if (!names) return registrationMethods();
+std::vector<RegistrationMethod> chosenMethods(const std::string& names) {
   std::vector<std::string> wanted;
-  boost::algorithm::split(wanted, *names, boost::algorithm::is_any_of(","));
+  boost::algorithm::split(wanted, names, boost::algorithm::is_any_of(","));
   std::vector<RegistrationMethod> chosen;
   for (const std::string& name : wanted) {
     bool known = false;
@@ -77,7 +77,7 @@ std::vector<RegistrationMethod> chosenMethods(const std::optional<std::string>& 
       chosen.push_back(method);
       known = true;
     }
-    if (!known) throw UsageError("methods = " + *names + ", must be of symmetry, pca, features");
+    if (!known) throw UsageError("methods = " + names + ", must be of symmetry, frames, rotations, pca, features");
   }
   return chosen;
 }
@@ -143,7 +143,7 @@ public:
   explicit RegistrationEvaluation(const EvaluateRegistrationOptions& options)
       : options_(options),
         console_(options.common.quiet),
-        methods_(chosenMethods(options.methods)),
+        methods_(chosenMethods(options.methods.value_or("symmetry,pca,features"))),
         cache_(options.references_path.value_or(""), ReferenceOptions()) {
     clouds_.num_points = options.num_points;
     clouds_.noise.clear();

@@ -77,11 +77,11 @@ void prepareIcp(pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>& icp, c
   icp.setTransformationEpsilon(1e-10);
 }
 
-RegistrationAnswer registerBySymmetry(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target, std::uint64_t seed,
-                                      int num_threads) {
+RegistrationAnswer runSymmetryRegistration(SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ>& registration,
+                                           const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
+                                           std::uint64_t seed, int num_threads) {
   RegistrationAnswer answer;
   const Stopwatch watch;
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
   registration.setInputSource(source);
   registration.setInputTarget(target);
   registration.setRandomSeed(seed);
@@ -94,6 +94,28 @@ RegistrationAnswer registerBySymmetry(const Cloud::ConstPtr& source, const Cloud
   answer.conflict = registration.getScore().conflict;
   answer.milliseconds = watch.milliseconds();
   return answer;
+}
+
+RegistrationAnswer registerBySymmetry(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target, std::uint64_t seed,
+                                      int num_threads) {
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  return runSymmetryRegistration(registration, source, target, seed, num_threads);
+}
+
+RegistrationAnswer registerByFrames(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target, std::uint64_t seed,
+                                    int num_threads) {
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  PoseSearchOptions options = registration.getSearchOptions();
+  options.num_rotations = 0;
+  registration.setSearchOptions(options);
+  return runSymmetryRegistration(registration, source, target, seed, num_threads);
+}
+
+RegistrationAnswer registerByRotations(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target, std::uint64_t seed,
+                                       int num_threads) {
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  registration.setUseFrames(false);
+  return runSymmetryRegistration(registration, source, target, seed, num_threads);
 }
 
 RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target, std::uint64_t,
@@ -193,6 +215,8 @@ RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::C
 const std::vector<RegistrationMethod>& registrationMethods() {
   static const std::vector<RegistrationMethod> methods = {
       {"symmetry", "SymmetryRegistration", registerBySymmetry},
+      {"frames", "SymmetryRegistration, symmetry frames alone", registerByFrames},
+      {"rotations", "SymmetryRegistration, rotations spread evenly alone", registerByRotations},
       {"pca", "principal axes + ICP", registerByPrincipalAxes},
       {"features", "FPFH + SampleConsensusPrerejective + ICP", registerByFeatures}};
   return methods;

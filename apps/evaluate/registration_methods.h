@@ -26,7 +26,7 @@ struct RegistrationMethod {
                             int num_threads);
 };
 
-/// symmetry: SymmetryRegistration with its defaults.
+/// symmetry: SymmetryRegistration with its defaults; frames and rotations: with one of its two kinds of hypotheses.
 /// pca: principal axes in the four proper orders of signs, ICP from each on voxels, ICP of the best with all points.
 /// features: FPFH and SampleConsensusPrerejective on voxels, ICP with all points.
 const std::vector<RegistrationMethod>& registrationMethods();

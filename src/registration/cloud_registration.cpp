@@ -5,9 +5,10 @@
 #include <pcl/search/kdtree.h>
 
 #include <algorithm>
-#include "pcl_symmetry/core/frame_hypotheses.h"
 #include <chrono>
 #include <stdexcept>
+
+#include "pcl_symmetry/core/frame_hypotheses.h"
 
 namespace pcl_symmetry {
 
@@ -15,11 +16,12 @@ namespace {
 
 using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
-constexpr int kRefinedPoints = 2000;  // of the scan
+constexpr int kRefinedPoints = 1000;  // of the scan
 constexpr int kJudgedPoints = 3000;   // of each cloud
 constexpr double kReach = 4.0;        // accuracies: how far ICP looks for its first pairs at least ...
 constexpr double kLeastReach = 0.08;  // ... and in radii
-constexpr double kFinalWidth = 1.0, kLeastFinalWidth = 0.015;  // accuracies, radii: of the last look
+constexpr double kLeastFinalWidth = 0.015;  // radii: of the last look, whose width is the accuracy
+constexpr double kHopeless = 0.2;           // of merit behind the best before the refinement
 
 NormalCloud::Ptr cloudOf(const PosedSurface& surface, int max_points) {
   const auto size = std::min<std::size_t>(surface.order.size(), max_points);
@@ -35,7 +37,7 @@ NormalCloud::Ptr cloudOf(const PosedSurface& surface, int max_points) {
 /// Point-to-plane ICP from several poses.
 class Refinement {
 public:
-  Refinement(const PosedSurface& scan, const PosedSurface& model, double reach, const RefinementOptions& options) {
+  Refinement(const PosedSurface& scan, const PosedSurface& model, double reach, const CloudRegistrationOptions& options) {
     const auto target = cloudOf(model, static_cast<int>(model.order.size()));
     auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>();
     tree->setInputCloud(target);
@@ -80,13 +82,6 @@ struct SearchFrames {
   BoundingBall source, target;
   double scale;
 
-  PosedSurface surface(const Points& points, const BoundingBall& ball, const std::optional<Visibility>& seen,
-                       std::uint64_t seed, int num_threads) const {
-    std::optional<Visibility> own;
-    if (seen) own = seen->normalized(ball.center, scale);
-    return {normalizePoints(points, ball.center, scale), std::move(own), seed, num_threads};
-  }
-
   Eigen::Isometry3d toSearch(const Eigen::Isometry3d& T_target_source) const {
     Eigen::Isometry3d pose = T_target_source;
     pose.translation() = (T_target_source * source.center - target.center) / scale;
@@ -107,10 +102,26 @@ void checkExtent(const char* name, const Points& points, const BoundingBall& bal
 
 }  // namespace
 
-CloudRegistration registerClouds(const Points& source, std::optional<Visibility> source_seen, const Points& target,
-                                 std::optional<Visibility> target_seen, const Eigen::Isometry3d& guess,
-                                 const PoseSearchOptions& search, const RefinementOptions& refinement,
-                                 std::uint64_t seed) {
+void CloudRegistrationOptions::validate() const {
+  const auto check = [](bool valid, const char* field, double value, const char* rule) {
+    if (!valid) throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + ", " + rule);
+  };
+  frame.validate();
+  search.validate();
+  check(max_iterations >= 1, "max_iterations", max_iterations, "must be >= 1");
+  if (max_correspondence) check(*max_correspondence > 0.0, "max_correspondence", *max_correspondence, "must be > 0");
+  check(transformation_epsilon >= 0.0, "transformation_epsilon", transformation_epsilon, "must be >= 0");
+  check(num_threads >= 0, "num_threads", num_threads, "must be >= 0");
+}
+
+CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
+                                 const Points& target, const std::optional<Visibility>& target_seen,
+                                 const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options) {
+  options.validate();
+  PoseSearchOptions search = options.search;
+  FrameOptions frame_options = options.frame;
+  search.num_threads = frame_options.num_threads = frame_options.edt.num_threads = options.num_threads;
+  frame_options.seed = options.seed;
   CloudRegistration result;
   Stopwatch watch;
   const auto done = [&](const char* stage) { result.timing_ms.emplace_back(stage, watch.lap()); };
@@ -120,53 +131,50 @@ CloudRegistration registerClouds(const Points& source, std::optional<Visibility>
   // The scan is what has a viewpoint, the model what shows its object from all sides.
   const bool swapped = target_seen && !source_seen;
   frames.scale = swapped ? frames.source.radius : frames.target.radius;
-  const PosedSurface source_surface = frames.surface(source, frames.source, source_seen, seed, search.num_threads);
-  const PosedSurface target_surface = frames.surface(target, frames.target, target_seen, seed, search.num_threads);
+  const auto surface = [&](const Points& points, const BoundingBall& ball, const std::optional<Visibility>& seen) {
+    return PosedSurface(normalizePoints(points, ball.center, frames.scale),
+                        seen ? std::optional(seen->normalized(ball.center, frames.scale)) : std::nullopt, options.seed,
+                        options.num_threads);
+  };
+  const PosedSurface source_surface = surface(source, frames.source, source_seen);
+  const PosedSurface target_surface = surface(target, frames.target, target_seen);
   const PosedSurface& scan = swapped ? target_surface : source_surface;
   const PosedSurface& model = swapped ? source_surface : target_surface;
   const auto turnedRound = [&](const Eigen::Isometry3d& pose) { return swapped ? pose.inverse() : pose; };
   done("prepare");
 
   std::vector<Eigen::Isometry3d> hypotheses = {turnedRound(frames.toSearch(guess))};
-  if (!getenv("NOSYM")) {
-  const auto frameOf = [&](const PosedSurface& surface) {
-    FrameOptions fo; fo.num_threads=fo.edt.num_threads=search.num_threads;
-    return symmetryFrame(surface.points, fo, surface.seen ? &*surface.seen : nullptr);
-  };
-  const auto fs = frameOf(scan);
-  done("scan_frame");
-  const auto fm = frameOf(model);
-  done("model_frame");
-  for (const auto& hypothesis : frameHypotheses(fs, fm)) {
-    if (getenv("SYMCENTER")) hypotheses.push_back(hypothesis);
-    else hypotheses.push_back(poseFromRotation(hypothesis.linear(), scan, model));
+  if (options.frames) {
+    const auto frameOf = [&](const PosedSurface& of) {
+      return symmetryFrame(of.points, frame_options, of.seen ? &*of.seen : nullptr);
+    };
+    for (const Eigen::Isometry3d& pose : frameHypotheses(frameOf(scan), frameOf(model))) {
+      hypotheses.push_back(pose);
+      hypotheses.push_back(poseFromRotation(pose.linear(), scan, model));
+    }
+    done("frames");
   }
-  }
-  PoseSearchOptions search2 = search;
-  if (getenv("NROT")) search2.num_rotations = atoi(getenv("NROT"));
-  if (getenv("NSCR")) search2.num_screened = atoi(getenv("NSCR"));
-  if (getenv("NREF")) search2.num_refined = atoi(getenv("NREF"));
-  if (getenv("NPOS")) search2.max_poses = atoi(getenv("NPOS"));
-  const std::vector<RankedPose> poses = searchPoses(scan, model, hypotheses, search2);
+  const std::vector<RankedPose> poses = searchPoses(scan, model, hypotheses, search);
   done("search");
 
   const double accuracy = std::max(scan.accuracy, model.accuracy);
-  const double reach = refinement.max_correspondence ? *refinement.max_correspondence / frames.scale
-                                                     : std::max(kLeastReach, kReach * accuracy);
-  Refinement icp(scan, model, reach, refinement);
+  const double reach = options.max_correspondence ? *options.max_correspondence / frames.scale
+                                                  : std::max(kLeastReach, kReach * accuracy);
+  Refinement icp(scan, model, reach, options);
   const PoseScorer scorer(scan, model);
-  const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, kFinalWidth * accuracy), true};
+  const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, accuracy), true};
   RankedPose best;
   best.score.conflict = 1.0;
+  const auto offer = [&](const Eigen::Isometry3d& pose) {
+    const PoseScore score = scorer.score(pose, detail);
+    if (score.merit() > best.score.merit()) best = {pose, score};
+  };
   for (const RankedPose& pose : poses) {
-    const Eigen::Isometry3d refined = icp.refine(pose.T_model_scan);
-    for (const Eigen::Isometry3d& candidate : {pose.T_model_scan, refined}) {
-      const PoseScore score = scorer.score(candidate, detail);
-      if (score.merit() > best.score.merit()) best = {candidate, score};
-    }
+    if (pose.score.merit() < poses.front().score.merit() - kHopeless) break;
+    offer(pose.T_model_scan);
+    offer(icp.refine(pose.T_model_scan));
   }
   done("refine");
-  if (getenv("TIMING")) { for (auto& [n,ms] : result.timing_ms) fprintf(stderr,"%s %.0f ", n.c_str(), ms); fprintf(stderr,"\n"); }
   result.T_target_source = frames.toInput(turnedRound(best.T_model_scan));
   result.score = best.score;
   return result;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/pose_search.h"
+#include "pcl_symmetry/registration/cloud_registration.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry {
@@ -45,14 +45,17 @@ public:
   void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = viewpoint; }
   void setTargetViewpoint(const Viewpoint& viewpoint) { target_viewpoint_ = viewpoint; }
 
-  /// Says converged where getScore().merit() reaches this, in [-1, 1]; default 0.5.
+  /// Says converged where getScore().merit() reaches this, in [-1, 1]; default 0.4: of 58 scans of benchmark models all
+  /// reach 0.54 at their own model, and none 0.28 at another that is not of the same kind.
   void setMinMerit(double min_merit);
+  /// Tries the frames of both clouds (default), or rotations spread evenly alone.
+  void setUseFrames(bool use_frames) { options_.frames = use_frames; }
   /// Of the search for poses. \throws pcl::BadArgumentException naming field, value and rule.
   void setSearchOptions(const PoseSearchOptions& options);
-  const PoseSearchOptions& getSearchOptions() const { return search_; }
+  const PoseSearchOptions& getSearchOptions() const { return options_.search; }
   /// Of larger clouds so many points are drawn, >= 3; default 10 000.
   void setMaxPoints(std::size_t max_points);
-  void setRandomSeed(std::uint64_t seed) { seed_ = seed; }
+  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }
   /// 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads);
 
@@ -80,10 +83,9 @@ protected:
 
 private:
   Viewpoint source_viewpoint_, target_viewpoint_;
-  PoseSearchOptions search_;
-  double min_merit_ = 0.5;
+  CloudRegistrationOptions options_;
+  double min_merit_ = 0.4;
   std::size_t max_points_ = 10'000;
-  std::uint64_t seed_ = 1;
   PoseScore score_;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };

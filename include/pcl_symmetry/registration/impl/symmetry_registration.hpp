@@ -10,17 +10,15 @@
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"
-#include "pcl_symmetry/registration/cloud_registration.h"
 #include "pcl_symmetry/registration/symmetry_registration.h"
 
 namespace pcl_symmetry {
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 SymmetryRegistration<PointSource, PointTarget, Scalar>::SymmetryRegistration() {
-  const RefinementOptions defaults;
   reg_name_ = "SymmetryRegistration";
-  max_iterations_ = defaults.max_iterations;
-  transformation_epsilon_ = defaults.transformation_epsilon;
+  max_iterations_ = options_.max_iterations;
+  transformation_epsilon_ = options_.transformation_epsilon;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -33,7 +31,7 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::setMinMerit(double 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::setSearchOptions(const PoseSearchOptions& options) {
   withBadArguments([&] { options.validate(); });
-  search_ = options;
+  options_.search = options;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -44,9 +42,9 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::setMaxPoints(std::s
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::setNumberOfThreads(int num_threads) {
-  PoseSearchOptions options = search_;
-  options.num_threads = num_threads;
-  setSearchOptions(options);
+  if (num_threads < 0)
+    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "num_threads = " << num_threads << ", must be >= 0");
+  options_.num_threads = num_threads;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -55,18 +53,18 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
   score_ = {};
   timing_ms_.clear();
   try {
-    const SelectedPoints source = selectPoints(*input_, indices_.get(), max_points_, seed_);
-    const SelectedPoints target = selectPoints(*target_, nullptr, max_points_, seed_);
-    RefinementOptions refinement;
-    refinement.max_iterations = max_iterations_;
-    refinement.transformation_epsilon = transformation_epsilon_;
-    refinement.rotation_epsilon = transformation_rotation_epsilon_;
+    const SelectedPoints source = selectPoints(*input_, indices_.get(), max_points_, options_.seed);
+    const SelectedPoints target = selectPoints(*target_, nullptr, max_points_, options_.seed);
+    CloudRegistrationOptions options = options_;
+    options.max_iterations = max_iterations_;
+    options.transformation_epsilon = transformation_epsilon_;
+    options.rotation_epsilon = transformation_rotation_epsilon_;
     if (corr_dist_threshold_ < std::sqrt(std::numeric_limits<double>::max()))
-      refinement.max_correspondence = corr_dist_threshold_;
+      options.max_correspondence = corr_dist_threshold_;
     const CloudRegistration result =
         registerClouds(source.points, seenSpace(*input_, source.points, source_viewpoint_), target.points,
                        seenSpace(*target_, target.points, target_viewpoint_),
-                       Eigen::Isometry3d(guess.template cast<double>()), search_, refinement, seed_);
+                       Eigen::Isometry3d(guess.template cast<double>()), options);
     score_ = result.score;
     timing_ms_ = result.timing_ms;
     if (!(score_.merit() >= min_merit_)) {
