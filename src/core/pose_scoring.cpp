@@ -14,6 +14,8 @@ namespace {
 
 constexpr float kNormalShare = 0.7f;      // of a point's support that hangs on its normal
 constexpr double kPointShare = 0.1;       // of a residual that is not across the surface: keeps poses from sliding away
+constexpr double kRoughShare = 0.15;      // of the spacing: rougher surfaces take normals from more neighbours
+constexpr int kNumRoughNeighbours = 32;
 constexpr double kSilhouetteShare = 0.5;  // of a pull towards the scan on points in free space
 
 std::vector<int> randomOrder(int size, std::uint64_t seed) {
@@ -83,8 +85,11 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       grid(input),
       search(makeFlannSearch(input)) {
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, num_threads);
+  const double spacing = median(geometry.spacing);
+  if (median(geometry.roughness) > kRoughShare * spacing)
+    geometry = localGeometry(points, *search, kNumRoughNeighbours, num_threads);
   normals = std::move(geometry.normals);
-  accuracy = median(std::move(geometry.spacing)) + 2.0 * median(std::move(geometry.roughness));
+  accuracy = spacing + 2.0 * median(std::move(geometry.roughness));
 }
 
 PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "pcl_symmetry/core/symmetric_completion.h"
@@ -40,9 +40,10 @@ TEST(SymmetricCompletion, AddsNothingInFreeSpace) {
   const BlockObject object = blockBox();
   const Scan scan = test::scan(object, {0.0, -6.0, 0.0});
   const Points points = scan.cloud();
-  const Visibility visibility = scan.visibility();
+  const std::optional<Visibility> visibility = Visibility::fromPoints(points, scan.viewpoint);
+  ASSERT_TRUE(visibility);
   const ReflectionPlane beside(Eigen::Vector3d::UnitX(), 1.2);
-  EXPECT_TRUE(completingPoints(points, beside, {}, &visibility).empty());
+  EXPECT_TRUE(completingPoints(points, beside, {}, &*visibility).empty());
   EXPECT_EQ(completingPoints(points, beside).size(), static_cast<std::size_t>(points.cols()))
       << "without a viewpoint nothing speaks against it";
 }
