@@ -14,6 +14,7 @@ namespace {
 
 constexpr float kNormalShare = 0.7f;      // of a point's support that hangs on its normal
 constexpr double kPointShare = 0.1;       // of a residual that is not across the surface: keeps poses from sliding away
+constexpr double kLeastJudged = 0.05;     // of the model's points: fewer that the scan can judge say little
 constexpr double kRoughShare = 0.15;      // of the spacing: rougher surfaces take normals from more neighbours
 constexpr int kNumRoughNeighbours = 32;
 constexpr double kSilhouetteShare = 0.5;  // of a pull towards the scan on points in free space
@@ -109,12 +110,14 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   score.conflict = unexplained / static_cast<double>(on_model.places.cols());
   if (!scan_.seen) return score;
   const Matches on_scan = match(model_, scan_, T_model_scan.inverse(), detail);
-  double conflict = 0.0;
+  double conflict = 0.0, judged = kLeastJudged * static_cast<double>(on_scan.places.cols());
   for (Eigen::Index i = 0; i < on_scan.places.cols(); ++i) {
-    if (!(scan_.seen->depthBehind(on_scan.places.col(i).cast<double>()) < 0.0)) continue;
-    conflict += 1.0f - std::exp(factor * (scan_.points.col(on_scan.closest[i]) - on_scan.places.col(i)).squaredNorm());
+    const float near = std::exp(factor * (scan_.points.col(on_scan.closest[i]) - on_scan.places.col(i)).squaredNorm());
+    const bool in_front = scan_.seen->depthBehind(on_scan.places.col(i).cast<double>()) < 0.0;
+    conflict += in_front ? 1.0f - near : 0.0f;
+    judged += in_front ? 1.0f : near;
   }
-  score.conflict += conflict / static_cast<double>(on_scan.places.cols());
+  score.conflict += conflict / judged;
   return score;
 }
 

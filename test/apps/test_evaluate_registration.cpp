@@ -71,9 +71,9 @@ TEST(MotionError, AnyRotationOfASphereIsRight) {
   ReferenceSymmetries symmetries;
   symmetries.centers = {{Eigen::Vector3d::Zero(), 1.0}};
   const MotionError error =
-      motionError(turned(50.0, Eigen::Vector3d::UnitY(), {0, 0.3, 0}), Eigen::Isometry3d::Identity(), symmetries);
+      motionError(turned(50.0, Eigen::Vector3d::UnitY(), {0, 0.03, 0}), Eigen::Isometry3d::Identity(), symmetries);
   EXPECT_EQ(error.angle, 0.0);
-  EXPECT_NEAR(error.distance, 0.3, 1e-9);
+  EXPECT_NEAR(error.distance, 0.03, 1e-9);
 }
 
 TEST(MissingPatches, TakeTheShareAway) {

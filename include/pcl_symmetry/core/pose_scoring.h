@@ -25,13 +25,15 @@ struct PosedSurface {
   PosedSurface(const PointsRef& points, std::optional<Visibility> seen, std::uint64_t seed, int num_threads);
 };
 
-/// What two clouds say about a pose, each a share of the points asked, in [0, 1].
+/// What two clouds say about a pose.
 struct PoseScore {
-  double support = 0.0;   ///< points of the scan that lie on the model
-  double conflict = 0.0;  ///< points of the model where the scanner saw that there is nothing, and of the scan likewise
+  double support = 0.0;  ///< share of the scan's points that lie on the model, in [0, 1]
+  /// Of the model's points that the scanner could judge, the share that lies where it saw that there is nothing; and the
+  /// share of the scan's points that lie where a scanner saw that nothing of the model is. In [0, 2].
+  double conflict = 0.0;
 
-  /// By which poses are compared.
-  double merit() const { return support - conflict; }
+  /// By which poses are compared. Conflict counts half: holes that a scanner leaves look like space it saw through.
+  double merit() const { return support - 0.5 * conflict; }
 };
 
 /// Judges and improves poses that bring a scan, or a whole object, to a model of it (Section 5.1).
