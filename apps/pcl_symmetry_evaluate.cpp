@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <string>
 
+#include "alignment.h"
 #include "options.h"
 #include "planes.h"
 
@@ -15,7 +16,9 @@ struct SubCommand {
   int (*run)(int argc, char** argv);
 };
 
-constexpr SubCommand kSubCommands[] = {{"planes", "how well symmetry planes are found", evaluatePlanes}};
+constexpr SubCommand kSubCommands[] = {
+    {"planes", "how well symmetry planes are found", evaluatePlanes},
+    {"alignment", "how well the frames of scans agree with those of whole models", evaluateAlignment}};
 
 void printUsage() {
   std::printf(

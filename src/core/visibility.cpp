@@ -1,7 +1,6 @@
 #include "pcl_symmetry/core/visibility.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -146,10 +145,6 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   to_pixels(1, 2) = 0.5 - bounds.low.y() / pixel;
   // Around the picture of an object nothing was met either.
   return Visibility(to_pixels * projection, width, height, std::move(depths), kBackground);
-}
-
-Eigen::Vector3d Visibility::viewpoint() const {
-  return -projection_.leftCols<3>().inverse() * projection_.col(3);
 }
 
 double Visibility::depthBehind(const Eigen::Vector3d& x) const {

@@ -35,9 +35,6 @@ public:
   /// \return nothing where the points do not lie in a cone of 75 degrees around one direction: seen from inside.
   static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
-  /// Where all rays meet, input frame. The projection of a pinhole camera has such a point.
-  Eigen::Vector3d viewpoint() const;
-
   /// How far behind the surface on its ray a point lies, input units: < 0 in free space; -infinity in front of nothing,
   /// +infinity where no ray passed.
   double depthBehind(const Eigen::Vector3d& x) const;
