@@ -1,6 +1,7 @@
 #include "pcl_symmetry/symmetry_alignment.h"
 
 #include <gtest/gtest.h>
+#include <pcl/common/point_tests.h>
 #include <pcl/exceptions.h>
 
 #include "clouds.h"

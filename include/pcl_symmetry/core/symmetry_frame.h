@@ -53,9 +53,10 @@ struct SymmetryFrame {
 /// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken; the
 /// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points.
 /// Order: the first plane is the best of the frame that is best as a whole; the second scores no less than the third.
-/// Signs: the second and third axis point to where the points reach further, so that their third moment about the
-/// center is positive; the first is what makes the frame right-handed, as it is the one most free of a direction of its
-/// own. Along an axis of symmetry the moment vanishes and chance decides: all signs are in SymmetryFrame::equivalent.
+/// Signs: along the second and third axis the third central moment of the points is positive: they point to the side
+/// where less of the shape reaches further. The first makes the frame right-handed, as it is the one most free of a
+/// direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan shows the moments of
+/// the side that was seen. All signs are in SymmetryFrame::equivalent.
 /// \param points 3 x N, finite, input units; at least two different ones.
 /// \param visibility what a scanner saw; null = the points show the object from all sides.
 /// \throws std::invalid_argument for bad options or points without extent.
