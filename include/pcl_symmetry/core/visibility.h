@@ -70,9 +70,4 @@ inline double seenSymmetry(double d, double f) {
   return (1.0 + kDoubt) * d / (d + f + kDoubt);
 }
 
-/// Finds out whether points were measured from a viewpoint: they lie in front of it, and hardly any of them behind
-/// others. Whole objects that are thin as seen from there pass too: nothing of them lies far behind. \param points 3 x
-/// N, finite, N >= 1. \return the space seen, or nothing.
-std::optional<Visibility> recognizeViewpoint(const PointsRef& points, const Eigen::Vector3d& viewpoint);
-
 }  // namespace pcl_symmetry
