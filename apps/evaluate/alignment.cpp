@@ -11,6 +11,8 @@
 #include "model_list.h"
 #include "options.h"
 #include "patches.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/impl/point_selection.hpp"
 #include "shape_input.h"
 #include "shape_output.h"
 #include "test_clouds.h"
@@ -89,8 +91,13 @@ private:
       if (!shape.mesh) throw InputError(model.path + ": has no faces");
       const TestCloudMaker maker(*shape.mesh, model.key, clouds_);
       const double diagonal = VirtualScanner(*shape.mesh).diagonal();
-      std::vector<FoundFrame> wholes;
-      for (const CloudRecipe& recipe : recipesFor(clouds_)) evaluate(model, maker, recipe, diagonal, wholes);
+      Wholes wholes;
+      std::vector<FrameErrors> errors;
+      std::vector<Eigen::Matrix3d> axes;  // of each, in the frame of the whole cloud
+      for (const CloudRecipe& recipe : recipesFor(clouds_))
+        evaluate(model, maker, recipe, diagonal, wholes, errors, axes);
+      markAsGood(wholes, axes, errors);
+      errors_.insert(errors_.end(), errors.begin(), errors.end());
     } catch (const InputError& error) {
       left_out_.push_back(error.what());
     } catch (const std::exception& error) {
@@ -98,13 +105,24 @@ private:
     }
   }
 
-  /// \param wholes the frames of the whole cloud by each method, in the model's frame: filled by the first recipe.
+  /// The whole cloud of a model.
+  struct Wholes {
+    std::vector<FoundFrame> frames;  ///< by each method, in the model's frame
+    pcl::PointCloud<pcl::PointXYZ>::ConstPtr cloud;
+    Eigen::Isometry3d T_cloud_model = Eigen::Isometry3d::Identity();
+  };
+
+  /// \param wholes filled by the first recipe.
   void evaluate(const Model& model, const TestCloudMaker& maker, const CloudRecipe& recipe, double diagonal,
-                std::vector<FoundFrame>& wholes) {
+                Wholes& wholes, std::vector<FrameErrors>& errors, std::vector<Eigen::Matrix3d>& axes) {
     const TestCloud made = maker.make(recipe);
     if (options_.missing > 0.0)
       removePatches(*made.cloud, options_.missing, kNumPatches, options_.common.seed + recipe.view + 1);
     const bool whole = recipe.view < 0;
+    if (whole) {
+      wholes.cloud = made.cloud;
+      wholes.T_cloud_model = made.T_cloud_model;
+    }
     std::optional<Eigen::Vector3d> viewpoint;
     if (!whole) viewpoint = made.cloud->sensor_origin_.head<3>().cast<double>();
     const Eigen::Isometry3d T_model_cloud = made.T_cloud_model.inverse();
@@ -116,12 +134,28 @@ private:
       if (!warm_) find();  // threads, tables and pages are there from the second call on
       warm_ = true;
       const FoundFrame found = find().transformed(T_model_cloud);
-      if (whole) wholes.push_back(found);
-      errors_.push_back(errorsOf(found, wholes[m], diagonal));
-      errors_.back().model = model.name;
-      errors_.back().view = recipe.view;
-      errors_.back().method = kAlignmentMethods[m];
+      if (whole) wholes.frames.push_back(found);
+      FrameErrors e = errorsOf(found, wholes.frames[m], diagonal);
+      e.model = model.name;
+      e.view = recipe.view;
+      e.method = kAlignmentMethods[m];
+      errors.push_back(std::move(e));
+      axes.emplace_back(wholes.T_cloud_model.linear() * found.axes);
     }
+  }
+
+  /// Frames whose planes are as good symmetries of the whole, each in its rank, as those of the frame that was found of
+  /// it by symmetry, or that are near one that the whole's frame says is equally good.
+  void markAsGood(const Wholes& wholes, const std::vector<Eigen::Matrix3d>& axes,
+                  std::vector<FrameErrors>& errors) const {
+    FrameOptions options;
+    options.num_threads = options.edt.num_threads = options_.common.threads;
+    const Points points = selectPoints(*wholes.cloud, nullptr, wholes.cloud->size(), 0).points;
+    std::vector<Eigen::Vector3d> scores = axisScores(points, axes, options);
+    for (Eigen::Vector3d& s : scores) std::sort(s.data(), s.data() + 3);
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      errors[i].as_good =
+          errors[i].equal_axes_angle < kRightAngle || (scores[i].array() >= scores.front().array() - options.tie).all();
   }
 
   static FrameErrors errorsOf(const FoundFrame& found, const FoundFrame& whole, double diagonal) {

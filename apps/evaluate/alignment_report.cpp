@@ -119,6 +119,9 @@ std::vector<AlignmentStatistics> summarize(const std::vector<FrameErrors>& error
     s.axes = shareRight(scans, &FrameErrors::axes_angle);
     s.frames = shareRight(scans, &FrameErrors::frame_angle);
     s.equal_axes = shareRight(scans, &FrameErrors::equal_axes_angle);
+    std::vector<double> as_good;
+    for (const FrameErrors* e : scans) as_good.push_back(e->as_good ? 1.0 : 0.0);
+    s.as_good = mean(as_good);
     const std::vector<double> times = valuesOf(scans, &FrameErrors::milliseconds);
     s.median_ms = quantile(times, 0.5);
     s.p95_ms = quantile(times, 0.95);
@@ -129,27 +132,26 @@ std::vector<AlignmentStatistics> summarize(const std::vector<FrameErrors>& error
 
 void printTable(const std::vector<AlignmentStatistics>& statistics) {
   std::printf("%d models, %d scans\n", statistics.front().num_models, statistics.front().num_scans);
-  std::printf("%-14s | %-13s %-15s %-13s | %-31s | %-25s | %s\n", "", "closer", "center", "mass / this",
+  std::printf("%-14s | %-13s %-15s %-13s | %-31s | %-33s | %s\n", "", "closer", "center", "mass / this",
               "model's own axes within 5 deg", "frame of the whole, 5 deg", "time");
-  std::printf("%-14s | %6s %6s %7s %7s %6s %6s | %6s %6s %8s %8s | %6s %8s %9s | %6s %6s\n", "", "models", "scans",
+  std::printf("%-14s | %6s %6s %7s %7s %6s %6s | %6s %6s %8s %8s | %6s %8s %9s %7s | %6s %6s\n", "", "models", "scans",
               "mean", "median", "mean", "median", "scans", "whole", "~ scans", "~ whole", "axes", "~ frames", "~ axes",
-              "ms", "95 %");
+              "as good", "ms", "95 %");
   for (const AlignmentStatistics& s : statistics) {
     std::printf(
-        "%-14s | %6s %6s %7s %7s %6s %6s | %6s %6s %8s %8s | %6s %8s %9s | %6s %6s\n", toString(s.method).c_str(),
+        "%-14s | %6s %6s %7s %7s %6s %6s | %6s %6s %8s %8s | %6s %8s %9s %7s | %6s %6s\n", toString(s.method).c_str(),
         fixed(s.closer_models, 1, 100).c_str(), fixed(s.closer_scans, 1, 100).c_str(),
         fixed(s.mean_center, 2, 100).c_str(), fixed(s.median_center, 2, 100).c_str(), fixed(s.mean_ratio, 2).c_str(),
         fixed(s.median_ratio, 2).c_str(), fixed(s.own_scans, 1, 100).c_str(), fixed(s.own_wholes, 1, 100).c_str(),
         fixed(s.own_turned_scans, 1, 100).c_str(), fixed(s.own_turned_wholes, 1, 100).c_str(),
         fixed(s.axes, 1, 100).c_str(), fixed(s.frames, 1, 100).c_str(), fixed(s.equal_axes, 1, 100).c_str(),
-        fixed(s.median_ms, 1).c_str(), fixed(s.p95_ms, 1).c_str());
+        fixed(s.as_good, 1, 100).c_str(), fixed(s.median_ms, 1).c_str(), fixed(s.p95_ms, 1).c_str());
   }
   std::printf(
       "closer: %% with a smaller error than by center of mass. center: error, %% of the diagonal. Axes are compared in "
-      "any"
-      " order and\nwith any sign. ~: own axes, at any angle about the whole's axis of revolution; frame of the whole, "
-      "or"
-      " one that it calls equally good.\n");
+      "any order and\nwith any sign. ~: own axes, at any angle about the whole's axis of revolution; frame of the "
+      "whole, "
+      "or one that it calls equally good.\nas good: that, or each plane scores on the whole as one of its own.\n");
 }
 
 nlohmann::json toJson(const std::vector<AlignmentStatistics>& statistics) {
@@ -166,6 +168,7 @@ nlohmann::json toJson(const std::vector<AlignmentStatistics>& statistics) {
                     {"axes_rate", s.axes},
                     {"frame_rate", s.frames},
                     {"equal_axes_rate", s.equal_axes},
+                    {"as_good_rate", s.as_good},
                     {"timing_ms", {{"median", s.median_ms}, {"p95", s.p95_ms}}}});
   }
   return list;
@@ -174,7 +177,7 @@ nlohmann::json toJson(const std::vector<AlignmentStatistics>& statistics) {
 std::string frameCSV(const std::vector<FrameErrors>& errors) {
   std::string text =
       "model,view,method,own_angle_deg,own_turned_angle_deg,center,axes_angle_deg,frame_angle_deg,equal_axes_angle_deg,"
-      "ms\n";
+      "as_good,ms\n";
   for (const FrameErrors& e : errors) {
     const auto of_scan = [&](double value) { return e.view < 0 ? std::optional<double>() : value; };
     text += Row()
@@ -187,6 +190,7 @@ std::string frameCSV(const std::vector<FrameErrors>& errors) {
                 .add(of_scan(e.axes_angle))
                 .add(of_scan(e.frame_angle))
                 .add(of_scan(e.equal_axes_angle))
+                .add(of_scan(e.as_good ? 1.0 : 0.0))
                 .add(e.milliseconds)
                 .end();
   }

@@ -20,6 +20,7 @@ struct FrameErrors {
   double axes_angle = 0.0;        ///< of a scan's axes from those of the whole, any order and sign
   double frame_angle = 0.0;       ///< of a scan's frame from that of the whole, or one that is equally good
   double equal_axes_angle = 0.0;  ///< the same, any order and sign
+  bool as_good = false;           ///< that, or its planes are symmetries of the whole as good as those of its own frame
   double milliseconds = 0.0;
 };
 
@@ -33,7 +34,7 @@ struct AlignmentStatistics {
   double mean_ratio = 0.0, median_ratio = 0.0;    ///< of the errors by center of mass to these
   double own_scans = 0.0, own_wholes = 0.0;       ///< within 5 degrees, as all that follow
   double own_turned_scans = 0.0, own_turned_wholes = 0.0;
-  double axes = 0.0, frames = 0.0, equal_axes = 0.0;
+  double axes = 0.0, frames = 0.0, equal_axes = 0.0, as_good = 0.0;
   double median_ms = 0.0, p95_ms = 0.0;  ///< of scans
 };
 

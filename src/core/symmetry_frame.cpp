@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 // Cells. Of a scan a wide Gaussian keeps planes whose other side was hardly seen; the whole can afford a narrow one.
-constexpr double kWholeSigma = 1.5, kScanSigma = 2.5;
+constexpr double kWholeSigma = 1.5, kScanSigma = 2.25;
 constexpr double kSigmaInSpacings = 1.5;           // at least: a sparse cloud is not a surface otherwise
 constexpr double kCubeSide = 2.2;                  // radii, nearly: of the grid of the distance transform
 constexpr int kNumSamples = 256;                   // of the profiles: D within about 1 %
@@ -34,6 +34,9 @@ constexpr double kSharpness = 15.0;      // of the weights exp(kSharpness s) of 
 constexpr double kOffsetWidth = 0.07;    // radii, standard deviation of weak planes about the middle of the extent
 constexpr double kTail = 0.005;          // of the points beyond either end of the extent
 constexpr int kRevolutionAngles = 8;
+// Of a scan, of the plane half-way between the first and another about the same axis: of bodies of revolution half is
+// hidden from each plane, but none is in conflict with what was seen.
+constexpr double kRevolution = 0.15;
 
 class Stopwatch {
 public:
@@ -62,6 +65,8 @@ struct Hypothesis {
   Eigen::Matrix3f axes;     ///< columns
   Eigen::Vector3f offsets;  ///< of the planes across them
   Eigen::Vector3f scores;
+  int about = -1;                ///< the axis that planes turn about best, 1 or 2; -1: of a whole
+  float diagonal_offset = 0.0f;  ///< of the plane half-way between the first and the other about it
   double value = 0.0;
 };
 
@@ -128,6 +133,13 @@ public:
     return frame;
   }
 
+  /// The greatest score of the planes across each axis.
+  Eigen::Vector3d scoresOf(const Eigen::Matrix3d& axes) const {
+    Eigen::Vector3d scores;
+    for (int k = 0; k < 3; ++k) scores[k] = bestOffset(axes.col(k).cast<float>(), nullptr).second;
+    return scores;
+  }
+
 private:
   GaussianEdtOptions edtOptions() const {
     GaussianEdtOptions edt = options_.edt;
@@ -174,6 +186,8 @@ private:
     const auto at = std::max_element(s.begin(), s.end()) - s.begin();
     return {offset + (static_cast<float>(at) - kSide) * kStep, s[at]};
   }
+
+  static Eigen::Vector3f halfWay(const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return (a + b).normalized(); }
 
   /// To the nearest maximum of quality, by steps of falling size.
   CellPlane climbed(CellPlane plane) const {
@@ -247,6 +261,7 @@ private:
     std::vector<CellPlane> turned(primaries.size() * kNumAngles);
     std::vector<float> scores(turned.size());
     std::vector<double> agreements(turned.size());
+    std::vector<std::pair<float, float>> diagonals(turned.size());
     parallelBlocks(turned.size(), options_.num_threads, [&](std::size_t i) {
       const CellPlane& first = primaries[i / kNumAngles];
       const float angle = static_cast<float>(M_PI * static_cast<double>(i % kNumAngles) / kNumAngles);
@@ -254,6 +269,7 @@ private:
       turned[i].normal = std::cos(angle) * u + std::sin(angle) * v;
       std::tie(turned[i].offset, scores[i]) = bestOffset(turned[i].normal, across(first));
       agreements[i] = agreement(turned[i].normal);
+      if (scanned_) diagonals[i] = bestOffset(halfWay(first.normal, turned[i].normal), nullptr);
     });
 
     std::vector<Hypothesis> frames;
@@ -268,6 +284,12 @@ private:
         frame.offsets << primaries[p].offset, turned[i].offset, turned[j].offset;
         frame.scores << first_score, scores[i], scores[j];
         frame.value = valueOf(frame.scores, first_agreement + agreements[i] + agreements[j]);
+        if (scanned_) {
+          frame.about = diagonals[i].second > diagonals[j].second ? 2 : 1;
+          const auto& diagonal = diagonals[frame.about == 2 ? i : j];
+          frame.diagonal_offset = diagonal.first;
+          frame.value += kRevolution * diagonal.second;
+        }
         return frame;
       };
       for (std::size_t angle = 0; angle < kQuarter; ++angle) {
@@ -299,6 +321,15 @@ private:
       agreements += agreement(axes.col(k));
     }
     frame.value = valueOf(frame.scores, agreements);
+    if (from.about > 0) {
+      const int other = 3 - from.about;
+      const Eigen::Vector3f normal = halfWay(axes.col(0), axes.col(other));
+      const Eigen::Vector3f before = halfWay(from.axes.col(0), from.axes.col(other));
+      const auto diagonal = nearbyOffset(normal, from.diagonal_offset + (normal - before).dot(mass_), nullptr);
+      frame.about = from.about;
+      frame.diagonal_offset = diagonal.first;
+      frame.value += kRevolution * diagonal.second;
+    }
     return frame;
   }
 
@@ -492,6 +523,15 @@ void FrameOptions::validate() const {
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options, const Visibility* visibility) {
   options.validate();
   return options.as_published ? publishedFrame(points, options) : FrameSearch(points, options, visibility).run();
+}
+
+std::vector<Eigen::Vector3d> axisScores(const PointsRef& points, const std::vector<Eigen::Matrix3d>& frames,
+                                        const FrameOptions& options) {
+  options.validate();
+  const FrameSearch search(points, options, nullptr);
+  std::vector<Eigen::Vector3d> scores;
+  for (const Eigen::Matrix3d& axes : frames) scores.push_back(search.scoresOf(axes));
+  return scores;
 }
 
 }  // namespace pcl_symmetry

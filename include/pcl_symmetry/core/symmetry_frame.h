@@ -13,7 +13,7 @@
 namespace pcl_symmetry {
 
 struct FrameOptions {
-  GaussianEdtOptions edt;  ///< sigma = 0: 1.5 cells, 2.5 for a scan, or 1.5 spacings of the points where that is more
+  GaussianEdtOptions edt;  ///< sigma = 0: 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more
   int num_theta = 32;      ///< of the map that candidates come from, >= 1
   int num_phi = 128;       ///< even, >= 2
   int num_radius = 64;     ///< >= 1
@@ -62,5 +62,10 @@ struct SymmetryFrame {
 /// \throws std::invalid_argument for bad options or points without extent.
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options = {},
                             const Visibility* visibility = nullptr);
+
+/// For each frame (unit axes in columns) the greatest D of the planes across each of its axes, whatever their offset:
+/// is another frame as symmetric as the one that was found? \param points as in symmetryFrame().
+std::vector<Eigen::Vector3d> axisScores(const PointsRef& points, const std::vector<Eigen::Matrix3d>& frames,
+                                        const FrameOptions& options = {});
 
 }  // namespace pcl_symmetry
