@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <string>
 
+#include "alignment.h"
 #include "options.h"
 #include "planes.h"
 #include "registration.h"
@@ -18,6 +19,7 @@ struct SubCommand {
 
 constexpr SubCommand kSubCommands[] = {
     {"planes", "how well symmetry planes are found", evaluatePlanes},
+    {"alignment", "how well the frames of scans agree with those of whole models", evaluateAlignment},
     {"registration", "how well scans are brought to models of their objects", evaluateRegistration}};
 
 void printUsage() {

@@ -1,37 +1,29 @@
 #include "picture.h"
 
-#include <pcl/conversions.h>
-#include <pcl/features/normal_3d.h>
 #include <vtkActor.h>
+#include <vtkActorCollection.h>
 #include <vtkCamera.h>
-#include <vtkCellArray.h>
 #include <vtkImageData.h>
 #include <vtkImageShrink3D.h>
-#include <vtkLookupTable.h>
+#include <vtkMapper.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
 #include <vtkPNGWriter.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkPolyDataMapper.h>
-#include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
 #include <vtkTextActor.h>
-#include <vtkTextProperty.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
+#include "picture_actors.h"
 #include "private_display.h"
 #include "shape_output.h"
 
@@ -39,10 +31,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr int kMaxSuperSampled = 4096;            ///< pictures up to this edge are drawn at twice their size
-constexpr std::size_t kMaxShadedPoints = 200000;  ///< more points shade themselves by their density
-constexpr double kViewAngle = 25.0;               ///< degrees
-const Eigen::Vector3d kPlainColor(0.30, 0.38, 0.52);
+constexpr int kMaxSuperSampled = 4096;  ///< pictures up to this edge are drawn at twice their size
+constexpr double kViewAngle = 25.0;     ///< degrees
 
 /// Keeps VTK's messages for the one line that reports a failure.
 class MessageCollector : public vtkOutputWindow {
@@ -71,7 +61,7 @@ private:
   vtkNew<MessageCollector> collector_;
 };
 
-void checkScene(const PictureScene& scene, int width, int height) {
+void checkScene(const PictureScene& scene) {
   if (!scene.points) throw std::invalid_argument("points is not set");
   if (scene.panels.empty()) throw std::invalid_argument("panels is empty, must hold at least one");
   for (const PicturePanel& panel : scene.panels) {
@@ -94,269 +84,14 @@ void checkScene(const PictureScene& scene, int width, int height) {
   if (!scene.view.allFinite() || !(scene.view.cross(scene.up).norm() > 1e-6)) {
     throw std::invalid_argument("view and up must be finite and not parallel");
   }
+}
+
+void checkSize(int width, int height) {
   for (const int edge : {width, height}) {
     if (edge < 16 || edge > 16384) {
       throw std::invalid_argument("picture edge = " + std::to_string(edge) + ", must be >= 16 and <= 16384");
     }
   }
-}
-
-/// Moves the scene to the origin and to unit size: VTK's clipping planes and single-precision buffers want that.
-struct Normalization {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double scale = 1;
-  Eigen::Vector3d operator()(const Eigen::Vector3d& point) const { return (point - center) * scale; }
-};
-
-Normalization normalizationOf(const PictureScene& scene) {
-  Eigen::AlignedBox3d box;
-  for (const pcl::PointXYZ& point : *scene.points) {
-    const Eigen::Vector3d position = point.getVector3fMap().cast<double>();
-    if (position.allFinite()) box.extend(position);
-  }
-  if (box.isEmpty()) throw InputError("nothing to draw, no point is finite");
-  const double diagonal = box.diagonal().norm();
-  return {box.center(), diagonal > 0 ? 1.0 / diagonal : 1.0};
-}
-
-/// \return for each point how bright it looks with a light at the camera, in [0, 1].
-std::vector<double> shading(const PictureScene& scene, const Normalization& normalize) {
-  std::vector<double> brightness(scene.points->size(), 1.0);
-  pcl::PointCloud<pcl::PointXYZ>::Ptr finite(new pcl::PointCloud<pcl::PointXYZ>);
-  std::vector<std::size_t> index;
-  for (std::size_t i = 0; i < scene.points->size(); ++i) {
-    const Eigen::Vector3d position = (*scene.points)[i].getVector3fMap().cast<double>();
-    if (!position.allFinite()) continue;
-    const Eigen::Vector3f q = normalize(position).cast<float>();
-    finite->emplace_back(q.x(), q.y(), q.z());
-    index.push_back(i);
-  }
-  if (finite->size() < 16 || finite->size() > kMaxShadedPoints) return brightness;
-  pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
-  pcl::PointCloud<pcl::Normal> normals;
-  estimation.setInputCloud(finite);
-  estimation.setKSearch(12);
-  estimation.compute(normals);
-  const Eigen::Vector3f view = scene.view.normalized().cast<float>();
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const float cosine = std::abs(normals[i].getNormalVector3fMap().dot(view));
-    if (std::isfinite(cosine)) brightness[index[i]] = cosine;
-  }
-  return brightness;
-}
-
-vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePanel& panel,
-                                     const Normalization& normalize, const std::vector<double>& brightness,
-                                     double panel_pixels) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToFloat();
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkUnsignedCharArray> colors;
-  colors->SetNumberOfComponents(3);
-  for (std::size_t i = 0; i < scene.points->size(); ++i) {
-    const Eigen::Vector3d position = (*scene.points)[i].getVector3fMap().cast<double>();
-    if (!position.allFinite()) continue;
-    const vtkIdType id = points->InsertNextPoint(normalize(position).data());
-    cells->InsertNextCell(1, &id);
-    const Eigen::Vector3d base = panel.support.empty() ? kPlainColor : cividis(panel.support[i]);
-    const Eigen::Vector3d color =
-        (panel.support.empty() ? 0.45 + 0.75 * brightness[i] : 0.65 + 0.35 * brightness[i]) * base;
-    for (int k = 0; k < 3; ++k) {
-      colors->InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
-    }
-  }
-  const double num_points = static_cast<double>(points->GetNumberOfPoints());
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  data->SetVerts(cells);
-  data->GetPointData()->SetScalars(colors);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(data);
-  mapper->SetColorModeToDirectScalars();
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetPointSize(
-      static_cast<float>(std::clamp(0.9 * panel_pixels / std::sqrt(num_points), 1.5, panel_pixels / 60)));
-  actor->GetProperty()->LightingOff();
-  return actor;
-}
-
-vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normalization& normalize) {
-  pcl::PointCloud<pcl::PointXYZ> vertices;
-  pcl::fromPCLPointCloud2(mesh.cloud, vertices);
-  vtkNew<vtkPoints> points;
-  for (const pcl::PointXYZ& vertex : vertices) {
-    points->InsertNextPoint(normalize(vertex.getVector3fMap().cast<double>()).data());
-  }
-  vtkNew<vtkCellArray> cells;
-  for (const pcl::Vertices& polygon : mesh.polygons) {
-    const bool drawable = std::all_of(polygon.vertices.begin(), polygon.vertices.end(), [&](pcl::index_t corner) {
-      return corner >= 0 && static_cast<std::size_t>(corner) < vertices.size() &&
-             vertices[static_cast<std::size_t>(corner)].getVector3fMap().allFinite();
-    });
-    if (!drawable) continue;
-    cells->InsertNextCell(static_cast<vtkIdType>(polygon.vertices.size()));
-    for (const pcl::index_t corner : polygon.vertices) cells->InsertCellPoint(corner);
-  }
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  data->SetPolys(cells);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(data);
-  mapper->SetResolveCoincidentTopologyToPolygonOffset();
-  mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2.0, 2.0);
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(0.86, 0.86, 0.88);
-  actor->GetProperty()->SetAmbient(0.25);
-  actor->GetProperty()->SetDiffuse(0.75);
-  actor->GetProperty()->SetInterpolationToFlat();
-  return actor;
-}
-
-/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
-std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
-  const Eigen::Vector3d normal = plane.normal.normalized(), s = normal.unitOrthogonal(), t = normal.cross(s);
-  std::vector<Eigen::Vector2d> projections;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d second_moment = Eigen::Matrix2d::Zero();
-  for (const pcl::PointXYZ& point : points) {
-    const Eigen::Vector3d position = point.getVector3fMap().cast<double>();
-    if (!position.allFinite()) continue;
-    projections.emplace_back(s.dot(position), t.dot(position));
-    mean += projections.back();
-  }
-  mean /= static_cast<double>(projections.size());
-  for (const Eigen::Vector2d& q : projections) second_moment += (q - mean) * (q - mean).transpose();
-  const Eigen::Matrix2d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(second_moment).eigenvectors();
-  Eigen::AlignedBox2d box;
-  for (const Eigen::Vector2d& q : projections) box.extend(axes.transpose() * q);
-  const double margin = 0.06 * box.diagonal().norm();
-  box.extend(box.min() - Eigen::Vector2d::Constant(margin)).extend(box.max() + Eigen::Vector2d::Constant(margin));
-  const auto corner = [&](double u, double v) -> Eigen::Vector3d {
-    const Eigen::Vector2d q = axes * Eigen::Vector2d(u, v);
-    return plane.offset / plane.normal.norm() * normal + q.x() * s + q.y() * t;
-  };
-  return {corner(box.min().x(), box.min().y()), corner(box.max().x(), box.min().y()),
-          corner(box.max().x(), box.max().y()), corner(box.min().x(), box.max().y())};
-}
-
-/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
-std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
-  const double length = plane.normal.norm();
-  const Eigen::Vector3d normal = plane.normal / length;
-  const Eigen::Vector3d center = plane.center - (normal.dot(plane.center) - plane.offset / length) * normal;
-  Eigen::Vector3d v = up.normalized() - normal.dot(up.normalized()) * normal;
-  if (v.norm() < 0.1) v = normal.unitOrthogonal();
-  v.normalize();
-  const Eigen::Vector3d u = normal.cross(v);
-  const double h = plane.half_size;
-  return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
-}
-
-/// As long as the points reach along it, and a tenth more.
-void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
-             double line_width) {
-  const Eigen::Vector3d direction = axis.direction.normalized();
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const pcl::PointXYZ& point : *scene.points) {
-    if (!pcl::isXYZFinite(point)) continue;
-    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
-    low = std::min(low, along);
-    high = std::max(high, along);
-  }
-  const double margin = 0.1 * (high - low);
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(normalize(axis.point + (low - margin) * direction).data());
-  points->InsertNextPoint(normalize(axis.point + (high + margin) * direction).data());
-  const vtkIdType ends[] = {0, 1};
-  vtkNew<vtkCellArray> line;
-  line->InsertNextCell(2, ends);
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  data->SetLines(line);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(data);
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(axis.color.x(), axis.color.y(), axis.color.z());
-  actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
-  actor->GetProperty()->LightingOff();
-  renderer.AddActor(actor);
-}
-
-void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,
-              double line_width) {
-  vtkNew<vtkPoints> points;
-  const auto corners = plane.half_size > 0 ? squareCorners(plane, scene.up) : fittedCorners(plane, *scene.points);
-  for (const Eigen::Vector3d& corner : corners) points->InsertNextPoint(normalize(corner).data());
-  const vtkIdType loop[] = {0, 1, 2, 3, 0};
-  vtkNew<vtkCellArray> quad, outline;
-  quad->InsertNextCell(4, loop);
-  outline->InsertNextCell(5, loop);
-  for (const bool filled : {true, false}) {
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    if (filled) {
-      data->SetPolys(quad);
-    } else {
-      data->SetLines(outline);
-    }
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(data);
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(plane.color.x(), plane.color.y(), plane.color.z());
-    actor->GetProperty()->SetOpacity(filled ? 0.25 : 1.0);
-    actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
-    actor->GetProperty()->LightingOff();
-    renderer.AddActor(actor);
-  }
-}
-
-vtkSmartPointer<vtkTextActor> labelActor(const std::string& text, int font_size) {
-  vtkNew<vtkTextActor> actor;
-  actor->SetInput(text.c_str());
-  actor->GetTextProperty()->SetFontFamilyToArial();
-  actor->GetTextProperty()->SetFontSize(font_size);
-  actor->GetTextProperty()->SetColor(0.1, 0.1, 0.1);
-  actor->GetTextProperty()->SetJustificationToCentered();
-  actor->GetTextProperty()->SetVerticalJustificationToTop();
-  actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  actor->GetPositionCoordinate()->SetValue(0.5, 0.98);
-  return actor;
-}
-
-vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, int font_size) {
-  vtkNew<vtkLookupTable> table;
-  table->SetNumberOfTableValues(128);
-  table->SetTableRange(0, 1);
-  for (int i = 0; i < 128; ++i) {
-    const Eigen::Vector3d color = cividis(i / 127.0);
-    table->SetTableValue(i, color.x(), color.y(), color.z(), 1);
-  }
-  vtkNew<vtkScalarBarActor> bar;
-  bar->SetLookupTable(table);
-  bar->SetTitle("support");
-  bar->SetNumberOfLabels(3);
-  bar->SetLabelFormat(" %.1f");
-  bar->UnconstrainedFontSizeOn();
-  for (vtkTextProperty* text : {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
-    text->SetFontFamilyToArial();
-    text->SetFontSize(font_size);
-    text->SetColor(0.1, 0.1, 0.1);
-    text->BoldOff();
-    text->ItalicOff();
-    text->ShadowOff();
-  }
-  const double height = 0.28, width = std::min(0.25, 4.5 * font_size / panel_width);
-  bar->SetMaximumHeightInPixels(static_cast<int>(height * panel_height));
-  bar->SetMaximumWidthInPixels(static_cast<int>(width * panel_width));
-  bar->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  bar->SetPosition(0.98 - width, 0.03);
-  bar->SetWidth(width);
-  bar->SetHeight(height);
-  return bar;
 }
 
 /// Places the camera so that all of the panel lies inside the picture, below the label and left of the colour bar.
@@ -398,9 +133,8 @@ void fitCamera(vtkRenderer& renderer, const PictureScene& scene, double aspect, 
   renderer.ResetCameraClippingRange();
 }
 
-int numColumns(const PictureScene& scene, int width, int height) {
-  const int num_panels = static_cast<int>(scene.panels.size());
-  if (scene.num_columns > 0) return std::min(scene.num_columns, num_panels);
+int numColumns(int num_panels, int wanted, int width, int height) {
+  if (wanted > 0) return std::min(wanted, num_panels);
   int best = 1;
   double best_edge = 0;
   for (int columns = 1; columns <= num_panels; ++columns) {
@@ -414,20 +148,33 @@ int numColumns(const PictureScene& scene, int width, int height) {
   return best;
 }
 
-void addPanels(vtkRenderWindow& window, const PictureScene& scene, int width, int height) {
-  const int columns = numColumns(scene, width, height);
-  const int rows = (static_cast<int>(scene.panels.size()) + columns - 1) / columns;
-  const int panel_width = width / columns, panel_height = height / rows;
-  const double panel_pixels = std::min(panel_width, panel_height);
+/// Where the panels of a picture lie, row by row.
+struct PanelGrid {
+  int columns, rows, panel_width, panel_height;
+
+  PanelGrid(int num_panels, int wanted_columns, int width, int height)
+      : columns(numColumns(num_panels, wanted_columns, width, height)),
+        rows((num_panels + columns - 1) / columns),
+        panel_width(width / columns),
+        panel_height(height / rows) {}
+
+  void place(vtkRenderer& renderer, int panel) const {
+    const int column = panel % columns, row = panel / columns;
+    renderer.SetViewport(double(column) / columns, 1.0 - double(row + 1) / rows, double(column + 1) / columns,
+                         1.0 - double(row) / rows);
+  }
+};
+
+/// \param first_panel of the scene among those of the picture.
+void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGrid& grid, int first_panel) {
+  const double panel_pixels = std::min(grid.panel_width, grid.panel_height);
   const int font_size = std::max(8, static_cast<int>(std::lround(panel_pixels * 0.036)));
   const Normalization normalize = normalizationOf(scene);
   const std::vector<double> brightness = shading(scene, normalize);
   for (std::size_t i = 0; i < scene.panels.size(); ++i) {
     const PicturePanel& panel = scene.panels[i];
-    const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
     vtkNew<vtkRenderer> renderer;
-    renderer->SetViewport(double(column) / columns, 1.0 - double(row + 1) / rows, double(column + 1) / columns,
-                          1.0 - double(row) / rows);
+    grid.place(*renderer, first_panel + static_cast<int>(i));
     renderer->SetBackground(1, 1, 1);
     renderer->SetUseDepthPeeling(true);
     renderer->SetMaximumNumberOfPeels(16);
@@ -437,10 +184,10 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, int width, in
     for (const AxisLine& axis : panel.axes) addAxis(*renderer, axis, scene, normalize, panel_pixels / 120);
     for (const PlanePatch& plane : panel.planes) addPlane(*renderer, plane, scene, normalize, panel_pixels / 250);
     const bool has_bar = scene.show_color_bar && !panel.support.empty();
-    fitCamera(*renderer, scene, double(panel_width) / panel_height, has_bar ? 0.12 : 0.0);
+    fitCamera(*renderer, scene, double(grid.panel_width) / grid.panel_height, has_bar ? 0.12 : 0.0);
     if (!panel.label.empty()) renderer->AddActor2D(labelActor(panel.label, font_size));
     if (has_bar) {
-      renderer->AddActor2D(colorBar(panel_width, panel_height, std::max(8, font_size * 3 / 4)));
+      renderer->AddActor2D(colorBar(grid.panel_width, grid.panel_height, std::max(8, font_size * 3 / 4)));
     }
     window.AddRenderer(renderer);
   }
@@ -468,7 +215,18 @@ Eigen::Vector3d cividis(double value) {
 }
 
 void renderPicture(const PictureScene& scene, const std::string& path, int width, int height) {
-  checkScene(scene, width, height);
+  renderPicture(std::vector<PictureScene>{scene}, path, width, height, scene.num_columns);
+}
+
+void renderPicture(const std::vector<PictureScene>& scenes, const std::string& path, int width, int height,
+                   int num_columns) {
+  if (scenes.empty()) throw std::invalid_argument("scenes is empty, must hold at least one");
+  int num_panels = 0;
+  for (const PictureScene& scene : scenes) {
+    checkScene(scene);
+    num_panels += static_cast<int>(scene.panels.size());
+  }
+  checkSize(width, height);
   writeAtomically(path, [&](const std::string& temporary) {
     const PrivateDisplay display;
     const CollectedMessages messages;
@@ -478,7 +236,12 @@ void renderPicture(const PictureScene& scene, const std::string& path, int width
     window->SetMultiSamples(0);
     window->SetAlphaBitPlanes(1);
     window->SetSize(factor * width, factor * height);
-    addPanels(*window, scene, factor * width, factor * height);
+    const PanelGrid grid(num_panels, num_columns, factor * width, factor * height);
+    int next_panel = 0;
+    for (const PictureScene& scene : scenes) {
+      addPanels(*window, scene, grid, next_panel);
+      next_panel += static_cast<int>(scene.panels.size());
+    }
     if (!window->SupportsOpenGL()) throw InputError(path + ": cannot be drawn, the display has no OpenGL 3.2");
     window->Render();
 

@@ -61,4 +61,9 @@ Eigen::Vector3d cividis(double value);
 /// cannot be written.
 void renderPicture(const PictureScene& scene, const std::string& path, int width, int height);
 
+/// The panels of several scenes in one picture, row by row.
+/// \param num_columns of all panels, 0 = as square as the panels allow; that of the scenes does not count.
+void renderPicture(const std::vector<PictureScene>& scenes, const std::string& path, int width, int height,
+                   int num_columns = 0);
+
 }  // namespace pcl_symmetry::apps

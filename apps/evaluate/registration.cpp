@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "console.h"
-#include "missing_patches.h"
+#include "patches.h"
 #include "model_list.h"
 #include "motion_error.h"
 #include "options.h"

@@ -11,7 +11,8 @@ PlaneProfiles::PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& f
                              std::uint64_t seed, int num_threads)
     : size_(static_cast<std::uint32_t>(edt.numCells())),
       middle_(0.5f * static_cast<float>(edt.numCells() - 1)),
-      outside_{0, static_cast<std::uint8_t>(free_space.empty() ? 0 : 255)},
+      scanned_(!free_space.empty()),
+      outside_{0, static_cast<std::uint8_t>(scanned_ ? 255 : 0)},
       cells_(edt.values().size()),
       samples_(drawPoints(edt, num_samples, seed, num_threads).array() - middle_) {
   for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -53,7 +54,8 @@ std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float fi
   }
   std::vector<float> result(count);
   const double scale = 1.0 / std::max(own, 1);
-  for (int k = 0; k < count; ++k) result[k] = static_cast<float>(seenSymmetry(scale * surface[k], scale * free[k]));
+  for (int k = 0; k < count; ++k)
+    result[k] = static_cast<float>(scanned_ ? seenSymmetry(scale * surface[k], scale * free[k]) : scale * surface[k]);
   return result;
 }
 

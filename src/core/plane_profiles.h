@@ -22,7 +22,7 @@ public:
   PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& free_space, int num_samples, std::uint64_t seed,
                 int num_threads);
 
-  /// seenSymmetry() of D and F at the planes with offsets first, first + step ..., \p count of them.
+  /// D at, or of a scan seenSymmetry() of D and F at the planes with offsets first, first + step ..., \p count of them.
   /// \param across of a scan: surface and free space are known on both sides of this plane as they are seen on one of
   /// them; must be perpendicular to \p normal. Null: they are not.
   std::vector<float> scores(const Eigen::Vector3f& normal, float first, float step, int count,
@@ -46,6 +46,7 @@ private:
 
   std::uint32_t size_;
   float middle_;
+  bool scanned_;
   Cell outside_;
   std::vector<Cell> cells_;
   Eigen::Matrix3Xf samples_;  // cells from the middle

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <numeric>
+#include <utility>
 
+#include "part_search.h"
 #include "pcl_symmetry/core/parallel.h"
 #include "pcl_symmetry/core/principal_axes.h"
-#include "pcl_symmetry/core/random.h"
 #include "plane_confidence.h"
+#include "point_samples.h"
 
 namespace pcl_symmetry {
 
@@ -39,12 +39,6 @@ constexpr double kAllowance = 0.015, kDensityAllowance = 0.004;  // of the share
 constexpr double kFamilyTolerance = 0.03;                        // radii
 constexpr int kFamilySamples = 1500;
 constexpr double kUnseen = 0.02;  // of the points: less that is seen of a reflection says nothing
-constexpr int kNumSeeds = 24, kPartDirections = 8;
-constexpr double kPartRadii[] = {0.25, 0.35, 0.5};       // radii of the points
-constexpr double kLeastPart = 0.04, kLargestPart = 0.6;  // of the points; more is nearly the whole
-constexpr double kPartQuality = 0.8;                     // support among the points of a part
-constexpr double kSharedPart = 0.5;                      // of a part that better ones may have
-constexpr std::size_t kPartSamples = 400;
 
 double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -59,28 +53,6 @@ double median(std::vector<float> values) {
 bool samePlane(const ReflectionPlane& a, const ReflectionPlane& b, double angle, double offset) {
   const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
   return a.angleTo(b) <= angle && std::abs(a.offset() - sign * b.offset()) <= offset;
-}
-
-std::vector<int> allOf(Eigen::Index size) {
-  std::vector<int> samples(static_cast<std::size_t>(size));
-  std::iota(samples.begin(), samples.end(), 0);
-  return samples;
-}
-
-std::vector<int> drawSamples(Eigen::Index size, int num_samples, std::uint64_t seed) {
-  std::vector<int> samples = allOf(size);
-  if (num_samples >= size) return samples;
-  RandomStream random(seed);
-  for (int i = 0; i < num_samples; ++i)
-    std::swap(samples[i], samples[i + random.below(static_cast<std::uint64_t>(size - i))]);
-  samples.resize(num_samples);
-  return samples;
-}
-
-Points pointsAt(const Points& points, const std::vector<int>& samples) {
-  Points chosen(3, static_cast<Eigen::Index>(samples.size()));
-  for (std::size_t i = 0; i < samples.size(); ++i) chosen.col(static_cast<Eigen::Index>(i)) = points.col(samples[i]);
-  return chosen;
 }
 
 /// D at one plane: the full sum over the cells of the EDT.
@@ -111,9 +83,7 @@ Refinement::Refinement(const PointsRef& points, const GaussianEdt& edt, const De
       roughness_(median(geometry_.roughness) / std::max(spacing_, 1e-6)) {
   if (visibility) visibility_ = visibility->normalized(center_, scale_);
   final_sigma_ = std::min(sigma_, std::max(1e-6, kFinalSigmaInSpacings * spacing_));
-  const PointEvidence own = pointEvidence(points_, geometry_.normals, geometry_.nearest, geometry_.nearest_sq_distance,
-                                          points_, geometry_, nullptr);
-  baseline_ = std::max(mean(own.support), 1e-3);
+  baseline_ = std::max(mean(ownSupport(points_, geometry_)), 1e-3);
   if (roughness_ > kVolumeRoughness && !visibility_)
     density_.emplace(points_, kDensityBandwidth * spacing_, options.num_threads);
 }
@@ -318,11 +288,25 @@ void Refinement::run(std::vector<Candidate>& candidates, int num_samples, double
       own.update = IspUpdate::PointToPoint;
     if (!settles) own.max_iterations = std::min(own.max_iterations, kRoughIterations);
     if (settles && options_.update == IspUpdate::PointToPlane) own.error_share = kSettledErrorShare;
-    candidate.last = refineSymmetricPoints(surface_, used, candidate.plane, own);
+    const ReflectionPlane start = candidate.plane;
+    candidate.last = refineSymmetricPoints(surface_, used, start, own);
     candidate.plane = candidate.last.plane;
     candidate.iterations += candidate.last.iterations;
     candidate.merit = meritOf(sharesOf(candidate.plane, used, candidate.last.last));
+    if (visibility_ && final_sigma == sigma) returnIfSlid(candidate, start, used, sigma);
   });
+}
+
+/// Distances across the surface say nothing about a plane along flat pieces, and half a shape may have little else: the
+/// plane takes one step by whole distances instead if what is seen then speaks for it more.
+void Refinement::returnIfSlid(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
+                              double sigma) const {
+  IspStep step = iterateSymmetricPoints(surface_, samples, start, sigma, IspUpdate::PointToPoint);
+  const double merit = meritOf(sharesOf(step.plane, samples, step));
+  if (merit <= candidate.merit) return;
+  candidate.plane = step.plane;
+  candidate.merit = merit;
+  candidate.last.last = std::move(step);
 }
 
 void Refinement::runByDensity(std::vector<Candidate>& candidates, int num_samples) const {
@@ -349,8 +333,8 @@ Refinement::Shares Refinement::sharesOf(const ReflectionPlane& plane, const std:
     const Eigen::Vector3f normal = geometry_.normals.col(samples[i]);
     normals.col(i) = normal - 2.0f * n.dot(normal) * n;
   }
-  PointEvidence evidence = pointEvidence(reflected, normals, step.closest, step.sq_distances, points_, geometry_,
-                                         visibility_ ? &*visibility_ : nullptr);
+  PointEvidence evidence =
+      pointEvidence(reflected, normals, step.closest, points_, geometry_, visibility_ ? &*visibility_ : nullptr);
   Shares shares{mean(evidence.support), mean(evidence.conflict), std::move(evidence.support)};
   if (density_) {
     shares.support = density_->overlap(pointsAt(points_, samples), plane);
@@ -446,97 +430,27 @@ SymmetryAxis Refinement::judgedFamily(const std::vector<ReflectionPlane>& planes
   return family;
 }
 
-/// A part is what lies in a ball. Planes through its middle are refined on its points alone; the ball then moves to
-/// where the support is. Of planes whose parts overlap the best remains, as a limb has many.
 std::vector<SymmetryPlane> Refinement::findParts(const std::vector<SymmetryPlane>& known) const {
-  struct Part {
-    ReflectionPlane plane;
-    std::vector<int> points;
-    double quality = 0.0;
-    int iterations = 0;
+  IspOptions isp;
+  isp.update = options_.update;
+  isp.sigma = sigma_;
+  isp.final_sigma = final_sigma_;
+  isp.max_iterations = kCloseIterations;
+  const auto support = [this](const ReflectionPlane& plane, const std::vector<int>& samples) {
+    return std::min(1.0, sharesOf(plane, samples).support / baseline_);
   };
-  const Eigen::Index size = points_.cols();
-  const auto within = [&](const Eigen::Vector3f& center, double radius) {
-    std::vector<int> inside;
-    for (Eigen::Index i = 0; i < size; ++i)
-      if ((points_.col(i) - center).squaredNorm() <= radius * radius) inside.push_back(static_cast<int>(i));
-    return inside;
-  };
-  // Seeds far from each other.
-  std::vector<Eigen::Vector3f> seeds;
-  Eigen::VectorXf sq_distances = Eigen::VectorXf::Constant(size, std::numeric_limits<float>::infinity());
-  for (int next = 0, k = 0; k < kNumSeeds; ++k) {
-    seeds.push_back(points_.col(next));
-    sq_distances = sq_distances.cwiseMin((points_.colwise() - seeds.back()).colwise().squaredNorm().transpose());
-    sq_distances.maxCoeff(&next);
-  }
-  std::vector<std::vector<Part>> found(seeds.size() * std::size(kPartRadii));
-  parallelBlocks(found.size(), options_.num_threads, [&](std::size_t task) {
-    const double radius = kPartRadii[task % std::size(kPartRadii)];
-    std::vector<int> ball = within(seeds[task / std::size(kPartRadii)], radius);
-    const Points start = pointsAt(points_, ball);
-    const Eigen::Vector3d middle = centerOfMass(start);
-    ball = within(middle.cast<float>(), radius);
-    const auto is_part = [&](std::size_t count) {
-      return static_cast<double>(count) >= kLeastPart * static_cast<double>(size) &&
-             static_cast<double>(count) <= kLargestPart * static_cast<double>(size);
-    };
-    if (!is_part(ball.size())) return;
-    IspOptions isp;
-    isp.update = options_.update;
-    isp.sigma = sigma_;
-    isp.final_sigma = final_sigma_;
-    isp.max_iterations = kCloseIterations;
-    const auto thinned = [&](const std::vector<int>& all) {
-      std::vector<int> some;
-      const std::size_t stride = 1 + all.size() / kPartSamples;
-      for (std::size_t i = 0; i < all.size(); i += stride) some.push_back(all[i]);
-      return some;
-    };
-    std::vector<ReflectionPlane> starts = principalPlanes(principalAxes(pointsAt(points_, ball)));
-    for (int k = 0; k < kPartDirections; ++k) {
-      const double z = (k + 0.5) / kPartDirections, angle = 2.0 * M_PI * 0.61803398874989485 * k;
-      const Eigen::Vector3d n(std::sqrt(1.0 - z * z) * std::cos(angle), std::sqrt(1.0 - z * z) * std::sin(angle), z);
-      starts.emplace_back(n, n.dot(middle));
-    }
-    Part best;
-    for (const ReflectionPlane& plane : starts) {
-      std::vector<int> samples = thinned(ball);
-      IspResult result = refineSymmetricPoints(surface_, samples, plane, isp);
-      // The ball about the place of the plane that is nearest: a ball is cut as symmetrically as it can be.
-      const Eigen::Vector3d center = middle - result.plane.signedDistance(middle) * result.plane.normal();
-      const std::vector<int> moved = within(center.cast<float>(), radius);
-      if (!is_part(moved.size())) continue;
-      samples = thinned(moved);
-      IspOptions fine = isp;
-      fine.sigma = fine.final_sigma;
-      result = refineSymmetricPoints(surface_, samples, result.plane, fine);
-      if (std::abs(result.plane.signedDistance(middle)) > 0.5 * radius) continue;
-      const double quality = std::min(1.0, sharesOf(result.plane, samples).support / baseline_);
-      if (quality > best.quality) best = {result.plane, moved, quality, result.iterations};
-    }
-    if (best.quality >= kPartQuality) found[task].push_back(std::move(best));
-  });
-  std::vector<Part> parts;
-  for (auto& list : found) parts.insert(parts.end(), list.begin(), list.end());
-  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-    return a.quality * static_cast<double>(a.points.size()) > b.quality * static_cast<double>(b.points.size());
-  });
-  std::vector<char> taken(static_cast<std::size_t>(size), 0);
+  const std::vector<int> all = allOf(points_.cols());
   std::vector<SymmetryPlane> planes;
-  for (const Part& part : parts) {
-    const auto num_taken = std::count_if(part.points.begin(), part.points.end(), [&](int i) { return taken[i] != 0; });
-    if (static_cast<double>(num_taken) > kSharedPart * static_cast<double>(part.points.size())) continue;
+  for (const SymmetricPart& part : findSymmetricParts(surface_, isp, support)) {
     const bool is_known = std::any_of(known.begin(), known.end(), [&](const SymmetryPlane& other) {
       return samePlane(toNormalized(other), part.plane, kCandidateAngle, kCandidateOffset);
     });
-    for (const int i : part.points) taken[i] = 1;
     if (is_known) continue;
     SymmetryPlane plane;
     static_cast<ReflectionPlane&>(plane) = toInput(part.plane).canonical();
-    const std::vector<int> all = allOf(size);
     const IspStep step = iterateSymmetricPoints(surface_, all, part.plane, final_sigma_, IspUpdate::PointToPoint);
     judge(plane, sharesOf(part.plane, all, step));
+    if (isSymmetry(plane)) continue;  // one of a family, which is known as its axis or center
     plane.kind = PlaneKind::Local;
     plane.iterations = part.iterations;
     plane.residual = step.residual * scale_;

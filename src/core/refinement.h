@@ -67,6 +67,8 @@ private:
 
   void run(std::vector<Candidate>& candidates, int num_samples, double sigma, double final_sigma,
            int max_iterations) const;
+  void returnIfSlid(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
+                    double sigma) const;
   void runByDensity(std::vector<Candidate>& candidates, int num_samples) const;
   Shares sharesOf(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
   Shares sharesOf(const ReflectionPlane& plane, const std::vector<int>& samples) const;

@@ -1,7 +1,6 @@
 #include "pcl_symmetry/core/visibility.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,9 +17,7 @@ constexpr double kPointsPerPixel = 4.0;  // where a surface faces the viewer hal
 constexpr int kLargestSide = 1024;
 constexpr int kClosingNeighbours = 5;  // of eight
 constexpr int kClosingPasses = 3;
-constexpr double kSmallHole = 0.01;    // of the pixels with points
-constexpr double kHiddenMargin = 0.1;  // radii: more than the depth of a pixel of a slanting surface
-constexpr double kMostHidden = 0.18;   // a pixel of a sphere's rim is deep: 0.1; from elsewhere it is 0.3 and more
+constexpr double kSmallHole = 0.01;  // of the pixels with points
 
 struct Bounds {
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
@@ -183,15 +180,6 @@ std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility& visibilit
       if (visibility.depthBehind(edt.cellCenter(i)) < 0.0) free[i] = 1.0f - f[i];
   });
   return free;
-}
-
-std::optional<Visibility> recognizeViewpoint(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
-  const BoundingBall ball = boundingBall(points);
-  if (!((viewpoint - ball.center).norm() > ball.radius)) return std::nullopt;
-  std::optional<Visibility> visibility = Visibility::fromPoints(points, viewpoint);
-  if (!visibility) return std::nullopt;
-  if (visibility->hiddenShare(points, kHiddenMargin * ball.radius) > kMostHidden) return std::nullopt;
-  return visibility;
 }
 
 }  // namespace pcl_symmetry

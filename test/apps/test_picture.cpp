@@ -44,6 +44,18 @@ TEST(Picture, IsAWholePNGOfTheWantedSize) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
+TEST(Picture, HoldsSeveralScenes) {
+  const TemporaryFolder folder;
+  PictureScene other = boxScene();
+  other.panels.resize(1);
+  renderPicture({other}, folder / "one.png", 300, 200);
+  renderPicture({other, other}, folder / "two.png", 300, 200, 1);
+  renderPicture({other, other}, folder / "beside.png", 300, 200, 2);
+  EXPECT_NE(contentOf(folder / "one.png"), contentOf(folder / "two.png"));
+  EXPECT_NE(contentOf(folder / "two.png"), contentOf(folder / "beside.png"));
+  EXPECT_THROW(renderPicture(std::vector<PictureScene>{}, folder / "none.png", 300, 200), std::invalid_argument);
+}
+
 TEST(Picture, FailsWithOneErrorWhereNothingCanDraw) {
   const TemporaryFolder folder;
   const char* display = std::getenv("DISPLAY");

@@ -142,6 +142,17 @@ TEST(DetectPlanes, ApproximateOnesComeWhenAskedFor) {
     EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
 }
 
+TEST(DetectPlanes, PlanesOfAFamilyAreNotSymmetriesOfParts) {
+  DetectionOptions options;
+  options.approximate = true;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Detection detection = detectPlanes(cylinder(3000, seed).cloud(), options);
+    ASSERT_EQ(detection.axes.size(), 1u);
+    for (const SymmetryPlane& plane : detection.planes)
+      EXPECT_FALSE(plane.kind == PlaneKind::Local && plane.confidence >= options.min_confidence) << seed;
+  }
+}
+
 TEST(DetectPlanes, ACylinderHasOneAxisAndThePlaneAcross) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Eigen::Isometry3d pose = randomPose(4 + seed);

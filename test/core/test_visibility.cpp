@@ -162,36 +162,6 @@ TEST(Visibility, HiddenShareTellsAScanFromAWhole) {
   EXPECT_LT(hidden, 0.6);
 }
 
-TEST(RecognizeViewpoint, AcceptsTheTrueOneOfAScan) {
-  EXPECT_TRUE(recognizeViewpoint(sphereScan(), kViewpoint));
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    RandomStream random(seed);
-    const Eigen::Vector3d viewpoint = 4.0 * randomDirection(random);
-    for (const BlockObject& object : {blockBox(), blockL(), blockChair()})
-      EXPECT_TRUE(recognizeViewpoint(scan(object, viewpoint).cloud(), viewpoint)) << seed;
-  }
-}
-
-TEST(RecognizeViewpoint, RefusesWholeObjectsFromAnywhere) {
-  for (const Shape& shape : {box(10'000, Sampling::Random, 1), sphere(10'000, 2), scaleneTetrahedron(10'000, 3),
-                             prism(6, 1000, Sampling::Random, 4)}) {
-    const Points cloud = shape.cloud();
-    EXPECT_FALSE(recognizeViewpoint(cloud, Eigen::Vector3d::Zero()));
-    EXPECT_FALSE(recognizeViewpoint(cloud, centerOfMass(cloud)));
-    for (const double distance : {0.3, 1.5, 3.0, 30.0, 1000.0}) {
-      RandomStream random(7);
-      for (int i = 0; i < 5; ++i)
-        EXPECT_FALSE(recognizeViewpoint(cloud, centerOfMass(cloud) + distance * randomDirection(random)))
-            << distance << ", " << i;
-    }
-  }
-}
-
-TEST(RecognizeViewpoint, RefusesAPlaceAmongThePointsOfAScan) {
-  const Points cloud = scan(blockChair(), {2.0, -3.0, 1.5}).cloud();
-  EXPECT_FALSE(recognizeViewpoint(cloud, Eigen::Vector3d(0.1, 0.1, 0.3)));
-}
-
 TEST(FreeSpace, IsFreeInFrontAndBesideAndNothingBehind) {
   const Points points = sphereScan();
   const auto seen = Visibility::fromPoints(points, kViewpoint);

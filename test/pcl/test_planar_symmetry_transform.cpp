@@ -2,25 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
-#include <pcl/exceptions.h>
 
 #include "clouds.h"
+#include "error_message.h"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry {
 namespace {
 
+using test::messageOf;
 using test::Sampling;
-
-template <typename Body>
-std::string messageOf(const Body& body) {
-  try {
-    body();
-  } catch (const pcl::BadArgumentException& error) {
-    return error.what();
-  }
-  return "no exception";
-}
 
 pcl::PolygonMesh boxMesh() {
   pcl::PointCloud<pcl::PointXYZ> corners;

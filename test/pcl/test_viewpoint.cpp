@@ -2,12 +2,12 @@
 #include "pcl_symmetry/viewpoint.h"
 
 #include <gtest/gtest.h>
-#include <pcl/exceptions.h>
 
 #include <algorithm>
 #include <string>
 
 #include "clouds.h"
+#include "error_message.h"
 #include "pcl_symmetry/impl/seen_space.hpp"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -16,6 +16,7 @@
 namespace pcl_symmetry {
 namespace {
 
+using test::messageOf;
 using test::Sampling;
 using test::Scan;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
@@ -57,16 +58,6 @@ bool contains(const std::vector<SymmetryPlane>& planes, const ReflectionPlane& p
     const auto error = test::planeError(found, plane, about);
     return error.angle < 2.0 * test::kDegree && error.offset < 0.05;
   });
-}
-
-template <typename Body>
-std::string messageOf(const Body& body) {
-  try {
-    body();
-  } catch (const pcl::BadArgumentException& error) {
-    return error.what();
-  }
-  return "no exception";
 }
 
 TEST(Viewpoint, AnOrganizedCloudTellsByItsOwnRays) {

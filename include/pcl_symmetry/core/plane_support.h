@@ -15,24 +15,21 @@ namespace pcl_symmetry {
 /// density of the samples alone: beyond 1.25 spacings (1 / sqrt(density), measured at that sample) lies 1 in 130. Up to
 /// there the support is 1; beyond it falls as a Gaussian. So it needs no threshold in input units.
 
-/// \param closest,sq_distances for each reflected point the closest sample and its squared distance.
-/// \param spacing of every sample, in the units of the distances.
-/// \return one value in [0, 1] per reflected point.
-std::vector<float> pointSupport(const std::vector<int>& closest, const std::vector<float>& sq_distances,
-                                const std::vector<float>& spacing);
-
-/// What the points of a surface say about a reflection, one value in [0, 1] per reflected point each.
+/// One value in [0, 1] per reflected point each.
 struct PointEvidence {
   std::vector<float> support;   ///< its reflection lies on the surface
   std::vector<float> conflict;  ///< its reflection lies where the scanner saw that there is nothing
 };
 
-/// \param points,normals 3 x M, the points and their normals, reflected. \param closest,sq_distances of each the
-/// closest sample of the surface and its squared distance. \param samples 3 x N, the surface, normalised to the unit
-/// ball, \p geometry of it. \param visibility what was seen, in the same frame; null = everything.
+/// At an edge the closest sample may lie on another face: the best of it and the samples next to it counts.
+/// \param reflected,reflected_normals 3 x M, of the points. \param closest of each the closest sample of the surface;
+/// -1: none is near. \param samples 3 x N, the surface, normalised to the unit ball, \p geometry of it.
+/// \param visibility what was seen, in the same frame; null = everything.
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
-                            const std::vector<float>& sq_distances, const Points& samples,
-                            const LocalGeometry& geometry, const Visibility* visibility);
+                            const Points& samples, const LocalGeometry& geometry, const Visibility* visibility);
+
+/// The support of each sample on the surface that the others describe: what sampling alone makes of a symmetry.
+std::vector<float> ownSupport(const Points& samples, const LocalGeometry& geometry);
 
 /// The same from the points: the support of each of \p points on the surface that \p samples describe.
 /// \param points 3 x M, finite. \param samples 3 x N, finite, not all equal, in the same frame.

@@ -35,9 +35,6 @@ public:
   /// \return nothing where the points do not lie in a cone of 75 degrees around one direction: seen from inside.
   static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
-  /// Where all rays meet, input frame. The projection of a pinhole camera has such a point.
-  Eigen::Vector3d viewpoint() const;
-
   /// How far behind the surface on its ray a point lies, input units: < 0 in free space; -infinity in front of nothing,
   /// +infinity where no ray passed.
   double depthBehind(const Eigen::Vector3d& x) const;
@@ -72,10 +69,5 @@ inline double seenSymmetry(double d, double f) {
   constexpr double kDoubt = 0.15;
   return (1.0 + kDoubt) * d / (d + f + kDoubt);
 }
-
-/// Finds out whether points were measured from a viewpoint: they lie in front of it, and hardly any of them behind
-/// others. Whole objects that are thin as seen from there pass too: nothing of them lies far behind. \param points 3 x
-/// N, finite, N >= 1. \return the space seen, or nothing.
-std::optional<Visibility> recognizeViewpoint(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 }  // namespace pcl_symmetry
