@@ -119,7 +119,8 @@ public:
         directions_(points, edt_),
         middle_(edt_.origin() + Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1) * edt_.cellSize())),
         reach_(static_cast<float>(edt_.radius() / edt_.cellSize())),
-        mass_(toCells(centerOfMass(points))) {}
+        principal_(principalAxes(points)),
+        mass_(toCells(principal_.center)) {}
 
   SymmetryFrame run() {
     lap("surface");
@@ -227,8 +228,7 @@ private:
       candidates.push_back({normal, static_cast<float>(-maximum.plane.signedDistance(middle_) / edt_.cellSize())});
     }
     const std::size_t num_maxima = candidates.size();
-    const PrincipalAxes principal = principalAxes(points_);
-    for (int k = 0; k < 3; ++k) candidates.push_back({principal.axes.col(k).cast<float>(), 0.0f});
+    for (int k = 0; k < 3; ++k) candidates.push_back({principal_.axes.col(k).cast<float>(), 0.0f});
     for (const Eigen::Vector3f& peak : directions_.peaks(kMaxPeaks)) candidates.push_back({peak, 0.0f});
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       CellPlane& plane = candidates[i];
@@ -333,7 +333,12 @@ private:
     return frame;
   }
 
-  /// To the nearest maximum of the value, all three planes together; then in the order of their scores.
+  double spreadAlong(const Eigen::Vector3f& axis) const {
+    return (principal_.axes.transpose() * axis.cast<double>()).cwiseAbs2().dot(principal_.variances);
+  }
+
+  /// To the nearest maximum of the value, all three planes together; then in the order of their scores, or where they
+  /// tie of the spread of the points along the axes.
   Hypothesis refined(const Hypothesis& start) const {
     Hypothesis frame = turnedTo(start, start.axes);
     for (const double step : {2.0, 1.0, 0.5}) {
@@ -349,7 +354,9 @@ private:
         frame = better;
       }
     }
-    if (frame.scores[2] > frame.scores[1]) {
+    const float ahead = frame.scores[1] - frame.scores[2];
+    const bool tied = std::abs(ahead) <= options_.tie;
+    if (tied ? spreadAlong(frame.axes.col(2)) > spreadAlong(frame.axes.col(1)) : ahead < 0.0f) {
       frame.axes.col(1).swap(frame.axes.col(2));
       std::swap(frame.offsets[1], frame.offsets[2]);
       std::swap(frame.scores[1], frame.scores[2]);
@@ -466,6 +473,7 @@ private:
   const SurfaceDirections directions_;
   const Eigen::Vector3d middle_;
   const float reach_;           // radius in cells
+  const PrincipalAxes principal_;
   const Eigen::Vector3f mass_;  // center of mass
 };
 

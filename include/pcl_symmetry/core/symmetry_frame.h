@@ -52,7 +52,8 @@ struct SymmetryFrame {
 ///
 /// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken; the
 /// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points.
-/// Order: the first plane is the best of the frame that is best as a whole; the second scores no less than the third.
+/// Order: the first plane is the best of the frame that is best as a whole; the second scores more than the third or,
+/// where they tie, the points spread more along it.
 /// Signs: along the second and third axis the third central moment of the points is positive: they point to the side
 /// where less of the shape reaches further. The first makes the frame right-handed, as it is the one most free of a
 /// direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan shows the moments of
