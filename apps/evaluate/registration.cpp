@@ -26,6 +26,7 @@ namespace pcl_symmetry::apps {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
+constexpr int kNumPatches = 10;
 
 struct EvaluateRegistrationOptions {
   std::vector<std::string> folders;
@@ -184,7 +185,8 @@ private:
     const Target target{model.name, sampleMesh(*shape.mesh, options_.num_points, options_.common.seed + 1)};
     for (const CloudRecipe& recipe : recipesFor(clouds_)) {
       const TestCloud scan = maker.make(recipe);
-      removePatches(*scan.cloud, options_.missing, options_.common.seed + static_cast<std::uint64_t>(recipe.view) + 1);
+      removePatches(*scan.cloud, options_.missing, kNumPatches,
+                    options_.common.seed + static_cast<std::uint64_t>(recipe.view) + 1);
       const std::string name = model.name + "_" + recipe.name;
       tryAll(name, scan, target, &references);
       if (options_.impostors && before_) tryAll(name, scan, *before_, nullptr);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "missing_patches.h"
+#include "patches.h"
 #include "motion_error.h"
 #include "tool_run.h"
 
@@ -80,11 +80,11 @@ TEST(MissingPatches, TakeTheShareAway) {
   pcl::PointCloud<pcl::PointXYZ> cloud;
   for (int i = 0; i < 1000; ++i) cloud.push_back({static_cast<float>(i % 40), static_cast<float>(i / 40), 0.0f});
   const auto before = cloud;
-  removePatches(cloud, 0.2, 3);
+  removePatches(cloud, 0.2, 10, 3);
   EXPECT_EQ(cloud.size(), before.size());
   EXPECT_EQ(std::count_if(cloud.begin(), cloud.end(), [](const auto& p) { return std::isfinite(p.x); }), 800);
   auto other = before;
-  removePatches(other, 0.0, 3);
+  removePatches(other, 0.0, 10, 3);
   EXPECT_TRUE(std::all_of(other.begin(), other.end(), [](const auto& p) { return std::isfinite(p.x); }));
 }
 
