@@ -172,10 +172,6 @@ Visibility Visibility::normalized(const Eigen::Vector3d& center, double scale) c
   return result;
 }
 
-Eigen::Vector3d Visibility::viewpoint() const {
-  return -projection_.leftCols<3>().inverse() * projection_.col(3);
-}
-
 std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility& visibility, int num_threads) {
   const std::size_t n = edt.numCells();
   const std::vector<float>& f = edt.values();
