@@ -242,6 +242,12 @@ void renderPicture(const std::vector<PictureScene>& scenes, const std::string& p
       addPanels(*window, scene, grid, next_panel);
       next_panel += static_cast<int>(scene.panels.size());
     }
+    for (; next_panel < grid.columns * grid.rows; ++next_panel) {
+      vtkNew<vtkRenderer> blank;
+      grid.place(*blank, next_panel);
+      blank->SetBackground(1, 1, 1);
+      window->AddRenderer(blank);
+    }
     if (!window->SupportsOpenGL()) throw InputError(path + ": cannot be drawn, the display has no OpenGL 3.2");
     window->Render();
 
