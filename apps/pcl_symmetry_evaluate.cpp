@@ -4,6 +4,7 @@
 
 #include "options.h"
 #include "planes.h"
+#include "segmentation.h"
 
 namespace {
 
@@ -15,11 +16,13 @@ struct SubCommand {
   int (*run)(int argc, char** argv);
 };
 
-constexpr SubCommand kSubCommands[] = {{"planes", "how well symmetry planes are found", evaluatePlanes}};
+constexpr SubCommand kSubCommands[] = {
+    {"planes", "how well symmetry planes are found", evaluatePlanes},
+    {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation}};
 
 void printUsage() {
   std::printf(
-      "Measures how well symmetries are found, on data with known answers.\n\n"
+      "Measures how well symmetries are found and shapes are cut into parts, on data with known answers.\n\n"
       "Usage: pcl_symmetry_evaluate COMMAND [-flag value]\n\n");
   for (const SubCommand& command : kSubCommands) std::printf("  %-14s %s\n", command.name, command.summary);
   std::printf(

@@ -1,0 +1,63 @@
+#include "segmentation_methods.h"
+
+#include <pcl/conversions.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+
+#include "pcl_symmetry/core/k_means.h"
+#include "tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+constexpr int kNumClusters = 6;  // of k-means; people make 2 to 20 segments
+
+std::vector<int> oneSegment(const pcl::PolygonMesh& mesh) {
+  return std::vector<int>(mesh.polygons.size(), 0);
+}
+
+/// k-means on the centers of the faces, by area: geometry alone.
+std::vector<int> clustersOfCenters(const pcl::PolygonMesh& mesh) {
+  pcl::PointCloud<pcl::PointXYZ> vertices;
+  pcl::fromPCLPointCloud2(mesh.cloud, vertices);
+  Eigen::MatrixXd centers = Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(mesh.polygons.size()));
+  std::vector<float> areas(mesh.polygons.size());
+  for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
+    const auto& corners = mesh.polygons[f].vertices;
+    const auto at = [&](std::size_t k) -> Eigen::Vector3d {
+      return vertices.at(corners[k]).getVector3fMap().cast<double>();
+    };
+    Eigen::Vector3d twice_area = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      centers.col(f) += at(k) / static_cast<double>(corners.size());
+      if (k >= 2) twice_area += (at(k - 1) - at(0)).cross(at(k) - at(0));
+    }
+    areas[f] = static_cast<float>(0.5 * twice_area.norm());
+  }
+  KMeansOptions options;
+  options.num_clusters = kNumClusters;
+  return kMeans(centers.cast<float>(), areas, options).labels;
+}
+
+}  // namespace
+
+std::vector<SegmentationMethod> segmentationMethods(const std::vector<std::string>& names, int /*num_threads*/) {
+  const std::vector<SegmentationMethod> known = {{"one", oneSegment}, {"k-means", clustersOfCenters}};
+  std::vector<SegmentationMethod> chosen;
+  for (const std::string& name : names) {
+    std::string list;
+    bool found = false;
+    for (const SegmentationMethod& method : known) {
+      list += (list.empty() ? "" : ", ") + method.name;
+      if (method.name != name) continue;
+      chosen.push_back(method);
+      found = true;
+    }
+    if (!found) throw UsageError("method '" + name + "': unknown, must be one of " + list);
+  }
+  return chosen;
+}
+
+}  // namespace pcl_symmetry::apps
