@@ -45,7 +45,8 @@ CommandLine commandLine(EvaluateSegmentationOptions& o) {
       .number("every", o.selection.every, Range::closed(1, 1'000'000), "every N-th mesh, sorted by name ...")
       .number("first", o.selection.first, Range::closed(0, 1'000'000), "... beginning with this, 0 is the first ...")
       .number("max", o.selection.max, Range::closed(1, 1'000'000), "... and no more than so many")
-      .text("methods", "A,B,...", o.methods, "human, one, k-means (all)")
+      .text("methods", "A,B,...", o.methods,
+            "human, one, k-means, paper-1 to paper-4 (by depth), ... (human,one,k-means)")
       .text("segments", "DIR", o.segments_folder, "also judge 12.seg ... that another program wrote")
       .flag("categories", o.categories, "Rand distance by category of the benchmark")
       .text("csv", "FILE", o.csv, "a row for each method and model")
@@ -155,7 +156,7 @@ private:
       return;
     }
     if (people_ && references.size() > 1) addPeople(model, comparison, references);
-    for (const SegmentationMethod& method : methods_) {
+    for (const NamedSegmentation& method : methods_) {
       const Stopwatch watch;
       const std::vector<int> labels = method.segment(*shape.mesh);
       const double ms = watch.milliseconds();
@@ -202,7 +203,7 @@ private:
   std::size_t rank(const std::string& method) const {
     if (method == "human") return 0;
     const auto found =
-        std::find_if(methods_.begin(), methods_.end(), [&](const SegmentationMethod& m) { return m.name == method; });
+        std::find_if(methods_.begin(), methods_.end(), [&](const NamedSegmentation& m) { return m.name == method; });
     return 1 + static_cast<std::size_t>(found - methods_.begin());
   }
 
@@ -216,7 +217,7 @@ private:
   const EvaluateSegmentationOptions& options_;
   const Console console_;
   bool people_ = false;
-  std::vector<SegmentationMethod> methods_;
+  std::vector<NamedSegmentation> methods_;
   std::vector<SegmentationResult> results_;
 };
 

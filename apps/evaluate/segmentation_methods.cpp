@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "pcl_symmetry/core/k_means.h"
+#include "pcl_symmetry/symmetry_segmentation.h"
 #include "tool_errors.h"
 
 namespace pcl_symmetry::apps {
@@ -13,6 +14,7 @@ namespace pcl_symmetry::apps {
 namespace {
 
 constexpr int kNumClusters = 6;  // of k-means; people make 2 to 20 segments
+constexpr int kMaxDepth = 4;     // of the paper's method
 
 std::vector<int> oneSegment(const pcl::PolygonMesh& mesh) {
   return std::vector<int>(mesh.polygons.size(), 0);
@@ -41,15 +43,31 @@ std::vector<int> clustersOfCenters(const pcl::PolygonMesh& mesh) {
   return kMeans(centers.cast<float>(), areas, options).labels;
 }
 
+NamedSegmentation withOptions(const std::string& name, SegmentationOptions options, int num_threads) {
+  options.num_threads = num_threads;
+  return {name, [options](const pcl::PolygonMesh& mesh) { return segmentSurface(meshGraph(mesh), options).labels; }};
+}
+
+/// The paper's, to a depth.
+NamedSegmentation splitting(const std::string& name, int depth, double concavity_weight, int num_threads) {
+  SegmentationOptions options;
+  options.method = SegmentationMethod::Splitting;
+  options.splitting.depth = depth;
+  options.splitting.concavity_weight = concavity_weight;
+  return withOptions(name, options, num_threads);
+}
+
 }  // namespace
 
-std::vector<SegmentationMethod> segmentationMethods(const std::vector<std::string>& names, int /*num_threads*/) {
-  const std::vector<SegmentationMethod> known = {{"one", oneSegment}, {"k-means", clustersOfCenters}};
-  std::vector<SegmentationMethod> chosen;
+std::vector<NamedSegmentation> segmentationMethods(const std::vector<std::string>& names, int num_threads) {
+  std::vector<NamedSegmentation> known = {{"one", oneSegment}, {"k-means", clustersOfCenters}};
+  for (int depth = 1; depth <= kMaxDepth; ++depth)
+    known.push_back(splitting("paper-" + std::to_string(depth), depth, 0.0, num_threads));
+  std::vector<NamedSegmentation> chosen;
   for (const std::string& name : names) {
     std::string list;
     bool found = false;
-    for (const SegmentationMethod& method : known) {
+    for (const NamedSegmentation& method : known) {
       list += (list.empty() ? "" : ", ") + method.name;
       if (method.name != name) continue;
       chosen.push_back(method);
