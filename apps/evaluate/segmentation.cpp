@@ -46,7 +46,9 @@ CommandLine commandLine(EvaluateSegmentationOptions& o) {
       .number("first", o.selection.first, Range::closed(0, 1'000'000), "... beginning with this, 0 is the first ...")
       .number("max", o.selection.max, Range::closed(1, 1'000'000), "... and no more than so many")
       .text("methods", "A,B,...", o.methods,
-            "human, one, k-means, paper-1 to paper-4 (by depth), ... (human,one,k-means)")
+            "human, one, k-means, paper-1 to paper-4 (by depth), symmetry, concavity, all (merging by evidence), "
+            "points (a cloud "
+            "of the mesh) (human,one,k-means,all)")
       .text("segments", "DIR", o.segments_folder, "also judge 12.seg ... that another program wrote")
       .flag("categories", o.categories, "Rand distance by category of the benchmark")
       .text("csv", "FILE", o.csv, "a row for each method and model")
@@ -115,7 +117,7 @@ class SegmentationEvaluation {
 public:
   explicit SegmentationEvaluation(const EvaluateSegmentationOptions& options)
       : options_(options), console_(options.common.quiet) {
-    std::vector<std::string> names = {"human", "one", "k-means"};
+    std::vector<std::string> names = {"human", "one", "k-means", "all"};
     if (options.methods) boost::split(names, *options.methods, boost::is_any_of(","));
     const auto human = std::find(names.begin(), names.end(), "human");
     people_ = human != names.end();

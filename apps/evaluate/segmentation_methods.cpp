@@ -5,7 +5,9 @@
 
 #include <Eigen/Geometry>
 
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/k_means.h"
+#include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_segmentation.h"
 #include "tool_errors.h"
 
@@ -13,8 +15,9 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr int kNumClusters = 6;  // of k-means; people make 2 to 20 segments
-constexpr int kMaxDepth = 4;     // of the paper's method
+constexpr int kNumClusters = 6;     // of k-means; people make 2 to 20 segments
+constexpr int kNumPoints = 30'000;  // of the cloud of a mesh
+constexpr int kMaxDepth = 4;        // of the paper's method
 
 std::vector<int> oneSegment(const pcl::PolygonMesh& mesh) {
   return std::vector<int>(mesh.polygons.size(), 0);
@@ -49,12 +52,35 @@ NamedSegmentation withOptions(const std::string& name, SegmentationOptions optio
 }
 
 /// The paper's, to a depth.
-NamedSegmentation splitting(const std::string& name, int depth, double concavity_weight, int num_threads) {
+NamedSegmentation splitting(const std::string& name, int depth, int num_threads) {
   SegmentationOptions options;
   options.method = SegmentationMethod::Splitting;
   options.splitting.depth = depth;
-  options.splitting.concavity_weight = concavity_weight;
   return withOptions(name, options, num_threads);
+}
+
+NamedSegmentation merging(const std::string& name, MergingEvidence evidence, int num_threads) {
+  SegmentationOptions options;
+  options.merging.evidence = evidence;
+  return withOptions(name, options, num_threads);
+}
+
+/// The default on points spread over the mesh; faces take the segment of the closest point.
+NamedSegmentation cloudOfMesh(int num_threads) {
+  return {"points", [num_threads](const pcl::PolygonMesh& mesh) {
+            const auto cloud = sampleMesh(mesh, kNumPoints);
+            SymmetrySegmentation<pcl::PointXYZ> segmentation;
+            segmentation.setNumberOfThreads(num_threads);
+            segmentation.setInputCloud(cloud);
+            std::vector<pcl::PointIndices> segments;
+            segmentation.segment(segments);
+            std::vector<int> closest;
+            std::vector<float> sq_distances;
+            const Points points = cloud->getMatrixXfMap(3, 4, 0);
+            makeFlannSearch(points)->search(meshGraph(mesh).centers, 1, closest, sq_distances);
+            for (int& label : closest) label = segmentation.getLabels()[label];
+            return closest;
+          }};
 }
 
 }  // namespace
@@ -62,7 +88,11 @@ NamedSegmentation splitting(const std::string& name, int depth, double concavity
 std::vector<NamedSegmentation> segmentationMethods(const std::vector<std::string>& names, int num_threads) {
   std::vector<NamedSegmentation> known = {{"one", oneSegment}, {"k-means", clustersOfCenters}};
   for (int depth = 1; depth <= kMaxDepth; ++depth)
-    known.push_back(splitting("paper-" + std::to_string(depth), depth, 0.0, num_threads));
+    known.push_back(splitting("paper-" + std::to_string(depth), depth, num_threads));
+  known.push_back(merging("symmetry", MergingEvidence::Symmetry, num_threads));
+  known.push_back(merging("concavity", MergingEvidence::SymmetryAndConcavity, num_threads));
+  known.push_back(merging("all", MergingEvidence::All, num_threads));
+  known.push_back(cloudOfMesh(num_threads));
   std::vector<NamedSegmentation> chosen;
   for (const std::string& name : names) {
     std::string list;

@@ -15,8 +15,9 @@ struct NamedSegmentation {
   std::function<std::vector<int>(const pcl::PolygonMesh&)> segment;
 };
 
-/// Baselines and methods of the library. \param names "one", "k-means", "paper-1" to "paper-4" (by depth). \param
-/// num_threads 0 = all. \throws UsageError for an unknown name, with those that are known.
+/// Baselines and methods of the library. \param names "one", "k-means", "paper-1" to "paper-4" (by depth), "symmetry",
+/// "concavity" and "all" (merging, by evidence), "points" (the last on a cloud). \param num_threads 0 = all. \throws
+/// UsageError for an unknown name, with those that are known.
 std::vector<NamedSegmentation> segmentationMethods(const std::vector<std::string>& names, int num_threads);
 
 }  // namespace pcl_symmetry::apps

@@ -56,6 +56,10 @@ public:
   /// Of the last segment(): how the parts came about, the root first.
   const std::vector<SegmentNode>& getTree() const { return segmentation_.tree; }
 
+  /// Of the last segment(): per plane that maps most of the surface onto itself, the segment that each one is reflected
+  /// onto.
+  const std::vector<std::vector<int>>& getImages() const { return segmentation_.images; }
+
 protected:
   using pcl::PCLBase<PointT>::input_;
   using pcl::PCLBase<PointT>::indices_;

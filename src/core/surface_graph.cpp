@@ -142,6 +142,7 @@ SurfaceGraph meshGraph(const PointsRef& vertices, const std::vector<std::vector<
 
 SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours) {
   SurfaceGraph graph;
+  graph.is_cloud = true;
   graph.centers = points;
   const auto size = points.cols();
   const BoundingBall ball = boundingBall(points);

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <set>
 
+#include "border_cut.h"
 #include "check.h"
+#include "part_evidence.h"
+#include "region_merging.h"
 #include "symmetry_splitting.h"
 
 namespace pcl_symmetry {
@@ -114,6 +119,174 @@ private:
   std::vector<bool> open_;
 };
 
+/// Regions of patches with the tree of their merges.
+class Merging {
+public:
+  Merging(const SurfaceGraph& graph, const SegmentationOptions& options)
+      : graph_(graph), options_(options), evidence_(partEvidence(graph, options)), regions_(evidence_) {}
+
+  Segmentation run() {
+    tell(kEvidenceShare);
+    const MergeSequence sequence = mergeRegions(evidence_, options_.merging.evidence);
+    const std::size_t num_patches = evidence_.areas.size(), wanted = static_cast<std::size_t>(options_.num_parts);
+    std::size_t num_merges = sequence.num_likely;
+    if (wanted > 0) num_merges = std::min(sequence.merges.size(), num_patches - std::min(num_patches, wanted));
+    for (std::size_t i = 0; i < num_merges; ++i) regions_.merge(sequence.merges[i].into, sequence.merges[i].from);
+    if (wanted == 0) joinFragments();
+    numberRegions();
+    growTree(
+        std::vector<Merge>(sequence.merges.begin() + static_cast<std::ptrdiff_t>(num_merges), sequence.merges.end()));
+    tell(kMergedShare);
+    if (options_.merging.cut_band > 0.0) cutBorders();
+    result_.tree[0].planes = evidence_.planes;
+    numberByArea(graph_, result_);
+    findImages();
+    tell(1.0);
+    return std::move(result_);
+  }
+
+private:
+  static constexpr double kEvidenceShare = 0.7, kMergedShare = 0.8;  // of the time, about
+
+  void tell(double share) const {
+    if (options_.progress) options_.progress(share);
+  }
+
+  /// The region that a fragment borders on most, or the closest one where it has no neighbours.
+  int hostOf(int fragment) const {
+    int host = -1;
+    double most = -1.0;
+    for (const int other : regions_.neighbours(fragment)) {
+      const double contact = regions_.cues(fragment, other)[kContact];
+      if (contact > most) {
+        host = other;
+        most = contact;
+      }
+    }
+    return host >= 0 ? host : closestTo(fragment);
+  }
+
+  int closestTo(int region) const {
+    const std::vector<int>& of = regions_.ofPatches();
+    int closest = -1;
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t p = 0; p < of.size(); ++p) {
+      if (of[p] != region) continue;
+      for (std::size_t q = 0; q < of.size(); ++q) {
+        const float distance = (evidence_.centers.col(p) - evidence_.centers.col(q)).squaredNorm();
+        if (of[q] == region || distance >= least) continue;
+        closest = of[q];
+        least = distance;
+      }
+    }
+    return closest;
+  }
+
+  void joinFragments() {
+    for (;;) {
+      int smallest = -1;
+      for (int r = 0; r < regions_.size(); ++r)
+        if (regions_.exists(r) && (smallest < 0 || regions_.area(r) < regions_.area(smallest))) smallest = r;
+      if (regions_.area(smallest) >= options_.merging.least_area) return;
+      const int host = hostOf(smallest);
+      if (host < 0) return;
+      regions_.merge(host, smallest);
+    }
+  }
+
+  void numberRegions() {
+    number_.assign(evidence_.areas.size(), -1);
+    for (int r = 0; r < regions_.size(); ++r)
+      if (regions_.exists(r)) number_[r] = result_.num_segments++;
+    for (const int patch : evidence_.patch) result_.labels.push_back(number_[regions_.ofPatches()[patch]]);
+  }
+
+  /// The further merges, backwards: the last one makes the root. Pieces of the surface that nothing joins hang together
+  /// at the top.
+  void growTree(const std::vector<Merge>& merges) {
+    struct Join {
+      int left, right;
+    };
+    std::vector<Join> joins;
+    const int num_leaves = result_.num_segments;
+    std::vector<int> top(evidence_.areas.size(), -1);  // number of a leaf, or num_leaves + index of a join
+    std::vector<int> root(evidence_.areas.size());
+    for (std::size_t p = 0; p < root.size(); ++p) root[p] = regions_.ofPatches()[p];
+    for (std::size_t r = 0; r < top.size(); ++r) top[r] = number_[r];
+    const auto join = [&](int a, int b) {
+      if (a == b) return;
+      joins.push_back({top[a], top[b]});
+      top[a] = num_leaves + static_cast<int>(joins.size()) - 1;
+      std::replace(root.begin(), root.end(), b, a);
+    };
+    for (const Merge& merge : merges) join(root[merge.into], root[merge.from]);
+    for (const int r : std::vector<int>(root)) join(root[0], root[static_cast<std::size_t>(r)]);
+
+    // From the root down; every node follows its parent.
+    std::vector<std::pair<int, int>> open{{top[root[0]], -1}};
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const auto [what, parent] = open[i];
+      SegmentNode node;
+      node.parent = parent;
+      const int index = static_cast<int>(result_.tree.size());
+      if (parent >= 0) {
+        SegmentNode& above = result_.tree[parent];
+        node.depth = above.depth + 1;
+        above.children[above.children[0] < 0 ? 0 : 1] = index;
+      }
+      if (what < num_leaves) {
+        node.segment = what;
+      } else {
+        open.emplace_back(joins[what - num_leaves].left, index);
+        open.emplace_back(joins[what - num_leaves].right, index);
+      }
+      result_.tree.push_back(node);
+    }
+  }
+
+  /// Borders of two segments each, so that they follow concave edges and not patches.
+  void cutBorders() {
+    std::set<std::pair<int, int>> pairs;
+    for (const SurfaceGraph::Edge& edge : graph_.edges) {
+      const auto pair = std::minmax(result_.labels[edge.from], result_.labels[edge.to]);
+      if (pair.first != pair.second) pairs.insert(pair);
+    }
+    const double band = options_.merging.cut_band * std::sqrt(graph_.area());
+    const bool concave = options_.merging.evidence != MergingEvidence::Symmetry;
+    const double concavity_weight = concave ? options_.merging.concavity_weight : 0.0;
+    for (const auto& [a, b] : pairs) {
+      std::vector<int> side;
+      for (const int label : result_.labels) side.push_back(label == a ? 0 : label == b ? 1 : -1);
+      cutBorder(graph_, side, {}, band, concavity_weight);
+      for (std::size_t i = 0; i < side.size(); ++i)
+        if (side[i] >= 0) result_.labels[i] = side[i] == 0 ? a : b;
+    }
+  }
+
+  /// By area, patch by patch: of the image of a segment most lies in its image.
+  void findImages() {
+    std::vector<int> of_patch(evidence_.areas.size(), 0);
+    for (std::size_t i = 0; i < result_.labels.size(); ++i) of_patch[evidence_.patch[i]] = result_.labels[i];
+    for (const std::vector<int>& image : evidence_.images) {
+      Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(result_.num_segments, result_.num_segments);
+      for (std::size_t p = 0; p < image.size(); ++p) shared(of_patch[image[p]], of_patch[p]) += evidence_.areas[p];
+      std::vector<int>& of = result_.images.emplace_back();
+      for (int s = 0; s < result_.num_segments; ++s) {
+        Eigen::Index most = s;
+        shared.col(s).maxCoeff(&most);
+        of.push_back(static_cast<int>(most));
+      }
+    }
+  }
+
+  const SurfaceGraph& graph_;
+  const SegmentationOptions& options_;
+  const PartEvidence evidence_;
+  Regions regions_;
+  std::vector<int> number_;  ///< of the segment of a region
+  Segmentation result_;
+};
+
 }  // namespace
 
 void SplittingOptions::validate() const {
@@ -126,7 +299,15 @@ void SplittingOptions::validate() const {
   check(concavity_weight >= 0.0, "concavity_weight", concavity_weight, ">= 0");
 }
 
+void MergingOptions::validate() const {
+  check(num_patches >= 1, "num_patches", num_patches, ">= 1");
+  check(least_area >= 0.0 && least_area < 1.0, "least_area", least_area, "in [0, 1)");
+  check(cut_band >= 0.0, "cut_band", cut_band, ">= 0");
+  check(concavity_weight >= 0.0, "concavity_weight", concavity_weight, ">= 0");
+}
+
 void SegmentationOptions::validate() const {
+  merging.validate();
   splitting.validate();
   check(num_parts >= 0, "num_parts", num_parts, ">= 0");
   checkNumThreads(num_threads);
@@ -135,7 +316,8 @@ void SegmentationOptions::validate() const {
 Segmentation segmentSurface(const SurfaceGraph& graph, const SegmentationOptions& options) {
   options.validate();
   check(graph.size() > 0 && graph.area() > 0.0, "area of the surface", graph.area(), "> 0");
-  return Splitting(graph, options).run();
+  return options.method == SegmentationMethod::Splitting ? Splitting(graph, options).run()
+                                                         : Merging(graph, options).run();
 }
 
 }  // namespace pcl_symmetry

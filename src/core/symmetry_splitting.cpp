@@ -1,14 +1,11 @@
 #include "symmetry_splitting.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <queue>
 
+#include "border_cut.h"
 #include "pcl_symmetry/core/closest_point_search.h"
-#include "pcl_symmetry/core/graph_cut.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/k_means.h"
 #include "pcl_symmetry/core/local_maxima.h"
@@ -74,32 +71,6 @@ std::vector<ReflectionPlane> refinedMaxima(const Points& samples, const Gaussian
   for (const ReflectionPlane& plane : refined)
     if (isNew(plane, planes)) planes.push_back(plane.canonical());
   return planes;
-}
-
-/// Distance of each element from the border between two labels, along the surface, up to \p most.
-std::vector<float> distanceFromBorder(const SurfaceGraph& graph, const std::vector<int>& side, float most) {
-  std::vector<float> distance(side.size(), std::numeric_limits<float>::infinity());
-  using Entry = std::pair<float, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  const auto reach = [&](int element, float d) {
-    if (d > most || d >= distance[element]) return;
-    distance[element] = d;
-    queue.emplace(d, element);
-  };
-  for (const SurfaceGraph::Edge& edge : graph.edges) {
-    if (side[edge.from] < 0 || side[edge.to] < 0 || side[edge.from] == side[edge.to]) continue;
-    reach(edge.from, 0.0f);
-    reach(edge.to, 0.0f);
-  }
-  while (!queue.empty()) {
-    const auto [d, element] = queue.top();
-    queue.pop();
-    if (d > distance[element]) continue;
-    graph.visitNeighbours(element, [&, from = element, so_far = d](int to, const SurfaceGraph::Edge&) {
-      if (side[to] >= 0) reach(to, so_far + (graph.centers.col(to) - graph.centers.col(from)).norm());
-    });
-  }
-  return distance;
 }
 
 /// The two pieces with the largest areas; -1 where there are not so many.
@@ -175,37 +146,15 @@ std::optional<std::pair<std::vector<int>, std::vector<int>>> splitBySymmetry(con
   const std::vector<int> pieces = connectedPieces(graph, side);
   const auto [first, second] = largestPieces(graph, pieces);
   if (second < 0) return std::nullopt;
-  for (const int element : elements) side[element] = pieces[element] == second ? 1 : 0;
-
+  std::vector<int> open;
+  for (const int element : elements) {
+    side[element] = pieces[element] == second ? 1 : 0;
+    if (pieces[element] != first && pieces[element] != second) open.push_back(element);
+  }
   const BoundingBall ball = boundingBall(sampleElements(graph, elements, kNumSamples, seed));
-  const auto band = static_cast<float>(options.cut_band * ball.radius);
-  const std::vector<float> distance = distanceFromBorder(graph, side, band);
-  std::vector<int> node(static_cast<std::size_t>(graph.size()), -1);
-  for (std::size_t i = 0; i < elements.size(); ++i) node[elements[i]] = static_cast<int>(i);
-  GraphCut cut;
-  cut.to_source.assign(elements.size(), 0.0);
-  cut.to_sink.assign(elements.size(), 0.0);
-  // Each side keeps what is far from the border, or what is farthest where nothing is.
-  std::array<int, 2> farthest{-1, -1};
-  for (const int element : elements) {
-    int& far = farthest[side[element]];
-    if (pieces[element] != first && pieces[element] != second) continue;
-    if (far < 0 || distance[element] > distance[far]) far = element;
-  }
-  for (const int element : elements) {
-    if (pieces[element] != first && pieces[element] != second) continue;
-    if (distance[element] <= band && element != farthest[side[element]]) continue;
-    (side[element] == 0 ? cut.to_source : cut.to_sink)[node[element]] = std::numeric_limits<float>::max();
-  }
-  for (const SurfaceGraph::Edge& edge : graph.edges) {
-    if (node[edge.from] < 0 || node[edge.to] < 0) continue;
-    const double concavity = std::max(0.0f, edge.concavity);
-    cut.edges.push_back(
-        {node[edge.from], node[edge.to], edge.length * std::exp(-options.concavity_weight * concavity)});
-  }
-  const std::vector<bool> with_first = cut.solve();
+  cutBorder(graph, side, open, options.cut_band * ball.radius, options.concavity_weight);
   std::pair<std::vector<int>, std::vector<int>> sides;
-  for (std::size_t i = 0; i < elements.size(); ++i) (with_first[i] ? sides.first : sides.second).push_back(elements[i]);
+  for (const int element : elements) (side[element] == 0 ? sides.first : sides.second).push_back(element);
   if (sides.first.empty() || sides.second.empty()) return std::nullopt;
   return sides;
 }

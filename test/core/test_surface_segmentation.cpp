@@ -93,12 +93,121 @@ TEST(Splitting, SameForAnyNumberOfThreads) {
   EXPECT_EQ(segmentSurface(graph, options).labels, labels);
 }
 
+/// Segment of the face whose center is closest to a place.
+int segmentAt(const SurfaceGraph& graph, const Segmentation& segmentation, const Eigen::Vector3f& place) {
+  Eigen::Index closest = 0;
+  (graph.centers.colwise() - place).colwise().squaredNorm().minCoeff(&closest);
+  return segmentation.labels[closest];
+}
+
+const Eigen::Vector3f kLeftCube(4, 4, 8), kRightCube(18, 4, 8), kBar(11, 4, 5);
+
+TEST(Merging, FindsThePartsOfADumbbellByItself) {
+  const Mesh mesh = test::dumbbell();
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const Segmentation segmentation = segmentSurface(graph);
+  expectTreeOf(segmentation);
+  EXPECT_GE(segmentation.num_segments, 3);
+  EXPECT_LE(segmentation.num_segments, 4) << "the bar may be cut across its middle";
+  const int left = segmentAt(graph, segmentation, kLeftCube), right = segmentAt(graph, segmentation, kRightCube);
+  EXPECT_NE(left, right);
+  int num_wrong = 0;
+  for (int i = 0; i < graph.size(); ++i) {
+    const float x = graph.centers(0, i);
+    if (x < 7.9f) num_wrong += segmentation.labels[i] != left;
+    if (x > 14.1f) num_wrong += segmentation.labels[i] != right;
+    if (x > 8.1f && x < 13.9f) num_wrong += segmentation.labels[i] == left || segmentation.labels[i] == right;
+  }
+  EXPECT_LT(num_wrong, 0.02 * graph.size());
+}
+
+TEST(Merging, PairsImagesInThePlanesOfTheWhole) {
+  const Mesh mesh = test::dumbbell();
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const Segmentation segmentation = segmentSurface(graph);
+  const int left = segmentAt(graph, segmentation, kLeftCube), right = segmentAt(graph, segmentation, kRightCube);
+  const int bar = segmentAt(graph, segmentation, kBar);
+  bool across_x = false, across_y = false;
+  std::size_t next = 0;
+  for (const PartPlane& plane : segmentation.tree[0].planes) {
+    if (plane.share < 0.75) continue;
+    ASSERT_LT(next, segmentation.images.size());
+    const std::vector<int>& image = segmentation.images[next++];
+    EXPECT_EQ(image[bar], bar);
+    if (std::abs(plane.plane.normal().x()) > 0.99) {
+      across_x = true;
+      EXPECT_EQ(image[left], right);
+      EXPECT_EQ(image[right], left);
+    } else if (std::abs(plane.plane.normal().x()) < 0.01) {
+      across_y = true;
+      EXPECT_EQ(image[left], left);
+    }
+  }
+  EXPECT_EQ(next, segmentation.images.size());
+  EXPECT_TRUE(across_x);
+  EXPECT_TRUE(across_y);
+}
+
+TEST(Merging, GivesAsManyPartsAsAskedFor) {
+  const Mesh mesh = test::dumbbell();
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  for (const int num_parts : {1, 2, 5}) {
+    SegmentationOptions options;
+    options.num_parts = num_parts;
+    const Segmentation segmentation = segmentSurface(graph, options);
+    EXPECT_EQ(segmentation.num_segments, num_parts);
+    expectTreeOf(segmentation);
+  }
+}
+
+TEST(Merging, EveryKindOfEvidenceSeparatesTheCubes) {
+  const Mesh mesh = test::dumbbell();
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  for (const MergingEvidence evidence : {MergingEvidence::SymmetryAndConcavity, MergingEvidence::All}) {
+    SegmentationOptions options;
+    options.merging.evidence = evidence;
+    const Segmentation segmentation = segmentSurface(graph, options);
+    EXPECT_NE(segmentAt(graph, segmentation, kLeftCube), segmentAt(graph, segmentation, kRightCube));
+  }
+}
+
+TEST(Merging, SoupIsCutAsTheMeshIs) {
+  const Mesh mesh = test::dumbbell(), soup = test::soupOf(mesh);
+  EXPECT_EQ(segmentSurface(meshGraph(soup.vertices, soup.polygons)).labels,
+            segmentSurface(meshGraph(mesh.vertices, mesh.polygons)).labels);
+}
+
+TEST(Merging, PiecesThatNothingJoinsAreSegmentsAndCrumbsJoinTheClosest) {
+  // Two cubes apart, and a single quad beside the right one.
+  Mesh mesh = test::voxelMesh(22, [](int x, int y, int z) { return y < 8 && z < 8 && (x < 8 || x >= 14); });
+  const int a = mesh.add({22.5f, 4, 4}), b = mesh.add({22.5f, 4.5f, 4}), c = mesh.add({22.5f, 4, 4.5f});
+  mesh.polygons.push_back({a, b, c});
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const Segmentation segmentation = segmentSurface(graph);
+  expectTreeOf(segmentation);
+  EXPECT_EQ(segmentation.num_segments, 2);
+  EXPECT_EQ(segmentation.labels.back(), segmentAt(graph, segmentation, {22, 4, 4}));
+}
+
+TEST(Merging, SameForAnyNumberOfThreads) {
+  const Mesh mesh = mug();
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  SegmentationOptions options;
+  options.num_threads = 1;
+  const std::vector<int> labels = segmentSurface(graph, options).labels;
+  options.num_threads = 3;
+  EXPECT_EQ(segmentSurface(graph, options).labels, labels);
+}
+
 TEST(SurfaceSegmentation, RefusesBadOptions) {
   const Mesh mesh = mug();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
   EXPECT_THROW(segmentSurface(graph, splittingTo(-1)), std::invalid_argument);
   SegmentationOptions options;
   options.splitting.min_share = 0.95;
+  EXPECT_THROW(segmentSurface(graph, options), std::invalid_argument);
+  options = {};
+  options.merging.num_patches = 0;
   EXPECT_THROW(segmentSurface(graph, options), std::invalid_argument);
   options = {};
   options.num_parts = -1;

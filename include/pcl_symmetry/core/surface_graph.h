@@ -27,6 +27,7 @@ struct SurfaceGraph {
   Points corners;
   std::vector<Eigen::Vector3i> triangles;
   std::vector<int> element_of_triangle;
+  bool is_cloud = false;  ///< elements are points
 
   int size() const { return static_cast<int>(areas.size()); }
   double area() const;

@@ -11,7 +11,29 @@ namespace pcl_symmetry {
 
 /// How a surface is cut into parts.
 enum class SegmentationMethod {
+  /// Small patches grow together to parts until none of them are more likely one part than two: beyond the paper.
+  Merging,
   Splitting  ///< the paper's: clusters of equal support are split in two again and again (Section 5.3)
+};
+
+/// What merging goes by, beside areas and borders.
+enum class MergingEvidence {
+  Symmetry,              ///< support for the planes of the surface, and what is the image of what
+  SymmetryAndConcavity,  ///< people see borders of parts where a surface is concave
+  All                    ///< and thickness of the body and lines of sight within, which need a surface with an inside
+};
+
+struct MergingOptions {
+  MergingEvidence evidence = MergingEvidence::All;
+  int num_patches = 300;      ///< at the beginning, >= 1; time and memory grow with its square
+  double least_area = 0.003;  ///< smaller regions join a neighbour; share of the surface, in [0, 1)
+  /// Borders between parts are drawn anew by a minimum cut within this distance of them, in square roots of the area of
+  /// the surface, >= 0; 0 leaves them along the patches.
+  double cut_band = 0.03;
+  double concavity_weight = 3.0;  ///< of that cut, as in SplittingOptions, >= 0; none with Symmetry alone
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
 };
 
 /// The paper's method. Its rule for the end (a node is split as long as a plane reflects more than min_share and less
@@ -32,9 +54,10 @@ struct SplittingOptions {
 };
 
 struct SegmentationOptions {
-  SegmentationMethod method = SegmentationMethod::Splitting;
-  SplittingOptions splitting;
-  int num_parts = 0;  ///< >= 0; 0 = as many as the method finds. The largest part is split first.
+  SegmentationMethod method = SegmentationMethod::Merging;
+  MergingOptions merging;
+  SplittingOptions splitting;  ///< its strength and max_planes hold for merging too
+  int num_parts = 0;           ///< >= 0; 0 = as many as the method finds. Splitting takes the largest part first.
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
   /// Told the share of the work that is done, in [0, 1], now and then; may be empty.
@@ -63,6 +86,9 @@ struct Segmentation {
   std::vector<int> labels;  ///< one per element, from 0, by falling area of the segments
   int num_segments = 0;
   std::vector<SegmentNode> tree;  ///< the root first, children after their parents
+  /// Per plane of the root that maps most of the surface onto itself (share >= 0.75), in their order: the segment that
+  /// each segment is reflected onto, which may be itself.
+  std::vector<std::vector<int>> images;
 };
 
 /// Cuts a surface into parts by its symmetries (Section 5.3).
