@@ -19,10 +19,9 @@ namespace {
 
 constexpr float kConcaveDetour = 4.0f;  // of the growing patches, per radian
 constexpr int kSamplesOfPatch = 6, kRaysOfSample = 6;
-constexpr double kConeAngle = 0.61;    // radians: rays for the thickness lie within, as of the shape diameter
-constexpr float kLeastReach = 1e-4f;   // radii: rays begin so far from the surface
-constexpr float kCloudReach = 2.5f;    // sqrt(area of a point): triangles about neighbouring points overlap
-constexpr double kMappedShare = 0.75;  // of the surface, from which on a plane pairs patches
+constexpr double kConeAngle = 0.61;   // radians: rays for the thickness lie within, as of the shape diameter
+constexpr float kLeastReach = 1e-4f;  // radii: rays begin so far from the surface
+constexpr float kCloudReach = 2.5f;   // sqrt(area of a point): triangles about neighbouring points overlap
 
 struct SurfacePoint {
   Eigen::Vector3f position, normal;

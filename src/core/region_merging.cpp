@@ -17,8 +17,8 @@ constexpr double kThinnest = 1e-3;  // radii
 const Cues& weightsOf(MergingEvidence kind) {
   static const Cues symmetry = {-0.051, 0.666, -0.193, -0.510, -7.032, 0.944};
   static const Cues concavity = {1.140, 0.800, 0.012, -0.729, -5.918, 0.327, -5.539, -1.192, 2.730};
-  static const Cues all = {-1.877, 0.948, -0.715, -0.332, -3.404, 0.630, -5.998,
-                           -1.618, 2.081, -1.301, 0.767,  0.127,  3.222, 0.623};
+  static const Cues all = {-2.185, 1.153, -0.847, -0.257, -3.755, 0.662, -6.209,
+                           -1.250, 1.599, -1.045, 1.553,  0.148,  3.469, 0.744};
   switch (kind) {
     case MergingEvidence::Symmetry:
       return symmetry;
@@ -152,9 +152,8 @@ int Regions::imageOf(int region, std::size_t plane) const {
   return images_[plane].col(region).maxCoeff(&image) > 0.0f ? static_cast<int>(image) : -1;
 }
 
-MergeSequence mergeRegions(const PartEvidence& evidence, MergingEvidence kind) {
+MergeSequence mergeRegions(Regions regions, MergingEvidence kind) {
   const Cues& weights = weightsOf(kind);
-  Regions regions(evidence);
   using Pair = std::pair<int, int>;
   std::set<std::pair<double, Pair>> queue;  // the likeliest last
   std::map<Pair, double> odds;

@@ -75,11 +75,12 @@ struct Merge {
   int into, from;
 };
 
-/// Merges regions, the likeliest to be one part first, until all are one.
+/// Merges of regions, the likeliest to be one part first, until no two are neighbours.
 struct MergeSequence {
   std::vector<Merge> merges;
   std::size_t num_likely = 0;  ///< of them up to where the likeliest is more likely two parts than one
 };
-MergeSequence mergeRegions(const PartEvidence& evidence, MergingEvidence kind);
+/// \param regions by value: the merges are made on a copy.
+MergeSequence mergeRegions(Regions regions, MergingEvidence kind);
 
 }  // namespace pcl_symmetry

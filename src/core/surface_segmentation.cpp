@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "border_cut.h"
 #include "check.h"
 #include "part_evidence.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "region_merging.h"
 #include "symmetry_splitting.h"
 
@@ -127,26 +130,34 @@ public:
 
   Segmentation run() {
     tell(kEvidenceShare);
-    const MergeSequence sequence = mergeRegions(evidence_, options_.merging.evidence);
+    MergeSequence sequence = mergeRegions(regions_, options_.merging.evidence);
     const std::size_t num_patches = evidence_.areas.size(), wanted = static_cast<std::size_t>(options_.num_parts);
     std::size_t num_merges = sequence.num_likely;
     if (wanted > 0) num_merges = std::min(sequence.merges.size(), num_patches - std::min(num_patches, wanted));
     for (std::size_t i = 0; i < num_merges; ++i) regions_.merge(sequence.merges[i].into, sequence.merges[i].from);
-    if (wanted == 0) joinFragments();
+    if (wanted == 0) {
+      joinFragments();
+      if (options_.merging.agree_across_planes && agreeAcrossPlane()) joinFragments();
+    }
     numberRegions();
-    growTree(
-        std::vector<Merge>(sequence.merges.begin() + static_cast<std::ptrdiff_t>(num_merges), sequence.merges.end()));
+    growTree(mergeRegions(regions_, options_.merging.evidence).merges);
     tell(kMergedShare);
-    if (options_.merging.cut_band > 0.0) cutBorders();
+    if (options_.merging.cut_band > 0.0) {
+      cutBorders();
+      joinCrumbs();
+    }
     result_.tree[0].planes = evidence_.planes;
     numberByArea(graph_, result_);
     findImages();
+    if (options_.merging.agree_across_planes && wanted == 0) copyAcrossPlane();
     tell(1.0);
     return std::move(result_);
   }
 
 private:
   static constexpr double kEvidenceShare = 0.7, kMergedShare = 0.8;  // of the time, about
+  static constexpr double kSymmetricShare = 0.95;  // of the surface, mapped by a plane across which labels agree
+  static constexpr double kLeastAcross = 0.2;      // of a region, on the smaller side of a plane that it lies across
 
   void tell(double share) const {
     if (options_.progress) options_.progress(share);
@@ -192,6 +203,85 @@ private:
       if (host < 0) return;
       regions_.merge(host, smallest);
     }
+  }
+
+  /// The strongest plane that maps nearly all of the surface onto itself, and its place in PartEvidence::images.
+  std::optional<std::pair<ReflectionPlane, std::size_t>> planeOfSymmetry() const {
+    std::size_t mapped = 0;
+    for (const PartPlane& plane : evidence_.planes) {
+      if (plane.share < kMappedShare) continue;
+      if (plane.share >= kSymmetricShare) return std::make_pair(plane.plane, mapped);
+      ++mapped;
+    }
+    return std::nullopt;
+  }
+
+  /// Makes the regions on one side of the plane of symmetry the images of those on the other side: of the side that
+  /// changes less that way. Regions that lie across the plane are their own images.
+  bool agreeAcrossPlane() {
+    const auto symmetry = planeOfSymmetry();
+    if (!symmetry) return false;
+    const std::vector<int>& image = evidence_.images[symmetry->second];
+    const int size = evidence_.size();
+    std::vector<char> above;
+    for (int p = 0; p < size; ++p)
+      above.push_back(symmetry->first.signedDistance(evidence_.centers.col(p).cast<double>()) > 0.0);
+    std::vector<double> area_above(static_cast<std::size_t>(size), 0.0);
+    for (int p = 0; p < size; ++p)
+      if (above[p]) area_above[regions_.ofPatches()[p]] += evidence_.areas[p];
+    const auto liesAcross = [&](int region) {
+      const double area = regions_.area(region);
+      return std::min(area_above[region], area - area_above[region]) >= kLeastAcross * area;
+    };
+    // Groups of patches: a region by its number, its image by that and the number of patches.
+    std::vector<int> groups[2];
+    double changed[2] = {0.0, 0.0};
+    for (const int copied : {0, 1}) {  // the side that is kept, and copied to the other: below, above
+      for (int p = 0; p < size; ++p) {
+        const int own = regions_.ofPatches()[p], other = regions_.ofPatches()[image[p]];
+        int group = own;
+        if (above[p] != copied) {
+          group = liesAcross(other) ? other : other + size;
+          if (group == other ? own != other : regions_.imageOf(other, symmetry->second) != own)
+            changed[copied] += evidence_.areas[p];
+        }
+        groups[copied].push_back(group);
+      }
+    }
+    const std::vector<int>& kept = groups[changed[0] <= changed[1] ? 0 : 1];
+    Regions regions(evidence_);
+    std::map<int, int> first;
+    for (int p = 0; p < size; ++p) {
+      const auto [entry, is_new] = first.emplace(kept[p], p);
+      if (!is_new) regions.merge(entry->second, p);
+    }
+    regions_ = std::move(regions);
+    return true;
+  }
+
+  /// Element by element: those on one side of the plane of symmetry get the image of the segment of their image.
+  void copyAcrossPlane() {
+    const auto symmetry = planeOfSymmetry();
+    if (!symmetry) return;
+    const std::vector<int>& image = result_.images[symmetry->second];
+    for (std::size_t s = 0; s < image.size(); ++s)
+      if (image[image[s]] != static_cast<int>(s)) return;
+    std::vector<int> below;
+    for (int i = 0; i < graph_.size(); ++i)
+      if (symmetry->first.signedDistance(graph_.centers.col(i).cast<double>()) < 0.0) below.push_back(i);
+    Points reflected(3, static_cast<Eigen::Index>(below.size()));
+    for (std::size_t k = 0; k < below.size(); ++k)
+      reflected.col(static_cast<Eigen::Index>(k)) =
+          symmetry->first.reflect(graph_.centers.col(below[k]).cast<double>()).cast<float>();
+    std::vector<int> closest;
+    std::vector<float> sq_distances;
+    makeFlannSearch(graph_.centers)->search(reflected, 1, closest, sq_distances);
+    const std::vector<int> labels = result_.labels;
+    std::vector<int> copied = labels;
+    for (std::size_t k = 0; k < below.size(); ++k) copied[below[k]] = image[labels[closest[k]]];
+    std::vector<char> used(image.size(), 0);
+    for (const int label : copied) used[label] = 1;
+    if (std::find(used.begin(), used.end(), 0) == used.end()) result_.labels = copied;
   }
 
   void numberRegions() {
@@ -261,6 +351,38 @@ private:
       for (std::size_t i = 0; i < side.size(); ++i)
         if (side[i] >= 0) result_.labels[i] = side[i] == 0 ? a : b;
     }
+  }
+
+  /// What the cuts have left apart from the rest of its segment goes to the neighbour with the longest border.
+  void joinCrumbs() {
+    const std::vector<int> pieces = connectedPieces(graph_, result_.labels);
+    std::vector<double> areas(1 + static_cast<std::size_t>(*std::max_element(pieces.begin(), pieces.end())), 0.0);
+    std::vector<int> segment_of(areas.size(), 0);
+    for (int i = 0; i < graph_.size(); ++i) {
+      areas[pieces[i]] += graph_.areas[i];
+      segment_of[pieces[i]] = result_.labels[i];
+    }
+    std::vector<int> largest(static_cast<std::size_t>(result_.num_segments), -1);
+    for (std::size_t p = 0; p < areas.size(); ++p) {
+      int& of = largest[segment_of[p]];
+      if (of < 0 || areas[p] > areas[of]) of = static_cast<int>(p);
+    }
+    std::vector<std::map<int, double>> contacts(areas.size());
+    for (const SurfaceGraph::Edge& edge : graph_.edges) {
+      const int a = pieces[edge.from], b = pieces[edge.to];
+      if (a == b) continue;
+      contacts[a][segment_of[b]] += edge.length;
+      contacts[b][segment_of[a]] += edge.length;
+    }
+    std::vector<int> moved = segment_of;
+    const double least = options_.merging.least_area * graph_.area();
+    for (std::size_t p = 0; p < areas.size(); ++p) {
+      if (largest[segment_of[p]] == static_cast<int>(p) || areas[p] >= least || contacts[p].empty()) continue;
+      moved[p] = std::max_element(contacts[p].begin(), contacts[p].end(), [](const auto& a, const auto& b) {
+                   return a.second < b.second;
+                 })->first;
+    }
+    for (int i = 0; i < graph_.size(); ++i) result_.labels[i] = moved[pieces[i]];
   }
 
   /// By area, patch by patch: of the image of a segment most lies in its image.

@@ -148,6 +148,33 @@ TEST(Merging, PairsImagesInThePlanesOfTheWhole) {
   EXPECT_TRUE(across_y);
 }
 
+TEST(Merging, LabelsAgreeAcrossAPlaneOfSymmetry) {
+  // A body with two legs, of which one has a groove that the other lacks: nearly symmetric.
+  const Mesh mesh = test::voxelMesh(16, [](int x, int y, int z) {
+    if (y >= 4) return false;
+    if (z >= 10) return true;
+    if (x == 2 && y == 0 && z == 4) return false;
+    return x < 4 || x >= 12;
+  });
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const Segmentation segmentation = segmentSurface(graph);
+  std::size_t next = 0;
+  bool found = false;
+  for (const PartPlane& plane : segmentation.tree[0].planes) {
+    if (plane.share < 0.75) continue;
+    const std::vector<int>& image = segmentation.images[next++];
+    if (std::abs(plane.plane.normal().x()) < 0.99) continue;
+    found = true;
+    double agreeing = 0.0;
+    for (int i = 0; i < graph.size(); ++i) {
+      const Eigen::Vector3f reflected = plane.plane.reflect(graph.centers.col(i).cast<double>()).cast<float>();
+      if (segmentAt(graph, segmentation, reflected) == image[segmentation.labels[i]]) agreeing += graph.areas[i];
+    }
+    EXPECT_GT(agreeing, 0.95 * graph.area());
+  }
+  EXPECT_TRUE(found);
+}
+
 TEST(Merging, GivesAsManyPartsAsAskedFor) {
   const Mesh mesh = test::dumbbell();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);

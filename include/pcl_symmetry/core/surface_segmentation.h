@@ -27,6 +27,9 @@ struct MergingOptions {
   MergingEvidence evidence = MergingEvidence::All;
   int num_patches = 300;      ///< at the beginning, >= 1; time and memory grow with its square
   double least_area = 0.003;  ///< smaller regions join a neighbour; share of the surface, in [0, 1)
+  /// Where a plane maps nearly all of the surface onto itself, the parts on one side are the images of those on the
+  /// other, or lie across it. Not where the number of parts is given.
+  bool agree_across_planes = true;
   /// Borders between parts are drawn anew by a minimum cut within this distance of them, in square roots of the area of
   /// the surface, >= 0; 0 leaves them along the patches.
   double cut_band = 0.03;
