@@ -108,7 +108,7 @@ TEST(Merging, FindsThePartsOfADumbbellByItself) {
   const Segmentation segmentation = segmentSurface(graph);
   expectTreeOf(segmentation);
   EXPECT_GE(segmentation.num_segments, 3);
-  EXPECT_LE(segmentation.num_segments, 4) << "the bar may be cut across its middle";
+  EXPECT_LE(segmentation.num_segments, 5) << "the bar may be cut across";
   const int left = segmentAt(graph, segmentation, kLeftCube), right = segmentAt(graph, segmentation, kRightCube);
   EXPECT_NE(left, right);
   int num_wrong = 0;
@@ -214,6 +214,31 @@ TEST(Merging, PiecesThatNothingJoinsAreSegmentsAndCrumbsJoinTheClosest) {
   expectTreeOf(segmentation);
   EXPECT_EQ(segmentation.num_segments, 2);
   EXPECT_EQ(segmentation.labels.back(), segmentAt(graph, segmentation, {22, 4, 4}));
+}
+
+TEST(Merging, BrokenMeshesAreCutToo) {
+  Mesh mesh = test::dumbbell();
+  const std::size_t num_faces = mesh.polygons.size();
+  for (std::size_t f = 0; f < num_faces; f += 50) mesh.polygons.push_back(mesh.polygons[f]);   // twice
+  for (std::size_t f = 10; f < num_faces; f += 90) mesh.polygons[f] = {0, 1, 1};               // holes
+  mesh.polygons.push_back({mesh.polygons[5][0], mesh.polygons[5][1], mesh.polygons[300][0]});  // a fin
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const Segmentation segmentation = segmentSurface(graph);
+  expectTreeOf(segmentation);
+  ASSERT_EQ(segmentation.labels.size(), mesh.polygons.size());
+  EXPECT_NE(segmentAt(graph, segmentation, kLeftCube), segmentAt(graph, segmentation, kRightCube));
+}
+
+TEST(Merging, ShapesWithoutAnInsideAreCutToo) {
+  Mesh sheet;
+  for (int x = 0; x <= 10; ++x)
+    for (int y = 0; y <= 10; ++y) sheet.add(Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), 0.0f));
+  for (int x = 0; x < 10; ++x)
+    for (int y = 0; y < 10; ++y)
+      sheet.polygons.push_back({11 * x + y, 11 * x + y + 11, 11 * x + y + 12, 11 * x + y + 1});
+  expectTreeOf(segmentSurface(meshGraph(sheet.vertices, sheet.polygons)));
+  const Segmentation one = segmentSurface(meshGraph(sheet.vertices, {{0, 11, 1}}));
+  EXPECT_EQ(one.labels, std::vector<int>{0});
 }
 
 TEST(Merging, SameForAnyNumberOfThreads) {
