@@ -139,13 +139,15 @@ public:
       joinFragments();
       if (options_.merging.agree_across_planes && agreeAcrossPlane()) joinFragments();
     }
-    numberRegions();
-    growTree(mergeRegions(regions_, options_.merging.evidence).merges);
-    tell(kMergedShare);
+    for (const int patch : evidence_.patch) result_.labels.push_back(regions_.ofPatches()[patch]);
     if (options_.merging.cut_band > 0.0) {
       cutBorders();
       joinCrumbs();
+      if (wanted == 0) joinCutAway();
     }
+    tell(kMergedShare);
+    numberRegions();
+    growTree(mergeRegions(regions_, options_.merging.evidence).merges);
     result_.tree[0].planes = evidence_.planes;
     numberByArea(graph_, result_);
     findImages();
@@ -284,11 +286,25 @@ private:
     if (std::find(used.begin(), used.end(), 0) == used.end()) result_.labels = copied;
   }
 
+  /// Regions of which the cuts have left little.
+  void joinCutAway() {
+    std::vector<double> areas(evidence_.areas.size(), 0.0);
+    for (int i = 0; i < graph_.size(); ++i) areas[result_.labels[i]] += graph_.areas[i];
+    for (int r = 0; r < regions_.size(); ++r) {
+      if (!regions_.exists(r) || areas[r] >= options_.merging.least_area * graph_.area()) continue;
+      const int host = hostOf(r);
+      if (host < 0) continue;
+      regions_.merge(host, r);
+      areas[host] += areas[r];
+      std::replace(result_.labels.begin(), result_.labels.end(), r, host);
+    }
+  }
+
   void numberRegions() {
     number_.assign(evidence_.areas.size(), -1);
     for (int r = 0; r < regions_.size(); ++r)
       if (regions_.exists(r)) number_[r] = result_.num_segments++;
-    for (const int patch : evidence_.patch) result_.labels.push_back(number_[regions_.ofPatches()[patch]]);
+    for (int& label : result_.labels) label = number_[label];
   }
 
   /// The further merges, backwards: the last one makes the root. Pieces of the surface that nothing joins hang together
@@ -362,7 +378,7 @@ private:
       areas[pieces[i]] += graph_.areas[i];
       segment_of[pieces[i]] = result_.labels[i];
     }
-    std::vector<int> largest(static_cast<std::size_t>(result_.num_segments), -1);
+    std::vector<int> largest(evidence_.areas.size(), -1);
     for (std::size_t p = 0; p < areas.size(); ++p) {
       int& of = largest[segment_of[p]];
       if (of < 0 || areas[p] > areas[of]) of = static_cast<int>(p);

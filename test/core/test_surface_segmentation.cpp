@@ -229,6 +229,21 @@ TEST(Merging, BrokenMeshesAreCutToo) {
   EXPECT_NE(segmentAt(graph, segmentation, kLeftCube), segmentAt(graph, segmentation, kRightCube));
 }
 
+TEST(Merging, DustOfManyPiecesIsCutToo) {
+  RandomStream random(4);
+  Mesh dust;
+  for (int t = 0; t < 3000; ++t) {
+    Eigen::Vector3f at;
+    for (int k = 0; k < 3; ++k) at[k] = static_cast<float>(random.uniform());
+    const int a = dust.add(at), b = dust.add(at + Eigen::Vector3f(0.01f, 0, 0)),
+              c = dust.add(at + Eigen::Vector3f(0, 0.01f, 0));
+    dust.polygons.push_back({a, b, c});
+  }
+  const Segmentation segmentation = segmentSurface(meshGraph(dust.vertices, dust.polygons));
+  expectTreeOf(segmentation);
+  EXPECT_EQ(segmentation.labels.size(), dust.polygons.size());
+}
+
 TEST(Merging, ShapesWithoutAnInsideAreCutToo) {
   Mesh sheet;
   for (int x = 0; x <= 10; ++x)
