@@ -4,6 +4,7 @@
 #include <pcl/conversions.h>
 #include <pcl/features/normal_3d.h>
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -27,6 +28,11 @@ namespace {
 
 constexpr std::size_t kMaxShadedPoints = 200000;  ///< more points shade themselves by their density
 const Eigen::Vector3d kPlainColor(0.30, 0.38, 0.52);
+
+void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
+  for (int k = 0; k < 3; ++k)
+    colors.InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
+}
 
 /// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
 std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
@@ -119,12 +125,11 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
     if (!position.allFinite()) continue;
     const vtkIdType id = points->InsertNextPoint(normalize(position).data());
     cells->InsertNextCell(1, &id);
-    const Eigen::Vector3d base = panel.support.empty() ? kPlainColor : cividis(panel.support[i]);
-    const Eigen::Vector3d color =
-        (panel.support.empty() ? 0.45 + 0.75 * brightness[i] : 0.65 + 0.35 * brightness[i]) * base;
-    for (int k = 0; k < 3; ++k) {
-      colors->InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
-    }
+    const bool plain = panel.support.empty() && panel.segments.empty();
+    Eigen::Vector3d base = kPlainColor;
+    if (!panel.segments.empty()) base = segmentColor(panel.segments[i]);
+    if (!panel.support.empty()) base = cividis(panel.support[i]);
+    addColor(*colors, (plain ? 0.45 + 0.75 * brightness[i] : 0.65 + 0.35 * brightness[i]) * base);
   }
   const double num_points = static_cast<double>(points->GetNumberOfPoints());
   vtkNew<vtkPolyData> data;
@@ -142,7 +147,8 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
   return actor;
 }
 
-vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normalization& normalize) {
+vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const std::vector<int>& segments,
+                                    const Normalization& normalize) {
   pcl::PointCloud<pcl::PointXYZ> vertices;
   pcl::fromPCLPointCloud2(mesh.cloud, vertices);
   vtkNew<vtkPoints> points;
@@ -150,7 +156,10 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normaliz
     points->InsertNextPoint(normalize(vertex.getVector3fMap().cast<double>()).data());
   }
   vtkNew<vtkCellArray> cells;
-  for (const pcl::Vertices& polygon : mesh.polygons) {
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
+  for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
+    const pcl::Vertices& polygon = mesh.polygons[f];
     const bool drawable = std::all_of(polygon.vertices.begin(), polygon.vertices.end(), [&](pcl::index_t corner) {
       return corner >= 0 && static_cast<std::size_t>(corner) < vertices.size() &&
              vertices[static_cast<std::size_t>(corner)].getVector3fMap().allFinite();
@@ -158,10 +167,12 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normaliz
     if (!drawable) continue;
     cells->InsertNextCell(static_cast<vtkIdType>(polygon.vertices.size()));
     for (const pcl::index_t corner : polygon.vertices) cells->InsertCellPoint(corner);
+    if (!segments.empty()) addColor(*colors, segmentColor(segments[f]));
   }
   vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   data->SetPolys(cells);
+  if (!segments.empty()) data->GetCellData()->SetScalars(colors);
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
   mapper->SetResolveCoincidentTopologyToPolygonOffset();

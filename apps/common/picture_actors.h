@@ -32,7 +32,9 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
                                      const Normalization& normalize, const std::vector<double>& brightness,
                                      double panel_pixels);
 
-vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normalization& normalize);
+/// \param segments of the polygons, in the colours of PicturePanel::segments; empty for light grey.
+vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const std::vector<int>& segments,
+                                    const Normalization& normalize);
 
 /// As long as the points reach along it, and a tenth more. \param line_width pixels.
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
