@@ -11,9 +11,8 @@
 
 namespace pcl_symmetry::apps {
 
-/// Moves the points from \p first on: x, y, z and the viewpoint vp_x, vp_y, vp_z by the whole map, normals by its linear
-/// part. Other fields stay.
-/// \param map keeps distances: a rigid motion or a reflection.
+/// Moves the points from \p first on: x, y, z and the viewpoint vp_x, vp_y, vp_z by the whole map, normals by its
+/// linear part. Other fields stay. \param map keeps distances: a rigid motion or a reflection.
 void movePoints(pcl::PCLPointCloud2& cloud, const Eigen::Affine3d& map, std::size_t first = 0);
 
 /// Appends copies of the named points; the result is not organized. One more field of type int32 tells of each copy the
