@@ -48,7 +48,8 @@ std::vector<Eigen::Vector3d> mirrorImages(const Eigen::Vector3d& direction,
 
 }  // namespace
 
-void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes) {
+void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes,
+                                   const std::vector<LocalMaximum>& maxima) {
   planes_.clear();
   symmetries_.clear();
   for (const SymmetryPlane& plane : planes) {
@@ -62,6 +63,13 @@ void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, con
       const double angle = kPi * k / kFan;
       planes_.push_back({std::cos(angle) * u + std::sin(angle) * v, 2.0 * axis.score / kFan});
     }
+  }
+  const double covered = std::cos(kPi / 3.0);
+  for (const LocalMaximum& maximum : maxima) {
+    const Eigen::Vector3d n = maximum.plane.normal();
+    const bool near = std::any_of(planes_.begin(), planes_.end(),
+                                  [&](const ViewPlane& plane) { return std::abs(plane.normal.dot(n)) > covered; });
+    if (!near) planes_.push_back({n, maximum.value});
   }
   std::stable_sort(planes_.begin(), planes_.end(), [](const auto& a, const auto& b) { return a.weight > b.weight; });
 }

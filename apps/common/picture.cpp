@@ -179,8 +179,8 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGr
     renderer->SetUseDepthPeeling(true);
     renderer->SetMaximumNumberOfPeels(16);
     renderer->SetOcclusionRatio(0.0);
-    if (scene.mesh) renderer->AddActor(meshActor(*scene.mesh, normalize));
-    renderer->AddActor(cloudActor(scene, panel, normalize, brightness, panel_pixels));
+    if (scene.mesh) renderer->AddActor(meshActor(*scene.mesh, panel, normalize));
+    if (panel.show_points) renderer->AddActor(cloudActor(scene, panel, normalize, brightness, panel_pixels));
     for (const AxisLine& axis : panel.axes) addAxis(*renderer, axis, scene, normalize, panel_pixels / 120);
     for (const PlanePatch& plane : panel.planes) addPlane(*renderer, plane, scene, normalize, panel_pixels / 250);
     const bool has_bar = scene.show_color_bar && !panel.support.empty();

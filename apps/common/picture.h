@@ -36,6 +36,7 @@ struct PicturePanel {
   std::vector<double> support = {};  ///< one value in [0, 1] per point, cividis colours; empty for one plain colour
   std::vector<PlanePatch> planes = {};
   std::vector<AxisLine> axes = {};
+  bool show_points = true;  ///< false: the mesh alone; it takes the colours where its vertices are the points
 };
 
 /// What a picture shows: the same shape in every panel.

@@ -142,7 +142,8 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
   return actor;
 }
 
-vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normalization& normalize) {
+vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
+                                    const Normalization& normalize) {
   pcl::PointCloud<pcl::PointXYZ> vertices;
   pcl::fromPCLPointCloud2(mesh.cloud, vertices);
   vtkNew<vtkPoints> points;
@@ -162,6 +163,14 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normaliz
   vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   data->SetPolys(cells);
+  const bool colored = !panel.show_points && panel.support.size() == vertices.size();
+  if (colored) {
+    vtkNew<vtkUnsignedCharArray> colors;
+    colors->SetNumberOfComponents(3);
+    for (const double value : panel.support)
+      for (const double channel : cividis(value)) colors->InsertNextValue(static_cast<unsigned char>(255 * channel));
+    data->GetPointData()->SetScalars(colors);
+  }
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
   mapper->SetResolveCoincidentTopologyToPolygonOffset();
@@ -171,7 +180,7 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normaliz
   actor->GetProperty()->SetColor(0.86, 0.86, 0.88);
   actor->GetProperty()->SetAmbient(0.25);
   actor->GetProperty()->SetDiffuse(0.75);
-  actor->GetProperty()->SetInterpolationToFlat();
+  if (!colored) actor->GetProperty()->SetInterpolationToFlat();
   return actor;
 }
 

@@ -32,7 +32,9 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
                                      const Normalization& normalize, const std::vector<double>& brightness,
                                      double panel_pixels);
 
-vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const Normalization& normalize);
+/// Light grey; in the colours of the panel's support where it shows no points and has one value per vertex.
+vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
+                                    const Normalization& normalize);
 
 /// As long as the points reach along it, and a tenth more. \param line_width pixels.
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,

@@ -91,6 +91,18 @@ TEST(ViewpointSelection, ShowsWhatIsHiddenLeast) {
   EXPECT_GT(selection.getBestView().direction.z(), 0.0);
 }
 
+TEST(ViewpointSelection, MaximaCountInDirectionsThatNoPlaneCovers) {
+  const auto maximum = [](const Eigen::Vector3d& normal, double value) {
+    return LocalMaximum{{0, 0, 0}, ReflectionPlane(normal, 0.0), value};
+  };
+  ViewpointSelection selection;
+  selection.setPlanes({plane(Eigen::Vector3d::UnitX(), 0.8)}, {},
+                      {maximum({0.9, 0.1, 0.0}, 0.7), maximum({0.0, 0.0, 1.0}, 0.6), maximum({0.0, 0.3, 1.0}, 0.5)});
+  EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitX()), 0.8);
+  EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitZ()), 0.6);
+  EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitY()), 0.0);
+}
+
 TEST(ViewpointSelection, GoodViewsAreApart) {
   ViewpointSelection selection;
   std::vector<SymmetryPlane> planes;
