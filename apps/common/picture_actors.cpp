@@ -28,7 +28,21 @@ namespace {
 constexpr std::size_t kMaxShadedPoints = 200000;  ///< more points shade themselves by their density
 const Eigen::Vector3d kPlainColor(0.30, 0.38, 0.52);
 
-/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
+/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
+std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
+  const double length = plane.normal.norm();
+  const Eigen::Vector3d normal = plane.normal / length;
+  const Eigen::Vector3d center = plane.center - (normal.dot(plane.center) - plane.offset / length) * normal;
+  Eigen::Vector3d v = up.normalized() - normal.dot(up.normalized()) * normal;
+  if (v.norm() < 0.1) v = normal.unitOrthogonal();
+  v.normalize();
+  const Eigen::Vector3d u = normal.cross(v);
+  const double h = plane.half_size;
+  return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
+}
+
+}  // namespace
+
 std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
   const Eigen::Vector3d normal = plane.normal.normalized(), s = normal.unitOrthogonal(), t = normal.cross(s);
   std::vector<Eigen::Vector2d> projections;
@@ -54,21 +68,6 @@ std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl:
   return {corner(box.min().x(), box.min().y()), corner(box.max().x(), box.min().y()),
           corner(box.max().x(), box.max().y()), corner(box.min().x(), box.max().y())};
 }
-
-/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
-std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
-  const double length = plane.normal.norm();
-  const Eigen::Vector3d normal = plane.normal / length;
-  const Eigen::Vector3d center = plane.center - (normal.dot(plane.center) - plane.offset / length) * normal;
-  Eigen::Vector3d v = up.normalized() - normal.dot(up.normalized()) * normal;
-  if (v.norm() < 0.1) v = normal.unitOrthogonal();
-  v.normalize();
-  const Eigen::Vector3d u = normal.cross(v);
-  const double h = plane.half_size;
-  return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
-}
-
-}  // namespace
 
 Normalization normalizationOf(const PictureScene& scene) {
   Eigen::AlignedBox3d box;

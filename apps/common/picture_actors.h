@@ -7,6 +7,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkTextActor.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PictureP
 /// As long as the points reach along it, and a tenth more. \param line_width pixels.
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width);
+
+/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
+std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points);
 
 /// The patch with its outline. \param line_width pixels.
 void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,

@@ -1,0 +1,41 @@
+/// What there is to see of a shape.
+#pragma once
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "options.h"
+#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/viewpoint_selection.h"
+#include "shape_input.h"
+
+namespace pcl_symmetry::apps {
+
+/// A shape, moved to the origin and scaled to radius 1, as single-precision graphics want it, with all that was found.
+struct ViewerModel {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< finite
+  std::optional<pcl::PolygonMesh> mesh;
+  std::vector<SymmetryPlane> planes;  ///< best first; point_support has one value per point here
+  std::vector<std::string> labels;    ///< of each plane
+  std::vector<SymmetryAxis> axes;
+  std::vector<SymmetryCenter> centers;
+  ViewpointSelection views;
+  std::string summary;  ///< one line
+};
+
+struct ViewerModelOptions {
+  DetectionOptions detection;
+  Viewpoint viewpoint;
+  std::optional<Eigen::Vector3d> up;  ///< input frame
+  int mesh_points = 10'000;
+};
+
+/// \throws pcl::BadArgumentException where the shape has no extent.
+ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& options);
+
+}  // namespace pcl_symmetry::apps
