@@ -4,6 +4,7 @@
 #include <pcl/visualization/interactor_style.h>
 #include <pcl/visualization/pcl_visualizer.h>
 #include <vtkCellArray.h>
+#include <vtkMapper.h>
 #include <vtkObjectFactory.h>
 #include <vtkPNGWriter.h>
 #include <vtkPoints.h>
@@ -33,8 +34,9 @@ namespace {
 const Eigen::Vector3d kBlue(0.00, 0.45, 0.70), kVermilion(0.84, 0.37, 0.00), kGreen(0.00, 0.62, 0.45),
     kPlain(0.40, 0.47, 0.60), kFaint(0.78, 0.78, 0.80), kInk(0.1, 0.1, 0.1);
 constexpr double kViewAngle = 25.0 * M_PI / 180.0;
-constexpr float kRoom = 1.2f;       // of the camera's distance, for planes that reach beyond the shape
-constexpr double kFaintSize = 2.0;  // pixels: larger ones would cover the samples
+constexpr float kRoom = 1.2f;         // of the camera's distance, for planes that reach beyond the shape
+constexpr double kFaintSize = 2.0;    // pixels: larger ones would cover the samples
+constexpr double kInFront = -4000.0;  // steps of the depth buffer
 constexpr int kFontSize = 15;
 
 /// Hands keys to the viewer in place of PCL's own; the mouse works as PCL users know it.
@@ -242,9 +244,16 @@ private:
 
   void drawFrame(const IspFrame& frame) {
     addCloud(colored(*model_.points, [](std::size_t) { return kFaint; }), "points", kFaintSize);
-    addCloud(frame.samples, "samples", kBlue, 9.0);
-    addCloud(frame.reflections, "reflections", kVermilion, 9.0);
-    addCloud(frame.closest, "closest", kGreen, 6.0);
+    const double size = std::max(4.0, std::min(width_, height_) / 85.0);
+    addCloud(frame.samples, "samples", kBlue, size);
+    addCloud(frame.reflections, "reflections", kVermilion, size);
+    addCloud(frame.closest, "closest", kGreen, 0.7 * size);
+    // Markers in front of the points around them.
+    for (const char* id : {"samples", "reflections", "closest"}) {
+      vtkMapper* mapper = (*viewer_->getCloudActorMap())[id].actor->GetMapper();
+      mapper->SetResolveCoincidentTopologyToPolygonOffset();
+      mapper->SetRelativeCoincidentTopologyPointOffsetParameter(kInFront);
+    }
     viewer_->addModelFromPolyData(segments(frame.reflections, frame.closest), "pairs");
     viewer_->setShapeRenderingProperties(pcl::visualization::PCL_VISUALIZER_COLOR, 0.1, 0.1, 0.1, "pairs");
     viewer_->setShapeRenderingProperties(pcl::visualization::PCL_VISUALIZER_LINE_WIDTH, 2.0, "pairs");
