@@ -149,6 +149,7 @@ int run(int argc, char** argv) {
     PlanarSymmetryTransform<pcl::PointXYZ> transform;
     transform.setNumCells(options.common.grid);
     transform.setMapSize(detection.num_theta, detection.num_phi, detection.num_radius);
+    transform.setNumSamples(detection.num_samples);
     transform.setViewpointMode(options.common.viewpoint.mode);
     if (options.common.viewpoint.mode == Viewpoint::Mode::Given) {
       transform.setViewpoint(options.common.viewpoint.position);

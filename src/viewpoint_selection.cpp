@@ -46,6 +46,13 @@ std::vector<Eigen::Vector3d> mirrorImages(const Eigen::Vector3d& direction,
   return images;
 }
 
+/// Whether there is no direction with less than a fifth of the best score.
+bool seenFromEverywhere(const std::vector<ViewPlane>& planes) {
+  constexpr double kLeast = 0.2;
+  const std::vector<RankedView> best = bestViews(planes);
+  return !best.empty() && worstView(planes).score >= kLeast * best[0].score;
+}
+
 }  // namespace
 
 void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes,
@@ -64,11 +71,12 @@ void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, con
       planes_.push_back({std::cos(angle) * u + std::sin(angle) * v, 2.0 * axis.score / kFan});
     }
   }
-  const double covered = std::cos(kPi / 3.0);
   for (const LocalMaximum& maximum : maxima) {
+    if (seenFromEverywhere(planes_)) break;
     const Eigen::Vector3d n = maximum.plane.normal();
+    constexpr double kAcross = 0.5;  // cosine
     const bool near = std::any_of(planes_.begin(), planes_.end(),
-                                  [&](const ViewPlane& plane) { return std::abs(plane.normal.dot(n)) > covered; });
+                                  [&](const ViewPlane& plane) { return std::abs(plane.normal.dot(n)) > kAcross; });
     if (!near) planes_.push_back({n, maximum.value});
   }
   std::stable_sort(planes_.begin(), planes_.end(), [](const auto& a, const auto& b) { return a.weight > b.weight; });

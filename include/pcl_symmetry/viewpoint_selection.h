@@ -37,10 +37,10 @@ struct SelectedView : RankedView {
 class ViewpointSelection {
 public:
   /// The local maxima of the transform, weighted by their score. An axis counts as a fan of planes that weighs as much
-  /// as two. \param planes of SymmetryMaximaRefinement, with setApproximate(true). \param maxima of the map: those
-  /// whose normal is more than 60 degrees from all planes so far count too, the strongest first. Refinement drops
-  /// maxima that are no symmetry of any part, but a mug without the weak one across its axis would be best seen level
-  /// from the side.
+  /// as two. \param planes of SymmetryMaximaRefinement, with setApproximate(true). \param maxima of the map: as long as
+  /// some direction has less than a fifth of the best score, the strongest one whose normal is more than 60 degrees
+  /// from all planes so far counts too. Refinement drops maxima that are no symmetry of any part, but a mug without the
+  /// weak one across its axis would be best seen level from the side.
   void setPlanes(const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes = {},
                  const std::vector<LocalMaximum>& maxima = {});
 

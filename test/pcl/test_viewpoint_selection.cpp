@@ -95,12 +95,18 @@ TEST(ViewpointSelection, MaximaCountInDirectionsThatNoPlaneCovers) {
   const auto maximum = [](const Eigen::Vector3d& normal, double value) {
     return LocalMaximum{{0, 0, 0}, ReflectionPlane(normal, 0.0), value};
   };
+  const std::vector<LocalMaximum> maxima{maximum({0.9, 0.1, 0.0}, 0.7), maximum({0.0, 0.0, 1.0}, 0.6),
+                                         maximum({0.0, 0.3, 1.0}, 0.5)};
   ViewpointSelection selection;
-  selection.setPlanes({plane(Eigen::Vector3d::UnitX(), 0.8)}, {},
-                      {maximum({0.9, 0.1, 0.0}, 0.7), maximum({0.0, 0.0, 1.0}, 0.6), maximum({0.0, 0.3, 1.0}, 0.5)});
+  selection.setPlanes({plane(Eigen::Vector3d::UnitX(), 0.8)}, {}, maxima);
   EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitX()), 0.8);
   EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitZ()), 0.6);
   EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitY()), 0.0);
+  // Planes that are seen from everywhere need no others.
+  selection.setPlanes({plane({1, 0, 0}, 0.8), plane({1, 1, 0.3}, 0.8), plane({1, 0.3, 1}, 0.8)}, {}, maxima);
+  const double of_three = selection.getScore(Eigen::Vector3d::UnitZ());
+  selection.setPlanes({plane({1, 0, 0}, 0.8), plane({1, 1, 0.3}, 0.8), plane({1, 0.3, 1}, 0.8)});
+  EXPECT_DOUBLE_EQ(of_three, selection.getScore(Eigen::Vector3d::UnitZ()));
 }
 
 TEST(ViewpointSelection, GoodViewsAreApart) {
