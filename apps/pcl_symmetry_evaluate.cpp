@@ -2,8 +2,10 @@
 #include <cstdio>
 #include <string>
 
+#include "alignment.h"
 #include "options.h"
 #include "planes.h"
+#include "registration.h"
 
 namespace {
 
@@ -15,7 +17,10 @@ struct SubCommand {
   int (*run)(int argc, char** argv);
 };
 
-constexpr SubCommand kSubCommands[] = {{"planes", "how well symmetry planes are found", evaluatePlanes}};
+constexpr SubCommand kSubCommands[] = {
+    {"planes", "how well symmetry planes are found", evaluatePlanes},
+    {"alignment", "how well the frames of scans agree with those of whole models", evaluateAlignment},
+    {"registration", "how well scans are brought to models of their objects", evaluateRegistration}};
 
 void printUsage() {
   std::printf(

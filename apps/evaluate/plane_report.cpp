@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "chart.h"
+#include "table_text.h"
 
 namespace pcl_symmetry::apps {
 
@@ -18,43 +19,6 @@ constexpr double kBin = 10.0;  // degrees, of view angles
 double degrees(double radians) {
   return radians * 180.0 / M_PI;
 }
-
-/// A number with so many decimals, or a dash where there is nothing to count.
-std::string fixed(double value, int decimals, double scale = 1.0) {
-  if (!std::isfinite(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.*f", decimals, scale * value);
-  return text;
-}
-
-/// Builds one row of comma-separated values; what is not known stays empty.
-class Row {
-public:
-  Row& add(const std::string& text) {
-    if (!first_) line_ << ',';
-    first_ = false;
-    if (text.find_first_of(",\"\n") == std::string::npos) {
-      line_ << text;
-      return *this;
-    }
-    line_ << '"';
-    for (const char c : text) line_ << (c == '"' ? "\"\"" : std::string(1, c));
-    line_ << '"';
-    return *this;
-  }
-  Row& add(const char* text) { return add(std::string(text)); }
-  Row& add(double value) {
-    std::ostringstream text;
-    if (std::isfinite(value)) text << value;
-    return add(text.str());
-  }
-  Row& add(const std::optional<double>& value) { return value ? add(*value) : add(""); }
-  std::string end() const { return line_.str() + "\n"; }
-
-private:
-  std::ostringstream line_;
-  bool first_ = true;
-};
 
 std::optional<double> angleOf(const std::optional<Difference>& error) {
   return error ? std::optional<double>(degrees(error->angle)) : std::nullopt;

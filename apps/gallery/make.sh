@@ -75,6 +75,10 @@ figure_8 2 n
 figure_8 4 n,n,n
 figure_8 6 n,n,n,n,n
 
+for model in cow elephant; do
+  show pcl_symmetry_viewer "$model.off" -up 0,1,0 -width 480 -height 360 -keys g,s,a -screenshot "$pictures/figure_10_$model.png"
+done
+
 for model in bull cow elephant hand; do
   show pcl_symmetry_viewpoint "$model.off" -up 0,1,0 -size 180 -png "$pictures/figure_16_$model.png"
 done

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "pcl_symmetry/mesh_sampling.h"
+#include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace pcl_symmetry::apps {
@@ -55,6 +56,15 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
   model.axes = refinement.getAxes();
   model.centers = refinement.getCenters();
 
+  SymmetryAlignment<pcl::PointXYZ> alignment;
+  alignment.setGridSize(options.detection.edt.num_cells);
+  alignment.setRandomSeed(options.detection.seed);
+  alignment.setNumberOfThreads(options.detection.num_threads);
+  alignment.setViewpointMode(options.viewpoint.mode);
+  if (options.viewpoint.mode == Viewpoint::Mode::Given) alignment.setViewpoint(options.viewpoint.position);
+  alignment.setInputCloud(cloud);
+  model.frame = alignment.compute();
+
   std::vector<std::size_t> finite;
   for (std::size_t i = 0; i < cloud->size(); ++i)
     if (pcl::isXYZFinite((*cloud)[i])) finite.push_back(i);
@@ -82,6 +92,7 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
     static_cast<ReflectionPlane&>(plane) =
         ReflectionPlane(plane.normal(), plane.signedDistance(ball.center) / -ball.radius);
   }
+  model.frame.center = (model.frame.center - ball.center) / ball.radius;
   for (SymmetryAxis& axis : model.axes) axis.point = (axis.point - ball.center) / ball.radius;
   for (SymmetryCenter& center : model.centers) center.point = (center.point - ball.center) / ball.radius;
   model.views.setPlanes(model.planes, model.axes);

@@ -11,6 +11,7 @@
 
 #include "options.h"
 #include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 #include "shape_input.h"
 
@@ -22,6 +23,7 @@ struct ViewerModel {
   std::optional<pcl::PolygonMesh> mesh;
   std::vector<SymmetryPlane> planes;  ///< best first; point_support has one value per point here
   std::vector<std::string> labels;    ///< of each plane
+  SymmetryFrame frame;                ///< center of symmetry and principal symmetry axes
   std::vector<SymmetryAxis> axes;
   std::vector<SymmetryCenter> centers;
   ViewpointSelection views;

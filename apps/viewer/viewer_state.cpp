@@ -21,7 +21,7 @@ const std::vector<ViewerKey>& viewerKeys() {
       {{"g"}, "plane on, off", [](ViewerState& s) { s.patch = !s.patch; }},
       {{"s"}, "support on, off: yellow points have a counterpart", [](ViewerState& s) { s.support = !s.support; }},
       {{"o"}, "reflected points over the others, on, off", [](ViewerState& s) { s.reflection = !s.reflection; }},
-      {{"a"}, "axes of revolution and centers on, off", [](ViewerState& s) { s.axes = !s.axes; }},
+      {{"a"}, "center of symmetry and axes on, off", [](ViewerState& s) { s.axes = !s.axes; }},
       {{"m"}, "mesh on, off", [](ViewerState& s) { s.mesh = s.has_mesh && !s.mesh; }},
       {{"i"}, "refinement: start, next step", [](ViewerState& s) { s.step += s.num_planes > 0 ? 1 : 0; }},
       {{"u"}, "refinement: step before", [](ViewerState& s) { s.step = std::max(-1, s.step - 1); }},

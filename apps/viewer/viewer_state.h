@@ -17,7 +17,7 @@ struct ViewerState {
   bool patch = true;        ///< the plane itself
   bool support = true;      ///< points in the colours of their support of the plane
   bool reflection = false;  ///< the cloud reflected, over itself
-  bool axes = true;         ///< axes of revolution and centers of spheres
+  bool axes = false;        ///< principal symmetry axes; axes of revolution and centers of spheres
   bool mesh = false;        ///< the mesh under the points
   int step = -1;            ///< of Iterative Symmetric Points, from 0; -1 = not shown
   bool help = false;        ///< the list of keys

@@ -282,22 +282,26 @@ private:
     }
   }
 
-  void addLine(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const std::string& id) {
-    const Eigen::Vector3f a = from.cast<float>(), b = to.cast<float>();
-    viewer_->addLine(pcl::PointXYZ(a.x(), a.y(), a.z()), pcl::PointXYZ(b.x(), b.y(), b.z()), kVermilion.x(),
-                     kVermilion.y(), kVermilion.z(), id);
-    viewer_->setShapeRenderingProperties(pcl::visualization::PCL_VISUALIZER_LINE_WIDTH, 4.0, id);
+  /// \param reach length to either side. \param width pixels.
+  void addLine(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double reach,
+               const Eigen::Vector3d& color, double width, const std::string& id) {
+    const Eigen::Vector3f a = (point - reach * direction).cast<float>(), b = (point + reach * direction).cast<float>();
+    viewer_->addLine(pcl::PointXYZ(a.x(), a.y(), a.z()), pcl::PointXYZ(b.x(), b.y(), b.z()), color.x(), color.y(),
+                     color.z(), id);
+    viewer_->setShapeRenderingProperties(pcl::visualization::PCL_VISUALIZER_LINE_WIDTH, width, id);
   }
 
+  /// Axes of revolution are thinner and reach beyond the principal axes that lie along them.
   void drawAxes() {
-    constexpr double kReach = 1.2;
-    int num_lines = 0;
-    const auto add = [&](const Eigen::Vector3d& point, const Eigen::Vector3d& direction) {
-      addLine(point - kReach * direction, point + kReach * direction, "axis_" + std::to_string(num_lines++));
-    };
-    for (const SymmetryAxis& axis : model_.axes) add(axis.point, axis.direction);
-    for (const SymmetryCenter& center : model_.centers)
-      for (int k = 0; k < 3; ++k) add(center.point, Eigen::Vector3d::Unit(k));
+    const Eigen::Vector3d colors[] = {kVermilion, kGreen, kBlue};
+    for (int k = 0; k < 3; ++k)
+      addLine(model_.frame.center, model_.frame.axes.col(k), 1.1, colors[k], 5.0, "principal_" + std::to_string(k));
+    for (std::size_t i = 0; i < model_.axes.size(); ++i)
+      addLine(model_.axes[i].point, model_.axes[i].direction, 1.4, kInk, 2.0, "revolution_" + std::to_string(i));
+    for (std::size_t i = 0; i < model_.centers.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        addLine(model_.centers[i].point, Eigen::Vector3d::Unit(k), 1.4, kInk, 2.0,
+                "center_" + std::to_string(3 * i + k));
   }
 
   void drawTexts() {
@@ -314,6 +318,9 @@ private:
       title += "\n" + model_.labels[state_.plane];
       if (state_.reflection) title += "\norange: reflected points";
     }
+    if (state_.axes) title += "\norange, green, blue: first, second, third principal symmetry axis";
+    if (state_.axes && !model_.axes.empty()) title += "\nblack: axis of revolution";
+    if (state_.axes && !model_.centers.empty()) title += "\nblack: every plane through their crossing is a symmetry";
     if (!note_.empty()) title += "\n" + note_;
     addText(title, height_ - 1, true, "title");
     addText(state_.help ? viewerHelp() : "h  keys", 12, false, "help");

@@ -1,6 +1,7 @@
 #include "pcl_symmetry/core/visibility.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -151,6 +152,10 @@ double Visibility::depthBehind(const Eigen::Vector3d& x) const {
   const double u = image.x() / image.z() + 0.5, v = image.y() / image.z() + 0.5;
   const bool inside = u >= 0.0 && v >= 0.0 && u < width_ && v < height_;
   return image.z() - static_cast<double>(inside ? depth(static_cast<int>(u), static_cast<int>(v)) : outside_);
+}
+
+Eigen::Vector3d Visibility::viewpoint() const {
+  return -projection_.leftCols<3>().inverse() * projection_.col(3);
 }
 
 double Visibility::hiddenShare(const PointsRef& points, double margin) const {

@@ -47,13 +47,25 @@ TEST_F(Example, Visibility) {
   EXPECT_NE(output_.find("have a counterpart"), std::string::npos);
 }
 
+TEST_F(Example, Alignment) {
+  ASSERT_EQ(runOn("04_alignment", "scan.pcd"), 0) << error_;
+  EXPECT_NE(output_.find("center of symmetry"), std::string::npos) << output_;
+  EXPECT_EQ(numLinesWith(output_, "axis"), 3);
+}
+
+TEST_F(Example, Registration) {
+  ASSERT_EQ(run("05_registration " + (folder_ / "scan.pcd") + " " + (folder_ / "box.pcd")), 0) << error_;
+  EXPECT_NE(output_.find("merit"), std::string::npos) << output_;
+}
+
 TEST_F(Example, OwnSearchAndPointType) {
   ASSERT_EQ(runOn("08_own_search_and_point_type", "box.pcd"), 0) << error_;
   EXPECT_EQ(numLinesWith(output_, "confidence"), 3) << output_;
 }
 
 TEST_F(Example, SaysHowItIsUsed) {
-  for (const std::string example : {"01_first_plane", "02_options", "03_visibility", "08_own_search_and_point_type"}) {
+  for (const std::string example : {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration",
+                                    "08_own_search_and_point_type"}) {
     EXPECT_EQ(run(example), 2);
     EXPECT_NE(error_.find("usage: " + example), std::string::npos);
   }

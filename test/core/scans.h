@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -47,6 +48,28 @@ inline BlockObject blockChair() {
   for (int leg = 0; leg < 4; ++leg)
     chair.blocks.push_back({{leg & 1 ? 0.43 : -0.43, leg & 2 ? 0.43 : -0.43, -0.45}, {0.07, 0.07, 0.4}});
   return chair;
+}
+
+/// Points spread evenly over all that can be seen of an object from anywhere.
+inline Points surfaceOf(const BlockObject& object, int num_points, std::uint64_t seed = 1) {
+  RandomStream random(seed);
+  double total = 0.0;
+  std::vector<double> ends;  // of the areas of the faces across x, y, z of all blocks, added up
+  for (const Block& block : object.blocks)
+    for (int axis = 0; axis < 3; ++axis) ends.push_back(total += block.half.prod() / block.half[axis]);
+  Points points(3, num_points);
+  for (int i = 0; i < num_points;) {
+    const auto face = std::upper_bound(ends.begin(), ends.end(), random.uniform() * total) - ends.begin();
+    const Block& on = object.blocks[static_cast<std::size_t>(face / 3)];
+    Eigen::Vector3d unit(symmetric(random), symmetric(random), symmetric(random));
+    unit[face % 3] = random.below(2) ? 1.0 : -1.0;
+    const Eigen::Vector3d point = on.center + on.half.cwiseProduct(unit);
+    const bool inside = std::any_of(object.blocks.begin(), object.blocks.end(), [&](const Block& block) {
+      return ((point - block.center).cwiseAbs().array() < block.half.array()).all();
+    });
+    if (!inside) points.col(i++) = point.cast<float>();
+  }
+  return points;
 }
 
 /// A picture of points, row by row, NaN where the ray met nothing; the camera stands at the viewpoint.

@@ -46,6 +46,9 @@ public:
   /// The same for coordinates (x - center) / scale.
   Visibility normalized(const Eigen::Vector3d& center, double scale) const;
 
+  /// Where the rays meet, in the frame of the points.
+  Eigen::Vector3d viewpoint() const;
+
   int width() const { return width_; }
   int height() const { return height_; }
   float depth(int u, int v) const { return depths_[static_cast<std::size_t>(v) * width_ + u]; }

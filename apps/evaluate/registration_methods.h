@@ -1,0 +1,34 @@
+/// Ways to bring a scan to a model from any pose: ours, and what PCL's users have without it.
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+namespace pcl_symmetry::apps {
+
+struct RegistrationAnswer {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  bool converged = false;
+  double support = 0.0, conflict = 0.0;  ///< of SymmetryRegistration
+  double milliseconds = 0.0;
+};
+
+struct RegistrationMethod {
+  const char* name;
+  const char* summary;
+  /// \param source may hold points that are not finite. \param num_threads 0 = all.
+  RegistrationAnswer (*run)(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& source,
+                            const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& target, std::uint64_t seed,
+                            int num_threads);
+};
+
+/// symmetry: SymmetryRegistration with its defaults; frames and rotations: with one of its two kinds of hypotheses.
+/// pca: principal axes in the four proper orders of signs, ICP from each on voxels, ICP of the best with all points.
+/// features: FPFH and SampleConsensusPrerejective on voxels, ICP with all points.
+const std::vector<RegistrationMethod>& registrationMethods();
+
+}  // namespace pcl_symmetry::apps

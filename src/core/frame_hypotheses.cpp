@@ -1,0 +1,50 @@
+#include "pcl_symmetry/core/frame_hypotheses.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// The rotations that map the axes onto each other.
+std::vector<Eigen::Matrix3d> axisRotations() {
+  constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const auto& order : kOrders) {
+    for (int signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
+      for (int axis = 0; axis < 3; ++axis) rotation(axis, order[axis]) = signs >> axis & 1 ? -1.0 : 1.0;
+      if (rotation.determinant() > 0.0) rotations.push_back(rotation);
+    }
+  }
+  return rotations;
+}
+
+}  // namespace
+
+std::vector<Eigen::Isometry3d> frameHypotheses(const SymmetryFrame& a, const SymmetryFrame& b) {
+  constexpr int kNumTurns = 8;
+  constexpr double kSameAngle = 10.0 * M_PI / 180.0;
+  const Eigen::Isometry3d T_b_canonical = b.T_canonical_input.inverse();
+  std::vector<Eigen::Isometry3d> hypotheses;
+  const auto add = [&](const Eigen::Isometry3d& hypothesis) {
+    const auto same = [&](const Eigen::Isometry3d& other) {
+      return Eigen::AngleAxisd(other.linear().transpose() * hypothesis.linear()).angle() < kSameAngle;
+    };
+    if (std::none_of(hypotheses.begin(), hypotheses.end(), same)) hypotheses.push_back(hypothesis);
+  };
+  const bool turns = a.revolution_axis >= 0 && a.revolution_axis < 3;
+  for (const Eigen::Matrix3d& rotation : axisRotations()) {
+    for (int turn = 0; turn < (turns ? kNumTurns : 1); ++turn) {
+      Eigen::Matrix3d turned = rotation;
+      if (turns)
+        turned *= Eigen::AngleAxisd(2.0 * M_PI * turn / kNumTurns, Eigen::Vector3d::Unit(a.revolution_axis)).toRotationMatrix();
+      for (const Eigen::Isometry3d& T_canonical_a : a.equivalent)
+        add(T_b_canonical * Eigen::Isometry3d(turned) * T_canonical_a);
+    }
+  }
+  return hypotheses;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,286 @@
+#include <gtest/gtest.h>
+#include <pcl/common/transforms.h>
+#include <pcl/console/print.h>
+#include <pcl/registration/icp.h>
+
+#include "clouds.h"
+#include "pcl_symmetry/completion.h"
+#include "pcl_symmetry/registration/symmetry_registration.h"
+#include "scans.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+template <typename PointT = pcl::PointXYZ>
+using CloudPtr = typename pcl::PointCloud<PointT>::Ptr;
+
+template <typename PointT = pcl::PointXYZ>
+CloudPtr<PointT> toCloud(const Points& points) {
+  return test::toCloud<PointT>(Shape{points.cast<double>(), {}});
+}
+
+/// A scan of the chair, which has no rotation of its own, moved by \p pose; it says where the scanner stood.
+template <typename PointT = pcl::PointXYZ>
+CloudPtr<PointT> chairScan(const Eigen::Isometry3d& pose) {
+  const Scan scan = test::scan(blockChair(), {3.0, -6.0, 4.0});
+  const auto cloud = toCloud<PointT>((pose.cast<float>() * scan.cloud()).eval());
+  cloud->sensor_origin_.template head<3>() = (pose * scan.viewpoint).cast<float>();
+  return cloud;
+}
+
+CloudPtr<> chairModel() {
+  return toCloud(surfaceOf(blockChair(), 6000));
+}
+
+double angleOf(const Eigen::Matrix4f& transform) {
+  return Eigen::AngleAxisd(transform.topLeftCorner<3, 3>().cast<double>()).angle();
+}
+
+class SymmetryRegistrationTest : public testing::Test {
+protected:
+  void SetUp() override {
+    level_ = pcl::console::getVerbosityLevel();
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  }
+  void TearDown() override { pcl::console::setVerbosityLevel(level_); }
+
+private:
+  pcl::console::VERBOSITY_LEVEL level_;
+};
+
+/// What a user has who knows nothing of us.
+struct UserAnswer {
+  bool converged;
+  Eigen::Matrix4f transform;
+  double fitness;
+  std::size_t num_aligned;
+};
+
+UserAnswer alignAsAUserDoes(const pcl::Registration<pcl::PointXYZ, pcl::PointXYZ>::Ptr& registration,
+                            const CloudPtr<>& source, const CloudPtr<>& target) {
+  registration->setInputSource(source);
+  registration->setInputTarget(target);
+  registration->setMaximumIterations(40);
+  registration->setMaxCorrespondenceDistance(0.3);
+  registration->setTransformationEpsilon(1e-9);
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  registration->align(aligned);
+  return {registration->hasConverged(), registration->getFinalTransformation(), registration->getFitnessScore(),
+          aligned.size()};
+}
+
+TEST_F(SymmetryRegistrationTest, StandsWhereAnyRegistrationOfPCLStands) {
+  const Eigen::Isometry3d pose = randomPose(3);
+  const auto scan = chairScan(pose), model = chairModel();
+  const UserAnswer theirs =
+      alignAsAUserDoes(pcl::make_shared<pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>>(), scan, model);
+  const UserAnswer ours =
+      alignAsAUserDoes(pcl::make_shared<SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ>>(), scan, model);
+  EXPECT_TRUE(ours.converged);
+  EXPECT_LT(angleOf(ours.transform * pose.matrix().cast<float>()), 2.0 * kDegree);
+  EXPECT_LT((ours.transform * pose.matrix().cast<float>()).topRightCorner(3, 1).norm(), 0.03);
+  EXPECT_LT(ours.fitness, 0.03 * 0.03);
+  EXPECT_EQ(ours.num_aligned, theirs.num_aligned);
+  EXPECT_GT(angleOf(theirs.transform * pose.matrix().cast<float>()), 5.0 * kDegree) << "or the pose was too easy";
+}
+
+TEST_F(SymmetryRegistrationTest, FindsManyPoses) {
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  registration.setInputTarget(chairModel());
+  for (int seed = 0; seed < 6; ++seed) {
+    const Eigen::Isometry3d pose = randomPose(100 + seed);
+    const auto scan = chairScan(pose);
+    registration.setInputSource(scan);
+    pcl::PointCloud<pcl::PointXYZ> aligned;
+    registration.align(aligned);
+    ASSERT_TRUE(registration.hasConverged()) << seed;
+    EXPECT_LT(angleOf(registration.getFinalTransformation() * pose.matrix().cast<float>()), 2.0 * kDegree) << seed;
+    ASSERT_EQ(aligned.size(), scan->size());
+    const Eigen::Vector4f moved = registration.getFinalTransformation() * (*scan)[5].getVector4fMap();
+    EXPECT_LT((moved.head<3>() - aligned[5].getVector3fMap()).norm(), 1e-4);
+    EXPECT_GT(registration.getScore().support, 0.6);
+    EXPECT_LT(registration.getScore().conflict, 0.1);
+  }
+}
+
+TEST_F(SymmetryRegistrationTest, BringsAModelToAScanToo) {
+  const Eigen::Isometry3d pose = randomPose(8);
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  registration.setInputSource(chairModel());
+  registration.setInputTarget(chairScan(pose));
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  registration.align(aligned);
+  ASSERT_TRUE(registration.hasConverged());
+  EXPECT_LT(angleOf(registration.getFinalTransformation() * pose.inverse().matrix().cast<float>()), 2.0 * kDegree);
+}
+
+TEST_F(SymmetryRegistrationTest, BringsWholesTogetherInDoublesAndTurnsNormals) {
+  const Shape shape = asymmetricBlob(4000, 1);
+  const Eigen::Isometry3d pose = randomPose(2);
+  const auto source = test::toCloud<pcl::PointNormal>(moved(shape, pose));
+  for (pcl::PointNormal& point : *source) point.getNormalVector3fMap() = Eigen::Vector3f::UnitX();
+  SymmetryRegistration<pcl::PointNormal, pcl::PointNormal, double> registration;
+  registration.setInputSource(source);
+  registration.setInputTarget(test::toCloud<pcl::PointNormal>(asymmetricBlob(4000, 2)));
+  pcl::PointCloud<pcl::PointNormal> aligned;
+  registration.align(aligned);
+  ASSERT_TRUE(registration.hasConverged());
+  const Eigen::Matrix4d error = registration.getFinalTransformation() * pose.matrix();
+  EXPECT_LT(angleOf(error.cast<float>()), 1.0 * kDegree);
+  EXPECT_LT((aligned[0].getNormalVector3fMap() -
+             registration.getFinalTransformation().topLeftCorner<3, 1>().cast<float>())
+                .norm(),
+            1e-5);
+}
+
+TEST_F(SymmetryRegistrationTest, TakesTheGuessAndIndices) {
+  // A scan of something else beside the chair is left out by the indices.
+  const Eigen::Isometry3d pose = randomPose(5);
+  const auto scan = chairScan(pose);
+  const std::size_t size = scan->size();
+  for (int i = 0; i < 1000; ++i) scan->push_back(pcl::PointXYZ(9.0f + 0.01f * i, 1.0f, 2.0f));
+  auto indices = pcl::make_shared<pcl::Indices>();
+  for (std::size_t i = 0; i < size; ++i) indices->push_back(static_cast<pcl::index_t>(i));
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  PoseSearchOptions options;
+  options.num_rotations = 0;
+  registration.setSearchOptions(options);
+  registration.setUseFrames(false);
+  registration.setInputSource(scan);
+  registration.setIndices(indices);
+  registration.setInputTarget(chairModel());
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  Eigen::Isometry3d guess(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()));
+  registration.align(aligned, (guess * pose.inverse()).matrix().cast<float>());
+  ASSERT_TRUE(registration.hasConverged()) << "the guess alone leads there";
+  EXPECT_LT(angleOf(registration.getFinalTransformation() * pose.matrix().cast<float>()), 2.0 * kDegree);
+  EXPECT_EQ(aligned.size(), size);
+}
+
+TEST_F(SymmetryRegistrationTest, LeavesOutPointsThatAreNotFinite) {
+  const Eigen::Isometry3d pose = randomPose(6);
+  const Scan scan = test::scan(blockChair(), {3.0, -6.0, 4.0});
+  auto cloud = toCloud((pose.cast<float>() * scan.pixels).eval());
+  cloud->width = scan.width;
+  cloud->height = scan.height;
+  cloud->is_dense = false;
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  registration.setInputSource(cloud);
+  registration.setInputTarget(chairModel());
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  registration.align(aligned);
+  ASSERT_TRUE(registration.hasConverged());
+  EXPECT_LT(angleOf(registration.getFinalTransformation() * pose.matrix().cast<float>()), 2.0 * kDegree);
+  EXPECT_EQ(aligned.width, cloud->width);
+  EXPECT_EQ(aligned.height, cloud->height);
+}
+
+TEST_F(SymmetryRegistrationTest, SaysWhereNothingFits) {
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  const auto fails = [&](const CloudPtr<>& source, const CloudPtr<>& target) {
+    registration.setInputSource(source);
+    registration.setInputTarget(target);
+    registration.align(aligned);
+    EXPECT_FALSE(registration.hasConverged());
+    EXPECT_EQ(registration.getFinalTransformation(), Eigen::Matrix4f::Identity());
+    ASSERT_EQ(aligned.size(), source->size());
+    EXPECT_EQ(aligned[0].x, (*source)[0].x) << "the source as it was";
+  };
+  const auto chair = chairScan(randomPose(1)), model = chairModel();
+  fails(chair, test::toCloud(sphere(4000, 1)));
+  EXPECT_LT(registration.getScore().merit(), 0.4);
+  fails(toCloud(Points::Ones(3, 5)), model);
+  fails(chair, toCloud(Points::Ones(3, 1)));
+  fails(toCloud(Points::Random(3, 2)), model);
+}
+
+TEST_F(SymmetryRegistrationTest, DoesNotDependOnThreadsAndUnits) {
+  const Eigen::Isometry3d pose = randomPose(7);
+  const auto scan = chairScan(pose), model = chairModel();
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  const auto transform = [&] {
+    registration.setInputSource(scan);
+    registration.setInputTarget(model);
+    pcl::PointCloud<pcl::PointXYZ> aligned;
+    registration.align(aligned);
+    EXPECT_TRUE(registration.hasConverged());
+    return Eigen::Matrix4f(registration.getFinalTransformation());
+  };
+  registration.setNumberOfThreads(1);
+  const Eigen::Matrix4f expected = transform();
+  registration.setNumberOfThreads(4);
+  EXPECT_EQ(transform(), expected);
+  constexpr float kMillimetres = 1000.0f;
+  for (const auto& cloud : {scan, model}) {
+    for (pcl::PointXYZ& point : *cloud) point.getVector3fMap() *= kMillimetres;
+    cloud->sensor_origin_.head<3>() *= kMillimetres;
+  }
+  const Eigen::Matrix4f scaled = transform();
+  EXPECT_LT(angleOf(scaled * expected.inverse()), 1.0 * kDegree);
+  EXPECT_LT((scaled.topRightCorner<3, 1>() / kMillimetres - expected.topRightCorner<3, 1>()).norm(), 0.02);
+}
+
+TEST_F(SymmetryRegistrationTest, RefusesOptionsOutOfRange) {
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  EXPECT_THROW(registration.setMinMerit(1.5), pcl::BadArgumentException);
+  EXPECT_THROW(registration.setMaxPoints(2), pcl::BadArgumentException);
+  EXPECT_THROW(registration.setNumberOfThreads(-1), pcl::BadArgumentException);
+  PoseSearchOptions options;
+  options.max_poses = 0;
+  EXPECT_THROW(registration.setSearchOptions(options), pcl::BadArgumentException);
+}
+
+TEST(CompleteBySymmetry, AddsReflectedPointsAndSaysWhichTheyAre) {
+  const Scan scan = test::scan(blockChair(), {6.0, -3.0, 3.0});
+  const auto cloud = toCloud<pcl::PointNormal>(scan.pixels);
+  for (pcl::PointNormal& point : *cloud) {
+    point.getNormalVector3fMap() = Eigen::Vector3f(0.6f, -0.8f, 0.0f);
+    point.curvature = 0.25f;
+  }
+  cloud->width = scan.width;
+  cloud->height = scan.height;
+  cloud->is_dense = false;
+  const ReflectionPlane middle(Eigen::Vector3d::UnitX(), 0.0);
+  const CompletedCloud<pcl::PointNormal> completed = completeBySymmetry(*cloud, middle);
+  ASSERT_GT(completed.added.size(), 100u);
+  ASSERT_EQ(completed.sources.size(), completed.added.size());
+  ASSERT_EQ(completed.cloud.size(), cloud->size() + completed.added.size());
+  EXPECT_EQ(completed.cloud.height, 1u);
+  EXPECT_EQ(completed.cloud.width, completed.cloud.size());
+  for (std::size_t k = 0; k < completed.added.size(); ++k) {
+    ASSERT_EQ(static_cast<std::size_t>(completed.added[k]), cloud->size() + k);
+    const pcl::PointNormal &added = completed.cloud[completed.added[k]], &source = (*cloud)[completed.sources[k]];
+    EXPECT_NEAR(added.x, -source.x, 1e-6f);
+    EXPECT_EQ(added.y, source.y);
+    EXPECT_EQ(added.z, source.z);
+    EXPECT_NEAR(added.normal_x, -0.6f, 1e-6f);
+    EXPECT_NEAR(added.normal_y, -0.8f, 1e-6f);
+    EXPECT_EQ(added.curvature, 0.25f);
+  }
+}
+
+TEST(CompleteBySymmetry, ReflectsTheViewpointThatAPointCarries) {
+  pcl::PointCloud<pcl::PointWithViewpoint> cloud;
+  pcl::PointWithViewpoint point;
+  point.x = 1.0f;
+  point.y = point.z = 0.0f;
+  point.vp_x = 5.0f;
+  point.vp_y = 6.0f;
+  point.vp_z = 7.0f;
+  cloud.push_back(point);
+  const auto completed =
+      completeBySymmetry(cloud, ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0), {}, {Viewpoint::Mode::None});
+  ASSERT_EQ(completed.cloud.size(), 2u);
+  EXPECT_EQ(completed.cloud[1].x, -1.0f);
+  EXPECT_EQ(completed.cloud[1].vp_x, -5.0f);
+  EXPECT_EQ(completed.cloud[1].vp_y, 6.0f);
+  EXPECT_TRUE(completeBySymmetry(pcl::PointCloud<pcl::PointXYZ>(), ReflectionPlane()).cloud.empty());
+  CompletionOptions options;
+  options.overlap = -1.0;
+  EXPECT_THROW(completeBySymmetry(cloud, ReflectionPlane(), options), pcl::BadArgumentException);
+}
+
+}  // namespace
