@@ -1,6 +1,6 @@
 /// The transform mapped back to space: for each point of a cloud and each cell of a volume the greatest symmetry of any
 /// plane through it.
-#include <pcl/common/io.h>
+#include <pcl/conversions.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -10,10 +10,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "cloud_fields.h"
 #include "console.h"
 #include "options.h"
 #include "pcl_symmetry/core/point_symmetry.h"
@@ -71,28 +73,11 @@ struct FinitePoints {
   }
 };
 
-/// The cloud with a field intensity, its own replaced where it had one; NaN at points that are not finite.
+/// The cloud with a field intensity; its own gets another name.
 pcl::PCLPointCloud2 withIntensity(pcl::PCLPointCloud2 cloud, const std::vector<float>& intensity) {
-  const auto named = [](const pcl::PCLPointField& field) { return field.name == "intensity"; };
-  const auto own = std::find_if(cloud.fields.begin(), cloud.fields.end(), named);
-  if (own != cloud.fields.end()) own->name = "input_intensity";
-  pcl::PCLPointCloud2 extra;
-  extra.width = cloud.width;
-  extra.height = cloud.height;
-  extra.is_dense = cloud.is_dense;
-  extra.is_bigendian = cloud.is_bigendian;
-  pcl::PCLPointField field;
-  field.name = "intensity";
-  field.datatype = pcl::PCLPointField::FLOAT32;
-  field.count = 1;
-  extra.fields.push_back(field);
-  extra.point_step = sizeof(float);
-  extra.row_step = extra.point_step * extra.width;
-  extra.data.resize(intensity.size() * sizeof(float));
-  std::memcpy(extra.data.data(), intensity.data(), extra.data.size());
-  pcl::PCLPointCloud2 output;
-  if (!pcl::concatenateFields(cloud, extra, output)) throw InputError("intensity: fields could not be joined");
-  return output;
+  for (pcl::PCLPointField& field : cloud.fields)
+    if (field.name == "intensity") field.name = "input_intensity";
+  return withFields(cloud, {"intensity"}, {intensity});
 }
 
 /// A box of cells around the shape.
