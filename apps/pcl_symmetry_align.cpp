@@ -3,6 +3,7 @@
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/registration/symmetry_registration.h"
 #include "pcl_symmetry/symmetry_alignment.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "shape_input.h"
 #include "shape_output.h"
 
@@ -33,16 +35,18 @@ struct AlignOptions {
 };
 
 CommandLine commandLine(AlignOptions& options) {
-  CommandLine line("pcl_symmetry_align",
-                   "Turns a cloud into the frame of its symmetry: center to the origin, axes to x, y and z, best first. "
-                   "With -target, brings it to another cloud instead, from any pose.",
-                   "pcl_symmetry_align scan.pcd aligned.pcd -target model.ply -json pose.json");
+  CommandLine line(
+      "pcl_symmetry_align",
+      "Turns a cloud into the frame of its symmetry: center to the origin, axes to x, y and z, best first. "
+      "With -target, brings it to another cloud instead, from any pose.",
+      "pcl_symmetry_align scan.pcd aligned.pcd -target model.ply -json pose.json");
   line.positional("input", options.input, ".pcd, .ply, .obj, .stl or .off")
       .positional("output", options.output, ".pcd or .ply: the cloud after the transform")
       .text("target", "FILE", options.target, "cloud or mesh that the input is brought to")
-      .flag("complete", options.complete,
-            "reflect the cloud across its best plane where nothing was seen to be empty; the field reflected_of tells "
-            "added points")
+      .flag(
+          "complete", options.complete,
+          "reflect the cloud across its best plane of symmetry, except into space that was seen to be empty; the field "
+          "reflected_of tells added points")
       .number("points", options.mesh_points, Range::closed(100, 10'000'000), "points spread over a mesh")
       .common(options.common, kAllCommonFlags);
   return line;
@@ -104,10 +108,45 @@ SymmetryFrame computeFrame(const Console& console, const Input& input, const Com
   }
 }
 
-/// Adds what the plane across the best axis shows of the side that was not seen.
-void complete(const Console& console, Input& input, const SymmetryFrame& frame, const CommonOptions& common) {
+/// The best plane of symmetry; of a body of revolution the one that takes the side that was seen to the other.
+ReflectionPlane bestPlane(const Console& console, const Input& input, const CommonOptions& common) {
+  Step step(console, "Searching planes");
+  DetectionOptions detection;
+  detection.edt.num_cells = common.grid;
+  detection.seed = common.seed + 1;
+  detection.num_threads = detection.edt.num_threads = common.threads;
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  std::vector<SymmetryPlane> planes;
+  try {
+    refinement.setOptions(detection);
+    refinement.setViewpointMode(common.viewpoint.mode);
+    if (common.viewpoint.mode == Viewpoint::Mode::Given) refinement.setViewpoint(common.viewpoint.position);
+    refinement.setInputCloud(input.points);
+    planes = refinement.compute();
+  } catch (const pcl::BadArgumentException& error) {
+    throw InputError(input.path + ": " + error.detailedMessage());
+  }
+  if (!refinement.getAxes().empty()) {
+    const SymmetryAxis& axis = refinement.getAxes().front();
+    const Eigen::Vector3d scanner = common.viewpoint.mode == Viewpoint::Mode::Given
+                                        ? common.viewpoint.position
+                                        : input.shape.sensor_origin.head<3>().cast<double>().eval();
+    const Eigen::Vector3d to_scanner = scanner - axis.point;
+    const Eigen::Vector3d across = to_scanner - axis.direction.dot(to_scanner) * axis.direction;
+    const Eigen::Vector3d normal =
+        across.norm() > 1e-6 * to_scanner.norm() ? across.normalized() : axis.direction.unitOrthogonal();
+    step.done("axis of revolution");
+    return ReflectionPlane(normal, normal.dot(axis.point));
+  }
+  if (planes.empty()) throw InputError(input.path + ": has no plane of symmetry to complete it across");
+  step.done("confidence " + std::to_string(std::lround(100.0 * planes.front().confidence)) + " %");
+  return planes.front();
+}
+
+/// Adds what its symmetry shows of the side that was not seen.
+void complete(const Console& console, Input& input, const CommonOptions& common) {
+  const ReflectionPlane plane = bestPlane(console, input, common);
   Step step(console, "Completing");
-  const ReflectionPlane plane(frame.axes.col(0), frame.axes.col(0).dot(frame.center));
   CompletionOptions options;
   options.num_threads = common.threads;
   const auto completed = completeBySymmetry(*input.points, plane, options, common.viewpoint);
@@ -134,12 +173,9 @@ Registered registerTo(const Console& console, const Input& input, const Input& t
   pcl::PointCloud<pcl::PointXYZ> aligned;
   registration.align(aligned);
   Registered result{Eigen::Isometry3d(registration.getFinalTransformation()), registration.hasConverged(), {}};
-  result.json = {{"transform", toJson(result.T_target_source)},
-                 {"converged", result.converged},
-                 {"fitness", registration.getFitnessScore()},
-                 {"support", registration.getScore().support},
-                 {"conflict", registration.getScore().conflict},
-                 {"timing_ms", toJson(registration.getTiming())}};
+  result.json = {{"transform", toJson(result.T_target_source)},  {"converged", result.converged},
+                 {"fitness", registration.getFitnessScore()},    {"support", registration.getScore().support},
+                 {"conflict", registration.getScore().conflict}, {"timing_ms", toJson(registration.getTiming())}};
   step.done(result.converged ? "converged" : "nothing fits");
   return result;
 }
@@ -152,6 +188,9 @@ nlohmann::json describe(const SymmetryFrame& frame) {
                       {"transform", toJson(frame.T_canonical_input)},
                       {"timing_ms", toJson(frame.timing_ms)}};
   for (int k = 0; k < 3; ++k) json["axes"].push_back(toJson(frame.axes.col(k)));
+  json["equivalent"] = nlohmann::json::array();
+  for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
+    json["equivalent"].push_back(toJson(T_canonical_input));
   return json;
 }
 
@@ -184,12 +223,11 @@ int run(int argc, char** argv) {
 
   Input input = load(console, options.input, options);
   std::optional<SymmetryFrame> frame;
-  if (!options.target || options.complete) frame = computeFrame(console, input, options.common);
+  if (!options.target) frame = computeFrame(console, input, options.common);
   Eigen::Isometry3d motion;
   nlohmann::json json;
   if (options.target) {
-    const Registered registered =
-        registerTo(console, input, load(console, *options.target, options), options.common);
+    const Registered registered = registerTo(console, input, load(console, *options.target, options), options.common);
     json = registered.json;
     motion = registered.T_target_source;
     if (!registered.converged) {
@@ -203,7 +241,7 @@ int run(int argc, char** argv) {
     motion = frame->T_canonical_input;
     print(*frame);
   }
-  if (options.complete) complete(console, input, *frame, options.common);
+  if (options.complete) complete(console, input, options.common);
   if (options.output) save(console, input, motion, *options.output);
   if (options.common.json_path) writeText(*options.common.json_path, json.dump(2) + "\n");
   return 0;

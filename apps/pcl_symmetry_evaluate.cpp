@@ -6,6 +6,7 @@
 #include "options.h"
 #include "planes.h"
 #include "registration.h"
+#include "segmentation.h"
 
 namespace {
 
@@ -20,11 +21,12 @@ struct SubCommand {
 constexpr SubCommand kSubCommands[] = {
     {"planes", "how well symmetry planes are found", evaluatePlanes},
     {"alignment", "how well the frames of scans agree with those of whole models", evaluateAlignment},
-    {"registration", "how well scans are brought to models of their objects", evaluateRegistration}};
+    {"registration", "how well scans are brought to models of their objects", evaluateRegistration},
+    {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation}};
 
 void printUsage() {
   std::printf(
-      "Measures how well symmetries are found, on data with known answers.\n\n"
+      "Measures how well symmetries are found and shapes are cut into parts, on data with known answers.\n\n"
       "Usage: pcl_symmetry_evaluate COMMAND [-flag value]\n\n");
   for (const SubCommand& command : kSubCommands) std::printf("  %-14s %s\n", command.name, command.summary);
   std::printf(

@@ -65,6 +65,11 @@ void checkScene(const PictureScene& scene) {
   if (!scene.points) throw std::invalid_argument("points is not set");
   if (scene.panels.empty()) throw std::invalid_argument("panels is empty, must hold at least one");
   for (const PicturePanel& panel : scene.panels) {
+    const std::size_t num_elements = scene.mesh ? scene.mesh->polygons.size() : scene.points->size();
+    if (!panel.segments.empty() && panel.segments.size() != num_elements) {
+      throw std::invalid_argument("segments holds " + std::to_string(panel.segments.size()) + " numbers, must be " +
+                                  std::to_string(num_elements) + ", one per polygon or point");
+    }
     if (!panel.support.empty() && panel.support.size() != scene.points->size()) {
       throw std::invalid_argument("support holds " + std::to_string(panel.support.size()) + " values, must be " +
                                   std::to_string(scene.points->size()) + ", one per point");
@@ -180,7 +185,8 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGr
     renderer->SetMaximumNumberOfPeels(16);
     renderer->SetOcclusionRatio(0.0);
     if (scene.mesh) renderer->AddActor(meshActor(*scene.mesh, panel, normalize));
-    if (panel.show_points) renderer->AddActor(cloudActor(scene, panel, normalize, brightness, panel_pixels));
+    if (panel.show_points && (!scene.mesh || panel.segments.empty()))
+      renderer->AddActor(cloudActor(scene, panel, normalize, brightness, panel_pixels));
     for (const AxisLine& axis : panel.axes) addAxis(*renderer, axis, scene, normalize, panel_pixels / 120);
     for (const PlanePatch& plane : panel.planes) addPlane(*renderer, plane, scene, normalize, panel_pixels / 250);
     const bool has_bar = scene.show_color_bar && !panel.support.empty();
@@ -200,6 +206,13 @@ Eigen::Vector3d distinctColor(std::size_t index) {
                                            {0.80, 0.47, 0.65}, {0.84, 0.37, 0.00}, {0.34, 0.71, 0.91},
                                            {0.94, 0.89, 0.26}, {0.35, 0.35, 0.35}};
   return colors[index % std::size(colors)];
+}
+
+Eigen::Vector3d segmentColor(int segment) {
+  if (segment < 0) return Eigen::Vector3d::Constant(0.75);
+  constexpr int kNumColors = 8;
+  const double white = 1.0 - std::pow(0.65, segment / kNumColors);
+  return (1.0 - white) * distinctColor(static_cast<std::size_t>(segment)) + white * Eigen::Vector3d::Ones();
 }
 
 Eigen::Vector3d cividis(double value) {
@@ -241,6 +254,12 @@ void renderPicture(const std::vector<PictureScene>& scenes, const std::string& p
     for (const PictureScene& scene : scenes) {
       addPanels(*window, scene, grid, next_panel);
       next_panel += static_cast<int>(scene.panels.size());
+    }
+    for (; next_panel < grid.columns * grid.rows; ++next_panel) {
+      vtkNew<vtkRenderer> blank;
+      grid.place(*blank, next_panel);
+      blank->SetBackground(1, 1, 1);
+      window->AddRenderer(blank);
     }
     if (!window->SupportsOpenGL()) throw InputError(path + ": cannot be drawn, the display has no OpenGL 3.2");
     window->Render();

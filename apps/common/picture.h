@@ -36,6 +36,9 @@ struct PicturePanel {
   std::vector<double> support = {};  ///< one value in [0, 1] per point, cividis colours; empty for one plain colour
   std::vector<PlanePatch> planes = {};
   std::vector<AxisLine> axes = {};
+  /// One number per polygon of the mesh, or per point where there is no mesh, each in a colour of its own (below 0:
+  /// grey); the points of the mesh are then not drawn. Empty for one plain colour.
+  std::vector<int> segments = {};
   bool show_points = true;  ///< false: the mesh alone; it takes the colours where its vertices are the points
 };
 
@@ -52,6 +55,9 @@ struct PictureScene {
 
 /// Eight colours that remain apart for colour-blind eyes (Okabe and Ito), repeated from the start when they run out.
 Eigen::Vector3d distinctColor(std::size_t index);
+
+/// Of a segment: the distinct colours, lighter with each round; grey below 0.
+Eigen::Vector3d segmentColor(int segment);
 
 /// \param value in [0, 1], clamped. \return its colour on the cividis scale (dark blue to yellow).
 Eigen::Vector3d cividis(double value);

@@ -4,6 +4,7 @@
 #include <pcl/conversions.h>
 #include <pcl/features/normal_3d.h>
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -41,8 +42,14 @@ std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eige
   return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
 }
 
+void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
+  for (int k = 0; k < 3; ++k)
+    colors.InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
+}
+
 }  // namespace
 
+/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
 std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
   const Eigen::Vector3d normal = plane.normal.normalized(), s = normal.unitOrthogonal(), t = normal.cross(s);
   std::vector<Eigen::Vector2d> projections;
@@ -118,12 +125,11 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
     if (!position.allFinite()) continue;
     const vtkIdType id = points->InsertNextPoint(normalize(position).data());
     cells->InsertNextCell(1, &id);
-    const Eigen::Vector3d base = panel.support.empty() ? kPlainColor : cividis(panel.support[i]);
-    const Eigen::Vector3d color =
-        (panel.support.empty() ? 0.45 + 0.75 * brightness[i] : 0.65 + 0.35 * brightness[i]) * base;
-    for (int k = 0; k < 3; ++k) {
-      colors->InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
-    }
+    const bool plain = panel.support.empty() && panel.segments.empty();
+    Eigen::Vector3d base = kPlainColor;
+    if (!panel.segments.empty()) base = segmentColor(panel.segments[i]);
+    if (!panel.support.empty()) base = cividis(panel.support[i]);
+    addColor(*colors, (plain ? 0.45 + 0.75 * brightness[i] : 0.65 + 0.35 * brightness[i]) * base);
   }
   const double num_points = static_cast<double>(points->GetNumberOfPoints());
   vtkNew<vtkPolyData> data;
@@ -150,7 +156,10 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PictureP
     points->InsertNextPoint(normalize(vertex.getVector3fMap().cast<double>()).data());
   }
   vtkNew<vtkCellArray> cells;
-  for (const pcl::Vertices& polygon : mesh.polygons) {
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
+  for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
+    const pcl::Vertices& polygon = mesh.polygons[f];
     const bool drawable = std::all_of(polygon.vertices.begin(), polygon.vertices.end(), [&](pcl::index_t corner) {
       return corner >= 0 && static_cast<std::size_t>(corner) < vertices.size() &&
              vertices[static_cast<std::size_t>(corner)].getVector3fMap().allFinite();
@@ -158,17 +167,18 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PictureP
     if (!drawable) continue;
     cells->InsertNextCell(static_cast<vtkIdType>(polygon.vertices.size()));
     for (const pcl::index_t corner : polygon.vertices) cells->InsertCellPoint(corner);
+    if (!panel.segments.empty()) addColor(*colors, segmentColor(panel.segments[f]));
   }
   vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   data->SetPolys(cells);
+  if (!panel.segments.empty()) data->GetCellData()->SetScalars(colors);
   const bool colored = !panel.show_points && panel.support.size() == vertices.size();
   if (colored) {
-    vtkNew<vtkUnsignedCharArray> colors;
-    colors->SetNumberOfComponents(3);
-    for (const double value : panel.support)
-      for (const double channel : cividis(value)) colors->InsertNextValue(static_cast<unsigned char>(255 * channel));
-    data->GetPointData()->SetScalars(colors);
+    vtkNew<vtkUnsignedCharArray> shades;
+    shades->SetNumberOfComponents(3);
+    for (const double value : panel.support) addColor(*shades, cividis(value));
+    data->GetPointData()->SetScalars(shades);
   }
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);

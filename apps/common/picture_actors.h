@@ -33,7 +33,8 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
                                      const Normalization& normalize, const std::vector<double>& brightness,
                                      double panel_pixels);
 
-/// Light grey; in the colours of the panel's support where it shows no points and has one value per vertex.
+/// Light grey; in the colours of PicturePanel::segments of its polygons, or of the panel's support where it shows no
+/// points and has one value per vertex.
 vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
                                     const Normalization& normalize);
 

@@ -52,7 +52,7 @@ std::string toString(AlignmentMethod method) {
     case AlignmentMethod::AsPublished:
       return "as published";
     case AlignmentMethod::CenterOfMass:
-      return "mass, PCA";
+      return "mass and PCA";
     default:
       return "mass + 0.15 R";
   }

@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "console.h"
-#include "patches.h"
 #include "model_list.h"
 #include "motion_error.h"
 #include "options.h"
+#include "patches.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "plane_statistics.h"
 #include "reference_cache.h"
@@ -96,10 +96,10 @@ struct Trial {
 /// What the trials of one method add up to. Rates in [0, 1], NaN where there is nothing to count.
 struct Summary {
   int num_scans = 0;
-  double right_rate = 0.0;      ///< whether the method says converged or not
-  double converged_rate = 0.0;  ///< says that it fits
-  double trusted_rate = 0.0;    ///< of those that say so, right
-  double impostor_rate = 0.0;   ///< impostors that are said to fit
+  double right_rate = 0.0;                           ///< whether the method says converged or not
+  double converged_rate = 0.0;                       ///< says that it fits
+  double trusted_rate = 0.0;                         ///< of those that say so, right
+  double impostor_rate = 0.0;                        ///< impostors that are said to fit
   double median_angle = 0.0, median_distance = 0.0;  ///< of the right ones, degrees and diagonals
   double median_ms = 0.0, p95_ms = 0.0;
 };
@@ -214,8 +214,7 @@ private:
       Trial trial{name, target.name, k, !references, run(), {}, false};
       if (references) {
         trial.error = motionError(trial.answer.T_target_source, scan.T_cloud_model.inverse(), *references);
-        trial.right =
-            trial.error.within(options_.max_angle * kDegree, options_.max_distance * references->diagonal);
+        trial.right = trial.error.within(options_.max_angle * kDegree, options_.max_distance * references->diagonal);
         trial.error.distance /= references->diagonal;
       }
       trials_.push_back(trial);

@@ -128,8 +128,8 @@ RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Clo
   pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> coarse;
   prepareIcp(coarse, leaf.downsample(source), leaf.downsample(target));
   IcpResult best{Eigen::Matrix4f::Identity(), std::numeric_limits<double>::infinity(), false};
-  for (const Eigen::Vector3d& signs : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, -1, -1), Eigen::Vector3d(-1, 1, -1),
-                                       Eigen::Vector3d(-1, -1, 1)}) {
+  for (const Eigen::Vector3d& signs :
+       {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, -1, -1), Eigen::Vector3d(-1, 1, -1), Eigen::Vector3d(-1, -1, 1)}) {
     Eigen::Isometry3d guess(Eigen::Isometry3d::Identity());
     guess.linear() = of_target.axes * signs.asDiagonal() * of_source.axes.transpose();
     guess.translation() = of_target.center - guess.linear() * of_source.center;
@@ -146,8 +146,8 @@ RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Clo
 }
 
 /// Normals that look to the viewpoint, or else away from the middle.
-NormalCloud::Ptr withNormals(const Cloud::ConstPtr& cloud, double radius, const std::optional<Eigen::Vector3f>& viewpoint,
-                             int num_threads) {
+NormalCloud::Ptr withNormals(const Cloud::ConstPtr& cloud, double radius,
+                             const std::optional<Eigen::Vector3f>& viewpoint, int num_threads) {
   auto normals = pcl::make_shared<NormalCloud>();
   pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::PointNormal> estimation(num_threads);
   estimation.setInputCloud(cloud);

@@ -86,6 +86,25 @@ TEST_F(SymmetryRegistrationTest, StandsWhereAnyRegistrationOfPCLStands) {
   EXPECT_GT(angleOf(theirs.transform * pose.matrix().cast<float>()), 5.0 * kDegree) << "or the pose was too easy";
 }
 
+TEST_F(SymmetryRegistrationTest, MeasuresTheFitOfPointsThatAreThere) {
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  const auto scan = chairScan(randomPose(3)), with_gaps = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*scan);
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (int i = 0; i < 100; ++i) with_gaps->push_back(pcl::PointXYZ(none, none, none));
+  with_gaps->is_dense = false;
+  registration.setInputTarget(chairModel());
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  registration.setInputSource(scan);
+  registration.align(aligned);
+  const double expected = registration.getFitnessScore();
+  EXPECT_LT(expected, 0.03 * 0.03);
+  EXPECT_LT(registration.getFitnessScore(0.5 * expected), 0.5 * expected);
+  registration.setInputSource(with_gaps);
+  registration.align(aligned);
+  ASSERT_TRUE(registration.hasConverged());
+  EXPECT_NEAR(registration.getFitnessScore(), expected, 0.05 * expected);
+}
+
 TEST_F(SymmetryRegistrationTest, FindsManyPoses) {
   SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
   registration.setInputTarget(chairModel());

@@ -3,6 +3,7 @@
 #include <pcl/registration/registration.h>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +42,12 @@ public:
 
   SymmetryRegistration();
 
+  using Base::getFitnessScore;
+  /// As that of the base class, which in PCL 1.13 aborts at points that are not finite: they are left out here.
+  /// \return mean squared distance of the source from the target, of the points within \p max_range squared units; the
+  /// greatest double where there is none.
+  double getFitnessScore(double max_range = std::numeric_limits<double>::max());
+
   /// Where the scanners stood; by default the data decide, as in SymmetryMaximaRefinement.
   void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = viewpoint; }
   void setTargetViewpoint(const Viewpoint& viewpoint) { target_viewpoint_ = viewpoint; }
@@ -78,6 +85,7 @@ protected:
   using Base::transformation_;
   using Base::transformation_epsilon_;
   using Base::transformation_rotation_epsilon_;
+  using Base::tree_;
 
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 

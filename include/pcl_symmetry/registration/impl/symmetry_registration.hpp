@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcl/common/point_tests.h>
 #include <pcl/common/transforms.h>
 #include <pcl/impl/pcl_base.hpp>
 
@@ -45,6 +46,23 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::setNumberOfThreads(
   if (num_threads < 0)
     PCL_THROW_EXCEPTION(pcl::BadArgumentException, "num_threads = " << num_threads << ", must be >= 0");
   options_.num_threads = num_threads;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+double SymmetryRegistration<PointSource, PointTarget, Scalar>::getFitnessScore(double max_range) {
+  PointCloudSource moved;
+  pcl::transformPointCloud(*input_, moved, final_transformation_);
+  pcl::Indices closest(1);
+  std::vector<float> sq_distance(1);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const PointSource& point : moved) {
+    if (!pcl::isXYZFinite(point) || tree_->nearestKSearch(point, 1, closest, sq_distance) < 1) continue;
+    if (sq_distance[0] > max_range) continue;
+    sum += sq_distance[0];
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::max();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

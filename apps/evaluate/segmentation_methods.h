@@ -1,0 +1,23 @@
+/// What an evaluation of segmentations compares, by name.
+#pragma once
+
+#include <pcl/PolygonMesh.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pcl_symmetry::apps {
+
+/// Gives a segment to each face of a mesh.
+struct NamedSegmentation {
+  std::string name;
+  std::function<std::vector<int>(const pcl::PolygonMesh&)> segment;
+};
+
+/// Baselines and methods of the library. \param names "one", "k-means", "paper-1" to "paper-4" (by depth), "symmetry",
+/// "concavity" and "all" (merging, by evidence), "points" (the last on a cloud). \param num_threads 0 = all. \throws
+/// UsageError for an unknown name, with those that are known.
+std::vector<NamedSegmentation> segmentationMethods(const std::vector<std::string>& names, int num_threads);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,106 @@
+#include "pcl_symmetry/symmetry_segmentation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pcl/conversions.h>
+#include <pcl/point_types.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "error_message.h"
+#include "meshes.h"
+#include "pcl_symmetry/mesh_sampling.h"
+
+namespace pcl_symmetry {
+namespace {
+
+pcl::PolygonMesh::Ptr asPCL(const test::Mesh& mesh) {
+  pcl::PointCloud<pcl::PointXYZ> vertices;
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i)
+    vertices.emplace_back(mesh.vertices(0, i), mesh.vertices(1, i), mesh.vertices(2, i));
+  auto pcl_mesh = pcl::make_shared<pcl::PolygonMesh>();
+  pcl::toPCLPointCloud2(vertices, pcl_mesh->cloud);
+  for (const auto& polygon : mesh.polygons) {
+    pcl_mesh->polygons.emplace_back();
+    pcl_mesh->polygons.back().vertices.assign(polygon.begin(), polygon.end());
+  }
+  return pcl_mesh;
+}
+
+class SymmetrySegmentationTest : public testing::Test {
+protected:
+  const test::Mesh dumbbell_ = test::dumbbell();
+  const pcl::PolygonMesh::Ptr mesh_ = asPCL(dumbbell_);
+  SymmetrySegmentation<pcl::PointXYZ> segmentation_;
+  std::vector<pcl::PointIndices> segments_;
+};
+
+TEST_F(SymmetrySegmentationTest, EveryFaceOfAMeshIsInOneSegment) {
+  segmentation_.setInputMesh(mesh_);
+  segmentation_.setNumberOfParts(3);
+  segmentation_.segment(segments_);
+  ASSERT_EQ(segments_.size(), 3u);
+  ASSERT_EQ(segmentation_.getLabels().size(), mesh_->polygons.size());
+  std::size_t num_members = 0;
+  for (std::size_t s = 0; s < segments_.size(); ++s) {
+    num_members += segments_[s].indices.size();
+    for (const pcl::index_t i : segments_[s].indices) EXPECT_EQ(segmentation_.getLabels()[i], static_cast<int>(s));
+  }
+  EXPECT_EQ(num_members, mesh_->polygons.size());
+  EXPECT_FALSE(segmentation_.getTree().empty());
+}
+
+TEST_F(SymmetrySegmentationTest, CloudsHonourIndicesAndLeaveOutWhatIsNotFinite) {
+  const auto cloud = sampleMesh(*mesh_, 3000);
+  (*cloud)[7].x = std::numeric_limits<float>::quiet_NaN();
+  auto indices = pcl::make_shared<pcl::Indices>();
+  for (pcl::index_t i = 0; i < 2000; ++i) indices->push_back(i);
+  segmentation_.setInputCloud(cloud);
+  segmentation_.setIndices(indices);
+  segmentation_.setNumberOfParts(2);
+  segmentation_.segment(segments_);
+  ASSERT_EQ(segments_.size(), 2u);
+  ASSERT_EQ(segmentation_.getLabels().size(), cloud->size());
+  EXPECT_EQ(segmentation_.getLabels()[7], -1);
+  EXPECT_EQ(segmentation_.getLabels()[2500], -1);
+  EXPECT_EQ(segments_[0].indices.size() + segments_[1].indices.size(), 1999u);
+}
+
+TEST_F(SymmetrySegmentationTest, PointsThatWereNotDrawnFollowTheClosest) {
+  const auto cloud = sampleMesh(*mesh_, 6000);
+  segmentation_.setInputCloud(cloud);
+  segmentation_.setMaxPoints(2000);
+  segmentation_.setNumberOfParts(4);
+  segmentation_.segment(segments_);
+  EXPECT_EQ(segments_.size(), 4u);
+  EXPECT_TRUE(std::all_of(segmentation_.getLabels().begin(), segmentation_.getLabels().end(),
+                          [](int label) { return label >= 0; }));
+}
+
+TEST_F(SymmetrySegmentationTest, SaysWhyItGivesNothing) {
+  segments_.resize(3);
+  segmentation_.segment(segments_);
+  EXPECT_TRUE(segments_.empty()) << "no input";
+  segmentation_.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(5, 1, pcl::PointXYZ(1, 1, 1)));
+  segmentation_.segment(segments_);
+  EXPECT_TRUE(segments_.empty()) << "no extent";
+  segmentation_.setInputMesh(pcl::make_shared<pcl::PolygonMesh>());
+  segmentation_.segment(segments_);
+  EXPECT_TRUE(segments_.empty()) << "no faces";
+  EXPECT_TRUE(segmentation_.getLabels().empty());
+}
+
+TEST_F(SymmetrySegmentationTest, SettersNameFieldValueAndRule) {
+  EXPECT_THAT(test::messageOf([&] { segmentation_.setDepth(-1); }),
+              testing::HasSubstr("depth = -1, must be in [0, 30]"));
+  EXPECT_THAT(test::messageOf([&] { segmentation_.setNumberOfNeighbors(2); }),
+              testing::HasSubstr("num_neighbors = 2, must be >= 3"));
+  EXPECT_THAT(test::messageOf([&] { segmentation_.setMaxPoints(9); }),
+              testing::HasSubstr("max_points = 9, must be >= 10"));
+  EXPECT_THAT(test::messageOf([&] { segmentation_.setNumberOfParts(-2); }),
+              testing::HasSubstr("num_parts = -2, must be >= 0"));
+}
+
+}  // namespace
+}  // namespace pcl_symmetry
