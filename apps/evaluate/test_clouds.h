@@ -20,9 +20,9 @@ enum class Sweep { None, Noise, Points, Missing, Views };
 
 struct TestCloudOptions {
   Sweep sweep = Sweep::None;
-  int num_points = 10'000;                             ///< of a whole cloud, and wanted of a scan
-  std::vector<double> noise = {0.0, 0.01, 0.02};       ///< of whole clouds, standard deviation in diagonals
-  std::vector<double> scan_noise = {0.0};              ///< along the ray, in diagonals
+  int num_points = 10'000;                                        ///< of a whole cloud, and wanted of a scan
+  std::vector<double> noise = {0.0, 0.01, 0.02};                  ///< of whole clouds, standard deviation in diagonals
+  std::vector<double> scan_noise = {0.0};                         ///< along the ray, in diagonals
   std::vector<double> missing = {0.0, 0.05, 0.1, 0.2, 0.3, 0.5};  ///< shares of the points
   std::vector<double> point_counts = {500, 1000, 2000, 5000, 10'000, 30'000, 100'000};
   bool random_views = false;  ///< or else from the corners of a cube

@@ -39,7 +39,8 @@ std::vector<Eigen::Isometry3d> frameHypotheses(const SymmetryFrame& a, const Sym
     for (int turn = 0; turn < (turns ? kNumTurns : 1); ++turn) {
       Eigen::Matrix3d turned = rotation;
       if (turns)
-        turned *= Eigen::AngleAxisd(2.0 * M_PI * turn / kNumTurns, Eigen::Vector3d::Unit(a.revolution_axis)).toRotationMatrix();
+        turned *= Eigen::AngleAxisd(2.0 * M_PI * turn / kNumTurns, Eigen::Vector3d::Unit(a.revolution_axis))
+                      .toRotationMatrix();
       for (const Eigen::Isometry3d& T_canonical_a : a.equivalent)
         add(T_b_canonical * Eigen::Isometry3d(turned) * T_canonical_a);
     }

@@ -12,10 +12,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr float kNormalShare = 0.7f;      // of a point's support that hangs on its normal
-constexpr double kPointShare = 0.1;       // of a residual that is not across the surface: keeps poses from sliding away
-constexpr double kLeastJudged = 0.05;     // of the model's points: fewer that the scan can judge say little
-constexpr double kRoughShare = 0.15;      // of the spacing: rougher surfaces take normals from more neighbours
+constexpr float kNormalShare = 0.7f;   // of a point's support that hangs on its normal
+constexpr double kPointShare = 0.1;    // of a residual that is not across the surface: keeps poses from sliding away
+constexpr double kLeastJudged = 0.05;  // of the model's points: fewer that the scan can judge say little
+constexpr double kRoughShare = 0.15;   // of the spacing: rougher surfaces take normals from more neighbours
 constexpr int kNumRoughNeighbours = 32;
 constexpr double kSilhouetteShare = 0.5;  // of a pull towards the scan on points in free space
 

@@ -472,7 +472,7 @@ private:
   const PlaneProfiles profiles_;
   const SurfaceDirections directions_;
   const Eigen::Vector3d middle_;
-  const float reach_;           // radius in cells
+  const float reach_;  // radius in cells
   const PrincipalAxes principal_;
   const Eigen::Vector3f mass_;  // center of mass
 };

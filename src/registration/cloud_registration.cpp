@@ -16,10 +16,10 @@ namespace {
 
 using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
-constexpr int kRefinedPoints = 1000;  // of the scan
-constexpr int kJudgedPoints = 3000;   // of each cloud
-constexpr double kReach = 4.0;        // accuracies: how far ICP looks for its first pairs at least ...
-constexpr double kLeastReach = 0.08;  // ... and in radii
+constexpr int kRefinedPoints = 1000;        // of the scan
+constexpr int kJudgedPoints = 3000;         // of each cloud
+constexpr double kReach = 4.0;              // accuracies: how far ICP looks for its first pairs at least ...
+constexpr double kLeastReach = 0.08;        // ... and in radii
 constexpr double kLeastFinalWidth = 0.015;  // radii: of the last look, whose width is the accuracy
 constexpr double kHopeless = 0.2;           // of merit behind the best before the refinement
 
@@ -37,7 +37,8 @@ NormalCloud::Ptr cloudOf(const PosedSurface& surface, int max_points) {
 /// Point-to-plane ICP from several poses.
 class Refinement {
 public:
-  Refinement(const PosedSurface& scan, const PosedSurface& model, double reach, const CloudRegistrationOptions& options) {
+  Refinement(const PosedSurface& scan, const PosedSurface& model, double reach,
+             const CloudRegistrationOptions& options) {
     const auto target = cloudOf(model, static_cast<int>(model.order.size()));
     auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>();
     tree->setInputCloud(target);

@@ -21,12 +21,12 @@ protected:
   AlignTool() : ToolTest(ALIGN_TOOL) {}
 
   /// Two boxes, a seat and its back: one plane of symmetry, x = 0.
-  const std::string chair_ = folder_.write(
-      "chair.off",
-      "OFF\n16 12 0\n-1 -1 -0.2\n1 -1 -0.2\n1 1 -0.2\n-1 1 -0.2\n-1 -1 0.2\n1 -1 0.2\n1 1 0.2\n-1 1 0.2\n"
-      "-0.8 0.8 0.2\n0.8 0.8 0.2\n0.8 1 0.2\n-0.8 1 0.2\n-0.8 0.8 2\n0.8 0.8 2\n0.8 1 2\n-0.8 1 2\n"
-      "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n"
-      "4 11 10 9 8\n4 12 13 14 15\n4 8 9 13 12\n4 10 11 15 14\n4 9 10 14 13\n4 11 8 12 15\n");
+  const std::string chair_ =
+      folder_.write("chair.off",
+                    "OFF\n16 12 0\n-1 -1 -0.2\n1 -1 -0.2\n1 1 -0.2\n-1 1 -0.2\n-1 -1 0.2\n1 -1 0.2\n1 1 0.2\n-1 1 0.2\n"
+                    "-0.8 0.8 0.2\n0.8 0.8 0.2\n0.8 1 0.2\n-0.8 1 0.2\n-0.8 0.8 2\n0.8 0.8 2\n0.8 1 2\n-0.8 1 2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n"
+                    "4 11 10 9 8\n4 12 13 14 15\n4 8 9 13 12\n4 10 11 15 14\n4 9 10 14 13\n4 11 8 12 15\n");
   const std::string box_ =
       folder_.write("box.off",
                     "OFF\n8 6 12\n-1 -1.5 -2\n1 -1.5 -2\n1 1.5 -2\n-1 1.5 -2\n-1 -1.5 2\n1 -1.5 2\n1 1.5 2\n-1 1.5 2\n"
@@ -131,7 +131,8 @@ TEST_F(AlignTool, BringsAScanToItsModel) {
 TEST_F(AlignTool, SaysThatNothingFits) {
   Eigen::Isometry3d T_scan_model;
   const std::string scan = scanOfChair(T_scan_model);
-  EXPECT_EQ(run(scan + " " + (folder_ / "never.pcd") + " -quiet -target " + box_ + " -json " + (folder_ / "r.json")), 1);
+  EXPECT_EQ(run(scan + " " + (folder_ / "never.pcd") + " -quiet -target " + box_ + " -json " + (folder_ / "r.json")),
+            1);
   EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
   EXPECT_NE(error_.find("does not fit"), std::string::npos) << error_;
   EXPECT_EQ(report()["converged"], false);

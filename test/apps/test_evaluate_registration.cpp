@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "patches.h"
 #include "motion_error.h"
+#include "patches.h"
 #include "tool_run.h"
 
 namespace {
@@ -121,8 +121,8 @@ TEST_F(EvaluateRegistration, TellsHowOftenEachMethodIsRight) {
 }
 
 TEST_F(EvaluateRegistration, RunsOneMethodUnderHarderConditions) {
-  ASSERT_EQ(run((folder_ / ".") + " -points 2000 -num_views 1 -methods frames,rotations -noise 0.01 -missing 0.2 -quiet"),
-            0)
+  ASSERT_EQ(
+      run((folder_ / ".") + " -points 2000 -num_views 1 -methods frames,rotations -noise 0.01 -missing 0.2 -quiet"), 0)
       << error_;
   EXPECT_NE(output_.find("frames"), std::string::npos);
   EXPECT_NE(output_.find("rotations"), std::string::npos);

@@ -148,10 +148,10 @@ TEST_F(SymmetryRegistrationTest, BringsWholesTogetherInDoublesAndTurnsNormals) {
   ASSERT_TRUE(registration.hasConverged());
   const Eigen::Matrix4d error = registration.getFinalTransformation() * pose.matrix();
   EXPECT_LT(angleOf(error.cast<float>()), 1.0 * kDegree);
-  EXPECT_LT((aligned[0].getNormalVector3fMap() -
-             registration.getFinalTransformation().topLeftCorner<3, 1>().cast<float>())
-                .norm(),
-            1e-5);
+  EXPECT_LT(
+      (aligned[0].getNormalVector3fMap() - registration.getFinalTransformation().topLeftCorner<3, 1>().cast<float>())
+          .norm(),
+      1e-5);
 }
 
 TEST_F(SymmetryRegistrationTest, TakesTheGuessAndIndices) {

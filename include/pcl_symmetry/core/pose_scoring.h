@@ -28,8 +28,8 @@ struct PosedSurface {
 /// What two clouds say about a pose.
 struct PoseScore {
   double support = 0.0;  ///< share of the scan's points that lie on the model, in [0, 1]
-  /// Of the model's points that the scanner could judge, the share that lies where it saw that there is nothing; and the
-  /// share of the scan's points that lie where a scanner saw that nothing of the model is. In [0, 2].
+  /// Of the model's points that the scanner could judge, the share that lies where it saw that there is nothing; and
+  /// the share of the scan's points that lie where a scanner saw that nothing of the model is. In [0, 2].
   double conflict = 0.0;
 
   /// By which poses are compared. Conflict counts half: holes that a scanner leaves look like space it saw through.

@@ -8,12 +8,12 @@
 namespace pcl_symmetry {
 
 struct PoseSearchOptions {
-  int num_rotations = 1000;  ///< spread evenly over all rotations, tried beside the hypotheses, >= 0
-  int num_screened = 60;     ///< of all starts, best first, that are improved coarsely, >= 1
-  int num_refined = 20;      ///< of these, best first, that are improved finely, >= 1
-  int max_poses = 4;         ///< returned, >= 1
-  double coarse_width = 0.25;  ///< of the Gaussian in radii of the model, > 0, at the start ...
-  double fine_width = 0.05;    ///< ... and at the end, > 0
+  int num_rotations = 1000;     ///< spread evenly over all rotations, tried beside the hypotheses, >= 0
+  int num_screened = 60;        ///< of all starts, best first, that are improved coarsely, >= 1
+  int num_refined = 20;         ///< of these, best first, that are improved finely, >= 1
+  int max_poses = 4;            ///< returned, >= 1
+  double coarse_width = 0.25;   ///< of the Gaussian in radii of the model, > 0, at the start ...
+  double fine_width = 0.05;     ///< ... and at the end, > 0
   double merge_angle = 0.2;     ///< radians, >= 0: poses closer than this ...
   double merge_distance = 0.1;  ///< ... and this, in radii, are one, >= 0
   int num_threads = 0;          ///< >= 0; 0 = one per core

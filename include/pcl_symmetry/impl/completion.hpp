@@ -47,7 +47,7 @@ CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, 
 
 }  // namespace pcl_symmetry
 
-#define PCL_INSTANTIATE_completeBySymmetry(T)                                         \
-  template pcl_symmetry::CompletedCloud<T> pcl_symmetry::completeBySymmetry(          \
-      const pcl::PointCloud<T>&, const pcl_symmetry::ReflectionPlane&,                \
-      const pcl_symmetry::CompletionOptions&, const pcl_symmetry::Viewpoint&);
+#define PCL_INSTANTIATE_completeBySymmetry(T)                                                                  \
+  template pcl_symmetry::CompletedCloud<T> pcl_symmetry::completeBySymmetry(                                   \
+      const pcl::PointCloud<T>&, const pcl_symmetry::ReflectionPlane&, const pcl_symmetry::CompletionOptions&, \
+      const pcl_symmetry::Viewpoint&);

@@ -18,12 +18,12 @@ namespace pcl_symmetry {
 ///
 /// A pcl::Registration that needs no guess: align() where PCL's classes stand. Candidates are the poses that bring the
 /// symmetry frames of both clouds together in one of the ways that symmetry leaves open, the guess, and rotations
-/// spread evenly; they are judged by the points of the one cloud that lie on the other, and by the points that lie where
-/// the scanner saw that there is nothing; the best are refined by PCL's point-to-plane ICP.
+/// spread evenly; they are judged by the points of the one cloud that lie on the other, and by the points that lie
+/// where the scanner saw that there is nothing; the best are refined by PCL's point-to-plane ICP.
 ///
 /// Honours setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
-/// epsilons of the refinement. Points that are not finite are left out. Where nothing fits, hasConverged() is false, the
-/// transformation the identity, and the output the source as it was.
+/// epsilons of the refinement. Points that are not finite are left out. Where nothing fits, hasConverged() is false,
+/// the transformation the identity, and the output the source as it was.
 ///
 /// \code
 /// pcl_symmetry::SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
