@@ -34,6 +34,7 @@ CommandLine commandLine(ViewerOptions& options) {
       .vector("up", options.model.up, "about where up is, input frame (0,0,1)")
       .number("width", options.width, Range::closed(200, 8192), "of the window, pixels")
       .number("height", options.height, Range::closed(150, 8192), "of the window, pixels")
+      .number("parts", options.model.num_parts, Range::closed(0, 10'000), "for the key c; 0: as many as the shape has")
       .number("points", options.model.mesh_points, Range::closed(100, 10'000'000), "points spread over a mesh")
       .common(options.common, kAllCommonFlags & ~kJson);
   return line;

@@ -8,6 +8,7 @@
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "pcl_symmetry/symmetry_segmentation.h"
 
 namespace pcl_symmetry::apps {
 
@@ -98,6 +99,11 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
   model.views.setPlanes(model.planes, model.axes);
   model.views.setInputCloud(model.points);
   if (options.up) model.views.setUp(*options.up);
+  model.segmentation.num_parts = options.num_parts;
+  model.segmentation.seed = options.detection.seed;
+  model.segmentation.num_threads = options.detection.num_threads;
+  // Thickness and line of sight need an inside, which a scan from one side does not have.
+  if (refinement.usedViewpoint()) model.segmentation.merging.evidence = MergingEvidence::SymmetryAndConcavity;
   const auto counted = [](std::size_t number, const char* one, const char* many) {
     return std::to_string(number) + " " + (number == 1 ? one : many);
   };
@@ -106,6 +112,18 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
   if (!model.centers.empty()) model.summary += ", " + counted(model.centers.size(), "center", "centers");
   if (refinement.usedViewpoint()) model.summary += ", seen from one side";
   return model;
+}
+
+std::vector<int> findParts(const ViewerModel& model) {
+  SymmetrySegmentation<pcl::PointXYZ> segmentation;
+  segmentation.setOptions(model.segmentation);
+  if (model.mesh)
+    segmentation.setInputMesh(pcl::make_shared<pcl::PolygonMesh>(*model.mesh));
+  else
+    segmentation.setInputCloud(model.points);
+  std::vector<pcl::PointIndices> segments;
+  segmentation.segment(segments);
+  return segments.empty() ? std::vector<int>() : segmentation.getLabels();
 }
 
 }  // namespace pcl_symmetry::apps

@@ -11,6 +11,7 @@
 
 #include "options.h"
 #include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 #include "shape_input.h"
@@ -27,6 +28,7 @@ struct ViewerModel {
   std::vector<SymmetryAxis> axes;
   std::vector<SymmetryCenter> centers;
   ViewpointSelection views;
+  SegmentationOptions segmentation;
   std::string summary;  ///< one line
 };
 
@@ -35,9 +37,14 @@ struct ViewerModelOptions {
   Viewpoint viewpoint;
   std::optional<Eigen::Vector3d> up;  ///< input frame
   int mesh_points = 10'000;
+  int num_parts = 0;  ///< 0 = as many as the shape has
 };
 
 /// \throws pcl::BadArgumentException where the shape has no extent.
 ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& options);
+
+/// The segment of each polygon of the mesh, or of each point where there is none; empty where there is no surface to
+/// cut.
+std::vector<int> findParts(const ViewerModel& model);
 
 }  // namespace pcl_symmetry::apps

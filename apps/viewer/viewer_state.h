@@ -19,6 +19,7 @@ struct ViewerState {
   bool reflection = false;  ///< the cloud reflected, over itself
   bool axes = false;        ///< principal symmetry axes; axes of revolution and centers of spheres
   bool mesh = false;        ///< the mesh under the points
+  bool parts = false;       ///< segments, each in a colour of its own, in place of the support
   int step = -1;            ///< of Iterative Symmetric Points, from 0; -1 = not shown
   bool help = false;        ///< the list of keys
   CameraMove camera = CameraMove::Best;

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "isp_frames.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -121,6 +122,10 @@ public:
     if (!pressKey(state_, symbol)) return false;
     if (state_.step >= 0 && state_.step >= static_cast<int>(frames().size())) state_.step = -1;
     note_.clear();
+    if (state_.parts && parts().empty()) {
+      state_.parts = false;
+      note_ = "no surface to cut into parts";
+    }
     if (state_.save) {
       state_.save = false;
       const std::string path = name_ + "_" + std::to_string(++num_saved_) + ".png";
@@ -156,6 +161,11 @@ private:
     auto [at, is_new] = frames_.try_emplace(state_.plane);
     if (is_new) at->second = ispFrames(positions(), *plane());
     return at->second;
+  }
+
+  const std::vector<int>& parts() {
+    if (!parts_) parts_ = findParts(model_);
+    return *parts_;
   }
 
   Points positions() const {
@@ -198,20 +208,32 @@ private:
   }
 
   void drawShape() {
-    const bool with_support = state_.support && plane();
-    if (state_.mesh) {
-      PicturePanel colors;
-      colors.show_points = false;
-      if (with_support) colors.support = vertexSupport();
-      mesh_ = meshActor(*model_.mesh, colors, Normalization());
-      renderer_->AddActor(mesh_);
+    const bool with_support = state_.support && plane() && !state_.parts;
+    if (state_.mesh || (state_.parts && state_.has_mesh)) {
+      drawMesh(with_support);
     } else {
       const auto color = [&](std::size_t i) -> Eigen::Vector3d {
-        return (0.6 + 0.4 * brightness_[i]) * (with_support ? cividis(plane()->point_support[i]) : kPlain);
+        const Eigen::Vector3d base = state_.parts   ? segmentColor(parts()[i])
+                                     : with_support ? cividis(plane()->point_support[i])
+                                                    : kPlain;
+        return (0.6 + 0.4 * brightness_[i]) * base;
       };
       addCloud(colored(*model_.points, color), "points", pointSize());
     }
-    if (!plane()) return;
+    if (plane()) drawPlane(with_support);
+  }
+
+  void drawMesh(bool with_support) {
+    PicturePanel colors;
+    colors.show_points = false;
+    if (state_.parts) colors.segments = parts();
+    if (with_support) colors.support = vertexSupport();
+    mesh_ = meshActor(*model_.mesh, colors, Normalization());
+    renderer_->AddActor(mesh_);
+  }
+
+  /// The current plane, and the points reflected in it.
+  void drawPlane(bool with_support) {
     if (state_.reflection) {
       Points reflected = positions();
       for (Eigen::Index i = 0; i < reflected.cols(); ++i)
@@ -318,6 +340,10 @@ private:
       title += "\n" + model_.labels[state_.plane];
       if (state_.reflection) title += "\norange: reflected points";
     }
+    if (state_.step < 0 && state_.parts) {
+      const int num_parts = *std::max_element(parts().begin(), parts().end()) + 1;
+      title += "\n" + std::to_string(num_parts) + (num_parts == 1 ? " part" : " parts, each in a colour of its own");
+    }
     if (state_.axes) title += "\norange, green, blue: first, second, third principal symmetry axis";
     if (state_.axes && !model_.axes.empty()) title += "\nblack: axis of revolution";
     if (state_.axes && !model_.centers.empty()) title += "\nblack: every plane through their crossing is a symmetry";
@@ -373,6 +399,7 @@ private:
   std::vector<double> brightness_;  // of the points, lit from the best view
   std::string note_;
   int num_saved_ = 0;
+  std::optional<std::vector<int>> parts_;  // cut when they are first asked for
   std::vector<int> closest_to_vertices_;
   std::map<int, std::vector<IspFrame>> frames_;  // of the planes that were refined
   vtkNew<vtkRenderer> renderer_;

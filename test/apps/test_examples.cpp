@@ -58,6 +58,12 @@ TEST_F(Example, Registration) {
   EXPECT_NE(output_.find("merit"), std::string::npos) << output_;
 }
 
+TEST_F(Example, Segmentation) {
+  ASSERT_EQ(run("07_segmentation " + (folder_ / "box.pcd") + " " + (folder_ / "parts.pcd")), 0) << error_;
+  EXPECT_NE(output_.find("part 0: "), std::string::npos) << output_;
+  EXPECT_NE(contentOf(folder_ / "parts.pcd").find("FIELDS x y z label"), std::string::npos);
+}
+
 TEST_F(Example, OwnSearchAndPointType) {
   ASSERT_EQ(runOn("08_own_search_and_point_type", "box.pcd"), 0) << error_;
   EXPECT_EQ(numLinesWith(output_, "confidence"), 3) << output_;
@@ -65,7 +71,7 @@ TEST_F(Example, OwnSearchAndPointType) {
 
 TEST_F(Example, SaysHowItIsUsed) {
   for (const std::string example : {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration",
-                                    "08_own_search_and_point_type"}) {
+                                    "07_segmentation", "08_own_search_and_point_type"}) {
     EXPECT_EQ(run(example), 2);
     EXPECT_NE(error_.find("usage: " + example), std::string::npos);
   }

@@ -44,6 +44,7 @@ TEST(ViewerKeys, DoWhatTheHelpSays) {
   toggles("o", &ViewerState::reflection);
   toggles("a", &ViewerState::axes);
   toggles("m", &ViewerState::mesh);
+  toggles("c", &ViewerState::parts);
   toggles("h", &ViewerState::help);
   pressKey(state, "i");
   pressKey(state, "i");
@@ -124,6 +125,20 @@ TEST(ViewerModel, IsOfUnitSizeAboutTheOriginWithItsPlanes) {
   EXPECT_NEAR(farthest, 1.0f, 0.02f);
 }
 
+TEST(ViewerModel, IsCutIntoPartsOfTheMeshOrOfTheCloud) {
+  ViewerModelOptions options;
+  options.num_parts = 2;
+  Shape shape = shapeFromMesh(boxMesh({2.0f, 3.0f, 4.0f}, Eigen::Vector3f::Zero()));
+  ViewerModel model = makeViewerModel(shape, options);
+  EXPECT_EQ(findParts(model).size(), model.mesh->polygons.size());
+  shape.points = model.points;
+  shape.mesh.reset();
+  model = makeViewerModel(shape, options);
+  const std::vector<int> parts = findParts(model);
+  EXPECT_EQ(parts.size(), model.points->size());
+  EXPECT_EQ(std::set<int>(parts.begin(), parts.end()), (std::set<int>{0, 1}));
+}
+
 class ViewerTool : public ToolTest {
 protected:
   ViewerTool() : ToolTest("env -u DISPLAY " VIEWER_TOOL) {}
@@ -139,12 +154,14 @@ TEST_F(ViewerTool, MakesPicturesWithoutAScreen) {
   ASSERT_EQ(run(common + (folder_ / "a.png")), 0) << error_;
   ASSERT_EQ(run(common + (folder_ / "b.png") + " -keys n,o,h"), 0) << error_;
   ASSERT_EQ(run(common + (folder_ / "c.png") + " -keys i,i"), 0) << error_;
+  ASSERT_EQ(run(common + (folder_ / "d.png") + " -keys c -parts 2"), 0) << error_;
   const RasterImage a = readImage(folder_ / "a.png"), b = readImage(folder_ / "b.png"),
-                    c = readImage(folder_ / "c.png");
+                    c = readImage(folder_ / "c.png"), d = readImage(folder_ / "d.png");
   EXPECT_EQ(a.width, 320);
   EXPECT_EQ(a.height, 240);
   EXPECT_NE(a.pixels, b.pixels);
   EXPECT_NE(a.pixels, c.pixels);
+  EXPECT_NE(a.pixels, d.pixels);
 }
 
 TEST_F(ViewerTool, SaysWhyThereIsNoWindow) {
