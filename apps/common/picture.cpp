@@ -227,6 +227,12 @@ Eigen::Vector3d cividis(double value) {
   return (1 - weight) * color(anchors[lower]) + weight * color(anchors[lower + 1]);
 }
 
+void standUpright(PictureScene& scene, const Eigen::Vector3d& up) {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  scene.view = turn * scene.view;
+  scene.up = up;
+}
+
 void renderPicture(const PictureScene& scene, const std::string& path, int width, int height) {
   renderPicture(std::vector<PictureScene>{scene}, path, width, height, scene.num_columns);
 }

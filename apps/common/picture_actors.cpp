@@ -21,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace pcl_symmetry::apps {
 
@@ -40,6 +41,20 @@ std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eige
   const Eigen::Vector3d u = normal.cross(v);
   const double h = plane.half_size;
   return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
+}
+
+/// How far the points reach along the axis to either side of its point, and a tenth more.
+std::pair<double, double> reachAlong(const AxisLine& axis, const PictureScene& scene) {
+  const Eigen::Vector3d direction = axis.direction.normalized();
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const pcl::PointXYZ& point : *scene.points) {
+    if (!pcl::isXYZFinite(point)) continue;
+    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
+    low = std::min(low, along);
+    high = std::max(high, along);
+  }
+  const double margin = 0.1 * (high - low);
+  return {low - margin, high + margin};
 }
 
 void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
@@ -196,17 +211,11 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PictureP
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width) {
   const Eigen::Vector3d direction = axis.direction.normalized();
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const pcl::PointXYZ& point : *scene.points) {
-    if (!pcl::isXYZFinite(point)) continue;
-    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
-    low = std::min(low, along);
-    high = std::max(high, along);
-  }
-  const double margin = 0.1 * (high - low);
+  const bool is_short = axis.half_length > 0.0;
+  const auto [low, high] = is_short ? std::pair(-axis.half_length, axis.half_length) : reachAlong(axis, scene);
   vtkNew<vtkPoints> points;
-  points->InsertNextPoint(normalize(axis.point + (low - margin) * direction).data());
-  points->InsertNextPoint(normalize(axis.point + (high + margin) * direction).data());
+  points->InsertNextPoint(normalize(axis.point + low * direction).data());
+  points->InsertNextPoint(normalize(axis.point + high * direction).data());
   const vtkIdType ends[] = {0, 1};
   vtkNew<vtkCellArray> line;
   line->InsertNextCell(2, ends);
@@ -215,6 +224,11 @@ void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& sc
   data->SetLines(line);
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
+  if (is_short) {
+    constexpr double kInFront = -66'000.0;  // steps of the depth buffer
+    mapper->SetResolveCoincidentTopologyToPolygonOffset();
+    mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, kInFront);
+  }
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
   actor->GetProperty()->SetColor(axis.color.x(), axis.color.y(), axis.color.z());

@@ -38,7 +38,7 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
 vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
                                     const Normalization& normalize);
 
-/// As long as the points reach along it, and a tenth more. \param line_width pixels.
+/// As long as the points reach along it, and a tenth more, unless it has a length of its own. \param line_width pixels.
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width);
 
