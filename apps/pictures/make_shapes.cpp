@@ -52,6 +52,28 @@ pcl::PolygonMesh car() {
   return surfaceOf(joined(parts, 0.04), AlignedBox3d(Vector3d(-2.3, -1.1, -0.1), Vector3d(2.3, 1.1, 1.6)), 130);
 }
 
+pcl::PolygonMesh airplane() {
+  // Wings: tubes pressed flat.
+  const auto wing = [](const Vector3d& root, const Vector3d& tip, double from, double to) -> Solid {
+    constexpr double kFlat = 5.0;
+    const Solid round = tube({root, root, tip, tip}, from, to);
+    return [=](const Vector3d& x) { return round({x.x(), x.y(), kFlat * x.z()}) / kFlat; };
+  };
+  std::vector<Solid> parts{tube({Vector3d(1.7, 0, 0), {0.8, 0, 0}, {-1.0, 0, 0}, {-2.1, 0, 0.12}}, 0.27, 0.12),
+                           ellipsoid({1.7, 0, 0}, {0.5, 0.27, 0.27}),
+                           tube({Vector3d(-1.9, 0, 0.1), {-2.0, 0, 0.3}, {-2.1, 0, 0.5}, {-2.3, 0, 0.75}}, 0.12, 0.08)};
+  for (const double side : {-1.0, 1.0}) {
+    parts.push_back(wing({0.25, 0.2 * side, -0.3}, {-0.65, 2.1 * side, 0.3}, 0.42, 0.2));
+    parts.push_back(wing({-1.9, 0.1 * side, 0.6}, {-2.25, 0.8 * side, 0.7}, 0.22, 0.12));
+    parts.push_back(tube({Vector3d(0.4, 0.75 * side, -0.2),
+                          {0.3, 0.75 * side, -0.2},
+                          {0.0, 0.75 * side, -0.2},
+                          {-0.15, 0.75 * side, -0.2}},
+                         0.13, 0.1));
+  }
+  return surfaceOf(joined(parts, 0.05), AlignedBox3d(Vector3d(-2.6, -2.5, -0.6), Vector3d(2.4, 2.5, 1.0)), 150);
+}
+
 AlignedBox3d bounds(double x, double y, double z, double dx, double dy, double dz) {
   return {Vector3d(x, y, z), Vector3d(x + dx, y + dy, z + dz)};
 }
@@ -93,9 +115,9 @@ int run(int argc, char** argv) {
   if (argc != 2 || argv[1][0] == '-') throw UsageError("usage: make_shapes FOLDER");
   const boost::filesystem::path folder(argv[1]);
   boost::filesystem::create_directories(folder);
-  const std::pair<const char*, pcl::PolygonMesh> shapes[] = {{"teapot", teapot()},   {"octopus", octopus()},
-                                                             {"mug", mug(0.9, 0.9)}, {"car", car()},
-                                                             {"chair", chair()},     {"carton", carton()}};
+  const std::pair<const char*, pcl::PolygonMesh> shapes[] = {
+      {"teapot", teapot()},     {"octopus", octopus()}, {"mug", mug(0.9, 0.9)}, {"car", car()},
+      {"airplane", airplane()}, {"chair", chair()},     {"carton", carton()}};
   for (const auto& [name, mesh] : shapes) {
     const std::string path = (folder / (std::string(name) + ".ply")).string();
     if (pcl::io::savePLYFileBinary(path, mesh) < 0) throw InputError(path + ": cannot be written");

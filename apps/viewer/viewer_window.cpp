@@ -128,6 +128,7 @@ public:
     }
     if (state_.save) {
       state_.save = false;
+      draw();  // without the note of the picture before
       const std::string path = name_ + "_" + std::to_string(++num_saved_) + ".png";
       save(path);
       note_ = "saved " + path;
