@@ -40,34 +40,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 demo=build/demo
 mkdir -p "$demo"
 
-download_package() {
-  local options=(-q)
-  ((EUID != 0)) || options+=(-o APT::Sandbox::User=root)
-  if ! (cd "$1" && apt-get "${options[@]}" download libcgal-demo); then
-    echo "No package lists yet, reading them"
-    if ((EUID == 0)); then apt-get -q update; elif [[ -t 0 ]]; then sudo apt-get -q update; else sudo -n apt-get -q update; fi
-    (cd "$1" && apt-get "${options[@]}" download libcgal-demo)
-  fi
-}
-
-# The models appear whole or not at all; the package that holds them is unpacked, never installed.
-fetch_models() {
-  local package=$demo/package
-  rm -rf "$package"
-  mkdir "$package"
-  download_package "$package" || fail "the Debian package libcgal-demo, which holds the models, could not be fetched"
-  dpkg -x "$package"/*.deb "$package/files"
-  local archive
-  archive=$(find "$package/files/usr/share/doc" -name 'data.tar.gz' | head -n 1)
-  [[ -n $archive ]] || fail "the package libcgal-demo has no data.tar.gz"
-  local model
-  for model in cow bull; do
-    tar -xzOf "$archive" "data/meshes/$model.off" >"$demo/$model.off.part"
-    mv "$demo/$model.off.part" "$demo/$model.off"
-  done
-  rm -rf "$package"
-}
-
 # find_planes INPUT NAME [FLAG ...]: a table here, NAME_planes.json and NAME_planes.png in the demo folder.
 find_planes() {
   say "Symmetry planes of $1"
@@ -93,10 +65,8 @@ if [[ -n $file ]]; then
   exit
 fi
 
-if [[ ! -s $demo/cow.off || ! -s $demo/bull.off ]]; then
-  say "Fetching a cow and a bull (Debian package libcgal-demo)"
-  fetch_models
-fi
+say "Fetching a cow and a bull (Debian package libcgal-demo)"
+bash apps/fetch_meshes.sh "$demo" cow bull
 say "Scanning the cow from one side"
 build/apps/pcl_symmetry_scan "$demo/cow.off" "$demo/cow_scan.pcd"
 find_planes "$demo/cow_scan.pcd" cow_scan

@@ -1,5 +1,5 @@
 /// Symmetry planes of a cloud or mesh: a table, JSON, the support of every point, a picture.
-#include <pcl/common/io.h>
+#include <pcl/conversions.h>
 
 #include <boost/filesystem/path.hpp>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cloud_fields.h"
 #include "console.h"
 #include "options.h"
 #include "pcl_symmetry/mesh_sampling.h"
@@ -138,33 +139,6 @@ nlohmann::json describe(const PlanesOptions& options, const Findings& findings, 
   return json;
 }
 
-/// The input with the fields that it had, and one more for each plane.
-pcl::PCLPointCloud2 withSupport(const pcl::PCLPointCloud2& input, const std::vector<std::vector<float>>& support) {
-  pcl::PCLPointCloud2 extra;
-  extra.width = input.width;
-  extra.height = input.height;
-  extra.is_dense = input.is_dense;
-  extra.is_bigendian = input.is_bigendian;
-  for (std::size_t k = 0; k < support.size(); ++k) {
-    pcl::PCLPointField field;
-    field.name = "support_" + std::to_string(k + 1);
-    field.offset = static_cast<std::uint32_t>(k * sizeof(float));
-    field.datatype = pcl::PCLPointField::FLOAT32;
-    field.count = 1;
-    extra.fields.push_back(field);
-  }
-  extra.point_step = static_cast<std::uint32_t>(support.size() * sizeof(float));
-  extra.row_step = extra.point_step * extra.width;
-  extra.data.resize(static_cast<std::size_t>(extra.row_step) * extra.height);
-  for (std::size_t k = 0; k < support.size(); ++k)
-    for (std::size_t i = 0; i < support[k].size(); ++i)
-      std::memcpy(&extra.data[i * extra.point_step + k * sizeof(float)], &support[k][i], sizeof(float));
-  pcl::PCLPointCloud2 output;
-  if (support.empty()) return input;
-  if (!pcl::concatenateFields(input, extra, output)) throw InputError("support: fields could not be joined");
-  return output;
-}
-
 PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const Findings& findings,
                        const std::vector<std::vector<float>>& support) {
   PictureScene scene;
@@ -271,7 +245,9 @@ int run(int argc, char** argv) {
   if (options.support_path) {
     pcl::PCLPointCloud2 base = shape.cloud;
     if (from_mesh) pcl::toPCLPointCloud2(*cloud, base);
-    saveCloud(*options.support_path, withSupport(base, support), shape.sensor_origin, shape.sensor_orientation);
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < support.size(); ++k) names.push_back("support_" + std::to_string(k + 1));
+    saveCloud(*options.support_path, withFields(base, names, support), shape.sensor_origin, shape.sensor_orientation);
   }
   if (options.png_path) {
     Step drawing(console, "Drawing " + *options.png_path);

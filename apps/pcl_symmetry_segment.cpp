@@ -25,8 +25,9 @@ using namespace pcl_symmetry::apps;
 struct SegmentOptions {
   std::string input;
   std::optional<std::string> output, png_path;
+  std::optional<Eigen::Vector3d> up;
   std::string method = "merging", evidence = "all";
-  int depth = SplittingOptions().depth, num_parts = 0;
+  int depth = SplittingOptions().depth, num_parts = 0, size = 800;
   double concavity = 0.0;
   CommonOptions common;
 };
@@ -40,6 +41,8 @@ CommandLine commandLine(SegmentOptions& o) {
           ".pcd or .ply: points with their segment in the field label; .ply of a mesh: with its faces coloured; "
           ".seg: the segment of each face, one a line")
       .text("png", "FILE", o.png_path, "picture: parts in colours")
+      .vector("up", o.up, "where up is in the picture, input frame (0,0,1)")
+      .number("size", o.size, Range::closed(16, 4096), "edge of the picture, pixels")
       .choice("method", o.method, {"merging", "splitting"},
               "merging: small patches grow to parts; splitting: as in the paper, by support for symmetry planes")
       .choice("evidence", o.evidence, {"all", "concavity", "symmetry"},
@@ -69,6 +72,7 @@ void checkOutput(const SegmentOptions& o, const CommandLine& line) {
   if (o.method == "merging" && (line.given("depth") || line.given("concavity")))
     throw UsageError("-depth and -concavity need -method splitting");
   if (o.method == "splitting" && line.given("evidence")) throw UsageError("-evidence needs -method merging");
+  if (o.up && o.up->norm() == 0.0) throw UsageError("-up = 0,0,0, must not be zero");
   if (!o.output) return;
   const std::string extension =
       boost::algorithm::to_lower_copy(boost::filesystem::path(*o.output).extension().string());
@@ -99,14 +103,15 @@ nlohmann::json describe(const SegmentOptions& o, const Shape& shape, const std::
   return json;
 }
 
-void drawParts(const Shape& shape, const std::vector<int>& labels, const std::string& path) {
+void drawParts(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels) {
   PictureScene scene;
   scene.points = shape.points;
   scene.mesh = shape.mesh;
   PicturePanel panel;
   panel.segments = labels;
   scene.panels = {panel};
-  renderPicture(scene, path, 900, 800);
+  if (o.up) standUpright(scene, *o.up);
+  renderPicture(scene, *o.png_path, o.size, o.size);
 }
 
 int run(int argc, char** argv) {
@@ -144,7 +149,7 @@ int run(int argc, char** argv) {
               describe(options, shape, segments, segmentation.getTree(), segmentation.getImages(), ms).dump(2) + "\n");
   if (options.png_path) {
     Step drawing(console, "Drawing " + *options.png_path);
-    drawParts(shape, labels, *options.png_path);
+    drawParts(options, shape, labels);
     drawing.done();
   }
   return 0;

@@ -79,6 +79,34 @@ void movePoints(pcl::PCLPointCloud2& cloud, const Eigen::Affine3d& map, std::siz
         [&](const Eigen::Vector3d& n) { return Eigen::Vector3d(map.linear() * n); });
 }
 
+pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<std::string>& names,
+                               const std::vector<std::vector<float>>& values) {
+  if (names.empty()) return cloud;
+  pcl::PCLPointCloud2 extra;
+  extra.width = cloud.width;
+  extra.height = cloud.height;
+  extra.is_dense = cloud.is_dense;
+  extra.is_bigendian = cloud.is_bigendian;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (pcl::getFieldIndex(cloud, names[k]) >= 0) throw InputError(names[k] + ": the cloud has a field of that name");
+    pcl::PCLPointField field;
+    field.name = names[k];
+    field.offset = static_cast<std::uint32_t>(k * sizeof(float));
+    field.datatype = pcl::PCLPointField::FLOAT32;
+    field.count = 1;
+    extra.fields.push_back(field);
+  }
+  extra.point_step = static_cast<std::uint32_t>(names.size() * sizeof(float));
+  extra.row_step = extra.point_step * extra.width;
+  extra.data.resize(sizeOf(extra) * extra.point_step);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    for (std::size_t i = 0; i < sizeOf(extra); ++i)
+      std::memcpy(extra.data.data() + i * extra.point_step + k * sizeof(float), &values[k][i], sizeof(float));
+  pcl::PCLPointCloud2 output;
+  if (!pcl::concatenateFields(cloud, extra, output)) throw InputError(names[0] + ": field could not be added");
+  return output;
+}
+
 pcl::PCLPointCloud2 appendCopies(const pcl::PCLPointCloud2& cloud, const pcl::Indices& points,
                                  const std::string& field_name) {
   pcl::PCLPointCloud2 longer = cloud;

@@ -15,6 +15,11 @@ namespace pcl_symmetry::apps {
 /// linear part. Other fields stay. \param map keeps distances: a rigid motion or a reflection.
 void movePoints(pcl::PCLPointCloud2& cloud, const Eigen::Affine3d& map, std::size_t first = 0);
 
+/// One more field of type float for each name, after those that the cloud has.
+/// \param values for each name one value per point. \throws InputError where a name is taken.
+pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<std::string>& names,
+                               const std::vector<std::vector<float>>& values);
+
 /// Appends copies of the named points; the result is not organized. One more field of type int32 tells of each copy the
 /// index of the point that it was made of, and is -1 for all others.
 pcl::PCLPointCloud2 appendCopies(const pcl::PCLPointCloud2& cloud, const pcl::Indices& points,

@@ -184,8 +184,8 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGr
     renderer->SetUseDepthPeeling(true);
     renderer->SetMaximumNumberOfPeels(16);
     renderer->SetOcclusionRatio(0.0);
-    if (scene.mesh) renderer->AddActor(meshActor(*scene.mesh, panel.segments, normalize));
-    if (!scene.mesh || panel.segments.empty())
+    if (scene.mesh) renderer->AddActor(meshActor(*scene.mesh, panel, normalize));
+    if (panel.show_points && (!scene.mesh || panel.segments.empty()))
       renderer->AddActor(cloudActor(scene, panel, normalize, brightness, panel_pixels));
     for (const AxisLine& axis : panel.axes) addAxis(*renderer, axis, scene, normalize, panel_pixels / 120);
     for (const PlanePatch& plane : panel.planes) addPlane(*renderer, plane, scene, normalize, panel_pixels / 250);
@@ -225,6 +225,12 @@ Eigen::Vector3d cividis(double value) {
   const std::size_t lower = std::min(static_cast<std::size_t>(position), anchors.size() - 2);
   const double weight = position - static_cast<double>(lower);
   return (1 - weight) * color(anchors[lower]) + weight * color(anchors[lower + 1]);
+}
+
+void standUpright(PictureScene& scene, const Eigen::Vector3d& up) {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  scene.view = turn * scene.view;
+  scene.up = up;
 }
 
 void renderPicture(const PictureScene& scene, const std::string& path, int width, int height) {

@@ -23,11 +23,12 @@ struct PlanePatch {
   Eigen::Vector3d color = {0.90, 0.62, 0.0};  ///< red, green, blue in [0, 1]
 };
 
-/// A straight line through the whole scene.
+/// A straight line through the whole scene, or about a point.
 struct AxisLine {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
   Eigen::Vector3d color = {0.84, 0.37, 0.0};  ///< red, green, blue in [0, 1]
+  double half_length = 0;  ///< to both sides of the point, input units, and in front of all; 0 = through the scene
 };
 
 /// One view among several in a picture.
@@ -39,6 +40,7 @@ struct PicturePanel {
   /// One number per polygon of the mesh, or per point where there is no mesh, each in a colour of its own (below 0:
   /// grey); the points of the mesh are then not drawn. Empty for one plain colour.
   std::vector<int> segments = {};
+  bool show_points = true;  ///< false: the mesh alone; it takes the colours where its vertices are the points
 };
 
 /// What a picture shows: the same shape in every panel.
@@ -51,6 +53,9 @@ struct PictureScene {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   bool show_color_bar = true;  ///< legend of the support, in panels that have support
 };
+
+/// Turns the view so that \p up is to it what z was; any length but zero.
+void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 
 /// Eight colours that remain apart for colour-blind eyes (Okabe and Ito), repeated from the start when they run out.
 Eigen::Vector3d distinctColor(std::size_t index);

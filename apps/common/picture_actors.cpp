@@ -21,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace pcl_symmetry::apps {
 
@@ -29,10 +30,39 @@ namespace {
 constexpr std::size_t kMaxShadedPoints = 200000;  ///< more points shade themselves by their density
 const Eigen::Vector3d kPlainColor(0.30, 0.38, 0.52);
 
+/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
+std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
+  const double length = plane.normal.norm();
+  const Eigen::Vector3d normal = plane.normal / length;
+  const Eigen::Vector3d center = plane.center - (normal.dot(plane.center) - plane.offset / length) * normal;
+  Eigen::Vector3d v = up.normalized() - normal.dot(up.normalized()) * normal;
+  if (v.norm() < 0.1) v = normal.unitOrthogonal();
+  v.normalize();
+  const Eigen::Vector3d u = normal.cross(v);
+  const double h = plane.half_size;
+  return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
+}
+
+/// How far the points reach along the axis to either side of its point, and a tenth more.
+std::pair<double, double> reachAlong(const AxisLine& axis, const PictureScene& scene) {
+  const Eigen::Vector3d direction = axis.direction.normalized();
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const pcl::PointXYZ& point : *scene.points) {
+    if (!pcl::isXYZFinite(point)) continue;
+    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
+    low = std::min(low, along);
+    high = std::max(high, along);
+  }
+  const double margin = 0.1 * (high - low);
+  return {low - margin, high + margin};
+}
+
 void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
   for (int k = 0; k < 3; ++k)
     colors.InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
 }
+
+}  // namespace
 
 /// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
 std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
@@ -60,21 +90,6 @@ std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl:
   return {corner(box.min().x(), box.min().y()), corner(box.max().x(), box.min().y()),
           corner(box.max().x(), box.max().y()), corner(box.min().x(), box.max().y())};
 }
-
-/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
-std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
-  const double length = plane.normal.norm();
-  const Eigen::Vector3d normal = plane.normal / length;
-  const Eigen::Vector3d center = plane.center - (normal.dot(plane.center) - plane.offset / length) * normal;
-  Eigen::Vector3d v = up.normalized() - normal.dot(up.normalized()) * normal;
-  if (v.norm() < 0.1) v = normal.unitOrthogonal();
-  v.normalize();
-  const Eigen::Vector3d u = normal.cross(v);
-  const double h = plane.half_size;
-  return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
-}
-
-}  // namespace
 
 Normalization normalizationOf(const PictureScene& scene) {
   Eigen::AlignedBox3d box;
@@ -147,7 +162,7 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
   return actor;
 }
 
-vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const std::vector<int>& segments,
+vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
                                     const Normalization& normalize) {
   pcl::PointCloud<pcl::PointXYZ> vertices;
   pcl::fromPCLPointCloud2(mesh.cloud, vertices);
@@ -167,12 +182,19 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const std::vec
     if (!drawable) continue;
     cells->InsertNextCell(static_cast<vtkIdType>(polygon.vertices.size()));
     for (const pcl::index_t corner : polygon.vertices) cells->InsertCellPoint(corner);
-    if (!segments.empty()) addColor(*colors, segmentColor(segments[f]));
+    if (!panel.segments.empty()) addColor(*colors, segmentColor(panel.segments[f]));
   }
   vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   data->SetPolys(cells);
-  if (!segments.empty()) data->GetCellData()->SetScalars(colors);
+  if (!panel.segments.empty()) data->GetCellData()->SetScalars(colors);
+  const bool colored = !panel.show_points && panel.support.size() == vertices.size();
+  if (colored) {
+    vtkNew<vtkUnsignedCharArray> shades;
+    shades->SetNumberOfComponents(3);
+    for (const double value : panel.support) addColor(*shades, cividis(value));
+    data->GetPointData()->SetScalars(shades);
+  }
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
   mapper->SetResolveCoincidentTopologyToPolygonOffset();
@@ -182,24 +204,18 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const std::vec
   actor->GetProperty()->SetColor(0.86, 0.86, 0.88);
   actor->GetProperty()->SetAmbient(0.25);
   actor->GetProperty()->SetDiffuse(0.75);
-  actor->GetProperty()->SetInterpolationToFlat();
+  if (!colored) actor->GetProperty()->SetInterpolationToFlat();
   return actor;
 }
 
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width) {
   const Eigen::Vector3d direction = axis.direction.normalized();
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const pcl::PointXYZ& point : *scene.points) {
-    if (!pcl::isXYZFinite(point)) continue;
-    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
-    low = std::min(low, along);
-    high = std::max(high, along);
-  }
-  const double margin = 0.1 * (high - low);
+  const bool is_short = axis.half_length > 0.0;
+  const auto [low, high] = is_short ? std::pair(-axis.half_length, axis.half_length) : reachAlong(axis, scene);
   vtkNew<vtkPoints> points;
-  points->InsertNextPoint(normalize(axis.point + (low - margin) * direction).data());
-  points->InsertNextPoint(normalize(axis.point + (high + margin) * direction).data());
+  points->InsertNextPoint(normalize(axis.point + low * direction).data());
+  points->InsertNextPoint(normalize(axis.point + high * direction).data());
   const vtkIdType ends[] = {0, 1};
   vtkNew<vtkCellArray> line;
   line->InsertNextCell(2, ends);
@@ -208,6 +224,11 @@ void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& sc
   data->SetLines(line);
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
+  if (is_short) {
+    constexpr double kInFront = -66'000.0;  // steps of the depth buffer
+    mapper->SetResolveCoincidentTopologyToPolygonOffset();
+    mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, kInFront);
+  }
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
   actor->GetProperty()->SetColor(axis.color.x(), axis.color.y(), axis.color.z());

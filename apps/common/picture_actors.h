@@ -7,6 +7,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkTextActor.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -32,13 +33,17 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
                                      const Normalization& normalize, const std::vector<double>& brightness,
                                      double panel_pixels);
 
-/// \param segments of the polygons, in the colours of PicturePanel::segments; empty for light grey.
-vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const std::vector<int>& segments,
+/// Light grey; in the colours of PicturePanel::segments of its polygons, or of the panel's support where it shows no
+/// points and has one value per vertex.
+vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
                                     const Normalization& normalize);
 
-/// As long as the points reach along it, and a tenth more. \param line_width pixels.
+/// As long as the points reach along it, and a tenth more, unless it has a length of its own. \param line_width pixels.
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width);
+
+/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
+std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points);
 
 /// The patch with its outline. \param line_width pixels.
 void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,

@@ -90,6 +90,10 @@ private:
 
 }  // namespace
 
+bool hasDisplay() {
+  return canDraw(std::getenv("DISPLAY"));
+}
+
 PrivateDisplay::PrivateDisplay() {
   const char* display = std::getenv("DISPLAY");
   if (canDraw(display)) return;

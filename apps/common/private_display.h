@@ -9,6 +9,9 @@
 
 namespace pcl_symmetry::apps {
 
+/// \return whether DISPLAY names a server that can draw with OpenGL.
+bool hasDisplay();
+
 /// While it lives, DISPLAY names a server that can draw with OpenGL. If there is none, an Xvfb is started; it ends with
 /// this object, and with the program however that ends.
 class PrivateDisplay {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "mug_mesh.h"
 #include "options.h"
 #include "parametric_mesh.h"
 #include "pcl_symmetry/core/principal_axes.h"
@@ -20,20 +21,6 @@ using namespace pcl_symmetry::apps;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 constexpr int kNumPoints = 10'000;
-
-/// A cup of radius 1 and height 2.4 with an elliptic handle. \param reach,rise of the handle, half axes.
-pcl::PolygonMesh mug(double reach, double rise) {
-  constexpr double kHeight = 2.4, kInner = 0.92, kFloor = 0.1, kThickness = 0.11;
-  ParametricMesh mesh;
-  mesh.addTurned({{0.0, 0.0}, {1.0, 0.0}, {1.0, kHeight}, {kInner, kHeight}, {kInner, kFloor}, {0.0, kFloor}});
-  mesh.addSurface(24, 12, [=](double u, double v) -> Eigen::Vector3d {
-    const double angle = M_PI * (u - 0.5), around = 2.0 * M_PI * v;
-    const Eigen::Vector3d out(std::cos(angle), 0.0, std::sin(angle));
-    const Eigen::Vector3d middle(0.95 + reach * out.x(), 0.0, 0.5 * kHeight + rise * out.z());
-    return middle + kThickness * (std::cos(around) * out + std::sin(around) * Eigen::Vector3d::UnitY());
-  });
-  return mesh.polygonMesh();
-}
 
 /// A box with a round roof. \param stand the boxes that it stands on, corner to corner.
 pcl::PolygonMesh mailbox(const std::vector<Eigen::AlignedBox3d>& stand) {

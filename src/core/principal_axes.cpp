@@ -28,4 +28,18 @@ std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes) {
   return planes;
 }
 
+Eigen::Isometry3d sheetPose(const PointsRef& points) {
+  constexpr float kFlat = 1e-6f;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const Eigen::Vector3f low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
+  if (high.z() - low.z() <= kFlat * (high - low).head<2>().norm()) {
+    pose.translation().z() = 0.5 * (static_cast<double>(low.z()) + high.z());
+    return pose;
+  }
+  const PrincipalAxes axes = principalAxes(points);
+  pose.linear() = axes.axes;
+  pose.translation() = axes.center;
+  return pose;
+}
+
 }  // namespace pcl_symmetry

@@ -9,6 +9,7 @@
 
 #include "face_labels.h"
 #include "meshes.h"
+#include "raster_image.h"
 #include "tool_run.h"
 
 namespace {
@@ -36,7 +37,8 @@ protected:
 };
 
 TEST_F(SegmentTool, WritesASegmentForEachFaceATreeAndAPicture) {
-  ASSERT_EQ(run(mesh_ + " " + seg_ + " -parts 3 -json " + json_ + " -png " + (folder_ / "p.png")), 0) << error_;
+  ASSERT_EQ(run(mesh_ + " " + seg_ + " -parts 3 -json " + json_ + " -size 300 -png " + (folder_ / "p.png")), 0)
+      << error_;
   const std::vector<int> labels = apps::readFaceLabels(seg_);
   ASSERT_EQ(labels.size(), dumbbell_.polygons.size());
   EXPECT_EQ(std::set<int>(labels.begin(), labels.end()), (std::set<int>{0, 1, 2}));
@@ -48,7 +50,11 @@ TEST_F(SegmentTool, WritesASegmentForEachFaceATreeAndAPicture) {
   EXPECT_EQ(tree["tree"][0]["parent"], -1);
   EXPECT_FALSE(tree["tree"][0]["planes"].empty());
   EXPECT_NE(error_.find("3 parts"), std::string::npos) << error_;
-  EXPECT_EQ(contentOf(folder_ / "p.png").substr(1, 3), "PNG");
+  const apps::RasterImage picture = apps::readImage(folder_ / "p.png");
+  EXPECT_EQ(picture.width, 300);
+  EXPECT_EQ(picture.height, 300);
+  ASSERT_EQ(run(mesh_ + " -parts 3 -size 300 -up 1,0,0 -png " + (folder_ / "q.png")), 0) << error_;
+  EXPECT_NE(apps::readImage(folder_ / "q.png").pixels, picture.pixels);
 }
 
 TEST_F(SegmentTool, MethodsOfThePaper) {

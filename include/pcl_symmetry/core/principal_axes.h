@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "pcl_symmetry/core/point_set.h"
@@ -19,5 +20,10 @@ PrincipalAxes principalAxes(const PointsRef& points);
 
 /// The three planes through the center of mass across the principal axes: candidates that cost nothing.
 std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes);
+
+/// The pose of the plane that points lie in: takes (x, y, 0) to their frame.
+/// \param points 3 x N, finite, N >= 1. \return axes kept and z their own where all z are equal (to a millionth of the
+/// extent); else the center of mass and the principal axes.
+Eigen::Isometry3d sheetPose(const PointsRef& points);
 
 }  // namespace pcl_symmetry

@@ -1,0 +1,22 @@
+/// The first plane of symmetry of a cloud, with nothing to tune.
+#include <pcl/io/pcd_io.h>
+#include <pcl_symmetry/symmetry_maxima_refinement.h>
+
+#include <iostream>
+
+int main(int argc, char** argv) {
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  if (argc != 2 || pcl::io::loadPCDFile(argv[1], cloud) < 0) {
+    std::cerr << "usage: 01_first_plane CLOUD.pcd\n";
+    return 2;
+  }
+  const std::vector<pcl_symmetry::SymmetryPlane> planes = pcl_symmetry::detectSymmetryPlanes(cloud);
+  if (planes.empty()) {
+    std::cout << "no symmetry plane\n";
+    return 0;
+  }
+  std::cout << "a b c d = " << planes[0].coefficients().transpose() << ", confidence " << planes[0].confidence << "\n";
+
+  const Eigen::Vector3d first = cloud[0].getVector3fMap().cast<double>();
+  std::cout << first.transpose() << " reflects to " << planes[0].reflect(first).transpose() << "\n";
+}

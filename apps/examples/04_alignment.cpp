@@ -1,0 +1,25 @@
+/// The canonical frame of a cloud, whole or seen from one side: center of symmetry and principal symmetry axes.
+#include <pcl/common/transforms.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl_symmetry/symmetry_alignment.h>
+
+#include <iostream>
+
+int main(int argc, char** argv) {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  if (argc != 2 || pcl::io::loadPCDFile(argv[1], *cloud) < 0) {
+    std::cerr << "usage: 04_alignment CLOUD.pcd\n";
+    return 2;
+  }
+  pcl_symmetry::SymmetryAlignment<pcl::PointXYZ> alignment;
+  alignment.setInputCloud(cloud);
+  const pcl_symmetry::SymmetryFrame frame = alignment.compute();
+  std::cout << "center of symmetry " << frame.center.transpose() << "\n";
+  for (int k = 0; k < 3; ++k)
+    std::cout << "axis " << k + 1 << "  " << frame.axes.col(k).transpose() << "  score " << frame.scores[k] << "\n";
+  std::cout << "equally good frames: " << frame.equivalent.size() << "\n";
+
+  pcl::PointCloud<pcl::PointXYZ> canonical;
+  pcl::transformPointCloud(*cloud, canonical, frame.T_canonical_input.matrix().cast<float>().eval());
+  std::cout << "first point in its own frame: " << canonical[0].getVector3fMap().transpose() << "\n";
+}

@@ -1,0 +1,147 @@
+/// Lines of symmetry of planar shapes, contours or pictures: a table, JSON, and the transform mapped back to the plane.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "contour_input.h"
+#include "options.h"
+#include "pcl_symmetry/core/point_symmetry.h"
+#include "pcl_symmetry/planar_symmetry_transform_2d.h"
+#include "raster_image.h"
+#include "shape_output.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+const Eigen::Vector3d kContourColor(0.84, 0.37, 0.0);  // vermilion: apart from every grey, for all eyes
+
+struct LinesOptions {
+  std::vector<std::string> inputs;
+  std::optional<std::string> png_path, json_path;
+  bool filled = false;
+  int grid = 128, max_lines = 10, size = 256, columns = 8, threads = 0;
+  std::optional<double> sigma;
+  bool quiet = false;
+};
+
+CommandLine commandLine(LinesOptions& options) {
+  CommandLine line("pcl_symmetry_lines", "Finds the lines of symmetry of shapes in a plane.",
+                   "pcl_symmetry_lines leaf.png -png leaf_symmetry.png");
+  line.positionals("input", options.inputs,
+                   "pictures of two tones (.png, .pgm), or points in a plane (.pcd, .ply, ...)")
+      .text("png", "FILE", options.png_path,
+            "picture: the darker a point, the more of a symmetry is the best line through it")
+      .text("json", "FILE", options.json_path, "write the result as JSON")
+      .flag("filled", options.filled, "take all pixels of what a picture shows, not the outline")
+      .number("max_lines", options.max_lines, Range::closed(1, 1000), "lines reported at most")
+      .number("sigma", options.sigma, Range::above(0), "width of the Gaussian, input units (two cells)")
+      .number("grid", options.grid, Range::closed(8, 1024),
+              "cells along an edge of the distance field; bins of the map")
+      .number("size", options.size, Range::closed(16, 4096), "edge of each shape's picture, pixels")
+      .number("columns", options.columns, Range::closed(1, 1000), "shapes side by side in the picture")
+      .number("threads", options.threads, Range::closed(0, 4096), "number of threads, 0 = all")
+      .flag("quiet", options.quiet, "print errors only");
+  return line;
+}
+
+/// The map over the sheet (Figure 2), the contour on top.
+RasterImage draw(const PlanarSymmetryTransform2D<pcl::PointXYZ>& transform, const LineMap& map, int size, int threads) {
+  constexpr double kMargin = 1.12;
+  const double half = kMargin * map.grid.radius(), step = 2.0 * half / size;
+  Points2D places(2, size * size);
+  for (int i = 0; i < size * size; ++i) {
+    const Eigen::Vector2d offset((i % size + 0.5) * step - half, half - (i / size + 0.5) * step);
+    places.col(i) = (map.grid.center() + offset).cast<float>();
+  }
+  const std::vector<float> symmetry = pointSymmetry(map, places, threads);
+  RasterImage image(size, size);
+  for (int i = 0; i < size * size; ++i)
+    image.set(i % size, i / size, Eigen::Vector3d::Constant(1.0 - std::clamp<double>(symmetry[i], 0.0, 1.0)));
+  const Points2D& contour = transform.getSheetPoints();
+  for (Eigen::Index i = 0; i < contour.cols(); ++i) {
+    const Eigen::Vector2d offset = contour.col(i).cast<double>() - map.grid.center();
+    image.drawDisk({(offset.x() + half) / step - 0.5, (half - offset.y()) / step - 0.5}, size / 220.0, kContourColor);
+  }
+  return image;
+}
+
+RasterImage sideBySide(const std::vector<RasterImage>& panels, int columns) {
+  constexpr int kGap = 4;
+  const int size = panels[0].width, num = static_cast<int>(panels.size());
+  columns = std::min(columns, num);
+  const int rows = (num + columns - 1) / columns;
+  RasterImage image(columns * (size + kGap) - kGap, rows * (size + kGap) - kGap);
+  for (int i = 0; i < num; ++i) image.paste(panels[i], i % columns * (size + kGap), i / columns * (size + kGap));
+  return image;
+}
+
+nlohmann::json toJson(const PlanarSymmetryTransform2D<pcl::PointXYZ>& transform,
+                      const std::vector<LineMaximum>& lines) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const LineMaximum& maximum : lines) {
+    const ReflectionLine& line = maximum.line;
+    const Eigen::Vector4d plane = transform.getPlane(line).coefficients();
+    list.push_back({{"coefficients", {line.normal().x(), line.normal().y(), -line.offset()}},
+                    {"plane", {plane[0], plane[1], plane[2], plane[3]}},
+                    {"theta", line.theta()},
+                    {"score", maximum.value}});
+  }
+  return list;
+}
+
+int run(int argc, char** argv) {
+  LinesOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  const Console console(options.quiet);
+  nlohmann::json shapes = nlohmann::json::array();
+  std::vector<RasterImage> panels;
+  std::printf("%5s %10s %10s %12s %7s  %s\n", "line", "a", "b", "c", "score", "shape");
+  for (const std::string& input : options.inputs) {
+    Step loading(console, "Loading " + input);
+    const pcl::PointCloud<pcl::PointXYZ>::Ptr contour = loadContour(input, options.filled);
+    loading.done(std::to_string(contour->size()) + " points");
+
+    Step searching(console, "Searching lines");
+    PlanarSymmetryTransform2D<pcl::PointXYZ> transform;
+    LineMap map;
+    try {
+      transform.setGridSize(options.grid);
+      if (options.sigma) transform.setSigma(*options.sigma);
+      transform.setNumberOfThreads(options.threads);
+      transform.setInputCloud(contour);
+      map = transform.compute();
+    } catch (const pcl::BadArgumentException& error) {
+      throw InputError(input + ": " + error.detailedMessage());
+    }
+    std::vector<LineMaximum> lines = transform.getLines();
+    if (static_cast<int>(lines.size()) > options.max_lines) lines.resize(options.max_lines);
+    const double ms = searching.done(std::to_string(lines.size()) + (lines.size() == 1 ? " line" : " lines"));
+
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const ReflectionLine& found = lines[i].line;
+      std::printf("%5zu %10.6f %10.6f %12.6g %7.3f  %s\n", i + 1, found.normal().x(), found.normal().y(),
+                  -found.offset(), lines[i].value, input.c_str());
+    }
+    shapes.push_back({{"file", input},
+                      {"num_points", transform.getSheetPoints().cols()},
+                      {"lines", toJson(transform, lines)},
+                      {"timing_ms", {{"total", ms}}}});
+    if (options.png_path) panels.push_back(draw(transform, map, options.size, options.threads));
+  }
+  if (options.json_path) writeText(*options.json_path, nlohmann::json{{"shapes", shapes}}.dump(2) + "\n");
+  if (options.png_path) writeImage(sideBySide(panels, options.columns), *options.png_path);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}

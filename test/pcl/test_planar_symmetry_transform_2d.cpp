@@ -1,0 +1,79 @@
+#include "pcl_symmetry/planar_symmetry_transform_2d.h"
+
+#include <gtest/gtest.h>
+
+#include "clouds.h"
+#include "contours.h"
+#include "error_message.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using namespace test;
+using Transform = PlanarSymmetryTransform2D<pcl::PointXYZ>;
+
+pcl::PointCloud<pcl::PointXYZ>::Ptr toSheet(const Points2D& contour, const Eigen::Isometry3d& pose) {
+  Shape shape{Eigen::Matrix3Xd::Zero(3, contour.cols()), {}};
+  shape.points.topRows<2>() = contour.cast<double>();
+  return toCloud(moved(shape, pose));
+}
+
+TEST(PlanarSymmetryTransform2D, LinesOfATiltedRectangleArePlanesAcrossItsSheet) {
+  const Eigen::Isometry3d pose = randomPose(4);
+  Transform transform;
+  transform.setInputCloud(withHoles(*toSheet(rectangle(1.6, 0.9), pose), 9));
+  const LineMap map = transform.compute();
+  EXPECT_EQ(map.values.size(), 128u * 128u);
+  ASSERT_GE(transform.getLines().size(), 2u);
+  for (const Eigen::Vector3d& normal : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
+    const ReflectionPlane expected = ReflectionPlane(normal, 0.0).transformed(pose);
+    const ReflectionPlane first = transform.getPlane(transform.getLines()[0].line);
+    const ReflectionPlane second = transform.getPlane(transform.getLines()[1].line);
+    const PlaneError error =
+        planeError(first.angleTo(expected) < second.angleTo(expected) ? first : second, expected, pose.translation());
+    EXPECT_LT(error.angle, 0.2 * kDegree);
+    EXPECT_LT(error.offset, 0.003);
+  }
+}
+
+TEST(PlanarSymmetryTransform2D, FlatCloudsKeepTheirAxes) {
+  Transform transform;
+  Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
+  shift.translation() = Eigen::Vector3d(3.0, -1.0, 5.0);
+  transform.setInputCloud(toSheet(regularPolygon(3), shift));
+  transform.setGridSize(64);
+  transform.compute();
+  EXPECT_TRUE(transform.getSheetPose().linear().isIdentity());
+  ASSERT_GE(transform.getLines().size(), 3u);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(transform.getLines()[k].line.signedDistance({3.0, -1.0}), 0.0, 0.01);
+}
+
+TEST(PlanarSymmetryTransform2D, HonoursIndicesAndTheGivenWidth) {
+  const auto cloud = toSheet(rectangle(1.6, 0.9, 800), Eigen::Isometry3d::Identity());
+  cloud->emplace_back(9.0f, 3.0f, 0.0f);
+  Transform transform;
+  transform.setInputCloud(cloud);
+  pcl::IndicesPtr indices(new pcl::Indices(800));
+  for (int i = 0; i < 800; ++i) (*indices)[i] = i;
+  transform.setIndices(indices);
+  transform.setSigma(0.05);
+  EXPECT_EQ(transform.compute().sigma, 0.05);
+  EXPECT_NEAR(transform.getDistanceTransform()->radius(), 0.5 * std::hypot(1.6, 0.9), 0.02);
+  EXPECT_EQ(transform.getSheetPoints().cols(), 800);
+}
+
+TEST(PlanarSymmetryTransform2D, NamesWhatIsWrong) {
+  Transform transform;
+  EXPECT_NE(messageOf([&] { transform.compute(); }).find("not set"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setSigma(-1.0); }).find("sigma = -1, must be"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setGridSize(2); }).find("num_cells = 2"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setNumberOfThreads(-2); }).find("num_threads = -2"), std::string::npos);
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  transform.setInputCloud(cloud);
+  EXPECT_NE(messageOf([&] { transform.compute(); }).find("no finite point"), std::string::npos);
+  cloud->resize(5);
+  EXPECT_NE(messageOf([&] { transform.compute(); }).find("extent"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry

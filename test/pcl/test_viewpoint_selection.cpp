@@ -1,0 +1,144 @@
+#include "pcl_symmetry/viewpoint_selection.h"
+
+#include <gtest/gtest.h>
+
+#include "clouds.h"
+#include "error_message.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using namespace test;
+
+ViewpointSelection selectionOf(const Shape& shape) {
+  const auto cloud = toCloud(shape);
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(cloud);
+  ViewpointSelection selection;
+  selection.setPlanes(refinement.compute(), refinement.getAxes());
+  selection.setInputCloud(cloud);
+  return selection;
+}
+
+SymmetryPlane plane(const Eigen::Vector3d& normal, double score) {
+  SymmetryPlane result;
+  static_cast<ReflectionPlane&>(result) = ReflectionPlane(normal, 0.0);
+  result.kind = PlaneKind::Symmetry;
+  result.score = score;
+  return result;
+}
+
+TEST(ViewpointSelection, BestViewOfABoxIsItsDiagonalDirection) {
+  const ViewpointSelection selection = selectionOf(box(10'000, Sampling::Random, 5));
+  const SelectedView best = selection.getBestView();
+  // Three planes of score near 1: (1, 1, 1) / sqrt(3), in one of eight octants; the scores differ by less than 5 %.
+  EXPECT_LT((best.direction.cwiseAbs() - Eigen::Vector3d::Constant(1.0 / std::sqrt(3.0))).norm(), 0.05);
+  EXPECT_GT(best.direction.z(), 0.0) << "from above";
+  // Along two of its planes.
+  EXPECT_GT(selection.getWorstView().direction.cwiseAbs().maxCoeff(), 0.999);
+  EXPECT_EQ(selection.getGoodViews(5).size(), 1u) << "the other seven show the same again";
+}
+
+TEST(ViewpointSelection, CylinderIsSeenObliquelyAndWorstAlongItsAxisOrAcross) {
+  const Eigen::Isometry3d pose = randomPose(2);
+  const ViewpointSelection selection = selectionOf(moved(cylinder(10'000, 4), pose));
+  const Eigen::Vector3d axis = pose.linear().col(2);
+  const double along = std::abs(selection.getBestView().direction.dot(axis));
+  // A fan of planes of weight 2 and one across of weight 1: (4 / pi) sin + cos is greatest where tan = 4 / pi. 0.03:
+  // fans of eight planes and scores that differ by some per cent.
+  EXPECT_NEAR(along, std::cos(std::atan(4.0 / kPi)), 0.03);
+  EXPECT_LT(selection.getWorstView().score, 0.8 * selection.getBestView().score);
+}
+
+TEST(ViewpointSelection, CameraLooksAtTheObjectAndStandsUpright) {
+  const Eigen::Isometry3d pose = randomPose(6);
+  const Shape shape = moved(box(5'000, Sampling::Random, 5), pose);
+  ViewpointSelection selection;
+  selection.setPlanes({plane(pose.linear().col(0), 1.0), plane(pose.linear().col(1), 0.9)});
+  selection.setInputCloud(toCloud(shape));
+  const Eigen::Vector3d said = pose.linear() * Eigen::Vector3d(0.2, 0.2, 1.0);
+  selection.setUp(said);
+  EXPECT_LT((selection.getUpAxis() - pose.linear().col(2)).norm(), 1e-9) << "the third axis, across the two planes";
+  for (const Eigen::Vector3d& direction : evenDirections(40)) {
+    const Eigen::Affine3d camera = selection.computePose(direction).cast<double>();
+    EXPECT_NEAR(camera.linear().determinant(), 1.0, 1e-5);
+    EXPECT_LT((camera.linear().col(2) + direction).norm(), 1e-5) << "forward is towards the object";
+    EXPECT_GE(-camera.linear().col(1).dot(selection.getUpAxis()), -1e-5) << "y is down";
+    EXPECT_NEAR(camera.linear().col(0).dot(selection.getUpAxis()), 0.0,
+                std::abs(direction.dot(selection.getUpAxis())) < 0.98 ? 1e-5 : 1.0)
+        << "x is level";
+    const Eigen::Matrix3Xd seen = camera.inverse() * shape.points;
+    const Eigen::ArrayXd tangent = seen.topRows<2>().colwise().norm().array() / seen.row(2).array();
+    EXPECT_LE(tangent.maxCoeff(), std::tan(12.5 * kDegree) + 1e-4) << "all in a view of 25 degrees";
+    EXPECT_GT(tangent.maxCoeff(), 0.5 * std::tan(12.5 * kDegree));
+  }
+}
+
+TEST(ViewpointSelection, ShowsWhatIsHiddenLeast) {
+  // An open cup on z: rim up. Of the two views at equal S the one into it is taken, and the sides are seen from above.
+  const Shape solid = cylinder(20'000, 4);
+  Shape cup{Eigen::Matrix3Xd(3, 0), {}};
+  for (Eigen::Index i = 0; i < solid.points.cols(); ++i) {
+    if (solid.points(2, i) > 0.999) continue;
+    cup.points.conservativeResize(3, cup.points.cols() + 1);
+    cup.points.rightCols<1>() = solid.points.col(i);
+  }
+  ViewpointSelection selection;
+  selection.setPlanes({plane(Eigen::Vector3d::UnitX(), 1.0), plane(Eigen::Vector3d::UnitZ(), 1.0)});
+  selection.setInputCloud(toCloud(cup));
+  selection.setUp(Eigen::Vector3d::UnitY());
+  EXPECT_GT(selection.getBestView().direction.z(), 0.0);
+}
+
+TEST(ViewpointSelection, MaximaCountInDirectionsThatNoPlaneCovers) {
+  const auto maximum = [](const Eigen::Vector3d& normal, double value) {
+    return LocalMaximum{{0, 0, 0}, ReflectionPlane(normal, 0.0), value};
+  };
+  const std::vector<LocalMaximum> maxima{maximum({0.9, 0.1, 0.0}, 0.7), maximum({0.0, 0.0, 1.0}, 0.6),
+                                         maximum({0.0, 0.3, 1.0}, 0.5)};
+  ViewpointSelection selection;
+  selection.setPlanes({plane(Eigen::Vector3d::UnitX(), 0.8)}, {}, maxima);
+  EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitX()), 0.8);
+  EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitZ()), 0.6);
+  EXPECT_DOUBLE_EQ(selection.getScore(Eigen::Vector3d::UnitY()), 0.0);
+  // Planes that are seen from everywhere need no others.
+  selection.setPlanes({plane({1, 0, 0}, 0.8), plane({1, 1, 0.3}, 0.8), plane({1, 0.3, 1}, 0.8)}, {}, maxima);
+  const double of_three = selection.getScore(Eigen::Vector3d::UnitZ());
+  selection.setPlanes({plane({1, 0, 0}, 0.8), plane({1, 1, 0.3}, 0.8), plane({1, 0.3, 1}, 0.8)});
+  EXPECT_DOUBLE_EQ(of_three, selection.getScore(Eigen::Vector3d::UnitZ()));
+}
+
+TEST(ViewpointSelection, GoodViewsAreApart) {
+  ViewpointSelection selection;
+  std::vector<SymmetryPlane> planes;
+  RandomStream random(4);
+  for (int k = 0; k < 9; ++k) {
+    planes.push_back(plane(randomDirection(random), 0.3 + 0.1 * k));
+    planes.back().kind = PlaneKind::Local;
+  }
+  selection.setPlanes(planes);
+  selection.setInputCloud(toCloud(box(2'000, Sampling::Random, 5)));
+  selection.setSeparation(0.9);
+  const std::vector<SelectedView> views = selection.getGoodViews(4);
+  ASSERT_GE(views.size(), 2u);
+  EXPECT_EQ(views[0].direction, selection.getBestView().direction);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    EXPECT_DOUBLE_EQ(views[i].score, selection.getScore(views[i].direction));
+    for (std::size_t j = 0; j < i; ++j) EXPECT_LE(views[i].direction.dot(views[j].direction), std::cos(0.9));
+  }
+}
+
+TEST(ViewpointSelection, WithoutPlanesShowsTheObjectObliquely) {
+  ViewpointSelection selection;
+  EXPECT_NE(messageOf([&] { selection.getBestView(); }).find("no finite point"), std::string::npos);
+  selection.setInputCloud(toCloud(sphere(500, 1)));
+  EXPECT_GT(selection.getBestView().direction.z(), 0.2);
+  EXPECT_NO_THROW(selection.getWorstView());
+  EXPECT_NE(messageOf([&] { selection.setUp(Eigen::Vector3d::Zero()); }).find("up = 0 0 0"), std::string::npos);
+  EXPECT_NE(messageOf([&] { selection.setSeparation(-1.0); }).find("separation = -1"), std::string::npos);
+  EXPECT_NE(messageOf([&] { selection.getGoodViews(0); }).find("num_views = 0"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry
