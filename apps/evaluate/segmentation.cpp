@@ -8,8 +8,10 @@
 #include "console.h"
 #include "face_labels.h"
 #include "file_text.h"
+#include "mirror_agreement.h"
 #include "model_list.h"
 #include "options.h"
+#include "pcl_symmetry/symmetry_segmentation.h"
 #include "segmentation_methods.h"
 #include "segmentation_report.h"
 #include "shape_input.h"
@@ -20,6 +22,8 @@ namespace pcl_symmetry::apps {
 namespace fs = boost::filesystem;
 
 namespace {
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 struct EvaluateSegmentationOptions {
   std::string meshes, references;
@@ -160,9 +164,10 @@ private:
     if (people_ && references.size() > 1) addPeople(model, comparison, references);
     for (const NamedSegmentation& method : methods_) {
       const Stopwatch watch;
-      const std::vector<int> labels = method.segment(*shape.mesh);
+      const Segmentation segmentation = method.segment(*shape.mesh);
       const double ms = watch.milliseconds();
-      add(method.name, model, comparison, references, prepare(comparison, method.name, labels), ms);
+      add(method.name, model, comparison, references, prepare(comparison, method.name, segmentation.labels), ms);
+      results_.back().mirror_agreement = mirrorAgreement(meshGraph(*shape.mesh), segmentation);
     }
     if (options_.segments_folder) {
       const std::string path = (fs::path(*options_.segments_folder) / (model.name + ".seg")).string();
@@ -191,7 +196,7 @@ private:
     }
     const auto count = static_cast<double>(people.size());
     results_.push_back({"human", model.name, benchmarkCategory(model.name), mean.mean(), num_segments / count,
-                        smallest / count, std::numeric_limits<double>::quiet_NaN()});
+                        smallest / count, kUndefined, kUndefined});
   }
 
   void add(const std::string& method, const Model& model, const SegmentationComparison& comparison,
@@ -199,7 +204,7 @@ private:
     MeanDistance mean;
     for (const PreparedSegmentation& reference : references) mean.add(comparison.compare(reference, segmentation));
     results_.push_back({method, model.name, benchmarkCategory(model.name), mean.mean(),
-                        static_cast<double>(segmentation.num_segments), smallestShare(segmentation), ms});
+                        static_cast<double>(segmentation.num_segments), smallestShare(segmentation), kUndefined, ms});
   }
 
   std::size_t rank(const std::string& method) const {

@@ -4,6 +4,7 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/k_means.h"
@@ -19,12 +20,18 @@ constexpr int kNumClusters = 6;     // of k-means; people make 2 to 20 segments
 constexpr int kNumPoints = 30'000;  // of the cloud of a mesh
 constexpr int kMaxDepth = 4;        // of the paper's method
 
-std::vector<int> oneSegment(const pcl::PolygonMesh& mesh) {
-  return std::vector<int>(mesh.polygons.size(), 0);
+Segmentation ofLabels(std::vector<int> labels) {
+  Segmentation segmentation;
+  segmentation.labels = std::move(labels);
+  return segmentation;
+}
+
+Segmentation oneSegment(const pcl::PolygonMesh& mesh) {
+  return ofLabels(std::vector<int>(mesh.polygons.size(), 0));
 }
 
 /// k-means on the centers of the faces, by area: geometry alone.
-std::vector<int> clustersOfCenters(const pcl::PolygonMesh& mesh) {
+Segmentation clustersOfCenters(const pcl::PolygonMesh& mesh) {
   pcl::PointCloud<pcl::PointXYZ> vertices;
   pcl::fromPCLPointCloud2(mesh.cloud, vertices);
   Eigen::MatrixXd centers = Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(mesh.polygons.size()));
@@ -43,12 +50,12 @@ std::vector<int> clustersOfCenters(const pcl::PolygonMesh& mesh) {
   }
   KMeansOptions options;
   options.num_clusters = kNumClusters;
-  return kMeans(centers.cast<float>(), areas, options).labels;
+  return ofLabels(kMeans(centers.cast<float>(), areas, options).labels);
 }
 
 NamedSegmentation withOptions(const std::string& name, SegmentationOptions options, int num_threads) {
   options.num_threads = num_threads;
-  return {name, [options](const pcl::PolygonMesh& mesh) { return segmentSurface(meshGraph(mesh), options).labels; }};
+  return {name, [options](const pcl::PolygonMesh& mesh) { return segmentSurface(meshGraph(mesh), options); }};
 }
 
 /// The paper's, to a depth.
@@ -79,7 +86,7 @@ NamedSegmentation cloudOfMesh(int num_threads) {
             const Points points = cloud->getMatrixXfMap(3, 4, 0);
             makeFlannSearch(points)->search(meshGraph(mesh).centers, 1, closest, sq_distances);
             for (int& label : closest) label = segmentation.getLabels()[label];
-            return closest;
+            return ofLabels(std::move(closest));
           }};
 }
 

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "pcl_symmetry/core/surface_segmentation.h"
+
 namespace pcl_symmetry::apps {
 
-/// Gives a segment to each face of a mesh.
+/// Gives a segment to each face of a mesh; baselines fill the labels alone.
 struct NamedSegmentation {
   std::string name;
-  std::function<std::vector<int>(const pcl::PolygonMesh&)> segment;
+  std::function<Segmentation(const pcl::PolygonMesh&)> segment;
 };
 
 /// Baselines and methods of the library. \param names "one", "k-means", "paper-1" to "paper-4" (by depth), "symmetry",

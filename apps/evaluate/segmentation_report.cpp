@@ -81,6 +81,16 @@ nlohmann::json orNull(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
 
+double mirrorAgreementOf(const SegmentationResult& result) {
+  return result.mirror_agreement;
+}
+
+double leastMirrorAgreement(const std::vector<const SegmentationResult*>& results) {
+  double least = std::nan("");
+  for (const SegmentationResult* result : results) least = std::fmin(least, result->mirror_agreement);
+  return least;
+}
+
 void printCategories(const std::vector<SegmentationResult>& results) {
   const auto methods = byMethod(results);
   std::printf("\n%-16s", "Rand distance");
@@ -104,7 +114,7 @@ void printCategories(const std::vector<SegmentationResult>& results) {
 void printTable(const std::vector<SegmentationResult>& results, bool categories) {
   std::printf("%-22s %6s", "", "models");
   for (const Measure& measure : kMeasures) std::printf(" %8s", measure.title);
-  std::printf(" %8s %9s\n", "segments", "ms");
+  std::printf(" %8s %14s %9s\n", "segments", "mirrored least", "ms");
   for (const auto& [name, own] : byMethod(results)) {
     std::printf("%-22s %6zu", name.c_str(), own.size());
     for (const Measure& measure : kMeasures) {
@@ -113,8 +123,12 @@ void printTable(const std::vector<SegmentationResult>& results, bool categories)
     }
     const double num_segments = meanOver(own, [](const SegmentationResult& r) { return r.num_segments; });
     const double ms = meanOver(own, [](const SegmentationResult& r) { return r.milliseconds; });
-    std::printf(" %8s %9s\n", shown(num_segments, "%.1f").c_str(), shown(ms, "%.0f").c_str());
+    const double mirrored = meanOver(own, mirrorAgreementOf);
+    std::printf(" %8s %8s %5s %9s\n", shown(num_segments, "%.1f").c_str(), shown(mirrored, "%.3f").c_str(),
+                shown(leastMirrorAgreement(own), "%.3f").c_str(), shown(ms, "%.0f").c_str());
   }
+  std::printf(
+      "mirrored: share of the area whose mirror image lies in the paired segment, on models with a global plane.\n");
   if (categories) printCategories(results);
 }
 
@@ -126,6 +140,8 @@ nlohmann::json toJson(const std::vector<SegmentationResult>& results) {
       method[measure.name] =
           orNull(meanOver(own, [&](const SegmentationResult& r) { return r.distance.*measure.value; }));
     method["num_segments"] = orNull(meanOver(own, [](const SegmentationResult& r) { return r.num_segments; }));
+    method["mirror_agreement"] = orNull(meanOver(own, mirrorAgreementOf));
+    method["least_mirror_agreement"] = orNull(leastMirrorAgreement(own));
     method["milliseconds"] = orNull(meanOver(own, [](const SegmentationResult& r) { return r.milliseconds; }));
     for (const auto& [category, models] : byCategory(own))
       method["rand_by_category"][category] =
@@ -139,7 +155,7 @@ std::string segmentationCSV(const std::vector<SegmentationResult>& results) {
   std::ostringstream text;
   text << "method,model,category";
   for (const Measure& measure : kMeasures) text << ',' << measure.name;
-  text << ",segments,smallest_share,milliseconds\n";
+  text << ",segments,smallest_share,mirror_agreement,milliseconds\n";
   for (const SegmentationResult& r : results) {
     text << r.method << ',' << r.model << ',' << r.category;
     for (const Measure& measure : kMeasures) {
@@ -147,7 +163,9 @@ std::string segmentationCSV(const std::vector<SegmentationResult>& results) {
       text << ',';
       if (std::isfinite(value)) text << value;
     }
-    text << ',' << r.num_segments << ',' << r.smallest_share << ',' << r.milliseconds << '\n';
+    text << ',' << r.num_segments << ',' << r.smallest_share << ',';
+    if (std::isfinite(r.mirror_agreement)) text << r.mirror_agreement;
+    text << ',' << r.milliseconds << '\n';
   }
   return text.str();
 }

@@ -14,7 +14,8 @@ struct SegmentationResult {
   std::string method, model, category;
   SegmentationDistance distance;  ///< mean over the people
   double num_segments = 0.0;
-  double smallest_share = 0.0;  ///< of the faces that the smallest segment has
+  double smallest_share = 0.0;    ///< of the faces that the smallest segment has
+  double mirror_agreement = 0.0;  ///< mirrorAgreement()
   double milliseconds = 0.0;
 };
 

@@ -41,8 +41,8 @@ std::vector<Eigen::Isometry3d> frameHypotheses(const SymmetryFrame& a, const Sym
       if (turns)
         turned *= Eigen::AngleAxisd(2.0 * M_PI * turn / kNumTurns, Eigen::Vector3d::Unit(a.revolution_axis))
                       .toRotationMatrix();
-      for (const Eigen::Isometry3d& T_canonical_a : a.equivalent)
-        add(T_b_canonical * Eigen::Isometry3d(turned) * T_canonical_a);
+      for (std::size_t i = 0; i < a.num_maxima; ++i)
+        add(T_b_canonical * Eigen::Isometry3d(turned) * a.equivalent[i]);
     }
   }
   return hypotheses;

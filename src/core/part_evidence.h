@@ -6,9 +6,6 @@
 
 namespace pcl_symmetry {
 
-/// Of the surface: a plane that maps more of it onto itself pairs patches.
-constexpr double kMappedShare = 0.75;
-
 /// Where two patches meet.
 struct PatchBorder {
   int from, to;

@@ -126,9 +126,10 @@ public:
     lap("surface");
     const std::vector<CellPlane> candidates = gather();
     lap("candidates");
-    const std::vector<Hypothesis> frames = search(candidates);
+    std::vector<Hypothesis> turned;
+    const std::vector<Hypothesis> frames = search(candidates, turned);
     lap("frames");
-    SymmetryFrame frame = resultOf(frames);
+    SymmetryFrame frame = resultOf(frames, turned);
     lap("equivalent");
     frame.timing_ms = std::move(timing_ms_);
     return frame;
@@ -256,7 +257,9 @@ private:
   }
 
   /// Frames from the best candidates, best first.
-  std::vector<Hypothesis> search(const std::vector<CellPlane>& candidates) const {
+  /// \param all filled with the frames at all angles about the normals of these candidates, as they were before
+  /// refinement.
+  std::vector<Hypothesis> search(const std::vector<CellPlane>& candidates, std::vector<Hypothesis>& all) const {
     const std::vector<CellPlane> primaries = primariesOf(candidates);
     std::vector<CellPlane> turned(primaries.size() * kNumAngles);
     std::vector<float> scores(turned.size());
@@ -294,6 +297,7 @@ private:
       };
       for (std::size_t angle = 0; angle < kQuarter; ++angle) {
         const Hypothesis frame = hypothesis(angle);
+        all.push_back(frame);
         if (frame.value >= hypothesis(angle + kQuarter - 1).value && frame.value > hypothesis(angle + 1).value)
           frames.push_back(frame);
       }
@@ -399,12 +403,18 @@ private:
     return center;
   }
 
-  /// Signs by the third central moments; exactly orthonormal.
-  Eigen::Matrix3d oriented(const Eigen::Matrix3f& axes) const {
+  /// Exactly, and right-handed.
+  static Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
     Eigen::Matrix3d result = axes.cast<double>();
     result.col(0).normalize();
     result.col(1) = (result.col(1) - result.col(0).dot(result.col(1)) * result.col(0)).normalized();
     result.col(2) = result.col(0).cross(result.col(1));
+    return result;
+  }
+
+  /// Signs by the third central moments.
+  Eigen::Matrix3d oriented(const Eigen::Matrix3f& axes) const {
+    Eigen::Matrix3d result = orthonormal(axes);
     const Eigen::Vector3d mean = centerOfMass(points_);
     Eigen::Vector3d moments = Eigen::Vector3d::Zero();
     for (Eigen::Index i = 0; i < points_.cols(); ++i)
@@ -415,8 +425,8 @@ private:
     return result;
   }
 
-  SymmetryFrame resultOf(const std::vector<Hypothesis>& frames) const {
-    constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  /// \param frames best first. \param turned frames at all angles about a few axes.
+  SymmetryFrame resultOf(const std::vector<Hypothesis>& frames, const std::vector<Hypothesis>& turned) const {
     const Hypothesis& best = frames.front();
     SymmetryFrame frame;
     frame.center = toInput(centerOf(best));
@@ -425,19 +435,36 @@ private:
     frame.revolution_axis = revolutionAxis(best);
     frame.T_canonical_input = poseOf(frame.axes, frame.center);
     addWithSigns(frame.equivalent, frame.axes, frame.center);
-    for (const Hypothesis& other : frames) {
-      const Eigen::Vector3d center = &other == &best ? frame.center : toInput(centerOf(other));
-      for (const auto& order : kOrders) {
-        bool tied = true;
-        Eigen::Matrix3f axes;
-        for (int k = 0; k < 3; ++k) {
-          tied &= other.scores[order[k]] >= best.scores[k] - options_.tie;
-          axes.col(k) = other.axes.col(order[k]);
-        }
-        if (tied) addWithSigns(frame.equivalent, oriented(axes), center);
-      }
-    }
+    for (const Hypothesis& other : frames)
+      addTied(frame.equivalent, best.scores, other, &other == &best ? frame.center : toInput(centerOf(other)));
+    frame.num_maxima = frame.equivalent.size();
+    // Where the second plane hardly matters, angles between the maxima are as good.
+    for (const Hypothesis& other : turned)
+      if (!isCovered(frame, other)) addTied(frame.equivalent, best.scores, other, frame.center);
     return frame;
+  }
+
+  /// Whether all turns about the axis of revolution are as good anyway.
+  static bool isCovered(const SymmetryFrame& frame, const Hypothesis& other) {
+    if (frame.revolution_axis < 0) return false;
+    if (frame.revolution_axis == 3) return true;
+    const Eigen::Vector3f axis = frame.axes.col(frame.revolution_axis).cast<float>();
+    return (other.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kSame);
+  }
+
+  /// Adds the frame in all orders in which each of its planes scores no less than \p scores but for a tie.
+  void addTied(std::vector<Eigen::Isometry3d>& frames, const Eigen::Vector3f& scores, const Hypothesis& other,
+               const Eigen::Vector3d& center) const {
+    constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    for (const auto& order : kOrders) {
+      bool tied = true;
+      Eigen::Matrix3f axes;
+      for (int k = 0; k < 3; ++k) {
+        tied &= other.scores[order[k]] >= scores[k] - options_.tie;
+        axes.col(k) = other.axes.col(order[k]);
+      }
+      if (tied) addWithSigns(frames, orthonormal(axes), center);
+    }
   }
 
   /// The column about which planes at all angles score alike; 3 where there are two such.
@@ -513,6 +540,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   frame.scores << map[map.strongest()], second->second, third.second;
   frame.T_canonical_input = poseOf(frame.axes, frame.center);
   addWithSigns(frame.equivalent, frame.axes, frame.center);
+  frame.num_maxima = frame.equivalent.size();
   return frame;
 }
 

@@ -85,12 +85,15 @@ struct SegmentNode {
   std::vector<PartPlane> planes;  ///< significant planes of the part, strongest first
 };
 
+/// Planes that reflect no less of the surface onto itself have an image for every segment.
+constexpr double kMappedShare = 0.75;
+
 struct Segmentation {
   std::vector<int> labels;  ///< one per element, from 0, by falling area of the segments
   int num_segments = 0;
   std::vector<SegmentNode> tree;  ///< the root first, children after their parents
-  /// Per plane of the root that maps most of the surface onto itself (share >= 0.75), in their order: the segment that
-  /// each segment is reflected onto, which may be itself.
+  /// Per plane of the root of share >= kMappedShare, in their order: the segment that each segment is reflected onto,
+  /// which may be itself.
   std::vector<std::vector<int>> images;
 };
 
