@@ -35,6 +35,15 @@ void RasterImage::paste(const RasterImage& tile, int x, int y) {
   for (int row = 0; row < tile.height; ++row) std::memcpy(at(x, y + row), tile.at(0, row), 3 * std::size_t(tile.width));
 }
 
+RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns) {
+  constexpr int kGap = 4;
+  const int num = static_cast<int>(tiles.size()), columns = num_columns > 0 ? std::min(num_columns, num) : num;
+  const int rows = (num + columns - 1) / columns, width = tiles[0].width + kGap, height = tiles[0].height + kGap;
+  RasterImage image(columns * width - kGap, rows * height - kGap);
+  for (int i = 0; i < num; ++i) image.paste(tiles[i], i % columns * width, i / columns * height);
+  return image;
+}
+
 bool isImagePath(const std::string& path) {
   return boost::algorithm::iends_with(path, ".png") || boost::algorithm::iends_with(path, ".pgm");
 }

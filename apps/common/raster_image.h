@@ -34,6 +34,9 @@ struct RasterImage {
   void paste(const RasterImage& tile, int x, int y);
 };
 
+/// Pictures of one size in rows, with white gaps. \param num_columns 0 = one row.
+RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns = 0);
+
 /// \return whether the name ends as pictures do that readImage() knows: .png or .pgm, in capitals or not.
 bool isImagePath(const std::string& path);
 

@@ -66,6 +66,20 @@ TEST_F(LinesTool, RefusesWhatItCannotUse) {
   EXPECT_NE(error_.find("shows nothing"), std::string::npos);
 }
 
+TEST(RasterImage, StandsSideBySideInRows) {
+  RasterImage black(3, 2);
+  std::fill(black.pixels.begin(), black.pixels.end(), std::uint8_t{0});
+  const RasterImage row = sideBySide({black, black, black}), rows = sideBySide({black, black, black}, 2);
+  EXPECT_EQ(row.width, 3 * 3 + 2 * 4);
+  EXPECT_EQ(row.height, 2);
+  EXPECT_EQ(rows.width, 2 * 3 + 4);
+  EXPECT_EQ(rows.height, 2 * 2 + 4);
+  EXPECT_EQ(*rows.at(9, 0), 0) << "second";
+  EXPECT_EQ(*rows.at(4, 0), 255) << "gap";
+  EXPECT_EQ(*rows.at(2, 7), 0) << "third";
+  EXPECT_EQ(*rows.at(9, 7), 255) << "nothing";
+}
+
 TEST(RasterImage, WrittenAndReadIsTheSame) {
   const TemporaryFolder folder;
   RasterImage image(5, 3);
