@@ -24,6 +24,7 @@ void RasterImage::set(int x, int y, const Eigen::Vector3d& color) {
 }
 
 void RasterImage::drawDisk(const Eigen::Vector2d& center, double radius, const Eigen::Vector3d& color) {
+  radius = std::max(radius, (center - center.array().round().matrix()).norm());
   const int x_end = std::min(width - 1, static_cast<int>(std::floor(center.x() + radius)));
   const int y_end = std::min(height - 1, static_cast<int>(std::floor(center.y() + radius)));
   for (int y = std::max(0, static_cast<int>(std::ceil(center.y() - radius))); y <= y_end; ++y)

@@ -27,7 +27,8 @@ struct RasterImage {
   /// \param color red, green and blue in [0, 1], clamped.
   void set(int x, int y, const Eigen::Vector3d& color);
 
-  /// Fills the disk; what lies outside the picture is left out. \param center pixels, (0, 0) = middle of the first one.
+  /// Fills the disk, at least the pixel that its center is in; what lies outside the picture is left out. \param center
+  /// pixels, (0, 0) = middle of the first one.
   void drawDisk(const Eigen::Vector2d& center, double radius, const Eigen::Vector3d& color);
 
   /// Copies \p tile to (x, y), which it must fit at.

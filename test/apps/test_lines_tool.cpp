@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -64,6 +65,14 @@ TEST_F(LinesTool, RefusesWhatItCannotUse) {
   writeImage(RasterImage(8, 8), folder_ / "empty.png");
   EXPECT_EQ(run(folder_ / "empty.png"), 1);
   EXPECT_NE(error_.find("shows nothing"), std::string::npos);
+}
+
+TEST(RasterImage, SmallDisksAreSeen) {
+  RasterImage image(4, 4);
+  image.drawDisk({2.4, 1.3}, 0.1, Eigen::Vector3d::Zero());
+  EXPECT_EQ(*image.at(2, 1), 0);
+  EXPECT_EQ(std::count(image.pixels.begin(), image.pixels.end(), 0), 3) << "one pixel";
+  image.drawDisk({40.0, 1.0}, 0.1, Eigen::Vector3d::Zero());
 }
 
 TEST(RasterImage, StandsSideBySideInRows) {
