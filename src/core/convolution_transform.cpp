@@ -123,7 +123,7 @@ void ConvolutionTransformOptions::validate() const {
 SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                  const ConvolutionTransformOptions& options) {
   options.validate();
-  const LookupTable table(edt.sharpened(1.0 / 24.0, options.num_threads), edt.numCells(), options.num_threads);
+  const LookupTable table({edt.sharpened(1.0 / 24.0, options.num_threads)}, edt.numCells(), options.num_threads);
   Resample resample = resampleScalar;
   Correlate correlate = correlateScalar;
 #if defined(__x86_64__)

@@ -188,19 +188,6 @@ Eigen::Vector3d GaussianEdt::cellCenter(std::size_t index) const {
                                                 static_cast<double>(index / n / n));
 }
 
-double GaussianEdt::operator()(const Eigen::Vector3d& x) const {
-  const Eigen::Vector3d p = (x - origin_) / cell_size_;
-  if (!((p.array() >= 0.0).all() && (p.array() < num_cells_ - 1.0).all())) return 0.0;
-  const Eigen::Vector3i c = p.cast<int>();
-  const Eigen::Vector3d t = p - c.cast<double>();
-  const std::size_t n = num_cells_;
-  const float* f = interpolation_.data() + (static_cast<std::size_t>(c.z()) * n + c.y()) * n + c.x();
-  const auto row = [&](std::size_t offset) { return f[offset] + t.x() * (f[offset + 1] - f[offset]); };
-  const double near = row(0) + t.y() * (row(n) - row(0));
-  const double far = row(n * n) + t.y() * (row(n * n + n) - row(n * n));
-  return near + t.z() * (far - near);
-}
-
 std::vector<float> GaussianEdt::sharpened(double c, int num_threads) const {
   const int n = num_cells_;
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;

@@ -108,7 +108,7 @@ ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, cons
 }
 
 IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
-                               double sigma, IspUpdate update) {
+                               double sigma, IspUpdate update, const std::vector<int>* guesses) {
   const auto size = static_cast<Eigen::Index>(samples.size());
   IspStep step;
   Points x(3, size), reflected(3, size), y(3, size);
@@ -121,15 +121,18 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
   step.closest.assign(samples.size(), -1);
   step.sq_distances.assign(samples.size(), std::numeric_limits<float>::infinity());
   const float bound = surface.far ? surface.far->bound(kReach * sigma) : 0.0f;
+  const auto sq_reach = static_cast<float>(kReach * kReach * sigma * sigma);
   parallelRanges(samples.size(), kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<Eigen::Index> near;
     for (std::size_t i = begin; i < end; ++i)
       if (!surface.far || !(*surface.far)(reflected.col(i).cast<double>(), bound)) near.push_back(i);
     Points queries(3, near.size());
     for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = reflected.col(near[i]);
-    std::vector<int> closest;
+    std::vector<int> closest(near.size(), -1);
     std::vector<float> sq_distances;
-    surface.search.search(queries, 1, closest, sq_distances);
+    if (guesses)
+      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[near[i]];
+    surface.search.searchWithin(queries, sq_reach, closest, sq_distances);
     for (std::size_t i = 0; i < near.size(); ++i) {
       step.closest[near[i]] = closest[i];
       step.sq_distances[near[i]] = sq_distances[i];
@@ -177,7 +180,9 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
   result.plane = plane;
   double sigma = options.sigma;
   while (result.iterations < options.max_iterations && !result.converged) {
-    result.last = iterateSymmetricPoints(surface, samples, result.plane, sigma, options.update);
+    const std::vector<int> before = std::move(result.last.closest);
+    result.last = iterateSymmetricPoints(surface, samples, result.plane, sigma, options.update,
+                                         before.empty() ? nullptr : &before);
     ++result.iterations;
     const ReflectionPlane& next = result.last.plane;
     const double moved =

@@ -42,19 +42,22 @@ void setUpLines(const float* points, float middle, const float* n, float offset,
 
 namespace {
 
-void accumulateScalar(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* sums) {
+template <int kFunctions>
+void accumulateScalar(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums) {
   for (int i = 0; i < lines.size; ++i) {
     for (std::int32_t k = lines.k_begin[i]; k < lines.k_end[i]; ++k) {
-      sums[k] += table[LookupTable::index(lines.x[i] + k * lines.step[0], lines.y[i] + k * lines.step[1],
-                                          lines.z[i] + k * lines.step[2], bits)];
+      const std::size_t index = LookupTable::index(lines.x[i] + k * lines.step[0], lines.y[i] + k * lines.step[1],
+                                                   lines.z[i] + k * lines.step[2], bits);
+      for (int g = 0; g < kFunctions; ++g) sums[g][k] += table[kFunctions * index + g];
     }
   }
 }
 
 #if defined(__x86_64__)
 
+template <int kFunctions>
 __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const std::uint8_t* table, int bits,
-                                                    std::int32_t* sums) {
+                                                    std::int32_t* const* sums) {
   constexpr int kLanes = 8;
   const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   const __m256i byte = _mm256_set1_epi32(0xFF);
@@ -79,10 +82,13 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
       const __m256i index = _mm256_add_epi32(_mm256_add_epi32(_mm256_sll_epi32(_mm256_sra_epi32(z, fraction), slice),
                                                               _mm256_sll_epi32(_mm256_sra_epi32(y, fraction), row)),
                                              _mm256_sra_epi32(x, fraction));
-      const __m256i value = _mm256_and_si256(
-          _mm256_mask_i32gather_epi32(zero, reinterpret_cast<const int*>(table), index, inside, 1), byte);
-      auto* sum = reinterpret_cast<__m256i*>(sums + k);
-      _mm256_storeu_si256(sum, _mm256_add_epi32(_mm256_loadu_si256(sum), value));
+      __m256i values =
+          _mm256_mask_i32gather_epi32(zero, reinterpret_cast<const int*>(table), index, inside, kFunctions);
+      for (int g = 0; g < kFunctions; ++g) {
+        auto* sum = reinterpret_cast<__m256i*>(sums[g] + k);
+        _mm256_storeu_si256(sum, _mm256_add_epi32(_mm256_loadu_si256(sum), _mm256_and_si256(values, byte)));
+        values = _mm256_srli_epi32(values, 8);
+      }
       x = _mm256_add_epi32(x, stride[0]);
       y = _mm256_add_epi32(y, stride[1]);
       z = _mm256_add_epi32(z, stride[2]);
@@ -90,8 +96,9 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
   }
 }
 
+template <int kFunctions>
 __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, const std::uint8_t* table, int bits,
-                                                         std::int32_t* sums) {
+                                                         std::int32_t* const* sums) {
   constexpr int kLanes = 16;
   const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   const __m512i byte = _mm512_set1_epi32(0xFF);
@@ -116,8 +123,12 @@ __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, con
       const __m512i index = _mm512_add_epi32(_mm512_add_epi32(_mm512_sll_epi32(_mm512_sra_epi32(z, fraction), slice),
                                                               _mm512_sll_epi32(_mm512_sra_epi32(y, fraction), row)),
                                              _mm512_sra_epi32(x, fraction));
-      const __m512i value = _mm512_and_si512(_mm512_mask_i32gather_epi32(zero, inside, index, table, 1), byte);
-      _mm512_storeu_si512(sums + k, _mm512_add_epi32(_mm512_loadu_si512(sums + k), value));
+      __m512i values = _mm512_mask_i32gather_epi32(zero, inside, index, table, kFunctions);
+      for (int g = 0; g < kFunctions; ++g) {
+        std::int32_t* sum = sums[g] + k;
+        _mm512_storeu_si512(sum, _mm512_add_epi32(_mm512_loadu_si512(sum), _mm512_and_si512(values, byte)));
+        values = _mm512_srli_epi32(values, 8);
+      }
       x = _mm512_add_epi32(x, stride[0]);
       y = _mm512_add_epi32(y, stride[1]);
       z = _mm512_add_epi32(z, stride[2]);
@@ -127,6 +138,15 @@ __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, con
 
 #pragma GCC diagnostic pop
 #endif
+
+template <int kFunctions>
+LineKernel kernelOf(Simd simd) {
+#if defined(__x86_64__)
+  if (simd == Simd::Avx512 || (simd == Simd::Auto && simdSupported(Simd::Avx512))) return accumulateAvx512<kFunctions>;
+  if (simd == Simd::Avx2 || (simd == Simd::Auto && simdSupported(Simd::Avx2))) return accumulateAvx2<kFunctions>;
+#endif
+  return accumulateScalar<kFunctions>;
+}
 
 }  // namespace
 
@@ -138,12 +158,8 @@ bool simdSupported(Simd simd) {
   return simd == Simd::Auto || simd == Simd::Scalar;
 }
 
-LineKernel lineKernel(Simd simd) {
-#if defined(__x86_64__)
-  if (simd == Simd::Avx512 || (simd == Simd::Auto && simdSupported(Simd::Avx512))) return accumulateAvx512;
-  if (simd == Simd::Avx2 || (simd == Simd::Auto && simdSupported(Simd::Avx2))) return accumulateAvx2;
-#endif
-  return accumulateScalar;
+LineKernel lineKernel(Simd simd, int num_functions) {
+  return num_functions == 1 ? kernelOf<1>(simd) : kernelOf<LookupTable::kMaxFunctions>(simd);
 }
 
 }  // namespace pcl_symmetry

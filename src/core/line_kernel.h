@@ -29,10 +29,10 @@ struct Lines {
 void setUpLines(const float* points, float middle, const float* n, float offset, float step, int num_planes,
                 float sq_clip, float to_table, float one, Lines& lines);
 
-/// sums[k] += sum over lines of table[point k]. Integers: every kernel gives the same bytes.
-using LineKernel = void (*)(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* sums);
+/// sums[g][k] += sum over lines of function g of the table at point k. Integers: every kernel gives the same bytes.
+using LineKernel = void (*)(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums);
 
-/// \return the kernel asked for, or the fastest that this processor runs.
-LineKernel lineKernel(Simd simd);
+/// \param num_functions of the table. \return the kernel asked for, or the fastest that this processor runs.
+LineKernel lineKernel(Simd simd, int num_functions);
 
 }  // namespace pcl_symmetry

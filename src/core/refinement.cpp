@@ -22,7 +22,7 @@ constexpr int kCoarseIterations = 5, kCloseIterations = 6, kFullIterations = 8; 
 constexpr int kRoughIterations = 4;                                              // of planes that will never settle
 constexpr double kLeastMerit = 0.93;                                             // of a symmetry of a whole cloud
 constexpr double kCoarseSlack = 0.4, kCloseSlack = 0.1;                          // of merit below that after the stages
-constexpr std::size_t kKeptCoarsely = 14, kKeptClosely = 6;                      // of planes that have less
+constexpr std::size_t kKeptCoarsely = 9, kKeptClosely = 5;                       // of planes that have less
 constexpr double kSlopeAngle = 0.2, kSlopeOffset = 0.15;  // radians, radii: how far a slope may reach
 constexpr double kSlopeDip = 0.005;                       // of D: what counts as falling
 // In standard errors: once a Gauss-Newton step of a symmetry is this short, another one over all points leaves the
@@ -57,10 +57,18 @@ bool samePlane(const ReflectionPlane& a, const ReflectionPlane& b, double angle,
 
 /// D at one plane: the full sum over the cells of the EDT.
 double correlation(const GaussianEdt& edt, const ReflectionPlane& plane) {
-  const auto& f = edt.values();
+  const int n = edt.numCells();
+  const float* f = edt.values().data();
+  const ReflectionPlane cells(plane.normal(), plane.signedDistance(edt.origin()) / -edt.cellSize());
+  const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * plane.normal().x() * plane.normal();
   double sum = 0.0;
-  for (std::size_t i = 0; i < f.size(); ++i)
-    if (f[i] > 0.0f) sum += f[i] * edt(plane.reflect(edt.cellCenter(i)));
+  for (int z = 0; z < n; ++z) {
+    for (int y = 0; y < n; ++y, f += n) {
+      const Eigen::Vector3d first = cells.reflect(Eigen::Vector3d(0.0, y, z));
+      for (int x = 0; x < n; ++x)
+        if (f[x] > 0.0f) sum += f[x] * edt.atCell(first + x * step);
+    }
+  }
   return std::clamp(sum / edt.sqNorm(), 0.0, 1.0);
 }
 
@@ -230,11 +238,12 @@ std::vector<SymmetryPlane> Refinement::report(std::vector<SymmetryPlane> planes)
     const bool known = std::any_of(reported.begin(), reported.end(), [&](const SymmetryPlane& other) {
       return same(toNormalized(other), toNormalized(plane)) || onSlopeOf(other, plane);
     });
-    if (known) continue;
-    if (plane.point_support.size() != static_cast<std::size_t>(points_.cols()))
-      plane.point_support = sharesOf(toNormalized(plane), allOf(points_.cols())).point_support;
-    reported.push_back(std::move(plane));
+    if (!known) reported.push_back(std::move(plane));
   }
+  parallelBlocks(reported.size(), options_.num_threads, [&](std::size_t i) {
+    if (reported[i].point_support.size() != static_cast<std::size_t>(points_.cols()))
+      reported[i].point_support = sharesOf(toNormalized(reported[i]), allOf(points_.cols())).point_support;
+  });
   return reported;
 }
 
@@ -301,7 +310,8 @@ void Refinement::run(std::vector<Candidate>& candidates, int num_samples, double
 /// plane takes one step by whole distances instead if what is seen then speaks for it more.
 void Refinement::returnIfSlid(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
                               double sigma) const {
-  IspStep step = iterateSymmetricPoints(surface_, samples, start, sigma, IspUpdate::PointToPoint);
+  IspStep step =
+      iterateSymmetricPoints(surface_, samples, start, sigma, IspUpdate::PointToPoint, &candidate.last.last.closest);
   const double merit = meritOf(sharesOf(step.plane, samples, step));
   if (merit <= candidate.merit) return;
   candidate.plane = step.plane;

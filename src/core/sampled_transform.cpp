@@ -18,13 +18,12 @@ namespace pcl_symmetry {
 namespace {
 
 /// (S / |f|^2) mean g(gamma x_i) at every bin for each function g.
-/// \param tables the functions, values of all cells made into tables of one size.
+/// \param table of the functions.
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
-                                            const SampledTransformOptions& options,
-                                            const std::vector<LookupTable>& tables) {
+                                            const SampledTransformOptions& options, const LookupTable& table) {
   options.validate();
   const Eigen::Matrix3Xf points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
-  const LineKernel accumulate = lineKernel(options.simd);
+  const LineKernel accumulate = lineKernel(options.simd, table.numFunctions());
 
   // Everything below is in cells, relative to the middle of the EDT's cube.
   const double middle = 0.5 * (edt.numCells() - 1);
@@ -33,17 +32,20 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
   const float radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());
   const float first_offset = static_cast<float>(grid.offset(0) / edt.cellSize());
   const float sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
-  const Eigen::Vector3f to_table = tables[0].toTable(Eigen::Vector3d::Constant(middle)).cast<float>();
+  const Eigen::Vector3f to_table = table.toTable(Eigen::Vector3d::Constant(middle)).cast<float>();
   const float one = static_cast<float>(1 << LookupTable::kFractionBits);
 
-  std::vector<std::vector<float>> means(tables.size(), std::vector<float>(grid.size()));
+  std::vector<std::vector<float>> means(table.numFunctions(), std::vector<float>(grid.size()));
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const int num_radius = grid.numRadius();
   constexpr std::size_t kDirectionsPerBlock = 32;
   constexpr int kChunk = 1024;  // samples that are set up at a time
   parallelRanges(
       grid.numDirections(), kDirectionsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::int32_t> sums(num_radius + 2 * kLineLanes);
+        std::vector<std::vector<std::int32_t>> sums(means.size(),
+                                                    std::vector<std::int32_t>(num_radius + 2 * kLineLanes));
+        std::vector<std::int32_t*> sum_of;
+        for (auto& sum : sums) sum_of.push_back(sum.data());
         std::vector<std::int32_t> lines(5 * kChunk);
         Lines batch{lines.data(),
                     lines.data() + kChunk,
@@ -52,7 +54,7 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
                     lines.data() + 4 * kChunk,
                     0,
                     {}};
-        std::vector<std::vector<double>> totals(tables.size(), std::vector<double>(num_radius));
+        std::vector<std::vector<double>> totals(means.size(), std::vector<double>(num_radius));
         for (std::size_t direction = begin; direction < end; ++direction) {
           const Eigen::Vector3f n =
               grid.normal(static_cast<int>(direction / grid.numPhi()), static_cast<int>(direction % grid.numPhi()))
@@ -65,13 +67,12 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
             batch.size = std::min(kChunk, options.num_samples - first);
             setUpLines(points.data() + 3 * first, static_cast<float>(middle), n.data(), offset, radius_step, num_radius,
                        sq_clip, to_table[0], one, batch);
-            for (std::size_t g = 0; g < tables.size(); ++g) {
-              std::fill(sums.begin(), sums.end(), 0);
-              accumulate(batch, tables[g].data(), tables[g].bits(), sums.data());
-              for (int k = 0; k < num_radius; ++k) totals[g][k] += sums[k];
-            }
+            for (auto& sum : sums) std::fill(sum.begin(), sum.end(), 0);
+            accumulate(batch, table.data(), table.bits(), sum_of.data());
+            for (std::size_t g = 0; g < sums.size(); ++g)
+              for (int k = 0; k < num_radius; ++k) totals[g][k] += sums[g][k];
           }
-          for (std::size_t g = 0; g < tables.size(); ++g)
+          for (std::size_t g = 0; g < means.size(); ++g)
             for (int k = 0; k < num_radius; ++k)
               means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
         }
@@ -79,14 +80,9 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
   return means;
 }
 
-LookupTable tableOf(const GaussianEdt& edt, int num_threads) {
-  // Jitter within the cell and look-up of the nearest cell: two boxes.
-  return LookupTable(edt.sharpened(1.0 / 12.0, num_threads), edt.numCells(), num_threads);
-}
-
-LookupTable tableOf(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads) {
+std::vector<float> checkedFreeSpace(const GaussianEdt& edt, const std::vector<float>& free_space) {
   check(free_space.size() == edt.values().size(), "free_space size", free_space.size(), "one value per cell");
-  return LookupTable(free_space, edt.numCells(), num_threads);
+  return free_space;
 }
 
 }  // namespace
@@ -99,9 +95,11 @@ void SampledTransformOptions::validate() const {
 
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options,
                              const std::vector<float>& free_space) {
-  std::vector<LookupTable> tables{tableOf(edt, options.num_threads)};
-  if (!free_space.empty()) tables.push_back(tableOf(edt, free_space, options.num_threads));
-  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, tables);
+  // Jitter within the cell and look-up of the nearest cell: two boxes.
+  std::vector<std::vector<float>> functions{edt.sharpened(1.0 / 12.0, options.num_threads)};
+  if (!free_space.empty()) functions.push_back(checkedFreeSpace(edt, free_space));
+  const LookupTable table(functions, edt.numCells(), options.num_threads);
+  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, table);
   SymmetryMap map;
   map.grid = grid;
   map.values = std::move(means[0]);
@@ -114,7 +112,8 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
 
 std::vector<float> freeOverlap(const GaussianEdt& edt, const PlaneGrid& grid, const std::vector<float>& free_space,
                                const SampledTransformOptions& options) {
-  return std::move(sampleMeans(edt, grid, options, {tableOf(edt, free_space, options.num_threads)})[0]);
+  const LookupTable table({checkedFreeSpace(edt, free_space)}, edt.numCells(), options.num_threads);
+  return std::move(sampleMeans(edt, grid, options, table)[0]);
 }
 
 void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap) {

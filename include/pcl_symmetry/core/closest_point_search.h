@@ -19,6 +19,12 @@ public:
   /// Has to be safe to call from several threads at once.
   virtual void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
                       std::vector<float>& sq_distances) const = 0;
+
+  /// The closest point to each query among those within \p max_sq_distance; -1 and infinity where there is none.
+  /// \param indices in: M points that are likely to be close, or -1; out: the closest. What a search knows beforehand
+  /// spares it most of its way.
+  virtual void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
+                            std::vector<float>& sq_distances) const;
 };
 
 /// A FLANN k-d tree over the points (which are copied into the tree).

@@ -49,7 +49,20 @@ public:
 
   /// f in between the cells: trilinear over coefficients (sharpened()) that make its mean over a cell right.
   /// \param x input frame; 0 outside the grid.
-  double operator()(const Eigen::Vector3d& x) const;
+  double operator()(const Eigen::Vector3d& x) const { return atCell((x - origin_) / cell_size_); }
+
+  /// The same at \p p cells from the center of cell (0, 0, 0).
+  double atCell(const Eigen::Vector3d& p) const {
+    if (!((p.array() >= 0.0).all() && (p.array() < num_cells_ - 1.0).all())) return 0.0;
+    const Eigen::Vector3i c = p.cast<int>();
+    const Eigen::Vector3d t = p - c.cast<double>();
+    const std::size_t n = num_cells_;
+    const float* f = interpolation_.data() + (static_cast<std::size_t>(c.z()) * n + c.y()) * n + c.x();
+    const auto row = [&](std::size_t offset) { return f[offset] + t.x() * (f[offset + 1] - f[offset]); };
+    const double near = row(0) + t.y() * (row(n) - row(0));
+    const double far = row(n * n) + t.y() * (row(n * n + n) - row(n * n));
+    return near + t.z() * (far - near);
+  }
 
   /// f - c h^2 Laplace(f): taking the value of the nearest cell blurs f by a box, which adds h^2 / 24 times the
   /// Laplacian to its mean, trilinear interpolation adds twice as much; the coefficients take that away again. With

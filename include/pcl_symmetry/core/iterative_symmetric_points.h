@@ -109,9 +109,10 @@ ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, cons
                                     const ReflectionPlane& plane);
 
 /// One iteration of Iterative Symmetric Points (Section 4.4): reflect, match, weight, move the plane.
-/// \param samples indices of the points of the surface to reflect.
+/// \param samples indices of the points of the surface to reflect. \param guesses what IspStep::closest was for a plane
+/// nearby, which makes the search faster; null: not known.
 IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
-                               double sigma, IspUpdate update);
+                               double sigma, IspUpdate update, const std::vector<int>* guesses = nullptr);
 
 /// Iterates until the plane stands still.
 IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
