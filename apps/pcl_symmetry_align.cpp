@@ -97,8 +97,7 @@ SymmetryFrame computeFrame(const Console& console, const Input& input, const Com
   SymmetryAlignment<pcl::PointXYZ> alignment;
   try {
     alignment.setOptions(frame_options);
-    alignment.setViewpointMode(common.viewpoint.mode);
-    if (common.viewpoint.mode == Viewpoint::Mode::Given) alignment.setViewpoint(common.viewpoint.position);
+    alignment.setViewpoint(common.viewpoint);
     alignment.setInputCloud(input.points);
     const SymmetryFrame frame = alignment.compute();
     step.done(alignment.usedViewpoint() ? "seen from one side" : "");
@@ -119,8 +118,7 @@ ReflectionPlane bestPlane(const Console& console, const Input& input, const Comm
   std::vector<SymmetryPlane> planes;
   try {
     refinement.setOptions(detection);
-    refinement.setViewpointMode(common.viewpoint.mode);
-    if (common.viewpoint.mode == Viewpoint::Mode::Given) refinement.setViewpoint(common.viewpoint.position);
+    refinement.setViewpoint(common.viewpoint);
     refinement.setInputCloud(input.points);
     planes = refinement.compute();
   } catch (const pcl::BadArgumentException& error) {

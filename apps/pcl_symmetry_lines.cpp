@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "console.h"
@@ -71,16 +73,6 @@ RasterImage draw(const PlanarSymmetryTransform2D<pcl::PointXYZ>& transform, cons
   return image;
 }
 
-RasterImage sideBySide(const std::vector<RasterImage>& panels, int columns) {
-  constexpr int kGap = 4;
-  const int size = panels[0].width, num = static_cast<int>(panels.size());
-  columns = std::min(columns, num);
-  const int rows = (num + columns - 1) / columns;
-  RasterImage image(columns * (size + kGap) - kGap, rows * (size + kGap) - kGap);
-  for (int i = 0; i < num; ++i) image.paste(panels[i], i % columns * (size + kGap), i / columns * (size + kGap));
-  return image;
-}
-
 nlohmann::json toJson(const PlanarSymmetryTransform2D<pcl::PointXYZ>& transform,
                       const std::vector<LineMaximum>& lines) {
   nlohmann::json list = nlohmann::json::array();
@@ -95,6 +87,42 @@ nlohmann::json toJson(const PlanarSymmetryTransform2D<pcl::PointXYZ>& transform,
   return list;
 }
 
+/// Reads, transforms and prints one shape. \return its entry of the JSON; its picture where one is wanted.
+std::pair<nlohmann::json, std::optional<RasterImage>> analyse(const std::string& input, const LinesOptions& options,
+                                                              const Console& console) {
+  Step loading(console, "Loading " + input);
+  const pcl::PointCloud<pcl::PointXYZ>::Ptr contour = loadContour(input, options.filled);
+  loading.done(std::to_string(contour->size()) + " points");
+
+  Step searching(console, "Searching lines");
+  PlanarSymmetryTransform2D<pcl::PointXYZ> transform;
+  LineMap map;
+  try {
+    transform.setGridSize(options.grid);
+    if (options.sigma) transform.setSigma(*options.sigma);
+    transform.setNumberOfThreads(options.threads);
+    transform.setInputCloud(contour);
+    map = transform.compute();
+  } catch (const pcl::BadArgumentException& error) {
+    throw InputError(input + ": " + error.detailedMessage());
+  }
+  std::vector<LineMaximum> lines = transform.getLines();
+  if (static_cast<int>(lines.size()) > options.max_lines) lines.resize(options.max_lines);
+  const double ms = searching.done(std::to_string(lines.size()) + (lines.size() == 1 ? " line" : " lines"));
+
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const ReflectionLine& found = lines[i].line;
+    std::printf("%5zu %10.6f %10.6f %12.6g %7.3f  %s\n", i + 1, found.normal().x(), found.normal().y(), -found.offset(),
+                lines[i].value, input.c_str());
+  }
+  const nlohmann::json json{{"file", input},
+                            {"num_points", transform.getSheetPoints().cols()},
+                            {"lines", toJson(transform, lines)},
+                            {"timing_ms", {{"total", ms}}}};
+  if (!options.png_path) return {json, std::nullopt};
+  return {json, draw(transform, map, options.size, options.threads)};
+}
+
 int run(int argc, char** argv) {
   LinesOptions options;
   CommandLine line = commandLine(options);
@@ -104,36 +132,9 @@ int run(int argc, char** argv) {
   std::vector<RasterImage> panels;
   std::printf("%5s %10s %10s %12s %7s  %s\n", "line", "a", "b", "c", "score", "shape");
   for (const std::string& input : options.inputs) {
-    Step loading(console, "Loading " + input);
-    const pcl::PointCloud<pcl::PointXYZ>::Ptr contour = loadContour(input, options.filled);
-    loading.done(std::to_string(contour->size()) + " points");
-
-    Step searching(console, "Searching lines");
-    PlanarSymmetryTransform2D<pcl::PointXYZ> transform;
-    LineMap map;
-    try {
-      transform.setGridSize(options.grid);
-      if (options.sigma) transform.setSigma(*options.sigma);
-      transform.setNumberOfThreads(options.threads);
-      transform.setInputCloud(contour);
-      map = transform.compute();
-    } catch (const pcl::BadArgumentException& error) {
-      throw InputError(input + ": " + error.detailedMessage());
-    }
-    std::vector<LineMaximum> lines = transform.getLines();
-    if (static_cast<int>(lines.size()) > options.max_lines) lines.resize(options.max_lines);
-    const double ms = searching.done(std::to_string(lines.size()) + (lines.size() == 1 ? " line" : " lines"));
-
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const ReflectionLine& found = lines[i].line;
-      std::printf("%5zu %10.6f %10.6f %12.6g %7.3f  %s\n", i + 1, found.normal().x(), found.normal().y(),
-                  -found.offset(), lines[i].value, input.c_str());
-    }
-    shapes.push_back({{"file", input},
-                      {"num_points", transform.getSheetPoints().cols()},
-                      {"lines", toJson(transform, lines)},
-                      {"timing_ms", {{"total", ms}}}});
-    if (options.png_path) panels.push_back(draw(transform, map, options.size, options.threads));
+    auto [json, panel] = analyse(input, options, console);
+    shapes.push_back(std::move(json));
+    if (panel) panels.push_back(std::move(*panel));
   }
   if (options.json_path) writeText(*options.json_path, nlohmann::json{{"shapes", shapes}}.dump(2) + "\n");
   if (options.png_path) writeImage(sideBySide(panels, options.columns), *options.png_path);

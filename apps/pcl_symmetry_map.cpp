@@ -165,7 +165,6 @@ struct Slice {
 };
 
 RasterImage drawSlices(const SymmetryMap& map, const Volume& volume, const Points& points, int size, int threads) {
-  constexpr int kGap = 4;
   std::vector<Slice> slices;
   std::vector<std::vector<float>> symmetry;
   float least = std::numeric_limits<float>::max(), greatest = 0.0f;
@@ -175,10 +174,62 @@ RasterImage drawSlices(const SymmetryMap& map, const Volume& volume, const Point
     least = std::min(least, *std::min_element(symmetry[axis].begin(), symmetry[axis].end()));
     greatest = std::max(greatest, *std::max_element(symmetry[axis].begin(), symmetry[axis].end()));
   }
-  RasterImage image(3 * size + 2 * kGap, size);
+  std::vector<RasterImage> images;
   for (int axis = 0; axis < 3; ++axis)
-    image.paste(slices[axis].draw(symmetry[axis], least, greatest, points, volume.cell_size), axis * (size + kGap), 0);
-  return image;
+    images.push_back(slices[axis].draw(symmetry[axis], least, greatest, points, volume.cell_size));
+  return sideBySide(images);
+}
+
+SymmetryMap transformOf(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const MapOptions& options) {
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  try {
+    transform.setGridSize(options.common.grid);
+    if (options.sigma) transform.setSigma(*options.sigma);
+    transform.setRandomSeed(options.common.seed + 1);
+    transform.setNumberOfThreads(options.common.threads);
+    transform.setViewpoint(options.common.viewpoint);
+    transform.setInputCloud(cloud);
+    return transform.compute();
+  } catch (const pcl::BadArgumentException& error) {
+    throw InputError(options.input + ": " + error.detailedMessage());
+  }
+}
+
+/// What was found at the points of a cloud.
+struct MappedCloud {
+  pcl::PointCloud<pcl::PointXYZ>::ConstPtr cloud;
+  FinitePoints finite;
+  std::vector<float> symmetry;  ///< of the finite points
+  float least, greatest;
+
+  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& points, const SymmetryMap& map, int threads)
+      : cloud(points), finite(*points), symmetry(pointSymmetry(map, finite.points, threads)) {
+    const auto [low, high] = std::minmax_element(symmetry.begin(), symmetry.end());
+    least = *low;
+    greatest = *high;
+  }
+};
+
+void savePoints(const Shape& shape, const MappedCloud& mapped, const std::string& path) {
+  pcl::PCLPointCloud2 base = shape.cloud;
+  if (shape.mesh) pcl::toPCLPointCloud2(*mapped.cloud, base);
+  std::vector<float> intensity(mapped.cloud->size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < mapped.symmetry.size(); ++i) intensity[mapped.finite.indices[i]] = mapped.symmetry[i];
+  saveCloud(path, withIntensity(base, intensity), shape.sensor_origin, shape.sensor_orientation);
+}
+
+void drawPoints(const MappedCloud& mapped, const std::string& path, int size) {
+  PicturePanel panel;
+  panel.label = "symmetry of the best plane through each point";
+  panel.support.assign(mapped.cloud->size(), 0.0);
+  const double range = std::max(1e-9f, mapped.greatest - mapped.least);
+  for (std::size_t i = 0; i < mapped.symmetry.size(); ++i)
+    panel.support[mapped.finite.indices[i]] = (mapped.symmetry[i] - mapped.least) / range;
+  PictureScene scene;
+  scene.points = mapped.cloud;
+  scene.panels.push_back(panel);
+  scene.show_color_bar = false;
+  renderPicture(scene, path, size, size);
 }
 
 int run(int argc, char** argv) {
@@ -196,67 +247,32 @@ int run(int argc, char** argv) {
   loading.done(std::to_string(cloud->size()) + " points");
 
   Step transforming(console, "Transforming");
-  SymmetryMap map;
-  try {
-    PlanarSymmetryTransform<pcl::PointXYZ> transform;
-    transform.setGridSize(options.common.grid);
-    if (options.sigma) transform.setSigma(*options.sigma);
-    transform.setRandomSeed(options.common.seed + 1);
-    transform.setNumberOfThreads(threads);
-    transform.setViewpointMode(options.common.viewpoint.mode);
-    if (options.common.viewpoint.mode == Viewpoint::Mode::Given) {
-      transform.setViewpoint(options.common.viewpoint.position);
-    }
-    transform.setInputCloud(cloud);
-    map = transform.compute();
-  } catch (const pcl::BadArgumentException& error) {
-    throw InputError(options.input + ": " + error.detailedMessage());
-  }
+  const SymmetryMap map = transformOf(cloud, options);
   const double transforming_ms = transforming.done(std::to_string(map.values.size()) + " planes");
 
   Step mapping(console, "Mapping back to points");
-  const FinitePoints finite(*cloud);
-  const std::vector<float> symmetry = pointSymmetry(map, finite.points, threads);
-  const double mapping_ms = mapping.done(std::to_string(symmetry.size()) + " points");
+  const MappedCloud mapped(cloud, map, threads);
+  const double mapping_ms = mapping.done(std::to_string(mapped.symmetry.size()) + " points");
 
-  const auto [least, greatest] = std::minmax_element(symmetry.begin(), symmetry.end());
-  std::printf("symmetry of the planes through the points: %.3f to %.3f\n", *least, *greatest);
+  std::printf("symmetry of the planes through the points: %.3f to %.3f\n", mapped.least, mapped.greatest);
   if (options.common.json_path) {
     const nlohmann::json json{{"file", options.input},
-                              {"num_points", symmetry.size()},
-                              {"least", *least},
-                              {"greatest", *greatest},
+                              {"num_points", mapped.symmetry.size()},
+                              {"least", mapped.least},
+                              {"greatest", mapped.greatest},
                               {"timing_ms", {{"transform", transforming_ms}, {"points", mapping_ms}}}};
     writeText(*options.common.json_path, json.dump(2) + "\n");
   }
-  if (options.output) {
-    pcl::PCLPointCloud2 base = shape.cloud;
-    if (shape.mesh) pcl::toPCLPointCloud2(*cloud, base);
-    std::vector<float> intensity(cloud->size(), std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t i = 0; i < symmetry.size(); ++i) intensity[finite.indices[i]] = symmetry[i];
-    saveCloud(*options.output, withIntensity(base, intensity), shape.sensor_origin, shape.sensor_orientation);
-  }
-  const Volume volume(finite.points, options.cells);
+  if (options.output) savePoints(shape, mapped, *options.output);
+  const Volume volume(mapped.finite.points, options.cells);
   if (options.volume_path) {
     Step writing(console, "Writing " + *options.volume_path);
     writeVolume(map, volume, threads, *options.volume_path);
     writing.done(std::to_string(volume.size.prod()) + " cells");
   }
-  if (options.slices_path) {
-    writeImage(drawSlices(map, volume, finite.points, options.size, threads), *options.slices_path);
-  }
-  if (options.png_path) {
-    PictureScene scene;
-    scene.points = cloud;
-    PicturePanel panel;
-    panel.label = "symmetry of the best plane through each point";
-    panel.support.assign(cloud->size(), 0.0);
-    const double range = std::max(1e-9f, *greatest - *least);
-    for (std::size_t i = 0; i < symmetry.size(); ++i) panel.support[finite.indices[i]] = (symmetry[i] - *least) / range;
-    scene.panels.push_back(panel);
-    scene.show_color_bar = false;
-    renderPicture(scene, *options.png_path, options.size, options.size);
-  }
+  if (options.slices_path)
+    writeImage(drawSlices(map, volume, mapped.finite.points, options.size, threads), *options.slices_path);
+  if (options.png_path) drawPoints(mapped, *options.png_path, options.size);
   return 0;
 }
 

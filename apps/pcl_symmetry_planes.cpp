@@ -208,9 +208,7 @@ int run(int argc, char** argv) {
   detection.num_threads = detection.edt.num_threads = options.common.threads;
   detection.edt.num_cells = options.common.grid;
   detection.edt.sigma = options.sigma.value_or(0.0);
-  const Viewpoint& viewpoint = options.common.viewpoint;
-  refinement.setViewpointMode(viewpoint.mode);
-  if (viewpoint.mode == Viewpoint::Mode::Given) refinement.setViewpoint(viewpoint.position);
+  refinement.setViewpoint(options.common.viewpoint);
   Step searching(console, "Searching planes");
   Findings findings;
   try {

@@ -10,8 +10,8 @@
 
 #include "console.h"
 #include "options.h"
+#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/mesh_sampling.h"
-#include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 #include "picture.h"
@@ -118,6 +118,45 @@ PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView
   return scene;
 }
 
+/// Chooses by the local maxima of the transform of the cloud. \return milliseconds.
+double choose(ViewpointSelection& selection, const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud,
+              const ViewpointToolOptions& options, const Console& console) {
+  DetectionOptions detection;
+  detection.approximate = true;
+  detection.seed = options.common.seed + 1;
+  detection.num_threads = detection.edt.num_threads = options.common.threads;
+  detection.edt.num_cells = options.common.grid;
+  Step searching(console, "Searching planes");
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  std::vector<SymmetryPlane> planes;
+  try {
+    refinement.setOptions(detection);
+    refinement.setViewpoint(options.common.viewpoint);
+    refinement.setInputCloud(cloud);
+    planes = refinement.compute();
+  } catch (const pcl::BadArgumentException& error) {
+    throw InputError(options.input + ": " + error.detailedMessage());
+  }
+  selection.setPlanes(planes, refinement.getAxes(), findLocalMaxima(refinement.getSymmetryMap(), detection.maxima));
+  selection.setInputCloud(cloud);
+  if (options.up) selection.setUp(*options.up);
+  selection.setSeparation(options.separation * M_PI / 180.0);
+  const std::size_t num_axes = refinement.getAxes().size();
+  return searching.done(std::to_string(planes.size()) + " planes, " + std::to_string(num_axes) +
+                        (num_axes == 1 ? " axis" : " axes"));
+}
+
+nlohmann::json describe(const ViewpointToolOptions& options, const ViewpointSelection& selection,
+                        const std::vector<SelectedView>& good, const SelectedView& worst) {
+  nlohmann::json json{{"file", options.input},
+                      {"up", toVector(selection.getUpAxis())},
+                      {"best", toJson(good[0])},
+                      {"worst", toJson(worst)},
+                      {"good", nlohmann::json::array()}};
+  for (const SelectedView& view : good) json["good"].push_back(toJson(view));
+  return json;
+}
+
 int run(int argc, char** argv) {
   ViewpointToolOptions options;
   CommandLine line = commandLine(options);
@@ -131,49 +170,9 @@ int run(int argc, char** argv) {
   if (shape.mesh) cloud = sampleMesh(*shape.mesh, options.mesh_points, options.common.seed + 1);
   const double loading_ms = loading.done(std::to_string(cloud->size()) + " points");
 
-  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-  DetectionOptions detection;
-  detection.approximate = true;
-  detection.seed = options.common.seed + 1;
-  detection.num_threads = detection.edt.num_threads = options.common.threads;
-  detection.edt.num_cells = options.common.grid;
-  refinement.setOptions(detection);
-  refinement.setViewpointMode(options.common.viewpoint.mode);
-  if (options.common.viewpoint.mode == Viewpoint::Mode::Given)
-    refinement.setViewpoint(options.common.viewpoint.position);
-  Step searching(console, "Searching planes");
   ViewpointSelection selection;
-  std::vector<SymmetryPlane> planes;
-  std::vector<LocalMaximum> maxima;
-  try {
-    PlanarSymmetryTransform<pcl::PointXYZ> transform;
-    transform.setNumCells(options.common.grid);
-    transform.setMapSize(detection.num_theta, detection.num_phi, detection.num_radius);
-    transform.setNumSamples(detection.num_samples);
-    transform.setViewpointMode(options.common.viewpoint.mode);
-    if (options.common.viewpoint.mode == Viewpoint::Mode::Given) {
-      transform.setViewpoint(options.common.viewpoint.position);
-    }
-    transform.setNumberOfThreads(options.common.threads);
-    transform.setRandomSeed(detection.seed);
-    transform.setInputCloud(cloud);
-    const SymmetryMap map = transform.compute();
-    maxima = findLocalMaxima(map, detection.maxima);
-    refinement.setInputCloud(cloud);
-    refinement.setSymmetryMap(map, transform.getDistanceTransform());
-    planes = refinement.compute();
-  } catch (const pcl::BadArgumentException& error) {
-    throw InputError(options.input + ": " + error.detailedMessage());
-  }
-  const std::size_t num_axes = refinement.getAxes().size();
-  const double searching_ms = searching.done(std::to_string(planes.size()) + " planes, " + std::to_string(num_axes) +
-                                             (num_axes == 1 ? " axis" : " axes"));
-
+  const double searching_ms = choose(selection, cloud, options, console);
   Step choosing(console, "Choosing views");
-  selection.setPlanes(planes, refinement.getAxes(), maxima);
-  selection.setInputCloud(cloud);
-  if (options.up) selection.setUp(*options.up);
-  selection.setSeparation(options.separation * M_PI / 180.0);
   const std::vector<SelectedView> good = selection.getGoodViews(options.num_views);
   const SelectedView worst = selection.getWorstView();
   const double choosing_ms = choosing.done(std::to_string(good.size()) + (good.size() == 1 ? " view" : " views"));
@@ -182,18 +181,12 @@ int run(int argc, char** argv) {
   for (std::size_t i = 0; i < good.size(); ++i) printView(i == 0 ? "best" : "good", good[i]);
   printView("worst", worst);
   if (options.common.json_path) {
-    nlohmann::json json{{"file", options.input},
-                        {"up", toVector(selection.getUpAxis())},
-                        {"best", toJson(good[0])},
-                        {"worst", toJson(worst)},
-                        {"good", nlohmann::json::array()},
-                        {"timing_ms", {{"load", loading_ms}, {"planes", searching_ms}, {"views", choosing_ms}}}};
-    for (const SelectedView& view : good) json["good"].push_back(toJson(view));
+    nlohmann::json json = describe(options, selection, good, worst);
+    json["timing_ms"] = {{"load", loading_ms}, {"planes", searching_ms}, {"views", choosing_ms}};
     writeText(*options.common.json_path, json.dump(2) + "\n");
   }
-  if (options.icon_path) {
+  if (options.icon_path)
     renderPicture(sceneOf(shape, cloud, good[0], ""), *options.icon_path, options.size, options.size);
-  }
   if (options.png_path) {
     Step drawing(console, "Drawing " + *options.png_path);
     renderPicture({scoreSphere(selection, good[0], worst), sceneOf(shape, cloud, good[0], "best view"),

@@ -24,6 +24,7 @@ void RasterImage::set(int x, int y, const Eigen::Vector3d& color) {
 }
 
 void RasterImage::drawDisk(const Eigen::Vector2d& center, double radius, const Eigen::Vector3d& color) {
+  radius = std::max(radius, (center - center.array().round().matrix()).norm());
   const int x_end = std::min(width - 1, static_cast<int>(std::floor(center.x() + radius)));
   const int y_end = std::min(height - 1, static_cast<int>(std::floor(center.y() + radius)));
   for (int y = std::max(0, static_cast<int>(std::ceil(center.y() - radius))); y <= y_end; ++y)
@@ -33,6 +34,15 @@ void RasterImage::drawDisk(const Eigen::Vector2d& center, double radius, const E
 
 void RasterImage::paste(const RasterImage& tile, int x, int y) {
   for (int row = 0; row < tile.height; ++row) std::memcpy(at(x, y + row), tile.at(0, row), 3 * std::size_t(tile.width));
+}
+
+RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns) {
+  constexpr int kGap = 4;
+  const int num = static_cast<int>(tiles.size()), columns = num_columns > 0 ? std::min(num_columns, num) : num;
+  const int rows = (num + columns - 1) / columns, width = tiles[0].width + kGap, height = tiles[0].height + kGap;
+  RasterImage image(columns * width - kGap, rows * height - kGap);
+  for (int i = 0; i < num; ++i) image.paste(tiles[i], i % columns * width, i / columns * height);
+  return image;
 }
 
 bool isImagePath(const std::string& path) {

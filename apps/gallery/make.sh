@@ -68,6 +68,7 @@ figure_7() {
 figure_7 1 i
 figure_7 2 i,i
 figure_7 5 i,i,i,i,i
+show pcl_symmetry_viewer cow.off -up 0,1,0 -width 480 -height 360 -keys g -screenshot "$pictures/figure_7_support.png"
 
 figure_8() {
   show pcl_symmetry_viewer bull.off -up 0,1,0 -width 480 -height 360 -keys "$2" -screenshot "$pictures/figure_8_$1.png"

@@ -99,11 +99,10 @@ RasterImage draw(const pcl::PointCloud<pcl::PointXYZ>& contour, int size) {
 
 int run(int argc, char** argv) {
   if (argc < 4) throw UsageError("usage: draw_medial_axis PNG SIZE CONTOUR...");
-  constexpr int kGap = 4;
   const int size = static_cast<int>(parseInteger("SIZE", argv[2], Range::closed(16, 4096)));
-  RasterImage image((argc - 3) * (size + kGap) - kGap, size);
-  for (int i = 3; i < argc; ++i) image.paste(draw(*loadContour(argv[i], false), size), (i - 3) * (size + kGap), 0);
-  writeImage(image, argv[1]);
+  std::vector<RasterImage> images;
+  for (int i = 3; i < argc; ++i) images.push_back(draw(*loadContour(argv[i], false), size));
+  writeImage(sideBySide(images), argv[1]);
   return 0;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -35,11 +36,69 @@ std::string labelOf(const SymmetryPlane& plane, std::size_t index, std::size_t n
   return text;
 }
 
-template <typename Cloud>
-void normalize(Cloud& cloud, const BoundingBall& ball) {
-  for (auto& point : cloud)
-    point.getVector3fMap() =
-        ((point.getVector3fMap().template cast<double>() - ball.center) / ball.radius).template cast<float>();
+/// Takes the ball to the unit ball.
+struct ToUnitBall {
+  BoundingBall ball;
+
+  Eigen::Vector3d operator()(const Eigen::Vector3d& x) const { return (x - ball.center) / ball.radius; }
+  ReflectionPlane operator()(const ReflectionPlane& plane) const {
+    return {plane.normal(), plane.signedDistance(ball.center) / -ball.radius};
+  }
+  void operator()(pcl::PointCloud<pcl::PointXYZ>& cloud) const {
+    for (pcl::PointXYZ& point : cloud)
+      point.getVector3fMap() = (*this)(point.getVector3fMap().cast<double>().eval()).cast<float>();
+  }
+};
+
+SymmetryFrame frameOf(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const ViewerModelOptions& options) {
+  SymmetryAlignment<pcl::PointXYZ> alignment;
+  alignment.setGridSize(options.detection.edt.num_cells);
+  alignment.setRandomSeed(options.detection.seed);
+  alignment.setNumberOfThreads(options.detection.num_threads);
+  alignment.setViewpoint(options.viewpoint);
+  alignment.setInputCloud(cloud);
+  return alignment.compute();
+}
+
+SegmentationOptions segmentationOf(const ViewerModelOptions& options, bool seen_from_one_side) {
+  SegmentationOptions segmentation;
+  segmentation.num_parts = options.num_parts;
+  segmentation.seed = options.detection.seed;
+  segmentation.num_threads = options.detection.num_threads;
+  // Thickness and line of sight need an inside, which a scan from one side does not have.
+  if (seen_from_one_side) segmentation.merging.evidence = MergingEvidence::SymmetryAndConcavity;
+  return segmentation;
+}
+
+std::string summaryOf(const ViewerModel& model, bool seen_from_one_side) {
+  const auto counted = [](std::size_t number, const char* one, const char* many) {
+    return std::to_string(number) + " " + (number == 1 ? one : many);
+  };
+  std::string summary = counted(model.planes.size(), "plane", "planes");
+  if (!model.axes.empty()) summary += ", " + counted(model.axes.size(), "axis", "axes");
+  if (!model.centers.empty()) summary += ", " + counted(model.centers.size(), "center", "centers");
+  if (seen_from_one_side) summary += ", seen from one side";
+  return summary;
+}
+
+/// The finite ones, in order. \return their indices.
+std::vector<std::size_t> finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud,
+                                      pcl::PointCloud<pcl::PointXYZ>& finite) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!pcl::isXYZFinite(cloud[i])) continue;
+    indices.push_back(i);
+    finite.push_back(cloud[i]);
+  }
+  return indices;
+}
+
+pcl::PolygonMesh normalized(pcl::PolygonMesh mesh, const ToUnitBall& normalize) {
+  pcl::PointCloud<pcl::PointXYZ> vertices;
+  pcl::fromPCLPointCloud2(mesh.cloud, vertices);
+  normalize(vertices);
+  pcl::toPCLPointCloud2(vertices, mesh.cloud);
+  return mesh;
 }
 
 }  // namespace
@@ -49,68 +108,37 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
   if (shape.mesh) cloud = sampleMesh(*shape.mesh, options.mesh_points, options.detection.seed);
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   refinement.setOptions(options.detection);
-  refinement.setViewpointMode(options.viewpoint.mode);
-  if (options.viewpoint.mode == Viewpoint::Mode::Given) refinement.setViewpoint(options.viewpoint.position);
+  refinement.setViewpoint(options.viewpoint);
   refinement.setInputCloud(cloud);
   ViewerModel model;
   model.planes = refinement.compute();
   model.axes = refinement.getAxes();
   model.centers = refinement.getCenters();
+  model.frame = frameOf(cloud, options);
 
-  SymmetryAlignment<pcl::PointXYZ> alignment;
-  alignment.setGridSize(options.detection.edt.num_cells);
-  alignment.setRandomSeed(options.detection.seed);
-  alignment.setNumberOfThreads(options.detection.num_threads);
-  alignment.setViewpointMode(options.viewpoint.mode);
-  if (options.viewpoint.mode == Viewpoint::Mode::Given) alignment.setViewpoint(options.viewpoint.position);
-  alignment.setInputCloud(cloud);
-  model.frame = alignment.compute();
-
-  std::vector<std::size_t> finite;
-  for (std::size_t i = 0; i < cloud->size(); ++i)
-    if (pcl::isXYZFinite((*cloud)[i])) finite.push_back(i);
   model.points.reset(new pcl::PointCloud<pcl::PointXYZ>);
-  Points positions(3, finite.size());
-  for (std::size_t i = 0; i < finite.size(); ++i) {
-    model.points->push_back((*cloud)[finite[i]]);
-    positions.col(i) = (*cloud)[finite[i]].getVector3fMap();
-  }
-  const BoundingBall ball = boundingBall(positions);
-  normalize(*model.points, ball);
-  if (shape.mesh) {
-    model.mesh = shape.mesh;
-    pcl::PointCloud<pcl::PointXYZ> vertices;
-    pcl::fromPCLPointCloud2(shape.mesh->cloud, vertices);
-    normalize(vertices, ball);
-    pcl::toPCLPointCloud2(vertices, model.mesh->cloud);
-  }
+  const std::vector<std::size_t> finite = finitePoints(*cloud, *model.points);
+  const ToUnitBall normalize{boundingBall(model.points->getMatrixXfMap(3, 4, 0))};
+  normalize(*model.points);
+  if (shape.mesh) model.mesh = normalized(*shape.mesh, normalize);
   for (std::size_t k = 0; k < model.planes.size(); ++k) {
     SymmetryPlane& plane = model.planes[k];
     const std::vector<float> support = refinement.computePointSupport(plane);
     plane.point_support.clear();
     for (const std::size_t i : finite) plane.point_support.push_back(support[i]);
     model.labels.push_back(labelOf(plane, k, model.planes.size()));
-    static_cast<ReflectionPlane&>(plane) =
-        ReflectionPlane(plane.normal(), plane.signedDistance(ball.center) / -ball.radius);
+    static_cast<ReflectionPlane&>(plane) = normalize(static_cast<const ReflectionPlane&>(plane));
   }
-  model.frame.center = (model.frame.center - ball.center) / ball.radius;
-  for (SymmetryAxis& axis : model.axes) axis.point = (axis.point - ball.center) / ball.radius;
-  for (SymmetryCenter& center : model.centers) center.point = (center.point - ball.center) / ball.radius;
-  model.views.setPlanes(model.planes, model.axes);
+  model.frame.center = normalize(model.frame.center);
+  for (SymmetryAxis& axis : model.axes) axis.point = normalize(axis.point);
+  for (SymmetryCenter& center : model.centers) center.point = normalize(center.point);
+
+  model.views.setPlanes(model.planes, model.axes,
+                        findLocalMaxima(refinement.getSymmetryMap(), options.detection.maxima));
   model.views.setInputCloud(model.points);
   if (options.up) model.views.setUp(*options.up);
-  model.segmentation.num_parts = options.num_parts;
-  model.segmentation.seed = options.detection.seed;
-  model.segmentation.num_threads = options.detection.num_threads;
-  // Thickness and line of sight need an inside, which a scan from one side does not have.
-  if (refinement.usedViewpoint()) model.segmentation.merging.evidence = MergingEvidence::SymmetryAndConcavity;
-  const auto counted = [](std::size_t number, const char* one, const char* many) {
-    return std::to_string(number) + " " + (number == 1 ? one : many);
-  };
-  model.summary = counted(model.planes.size(), "plane", "planes");
-  if (!model.axes.empty()) model.summary += ", " + counted(model.axes.size(), "axis", "axes");
-  if (!model.centers.empty()) model.summary += ", " + counted(model.centers.size(), "center", "centers");
-  if (refinement.usedViewpoint()) model.summary += ", seen from one side";
+  model.segmentation = segmentationOf(options, refinement.usedViewpoint());
+  model.summary = summaryOf(model, refinement.usedViewpoint());
   return model;
 }
 

@@ -60,6 +60,7 @@ public:
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
   /// The scanner stood here, input frame.
   void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
   const Viewpoint& getViewpoint() const { return viewpoint_; }
 
   /// Takes points spread over the mesh by area in place of a cloud (PointT needs nothing but x, y and z).

@@ -42,6 +42,7 @@ public:
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
   /// The scanner stood here, input frame.
   void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
   const Viewpoint& getViewpoint() const { return viewpoint_; }
 
   /// \return the frame, in the frame of the input.

@@ -52,6 +52,7 @@ public:
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
   /// The scanner stood here, input frame.
   void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
   const Viewpoint& getViewpoint() const { return viewpoint_; }
 
   /// Any PCL search in place of our own FLANN tree, except OrganizedNeighbor (reflected points lie behind what the
@@ -74,6 +75,8 @@ public:
   const std::vector<SymmetryAxis>& getAxes() const { return axes_; }
   /// Of the last compute(): centers of spheres.
   const std::vector<SymmetryCenter>& getCenters() const { return centers_; }
+  /// Of the last compute(): the map whose maxima were refined.
+  const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : own_map_; }
   /// Of the last compute(): whether a viewpoint was used.
   bool usedViewpoint() const { return used_viewpoint_; }
   /// Of the last compute(): the points used, in the order of SymmetryPlane::point_support.
@@ -92,7 +95,7 @@ private:
   SearchPtr search_;
   Viewpoint viewpoint_;
   bool used_viewpoint_ = false;
-  SymmetryMap map_;
+  SymmetryMap map_, own_map_;  // given; made here
   std::shared_ptr<const GaussianEdt> edt_;
   pcl::Indices used_indices_;
   Points used_points_;

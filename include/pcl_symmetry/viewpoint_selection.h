@@ -30,7 +30,8 @@ struct SelectedView : RankedView {
 /// refinement.setInputCloud(cloud);
 /// refinement.setApproximate(true);  // all local maxima, not only the symmetries of the whole
 /// pcl_symmetry::ViewpointSelection selection;
-/// selection.setPlanes(refinement.compute(), refinement.getAxes());
+/// const std::vector<pcl_symmetry::SymmetryPlane> planes = refinement.compute();
+/// selection.setPlanes(planes, refinement.getAxes(), findLocalMaxima(refinement.getSymmetryMap()));
 /// selection.setInputCloud(cloud);
 /// const Eigen::Affine3f camera = selection.getBestView().pose;
 /// \endcode

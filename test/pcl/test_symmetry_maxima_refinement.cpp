@@ -112,8 +112,12 @@ TEST(SymmetryMaximaRefinement, TakesAMapMadeBefore) {
   const SymmetryMap map = transform.compute();
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   refinement.setInputCloud(cloud);
+  refinement.compute();
+  EXPECT_EQ(refinement.getSymmetryMap().grid.size(), refinement.getSymmetryMap().values.size());
+  EXPECT_NE(refinement.getSymmetryMap().values, map.values) << "its own, by another method";
   refinement.setSymmetryMap(map, transform.getDistanceTransform());
   const auto planes = refinement.compute();
+  EXPECT_EQ(refinement.getSymmetryMap().values, map.values);
   EXPECT_EQ(planes.size(), 9u);
   EXPECT_EQ(numFound(shape, planes, 0.001 * test::kDegree, 1e-5 * test::diagonal(shape.cloud())), 9);
 }

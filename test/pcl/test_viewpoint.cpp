@@ -173,6 +173,9 @@ TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
   refinement.setViewpoint(scan.viewpoint);
   EXPECT_EQ(refinement.getViewpoint().mode, Viewpoint::Mode::Given);
   EXPECT_EQ(refinement.getViewpoint().position, scan.viewpoint);
+  refinement.setViewpoint(Viewpoint{Viewpoint::Mode::None, {}});
+  EXPECT_EQ(refinement.getViewpoint().mode, Viewpoint::Mode::None);
+  refinement.setViewpoint(scan.viewpoint);
   const auto planes = refinement.compute();
   EXPECT_TRUE(refinement.usedViewpoint());
   for (const ReflectionPlane& plane : scan.planes)

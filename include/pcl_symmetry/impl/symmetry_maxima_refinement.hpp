@@ -135,6 +135,7 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     const Visibility* visibility = seen ? &*seen : nullptr;
     Detection detection = edt_ ? refineMaxima(used_points_, *edt_, map_, options_, search(*edt_), visibility)
                                : detectPlanes(used_points_, options_, search, visibility);
+    own_map_ = std::move(detection.map);
     axes_ = std::move(detection.axes);
     centers_ = std::move(detection.centers);
     timing_ms_ = std::move(detection.timing_ms);
