@@ -6,6 +6,7 @@
 #include "options.h"
 #include "planes.h"
 #include "registration.h"
+#include "retrieval.h"
 #include "segmentation.h"
 
 namespace {
@@ -22,6 +23,7 @@ constexpr SubCommand kSubCommands[] = {
     {"planes", "how well symmetry planes are found", evaluatePlanes},
     {"alignment", "how well the frames of scans agree with those of whole models", evaluateAlignment},
     {"registration", "how well scans are brought to models of their objects", evaluateRegistration},
+    {"retrieval", "how well shapes find others of their class", evaluateRetrieval},
     {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation}};
 
 void printUsage() {

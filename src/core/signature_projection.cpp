@@ -136,17 +136,19 @@ SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, 
   return result;
 }
 
-Eigen::VectorXf SignatureProjection::project(const float* signature) const {
-  const Eigen::Map<const Eigen::VectorXf> values(signature, kSignatureSize);
-  const Eigen::VectorXf compact = basis_.transpose() * (values - mean_);
-  const float norm = compact.norm();
-  return norm > 0.0f ? compact / norm : compact;
+Eigen::MatrixXf SignatureProjection::project(const Eigen::Ref<const Eigen::MatrixXf>& signatures) const {
+  check(signatures.rows() == mean_.size(), "size of a signature", signatures.rows(), "that of the projection");
+  Eigen::MatrixXf compact = basis_.transpose() * (signatures.colwise() - mean_);
+  for (Eigen::Index i = 0; i < compact.cols(); ++i) compact.col(i).stableNormalize();
+  return compact;
 }
 
-Eigen::MatrixXf SignatureProjection::rotations(const Eigen::VectorXf& compact) const {
-  Eigen::MatrixXf result(numDimensions(), kNumAxisRotations);
-  for (int r = 0; r < kNumAxisRotations; ++r)
-    result.col(r) = (turns_[static_cast<std::size_t>(r)] * compact).stableNormalized();
+Eigen::MatrixXf SignatureProjection::rotations(const Eigen::Ref<const Eigen::MatrixXf>& compact) const {
+  check(compact.rows() == basis_.cols(), "size of a compact form", compact.rows(), "that of the projection");
+  Eigen::MatrixXf result(numDimensions(), kNumAxisRotations * compact.cols());
+  for (Eigen::Index i = 0; i < compact.cols(); ++i)
+    for (int r = 0; r < kNumAxisRotations; ++r)
+      result.col(kNumAxisRotations * i + r) = (turns_[static_cast<std::size_t>(r)] * compact.col(i)).stableNormalized();
   return result;
 }
 
@@ -175,7 +177,7 @@ SignatureProjection SignatureProjection::fromValues(const std::vector<float>& va
   return result;
 }
 
-float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::VectorXf& compact) {
+float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::Ref<const Eigen::MatrixXf>& compact) {
   const float cosine = (rotations.transpose() * compact).maxCoeff();
   return std::sqrt(std::max(0.0f, 2.0f - 2.0f * cosine));
 }

@@ -131,15 +131,15 @@ TEST(SignatureProjection, RotatesAsSignaturesDo) {
   options.num_dimensions = 12 * kNumAxisRotations;
   const SignatureProjection projection = SignatureProjection::fit(signatures, options);
   Eigen::VectorXf rotated(kSignatureSize);
-  const Eigen::VectorXf compact = projection.project(signatures.col(3).data());
+  const Eigen::VectorXf compact = projection.project(signatures.col(3));
   EXPECT_NEAR(compact.norm(), 1.0, 1e-5);
   const Eigen::MatrixXf rotations = projection.rotations(compact);
   for (int r = 0; r < kNumAxisRotations; ++r) {
     rotateSignature(signatures.col(3).data(), r, rotated.data());
-    EXPECT_LT((projection.project(rotated.data()) - rotations.col(r)).norm(), 0.05) << "rotation " << r;
-    EXPECT_LT(signatureDistance(rotations, projection.project(rotated.data())), 0.05);
+    EXPECT_LT((projection.project(rotated) - rotations.col(r)).norm(), 0.05) << "rotation " << r;
+    EXPECT_LT(signatureDistance(rotations, projection.project(rotated)), 0.05);
   }
-  EXPECT_GT(signatureDistance(rotations, projection.project(signatures.col(4).data())), 0.1);
+  EXPECT_GT(signatureDistance(rotations, projection.project(signatures.col(4))), 0.1);
 }
 
 TEST(SignatureProjection, IsTheSameWithAnyNumberOfThreadsAndAfterStorage) {
@@ -153,7 +153,7 @@ TEST(SignatureProjection, IsTheSameWithAnyNumberOfThreadsAndAfterStorage) {
   EXPECT_EQ(one.toValues(), many.toValues());
   const SignatureProjection stored = SignatureProjection::fromValues(one.toValues());
   EXPECT_EQ(stored.numDimensions(), 32);
-  EXPECT_EQ(stored.project(signatures.col(1).data()), one.project(signatures.col(1).data()));
+  EXPECT_EQ(stored.project(signatures), one.project(signatures));
   std::vector<float> cut = one.toValues();
   cut.pop_back();
   EXPECT_THROW(SignatureProjection::fromValues(cut), std::invalid_argument);

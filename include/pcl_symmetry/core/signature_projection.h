@@ -35,12 +35,12 @@ public:
   bool empty() const { return basis_.size() == 0; }
   int numDimensions() const { return static_cast<int>(basis_.cols()); }
 
-  /// \param signature kSignatureSize values. \return numDimensions() values of unit norm.
-  Eigen::VectorXf project(const float* signature) const;
+  /// \param signatures kSignatureSize x M, as of ShapeDescription. \return numDimensions() x M, columns of unit norm.
+  Eigen::MatrixXf project(const Eigen::Ref<const Eigen::MatrixXf>& signatures) const;
 
-  /// \param compact of project(). \return the compact forms of the 24 rotations, numDimensions() x 24, the first as
-  /// given; see rotateSignature().
-  Eigen::MatrixXf rotations(const Eigen::VectorXf& compact) const;
+  /// \param compact numDimensions() x M, of project(). \return the compact forms of the 24 rotations of each,
+  /// numDimensions() x 24 M, those of the first signature first and its own before others; see rotateSignature().
+  Eigen::MatrixXf rotations(const Eigen::Ref<const Eigen::MatrixXf>& compact) const;
 
   /// All numbers that make up the projection, to be stored. \return and their counterpart.
   std::vector<float> toValues() const;
@@ -53,8 +53,8 @@ private:
   std::vector<Eigen::MatrixXf> turns_;  // 24, K x K
 };
 
-/// The least distance of a shape to another one in any rotation of axes.
+/// The least distance of a shape to another one in any of their frames and any rotation of axes.
 /// \param rotations of the one, see SignatureProjection::rotations(). \param compact of the other. \return in [0, 2].
-float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::VectorXf& compact);
+float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::Ref<const Eigen::MatrixXf>& compact);
 
 }  // namespace pcl_symmetry
