@@ -11,7 +11,9 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t kLanes = 32;  // sums that are kept apart: enough to hide the latency of additions
+constexpr int kTransformCells = 64;
+constexpr double kTransformSigma = 1.0 / 16.0;  // of the radius
+constexpr std::size_t kLanes = 32;              // sums that are kept apart: enough to hide the latency of additions
 
 PCL_SYMMETRY_MULTIVERSION
 float sumOfSquares(const float* a, const float* b, std::size_t size) {
@@ -67,16 +69,20 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
   const Eigen::Matrix3Xd moved = T_frame_input * points.cast<double>();
   const double scale = options.radius * moved.colwise().norm().mean();
   check(scale > 0.0, "mean distance from the origin", scale, "> 0");
+  const Points scaled = (moved / scale).cast<float>();
   GaussianEdtOptions edt_options;
-  edt_options.num_cells = kDescriptorBins;
   edt_options.radius = 1.0;
   edt_options.num_threads = options.num_threads;
-  const GaussianEdt edt((moved / scale).cast<float>(), edt_options);
+  edt_options.num_cells = kDescriptorBins;
   SymmetryDescriptors result;
+  result.gedt = GaussianEdt(scaled, edt_options).values();
+  // Planes are told apart better by a narrower Gaussian than places are.
+  edt_options.num_cells = kTransformCells;
+  edt_options.sigma = kTransformSigma;
+  const GaussianEdt edt(scaled, edt_options);
   result.prst = prstOf(edt, kDescriptorBins, 1.0, options);
   // One bin of r lies about the planes through the origin, whatever its width.
   result.prsd = prstOf(edt, 1, 1.0, options);
-  result.gedt = edt.values();
   return result;
 }
 

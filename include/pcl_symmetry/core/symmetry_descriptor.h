@@ -18,7 +18,7 @@ constexpr int kGEDTSize = kPRSTSize;
 
 struct DescriptorOptions {
   double radius = 2.0;    ///< of the ball that is described, in mean distances of the points from the origin, > 0
-  int num_samples = 128;  ///< of the sampled transform, >= 1
+  int num_samples = 256;  ///< of the sampled transform, >= 1
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
