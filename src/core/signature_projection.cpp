@@ -97,7 +97,7 @@ void ProjectionOptions::validate() const {
 SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options) {
   options.validate();
   check(signatures.rows() == kSignatureSize, "size of a signature", signatures.rows(), "kSignatureSize");
-  check(signatures.cols() >= 2, "number of shapes", signatures.cols(), ">= 2");
+  check(signatures.cols() >= 1, "number of shapes", signatures.cols(), ">= 1");
   const Eigen::Index n = signatures.cols();
   const Components components = principalComponents(innerProducts(signatures, options.num_threads), options);
   const Eigen::Index k = components.variances.size();

@@ -28,7 +28,7 @@ class SignatureProjection {
 public:
   SignatureProjection() = default;
 
-  /// \param signatures kSignatureSize x N, one reference shape a column, N >= 2; 200 are enough for any number of
+  /// \param signatures kSignatureSize x N, one reference shape a column, N >= 1; 200 are enough for any number of
   /// shapes. \throws std::invalid_argument for bad options, too few shapes, or shapes that are all alike.
   static SignatureProjection fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options = {});
 
