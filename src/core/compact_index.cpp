@@ -46,13 +46,13 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
   Eigen::MatrixXf queries(num_leading + 1, rotations.cols());
   queries.topRows(num_leading) = rotations.topRows(num_leading);
   queries.row(num_leading).setOnes();
-  const Eigen::RowVectorXf sq_norms = 0.5f * rotations.topRows(num_leading).colwise().squaredNorm();
+  const Eigen::VectorXf sq_norms = 0.5f * rotations.topRows(num_leading).colwise().squaredNorm().transpose();
   std::vector<float> nearness(forms.size());  // -1/2 squared distance
   parallelRanges(forms.size(), kForms, options_.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto first = static_cast<Eigen::Index>(begin), size = static_cast<Eigen::Index>(end - begin);
-    Eigen::MatrixXf products = leading_.middleCols(first, size).transpose() * queries;
-    products.rowwise() -= sq_norms;
-    Eigen::Map<Eigen::VectorXf>(nearness.data() + begin, size) = products.rowwise().maxCoeff();
+    Eigen::MatrixXf products = queries.transpose() * leading_.middleCols(first, size);
+    products.colwise() -= sq_norms;
+    Eigen::Map<Eigen::RowVectorXf>(nearness.data() + begin, size) = products.colwise().maxCoeff();
   });
   std::nth_element(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(count), forms.end(), [&](int a, int b) {
     const float near_a = nearness[static_cast<std::size_t>(a)], near_b = nearness[static_cast<std::size_t>(b)];
@@ -72,7 +72,7 @@ std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& 
       rotations, static_cast<std::size_t>(std::max(options_.num_candidates, 2 * num_nearest * forms_per_shape_)));
   Eigen::MatrixXf near(compact_.rows(), static_cast<Eigen::Index>(forms.size()));
   for (std::size_t i = 0; i < forms.size(); ++i) near.col(static_cast<Eigen::Index>(i)) = compact_.col(forms[i]);
-  const Eigen::VectorXf cosines = (near.transpose() * rotations).rowwise().maxCoeff();
+  const Eigen::RowVectorXf cosines = (rotations.transpose() * near).colwise().maxCoeff();
   // The nearest form of each shape, then the nearest shapes.
   for (std::size_t i = 0; i < forms.size(); ++i) {
     const int shape = forms[i] / forms_per_shape_;
