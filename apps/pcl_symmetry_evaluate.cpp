@@ -5,7 +5,9 @@
 #include "alignment.h"
 #include "options.h"
 #include "planes.h"
+#include "recognition.h"
 #include "registration.h"
+#include "retrieval.h"
 #include "segmentation.h"
 
 namespace {
@@ -21,7 +23,9 @@ struct SubCommand {
 constexpr SubCommand kSubCommands[] = {
     {"planes", "how well symmetry planes are found", evaluatePlanes},
     {"alignment", "how well the frames of scans agree with those of whole models", evaluateAlignment},
+    {"recognition", "how well a scan tells which model of a database it shows", evaluateRecognition},
     {"registration", "how well scans are brought to models of their objects", evaluateRegistration},
+    {"retrieval", "how well shapes find others of their class", evaluateRetrieval},
     {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation}};
 
 void printUsage() {

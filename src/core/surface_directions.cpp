@@ -1,70 +1,29 @@
 #include "surface_directions.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
+
+#include "cell_normals.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr int kFewestPoints = 6;         // in the neighbourhood of a cell
 const float kWidth = 6.0f * kDegree;     // of agreement, where it falls to 0
 const float kPeakWidth = 5.0 * kDegree;  // of normals that make one peak
 constexpr int kPeakStarts = 150, kPeakSteps = 5;
 const double kPeakDistance = 15.0 * kDegree;
 constexpr double kLeastPeak = 0.03;  // of the surface
 
-struct Moments {
-  float count = 0.0f;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-
-  void operator+=(const Moments& other) {
-    count += other.count;
-    sum += other.sum;
-    squares += other.squares;
-  }
-};
-
 }  // namespace
 
 SurfaceDirections::SurfaceDirections(const PointsRef& points, const GaussianEdt& edt) {
-  const int n = (edt.numCells() + 1) / 2 + 2;  // a border of one cell
-  const double cell_size = 2.0 * edt.cellSize();
-  std::vector<Moments> cells(static_cast<std::size_t>(n) * n * n);
-  std::vector<int> occupied;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d x = (points.col(i).cast<double>() - edt.origin()) / cell_size;
-    const Eigen::Array3i at = (x.array() + 1.25).cast<int>().max(1).min(n - 2);
-    const int index = (at.z() * n + at.y()) * n + at.x();
-    const Eigen::Vector3f p = (x - Eigen::Vector3d::Constant(0.25 * n)).cast<float>();
-    Moments& cell = cells[index];
-    if (cell.count == 0.0f) occupied.push_back(index);
-    cell.count += 1.0f;
-    cell.sum += p;
-    cell.squares += p * p.transpose();
-  }
-  normals_.resize(3, static_cast<Eigen::Index>(occupied.size()));
-  weights_.setZero(normals_.cols());
-  for (std::size_t c = 0; c < occupied.size(); ++c) {
-    Moments near;
-    for (int z = -1; z <= 1; ++z)
-      for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) near += cells[occupied[c] + (z * n + y) * n + x];
-    const auto column = static_cast<Eigen::Index>(c);
-    normals_.col(column).setUnit(2);
-    if (near.count < kFewestPoints) continue;
-    const Eigen::Matrix3f covariance = near.squares - near.sum * near.sum.transpose() / near.count;
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-    solver.computeDirect(covariance);
-    const Eigen::Vector3f values = solver.eigenvalues();
-    if (!(values[2] > 0.0f) || !solver.eigenvectors().allFinite()) continue;
-    normals_.col(column) = solver.eigenvectors().col(0).normalized();
-    weights_[column] = std::max(0.0f, (values[1] - values[0]) / values[2]);
-  }
+  const Eigen::Vector3d corner = edt.origin() - Eigen::Vector3d::Constant(0.5 * edt.cellSize());
+  CellNormals cells = cellNormals(points, corner, 2.0 * edt.cellSize(), (edt.numCells() + 1) / 2);
+  normals_ = std::move(cells.normals);
+  weights_ = std::move(cells.flatness);
   const float total = weights_.sum();
   if (total > 0.0f) weights_ /= total;
 }

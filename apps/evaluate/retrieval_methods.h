@@ -1,0 +1,41 @@
+/// Ways to tell how alike shapes are: the descriptors that the paper compares (Section 5.2), and this library's.
+#pragma once
+
+#include <pcl/PolygonMesh.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pcl_symmetry/core/point_set.h"
+
+namespace pcl_symmetry::apps {
+
+struct RetrievalOptions {
+  int num_references = 200;  ///< models, drawn whatever their class, that compact forms and scaling are made from
+  int num_nearest = 10;      ///< of these that a model's typical distance is taken from
+  std::uint64_t seed = 0;
+  int num_threads = 0;
+};
+
+struct RetrievalMethod {
+  std::string name;
+  Eigen::MatrixXf distances;  ///< N x N, symmetric
+};
+
+/// Told the share of the work that is done, in [0, 1].
+using RetrievalProgress = std::function<void(double)>;
+
+/// PRSD, PRST, GEDT and the product of the latter two: L2 in one frame each, about the center of mass.
+/// \param clouds of the models. \param canonical turned to the axes of their symmetry, or else as they are.
+std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, bool canonical,
+                                              const RetrievalOptions& options, const RetrievalProgress& progress);
+
+/// Signatures in the best of all rotations of axes, their compact forms, and these with distances scaled by those to
+/// the references.
+std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,
+                                              const RetrievalProgress& progress);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+#include <pcl/io/pcd_io.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "pcl_symmetry/core/random.h"
+#include "pcl_symmetry/recognition/symmetry_database.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Cloud = SymmetryDatabase::Cloud;
+
+/// A box with a rod on top.
+Cloud rodOnBox(const Eigen::Vector3d& half, double rod, const Eigen::Isometry3d& pose, std::uint64_t seed) {
+  Cloud cloud;
+  RandomStream random(seed);
+  const auto side = [&] { return 2.0 * random.uniform() - 1.0; };
+  for (int i = 0; i < 5000; ++i) {
+    Eigen::Vector3d x(side(), side(), side());
+    if (i % 5 == 0) {
+      const double angle = M_PI * side();
+      x = Eigen::Vector3d(0.1 * std::cos(angle) + 0.5 * half.x(), 0.1 * std::sin(angle),
+                          half.z() + rod * random.uniform());
+    } else {
+      const int axis = i % 3;
+      x[axis] = x[axis] < 0.0 ? -1.0 : 1.0;
+      x = x.cwiseProduct(half);
+    }
+    cloud.push_back({});
+    cloud.back().getVector3fMap() = (pose * x).cast<float>();
+  }
+  return cloud;
+}
+
+Cloud ball() {
+  Cloud cloud;
+  RandomStream random(9);
+  while (cloud.size() < 5000) {
+    const Eigen::Vector3d x = Eigen::Vector3d::NullaryExpr([&] { return 2.0 * random.uniform() - 1.0; });
+    if (x.norm() > 1.0 || x.norm() < 0.1) continue;
+    cloud.push_back({});
+    cloud.back().getVector3fMap() = x.normalized().cast<float>();
+  }
+  return cloud;
+}
+
+struct Kind {
+  const char* name;
+  Eigen::Vector3d half;
+  double rod;
+};
+const Kind kKinds[] = {{"cube", {1.0, 0.95, 0.9}, 0.5},
+                       {"plate", {1.0, 0.8, 0.1}, 0.6},
+                       {"beam", {1.5, 0.2, 0.3}, 0.3},
+                       {"post", {0.3, 0.3, 0.6}, 2.0}};
+
+const Eigen::Isometry3d kHere = Eigen::Isometry3d::Identity();
+
+Eigen::Isometry3d elsewhere() {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(2.1, Eigen::Vector3d(0.3, -1.0, 0.8).normalized()).toRotationMatrix();
+  pose.translation() << 4.0, -2.0, 1.0;
+  return pose;
+}
+
+class SymmetryDatabaseTest : public testing::Test {
+protected:
+  void SetUp() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void fill() {
+    SymmetryDatabase database(folder_);
+    for (const Kind& kind : kKinds) database.add(kind.name, rodOnBox(kind.half, kind.rod, kHere, 1));
+    database.save();
+  }
+
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename().string());
+    return names;
+  }
+
+  const std::string folder_ =
+      testing::TempDir() + "symmetry_database_" + testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+}  // namespace
+
+TEST_F(SymmetryDatabaseTest, FindsShapesOfAnySizeInAnyPose) {
+  fill();
+  const SymmetryDatabase database(folder_);
+  EXPECT_EQ(database.names(), (std::vector<std::string>{"beam", "cube", "plate", "post"}));
+  for (const Kind& kind : kKinds) {
+    Eigen::Isometry3d pose = elsewhere();
+    Cloud query = rodOnBox(kind.half, kind.rod, pose, 2);
+    for (auto& point : query) point.getVector3fMap() *= 0.01f;
+    const auto matches = database.match(query, 3);
+    ASSERT_EQ(matches.size(), 3u) << kind.name;
+    EXPECT_EQ(matches[0].name, kind.name);
+    EXPECT_LT(matches[0].distance, 0.9 * matches[1].distance);
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, RecognizesWithPoseAndKnowsWhatItDoesNotKnow) {
+  fill();
+  SymmetryDatabase database(folder_);
+  const auto found = database.recognize(rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2));
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].name, "plate");
+  EXPECT_GT(found[0].confidence, 0.5);
+  EXPECT_LE(found[0].confidence, 1.0);
+  const Eigen::Isometry3d error = found[0].T_model_scan * elsewhere();
+  EXPECT_LT(error.translation().norm(), 0.05);
+  EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.05);
+  EXPECT_TRUE(database.recognize(ball()).empty());
+}
+
+TEST_F(SymmetryDatabaseTest, ChangesAreStored) {
+  fill();
+  SymmetryDatabase database(folder_);
+  database.remove("cube");
+  database.add("rod", rodOnBox({0.1, 0.1, 2.0}, 0.5, kHere, 3));
+  database.add("beam", rodOnBox(kKinds[2].half, 1.0, kHere, 3));
+  EXPECT_EQ(SymmetryDatabase(folder_).names().size(), 4u);
+  EXPECT_TRUE(SymmetryDatabase(folder_).contains("cube"));
+  database.save();
+  const SymmetryDatabase stored(folder_);
+  EXPECT_EQ(stored.names(), (std::vector<std::string>{"beam", "plate", "post", "rod"}));
+  EXPECT_EQ(stored.match(rodOnBox({0.1, 0.1, 2.0}, 0.5, elsewhere(), 4), 1).at(0).name, "rod");
+  EXPECT_EQ(stored.cloud("rod").size(), 5000u);
+  // The manifest, a cloud and a signature of each model, and two files for all; nothing else is left.
+  EXPECT_EQ(files().size(), 1u + 2u * 4u + 2u);
+  const auto before = database.match(rodOnBox(kKinds[3].half, kKinds[3].rod, elsewhere(), 5), 4);
+  database.rebuild();
+  EXPECT_EQ(database.match(rodOnBox(kKinds[3].half, kKinds[3].rod, elsewhere(), 5), 4)[0].name, before[0].name);
+}
+
+TEST_F(SymmetryDatabaseTest, KeepsCloudsAsPCDFiles) {
+  fill();
+  Cloud loaded;
+  ASSERT_EQ(pcl::io::loadPCDFile((fs::path(folder_) / "1_beam.pcd").string(), loaded), 0);
+  EXPECT_EQ(loaded.size(), 5000u);
+}
+
+TEST_F(SymmetryDatabaseTest, AnInterruptedChangeLeavesTheOldStateWhole) {
+  fill();
+  // What a save leaves that ends before the manifest is renamed.
+  std::ofstream(fs::path(folder_) / "77_new.pcd") << "half a clou";
+  std::ofstream(fs::path(folder_) / "78_all.compact") << "half";
+  std::ofstream(fs::path(folder_) / "manifest.txt.new") << "pcl_symmetry data";
+  SymmetryDatabase database(folder_);
+  EXPECT_EQ(database.size(), 4u);
+  EXPECT_EQ(database.match(rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2), 1).at(0).name, "cube");
+  database.remove("cube");
+  database.save();
+  EXPECT_EQ(SymmetryDatabase(folder_).size(), 3u);
+  EXPECT_EQ(files().count("77_new.pcd"), 0u);
+}
+
+TEST_F(SymmetryDatabaseTest, EmptyOnesFindNothing) {
+  SymmetryDatabase database(folder_);
+  EXPECT_TRUE(database.match(rodOnBox(kKinds[0].half, 0.5, kHere, 1)).empty());
+  EXPECT_TRUE(database.recognize(rodOnBox(kKinds[0].half, 0.5, kHere, 1)).empty());
+  database.add("only", rodOnBox(kKinds[0].half, 0.5, kHere, 1));
+  database.save();
+  database.remove("only");
+  database.save();
+  EXPECT_EQ(SymmetryDatabase(folder_).size(), 0u);
+}
+
+TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
+  SymmetryDatabase database(folder_);
+  const Cloud cloud = rodOnBox(kKinds[0].half, 0.5, kHere, 1);
+  EXPECT_THROW(database.add("../evil", cloud), pcl::BadArgumentException);
+  EXPECT_THROW(database.add("", cloud), pcl::BadArgumentException);
+  EXPECT_THROW(database.add("flat", Cloud(10, 1, pcl::PointXYZ(1.0f, 1.0f, 1.0f))), pcl::BadArgumentException);
+  EXPECT_THROW(database.remove("nobody"), pcl::BadArgumentException);
+  EXPECT_THROW(database.cloud("nobody"), pcl::BadArgumentException);
+  RecognitionOptions options;
+  options.num_candidates = 0;
+  EXPECT_THROW(database.recognize(cloud, options), pcl::BadArgumentException);
+  fs::create_directories(folder_);
+  std::ofstream(fs::path(folder_) / "holiday.jpg") << "x";
+  EXPECT_THROW(SymmetryDatabase{folder_}, pcl::IOException);
+  std::ofstream(fs::path(folder_) / "manifest.txt") << "something else\n";
+  EXPECT_THROW(SymmetryDatabase{folder_}, pcl::IOException);
+}
+
+}  // namespace pcl_symmetry
