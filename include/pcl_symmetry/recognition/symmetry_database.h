@@ -26,7 +26,7 @@ struct DatabaseOptions {
 };
 
 struct RecognitionOptions {
-  int num_candidates = 10;  ///< models that are brought to the scan, >= 1
+  int num_candidates = 6;  ///< models that are brought to the scan, >= 1
   /// What a factor of e between the size of the scan and that of the model adds to the distance of their signatures,
   /// >= 0; 0 where clouds have no common unit.
   double size_weight = 1.0;
