@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
-#include <numeric>
+#include <tuple>
 
 #include "check.h"
 #include "pcl_symmetry/core/sampled_transform.h"
@@ -34,16 +34,25 @@ struct DistinctPoints {
   std::vector<int> index_of;  ///< of each original point among points
 
   explicit DistinctPoints(const PointsRef& all) : index_of(static_cast<std::size_t>(all.cols())) {
-    std::vector<int> order(index_of.size());
-    std::iota(order.begin(), order.end(), 0);
-    const auto before = [&](int a, int b) {
-      return std::lexicographical_compare(all.col(a).data(), all.col(a).data() + 3, all.col(b).data(),
-                                          all.col(b).data() + 3);
+    struct Entry {
+      float x, y, z;
+      int index;
     };
-    std::stable_sort(order.begin(), order.end(), before);
-    std::vector<int> first_of(order.size());  // the first copy of each point
-    for (std::size_t i = 0; i < order.size(); ++i)
-      first_of[order[i]] = i > 0 && !before(order[i - 1], order[i]) ? first_of[order[i - 1]] : order[i];
+    std::vector<Entry> sorted(index_of.size());
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      const auto point = all.col(static_cast<Eigen::Index>(i));
+      sorted[i] = {point.x(), point.y(), point.z(), static_cast<int>(i)};
+    }
+    std::sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
+      return std::tie(a.x, a.y, a.z, a.index) < std::tie(b.x, b.y, b.z, b.index);
+    });
+    std::vector<int> first_of(sorted.size());  // the first copy of each point
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      const Entry& own = sorted[i];
+      const Entry& before = sorted[i > 0 ? i - 1 : 0];
+      const bool is_copy = i > 0 && std::tie(own.x, own.y, own.z) == std::tie(before.x, before.y, before.z);
+      first_of[own.index] = is_copy ? first_of[before.index] : own.index;
+    }
     points.resize(3, all.cols());
     Eigen::Index size = 0;
     for (std::size_t i = 0; i < first_of.size(); ++i) {

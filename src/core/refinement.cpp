@@ -22,7 +22,7 @@ constexpr int kCoarseIterations = 5, kCloseIterations = 6, kFullIterations = 8; 
 constexpr int kRoughIterations = 4;                                              // of planes that will never settle
 constexpr double kLeastMerit = 0.93;                                             // of a symmetry of a whole cloud
 constexpr double kCoarseSlack = 0.4, kCloseSlack = 0.1;                          // of merit below that after the stages
-constexpr std::size_t kKeptCoarsely = 9, kKeptClosely = 5;                       // of planes that have less
+constexpr std::size_t kKeptCoarsely = 8, kKeptClosely = 4;                       // of planes that have less
 constexpr double kSlopeAngle = 0.2, kSlopeOffset = 0.15;  // radians, radii: how far a slope may reach
 constexpr double kSlopeDip = 0.005;                       // of D: what counts as falling
 // In standard errors: once a Gauss-Newton step of a symmetry is this short, another one over all points leaves the
