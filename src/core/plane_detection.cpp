@@ -1,31 +1,17 @@
 #include "pcl_symmetry/core/plane_detection.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <tuple>
 
 #include "check.h"
 #include "pcl_symmetry/core/sampled_transform.h"
 #include "refinement.h"
+#include "stopwatch.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-class Stopwatch {
-public:
-  /// Milliseconds since the last call.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double elapsed = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return elapsed;
-  }
-
-private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// The points without repetitions: copies of a point say nothing about the surface, and hide how far apart its samples
 /// are.

@@ -1,7 +1,6 @@
 #include "pcl_symmetry/core/symmetry_frame.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -12,6 +11,7 @@
 #include "pcl_symmetry/core/principal_axes.h"
 #include "pcl_symmetry/core/sampled_transform.h"
 #include "plane_profiles.h"
+#include "stopwatch.h"
 #include "surface_directions.h"
 
 namespace pcl_symmetry {
@@ -37,20 +37,6 @@ constexpr int kRevolutionAngles = 8;
 // Of a scan, of the plane half-way between the first and another about the same axis: of bodies of revolution half is
 // hidden from each plane, but none is in conflict with what was seen.
 constexpr double kRevolution = 0.15;
-
-class Stopwatch {
-public:
-  /// Milliseconds since the last call.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double elapsed = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return elapsed;
-  }
-
-private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// What a frame is worth: the score of its first plane, and a share of the scores of the others and of the agreement of
 /// the surface with its axes. The latter two break ties, as between the planes across the faces and across the edges of

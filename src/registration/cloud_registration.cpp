@@ -5,9 +5,9 @@
 #include <pcl/search/kdtree.h>
 
 #include <algorithm>
-#include <chrono>
 #include <stdexcept>
 
+#include "../core/stopwatch.h"
 #include "pcl_symmetry/core/frame_hypotheses.h"
 
 namespace pcl_symmetry {
@@ -62,20 +62,6 @@ public:
 
 private:
   pcl::IterativeClosestPointWithNormals<pcl::PointNormal, pcl::PointNormal, double> icp_;
-};
-
-class Stopwatch {
-public:
-  /// Milliseconds since the last lap.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
-    start_ = now;
-    return ms;
-  }
-
-private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// Between the input frames and those of the search, which are about the centers and in radii of the model.

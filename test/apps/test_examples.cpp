@@ -58,6 +58,14 @@ TEST_F(Example, Registration) {
   EXPECT_NE(output_.find("merit"), std::string::npos) << output_;
 }
 
+TEST_F(Example, Matching) {
+  const std::string box = folder_ / "box.pcd";
+  ASSERT_EQ(run("06_matching " + (folder_ / "models") + " " + (folder_ / "scan.pcd") + " " + box), 0) << error_;
+  EXPECT_NE(output_.find("PRST "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("model_1 distance"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("model_1 confidence "), std::string::npos) << output_;
+}
+
 TEST_F(Example, Segmentation) {
   ASSERT_EQ(run("07_segmentation " + (folder_ / "box.pcd") + " " + (folder_ / "parts.pcd")), 0) << error_;
   EXPECT_NE(output_.find("part 0: "), std::string::npos) << output_;
@@ -71,7 +79,7 @@ TEST_F(Example, OwnSearchAndPointType) {
 
 TEST_F(Example, SaysHowItIsUsed) {
   for (const std::string example : {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration",
-                                    "07_segmentation", "08_own_search_and_point_type"}) {
+                                    "06_matching", "07_segmentation", "08_own_search_and_point_type"}) {
     EXPECT_EQ(run(example), 2);
     EXPECT_NE(error_.find("usage: " + example), std::string::npos);
   }
