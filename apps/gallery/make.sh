@@ -22,7 +22,7 @@ pictures=$(realpath -m "${1-build/gallery}")
 
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 cmake --preset release --log-level=WARNING >/dev/null
-cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_segment \
+cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_scan pcl_symmetry_segment \
   pcl_symmetry_viewer pcl_symmetry_viewpoint draw_medial_axis draw_scan_centers make_shapes
 export PATH=$PWD/build/apps:$PATH
 
@@ -97,6 +97,8 @@ figure_15 hand_4 hand.off -up 0,1,0 -method splitting -depth 2
 figure_15 hand hand.off -up 0,1,0
 figure_15 teapot teapot.ply
 figure_15 octopus octopus.ply
+show pcl_symmetry_scan elephant.off elephant_scan.pcd
+figure_15 scan elephant_scan.pcd -up 0,1,0 -evidence concavity
 
 for model in bull cow elephant hand; do
   show pcl_symmetry_viewpoint "$model.off" -up 0,1,0 -size 150 -png "$pictures/figure_16_$model.png"
