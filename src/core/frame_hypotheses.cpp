@@ -3,25 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcl_symmetry/core/axis_rotations.h"
+
 namespace pcl_symmetry {
-
-namespace {
-
-/// The rotations that map the axes onto each other.
-std::vector<Eigen::Matrix3d> axisRotations() {
-  constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  std::vector<Eigen::Matrix3d> rotations;
-  for (const auto& order : kOrders) {
-    for (int signs = 0; signs < 8; ++signs) {
-      Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
-      for (int axis = 0; axis < 3; ++axis) rotation(axis, order[axis]) = signs >> axis & 1 ? -1.0 : 1.0;
-      if (rotation.determinant() > 0.0) rotations.push_back(rotation);
-    }
-  }
-  return rotations;
-}
-
-}  // namespace
 
 std::vector<Eigen::Isometry3d> frameHypotheses(const SymmetryFrame& a, const SymmetryFrame& b) {
   constexpr int kNumTurns = 8;
@@ -35,14 +19,13 @@ std::vector<Eigen::Isometry3d> frameHypotheses(const SymmetryFrame& a, const Sym
     if (std::none_of(hypotheses.begin(), hypotheses.end(), same)) hypotheses.push_back(hypothesis);
   };
   const bool turns = a.revolution_axis >= 0 && a.revolution_axis < 3;
-  for (const Eigen::Matrix3d& rotation : axisRotations()) {
+  for (const Eigen::Matrix3i& rotation : axisRotations()) {
     for (int turn = 0; turn < (turns ? kNumTurns : 1); ++turn) {
-      Eigen::Matrix3d turned = rotation;
+      Eigen::Matrix3d turned = rotation.cast<double>();
       if (turns)
         turned *= Eigen::AngleAxisd(2.0 * M_PI * turn / kNumTurns, Eigen::Vector3d::Unit(a.revolution_axis))
                       .toRotationMatrix();
-      for (std::size_t i = 0; i < a.num_maxima; ++i)
-        add(T_b_canonical * Eigen::Isometry3d(turned) * a.equivalent[i]);
+      for (std::size_t i = 0; i < a.num_maxima; ++i) add(T_b_canonical * Eigen::Isometry3d(turned) * a.equivalent[i]);
     }
   }
   return hypotheses;

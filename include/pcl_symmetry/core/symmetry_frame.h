@@ -41,10 +41,11 @@ struct SymmetryFrame {
   int revolution_axis = -1;  ///< column that is an axis of revolution; -1: none, 3: every line through the center is
   Eigen::Isometry3d T_canonical_input = Eigen::Isometry3d::Identity();  ///< center to 0, axes to x, y, z
   /// T_canonical_input of all frames that symmetry leaves equally good, this one first. A plane has no sign: every
-  /// choice of signs that is a rotation is here; where scores tie, other orders and other axes too, first those that are
-  /// maxima, then in steps of 6 degrees those between. About an axis of revolution any angle is as good, in addition.
+  /// choice of signs that is a rotation is here; where scores tie, other orders and other axes too, first those that
+  /// are maxima, then in steps of 6 degrees those between. About an axis of revolution any angle is as good, in
+  /// addition.
   std::vector<Eigen::Isometry3d> equivalent;
-  std::size_t num_maxima = 0;  ///< how many of them come before those between
+  std::size_t num_maxima = 0;                             ///< how many of them come before those between
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
