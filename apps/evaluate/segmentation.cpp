@@ -51,8 +51,7 @@ CommandLine commandLine(EvaluateSegmentationOptions& o) {
       .number("max", o.selection.max, Range::closed(1, 1'000'000), "... and no more than so many")
       .text("methods", "A,B,...", o.methods,
             "human, one, k-means, paper-1 to paper-4 (by depth), symmetry, concavity, all (merging by evidence), "
-            "points (a cloud "
-            "of the mesh) (human,one,k-means,all)")
+            "points (a cloud of the mesh) (human,one,k-means,all)")
       .text("segments", "DIR", o.segments_folder, "also judge 12.seg ... that another program wrote")
       .flag("categories", o.categories, "Rand distance by category of the benchmark")
       .text("csv", "FILE", o.csv, "a row for each method and model")

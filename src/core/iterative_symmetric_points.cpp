@@ -183,7 +183,7 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     const std::vector<int> before = std::move(result.last.closest);
     result.last = iterateSymmetricPoints(surface, samples, result.plane, sigma, options.update,
                                          before.empty() ? nullptr : &before);
-    if (++result.iterations == 1) result.first_closest = result.last.closest;
+    ++result.iterations;
     const ReflectionPlane& next = result.last.plane;
     const double moved =
         std::abs(std::abs(next.signedDistance(middle)) - std::abs(result.plane.signedDistance(middle)));

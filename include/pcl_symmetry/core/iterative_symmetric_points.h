@@ -91,7 +91,6 @@ struct IspResult {
   int iterations = 0;
   bool converged = false;
   IspStep last;  ///< of the last iteration: its distances are those before a step that no longer mattered
-  std::vector<int> first_closest;  ///< IspStep::closest of the first
 };
 
 /// Pairs (x, y) of a sample and the closest point to its reflection, with weights: the sums of the closed form.
