@@ -21,7 +21,7 @@ using namespace pcl_symmetry::apps;
 struct MatchOptions {
   std::string folder, input;
   int num_matches = 10;
-  bool recognize = false, any_size = false;
+  bool recognize = false;
   RecognitionOptions recognition;
   int mesh_points = 20'000;
   CommonOptions common;
@@ -38,7 +38,6 @@ CommandLine commandLine(MatchOptions& options) {
       .flag("recognize", options.recognize, "bring the models to the scan and keep those that fit")
       .number("candidates", options.recognition.num_candidates, Range::closed(1, 1'000'000),
               "models that are brought to the scan")
-      .flag("any_size", options.any_size, "scan and models have no common unit: sizes do not choose candidates")
       .number("min_merit", options.recognition.min_merit, Range::closed(-1, 1), "of a pose by which a model is known")
       .number("points", options.mesh_points, Range::closed(100, 10'000'000), "spread over a mesh")
       .common(options.common, kJson | kThreads | kViewpoint | kQuiet);
@@ -69,7 +68,6 @@ nlohmann::json recognize(const Console& console, const SymmetryDatabase& databas
                          const MatchOptions& options) {
   RecognitionOptions recognition = options.recognition;
   recognition.num_threads = options.common.threads;
-  if (options.any_size) recognition.size_weight = 0.0;
   Step step(console, "Recognizing");
   Recognition found = database.recognize(cloud, recognition, options.common.viewpoint);
   found.resize(std::min(found.size(), static_cast<std::size_t>(options.num_matches)));

@@ -30,7 +30,6 @@ struct EvaluateRecognitionOptions {
   std::optional<std::string> class_path, csv;
   int num_points = 10'000, leave_out = 10, query_every = 1;
   double noise = 0.0;
-  bool any_size = false;
   RecognitionOptions recognition;
   CommonOptions common;
 };
@@ -52,7 +51,6 @@ CommandLine commandLine(EvaluateRecognitionOptions& o) {
       .number("noise", o.noise, Range::closed(0, 1), "along the ray, in diagonals")
       .number("candidates", o.recognition.num_candidates, Range::closed(1, 1'000'000),
               "models that are brought to a scan")
-      .flag("any_size", o.any_size, "sizes do not choose candidates")
       .number("min_merit", o.recognition.min_merit, Range::closed(-1, 1), "of a pose by which a model is known")
       .text("csv", "FILE", o.csv, "a row for each scan")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
@@ -142,7 +140,6 @@ private:
         TestCloudMaker(*loadShape(model.path).mesh, model.key, clouds).make(recipesFor(clouds).front());
     RecognitionOptions recognition = options_.recognition;
     recognition.num_threads = options_.common.threads;
-    if (options_.any_size) recognition.size_weight = 0.0;
     const Stopwatch watch;
     const Recognition found = database_.recognize(*scan.cloud, recognition);
     Query query{model.name, "", known, false, 0.0, watch.milliseconds()};

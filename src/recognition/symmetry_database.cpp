@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <set>
-#include <sstream>
 
+#include "../core/check.h"
+#include "database_files.h"
 #include "pcl_symmetry/core/parallel.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
@@ -23,21 +21,7 @@ namespace {
 
 constexpr int kFormsPerModel = 2;
 constexpr const char* kManifest = "manifest.txt";
-constexpr const char* kHeader = "pcl_symmetry database 1";
-constexpr double kSeenRadius = 0.95;      // of a scan's bounding ball, of that of its whole object, typically
-constexpr double kMeritSharpness = 20.0;  // of the soft maximum of merits
-constexpr int kSizeCandidates = 5;        // times as many as are verified, that sizes are compared of
-
-void check(bool valid, const char* field, double value, const char* rule) {
-  if (valid) return;
-  std::ostringstream message;
-  message << field << " = " << value << ", must be " << rule;
-  throw std::invalid_argument(message.str());
-}
-
-[[noreturn]] void failIO(const std::string& file, const std::string& why) {
-  PCL_THROW_EXCEPTION(pcl::IOException, file << ": " << why);
-}
+constexpr const char* kHeader = "pcl_symmetry database 2";
 
 void checkName(const std::string& name) {
   constexpr std::size_t kLongest = 100;
@@ -49,48 +33,6 @@ void checkName(const std::string& name) {
                                 "', must be 1 to 100 letters, digits, '_', '-' or '.', not '.' first");
 }
 
-void writeFloats(const std::string& path, const std::vector<float>& values) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float)));
-  file.close();
-  if (!file) failIO(path, "cannot be written");
-}
-
-std::vector<float> readFloats(const std::string& path) {
-  std::error_code error;
-  const auto size = fs::file_size(path, error);
-  if (error) failIO(path, error.message());
-  std::vector<float> values(static_cast<std::size_t>(size / sizeof(float)));
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float))))
-    failIO(path, "cannot be read");
-  return values;
-}
-
-/// A PCD file of x, y and z. (PCL's own writer is in a library that needs VTK and drivers of cameras.)
-void writeCloud(const std::string& path, const SymmetryDatabase::Cloud& cloud) {
-  std::ofstream file(path, std::ios::binary);
-  file << "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << cloud.size()
-       << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << cloud.size() << "\nDATA binary\n";
-  for (const pcl::PointXYZ& point : cloud) file.write(reinterpret_cast<const char*>(point.data), 3 * sizeof(float));
-  file.close();
-  if (!file) failIO(path, "cannot be written");
-}
-
-/// \param path of a file of writeCloud().
-SymmetryDatabase::Cloud readCloud(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::size_t size = 0;
-  std::string line;
-  while (std::getline(file, line) && line != "DATA binary")
-    if (line.rfind("POINTS ", 0) == 0) size = std::strtoull(line.c_str() + 7, nullptr, 10);
-  if (!file || size == 0) failIO(path, "cannot be read, must be a PCD file of this database");
-  SymmetryDatabase::Cloud cloud(static_cast<std::uint32_t>(size), 1);
-  for (pcl::PointXYZ& point : cloud) file.read(reinterpret_cast<char*>(point.data), 3 * sizeof(float));
-  if (!file) failIO(path, "is incomplete");
-  return cloud;
-}
-
 Points finitePoints(const SymmetryDatabase::Cloud& cloud, std::size_t max_points) {
   return selectPoints(cloud, nullptr, max_points, 1).points;
 }
@@ -99,26 +41,9 @@ Points finitePoints(const SymmetryDatabase::Cloud& cloud, std::size_t max_points
 
 void DatabaseOptions::validate() const {
   check(num_references >= 1, "num_references", num_references, ">= 1");
+  check(num_views >= 1, "num_views", num_views, ">= 1");
   check(max_points >= 100, "max_points", static_cast<double>(max_points), ">= 100");
   check(num_threads >= 0, "num_threads", num_threads, ">= 0");
-}
-
-CloudRegistrationOptions RecognitionOptions::quickRegistration() {
-  CloudRegistrationOptions options;
-  options.frame = signatureFrameOptions();
-  options.search.num_rotations = 200;
-  options.search.num_screened = 16;
-  options.search.num_refined = 6;
-  options.search.max_poses = 2;
-  return options;
-}
-
-void RecognitionOptions::validate() const {
-  check(num_candidates >= 1, "num_candidates", num_candidates, ">= 1");
-  check(size_weight >= 0.0, "size_weight", size_weight, ">= 0");
-  check(min_merit >= -1.0 && min_merit <= 1.0, "min_merit", min_merit, "in [-1, 1]");
-  check(num_threads >= 0, "num_threads", num_threads, ">= 0");
-  registration.validate();
 }
 
 SymmetryDatabase::SymmetryDatabase(const std::string& folder, const DatabaseOptions& options)
@@ -148,8 +73,8 @@ void SymmetryDatabase::load() {
   for (std::size_t i = 0; i < num_models; ++i) {
     std::string name;
     Model model;
-    if (!(manifest >> name >> model.file >> model.radius))
-      failIO(path(kManifest), "model " + std::to_string(i + 1) + ", must be a name, a file and a radius");
+    if (!(manifest >> name >> model.file))
+      failIO(path(kManifest), "model " + std::to_string(i + 1) + ", must be a name and a file");
     models_[name] = model;
   }
   if (num_models > 0) loadCompactForms();
@@ -184,6 +109,8 @@ void SymmetryDatabase::fillIndex() {
   Eigen::MatrixXf all(projection_.numDimensions(), kFormsPerModel * static_cast<Eigen::Index>(indexed_.size()));
   for (std::size_t i = 0; i < indexed_.size(); ++i)
     all.middleCols(kFormsPerModel * static_cast<Eigen::Index>(i), kFormsPerModel) = models_.at(indexed_[i]).compact;
+  view_index_ = {};
+  for (const std::string& name : indexed_) view_index_.add(views(models_.at(name)));
   CompactIndexOptions index_options;
   index_options.num_threads = options_.num_threads;
   index_ = CompactIndex(std::move(all), kFormsPerModel, index_options);
@@ -203,7 +130,7 @@ void SymmetryDatabase::add(const std::string& name, const Cloud& cloud) {
     description.num_threads = options_.num_threads;
     Model model;
     model.signatures = describeShape(points, description).signatures;
-    model.radius = boundingBall(points).radius;
+    model.views = viewsAround(points, options_.num_views, options_.num_threads);
     model.cloud.resize(static_cast<std::size_t>(points.cols()));
     model.cloud.getMatrixXfMap(3, 4, 0) = points;
     models_[name] = std::move(model);
@@ -222,6 +149,10 @@ Eigen::MatrixXf SymmetryDatabase::signatures(const Model& model) const {
   if (values.size() != static_cast<std::size_t>(kSignatureSize) * kFormsPerModel)
     failIO(path(model.file + ".signature"), "is incomplete");
   return Eigen::Map<const Eigen::MatrixXf>(values.data(), kSignatureSize, kFormsPerModel);
+}
+
+std::vector<View> SymmetryDatabase::views(const Model& model) const {
+  return model.views.empty() ? readViews(path(model.file + ".views")) : model.views;
 }
 
 void SymmetryDatabase::rebuild() {
@@ -251,8 +182,10 @@ void SymmetryDatabase::storeModel(const std::string& name, Model& model) {
   writeCloud(path(file + ".pcd"), model.cloud);
   const Eigen::MatrixXf& values = model.signatures;
   writeFloats(path(file + ".signature"), std::vector<float>(values.data(), values.data() + values.size()));
+  writeViews(path(file + ".views"), model.views);
   model.file = file;
   model.cloud.clear();
+  model.views.clear();
   model.signatures.resize(0, 0);
 }
 
@@ -277,10 +210,9 @@ void SymmetryDatabase::save() {
   const std::string temporary = path(std::string(kManifest) + ".new");
   {
     std::ofstream manifest(temporary);
-    manifest.precision(std::numeric_limits<double>::max_digits10);
     manifest << kHeader << '\n'
              << next_file_ << ' ' << num_fitted_ << ' ' << projection_file_ << ' ' << models_.size() << '\n';
-    for (const auto& [name, model] : models_) manifest << name << ' ' << model.file << ' ' << model.radius << '\n';
+    for (const auto& [name, model] : models_) manifest << name << ' ' << model.file << '\n';
     manifest.close();
     if (!manifest) failIO(temporary, "cannot be written");
   }
@@ -297,8 +229,8 @@ void SymmetryDatabase::removeStrayFiles() const {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
     const std::string extension = entry.path().extension().string();
-    const bool own =
-        extension == ".pcd" || extension == ".signature" || extension == ".projection" || extension == ".compact";
+    const bool own = extension == ".pcd" || extension == ".signature" || extension == ".views" ||
+                     extension == ".projection" || extension == ".compact";
     if (own && !kept.count(entry.path().stem().string())) fs::remove(entry.path(), error);
   }
 }
@@ -327,51 +259,6 @@ std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_near
     for (const auto& [model, distance] : nearest(points, seen ? &*seen : nullptr, num_nearest))
       matches.push_back({indexed_[static_cast<std::size_t>(model)], distance});
     return matches;
-  });
-}
-
-Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
-                                        const Viewpoint& viewpoint) const {
-  return withBadArguments([&] {
-    options.validate();
-    const Points points = finitePoints(scan, options_.max_points);
-    const std::optional<Visibility> seen = seenSpace(scan, points, viewpoint);
-    const double radius = boundingBall(points).radius / kSeenRadius;
-    // Sizes tell models apart that signatures of one side alone do not: all models are asked where there is a unit.
-    const int num_asked = options.size_weight > 0.0 ? static_cast<int>(indexed_.size())
-                                                    : std::min<int>(options.num_candidates * kSizeCandidates,
-                                                                    static_cast<int>(indexed_.size()));
-    std::vector<std::pair<double, std::string>> candidates;
-    for (const auto& [model, distance] : nearest(points, seen ? &*seen : nullptr, num_asked)) {
-      const std::string& name = indexed_[static_cast<std::size_t>(model)];
-      const double size = std::abs(std::log(radius / models_.at(name).radius));
-      candidates.emplace_back(distance + options.size_weight * size, name);
-    }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    candidates.resize(std::min(candidates.size(), static_cast<std::size_t>(options.num_candidates)));
-
-    CloudRegistrationOptions registration = options.registration;
-    registration.num_threads = options.num_threads;
-    constexpr std::size_t kScanPoints = 10'000;
-    const Points scan_points = finitePoints(scan, kScanPoints);
-    Recognition found;
-    for (const auto& [distance, name] : candidates) {
-      const CloudRegistration posed = registerClouds(scan_points, seen, finitePoints(cloud(name), kScanPoints), {},
-                                                     Eigen::Isometry3d::Identity(), registration);
-      if (posed.score.merit() >= options.min_merit) found.push_back({name, posed.T_target_source, posed.score, 0.0});
-    }
-    std::stable_sort(found.begin(), found.end(), [](const RecognizedModel& a, const RecognizedModel& b) {
-      return a.score.merit() > b.score.merit();
-    });
-    double sum = 0.0;
-    for (const RecognizedModel& model : found) sum += std::exp(kMeritSharpness * model.score.merit());
-    for (RecognizedModel& model : found) {
-      const double merit = model.score.merit();
-      const double above = options.min_merit < 1.0 ? (merit - options.min_merit) / (1.0 - options.min_merit) : 1.0;
-      model.confidence = std::exp(kMeritSharpness * merit) / sum * std::sqrt(std::clamp(above, 0.0, 1.0));
-    }
-    return found;
   });
 }
 

@@ -64,24 +64,6 @@ private:
   pcl::IterativeClosestPointWithNormals<pcl::PointNormal, pcl::PointNormal, double> icp_;
 };
 
-/// Between the input frames and those of the search, which are about the centers and in radii of the model.
-struct SearchFrames {
-  BoundingBall source, target;
-  double scale;
-
-  Eigen::Isometry3d toSearch(const Eigen::Isometry3d& T_target_source) const {
-    Eigen::Isometry3d pose = T_target_source;
-    pose.translation() = (T_target_source * source.center - target.center) / scale;
-    return pose;
-  }
-
-  Eigen::Isometry3d toInput(const Eigen::Isometry3d& pose) const {
-    Eigen::Isometry3d T_target_source = pose;
-    T_target_source.translation() = target.center + scale * pose.translation() - pose.linear() * source.center;
-    return T_target_source;
-  }
-};
-
 void checkExtent(const char* name, const Points& points, const BoundingBall& ball) {
   if (points.cols() < 3 || !(ball.radius > 0.0))
     throw std::invalid_argument(std::string(name) + ": no extent, must have three different finite points");
@@ -101,6 +83,38 @@ void CloudRegistrationOptions::validate() const {
   check(num_threads >= 0, "num_threads", num_threads, "must be >= 0");
 }
 
+Eigen::Isometry3d SearchFrames::toSearch(const Eigen::Isometry3d& T_target_source) const {
+  Eigen::Isometry3d pose = T_target_source;
+  pose.translation() = (T_target_source * source_center - target_center) / scale;
+  return pose;
+}
+
+Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source) const {
+  Eigen::Isometry3d pose = T_target_source;
+  pose.translation() = target_center + scale * T_target_source.translation() - T_target_source.linear() * source_center;
+  return pose;
+}
+
+RankedPose refinePoses(const PosedSurface& scan, const PosedSurface& model, const std::vector<RankedPose>& poses,
+                       const CloudRegistrationOptions& options) {
+  const double accuracy = std::max(scan.accuracy, model.accuracy);
+  Refinement icp(scan, model, options.max_correspondence.value_or(std::max(kLeastReach, kReach * accuracy)), options);
+  const PoseScorer scorer(scan, model);
+  const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, accuracy), true};
+  RankedPose best;
+  best.score.conflict = 1.0;
+  const auto offer = [&](const Eigen::Isometry3d& pose) {
+    const PoseScore score = scorer.score(pose, detail);
+    if (score.merit() > best.score.merit()) best = {pose, score};
+  };
+  for (const RankedPose& pose : poses) {
+    if (pose.score.merit() < poses.front().score.merit() - kHopeless) break;
+    offer(pose.T_model_scan);
+    offer(icp.refine(pose.T_model_scan));
+  }
+  return best;
+}
+
 CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
                                  const Points& target, const std::optional<Visibility>& target_seen,
                                  const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options) {
@@ -112,19 +126,19 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   CloudRegistration result;
   Stopwatch watch;
   const auto done = [&](const char* stage) { result.timing_ms.emplace_back(stage, watch.lap()); };
-  SearchFrames frames{boundingBall(source), boundingBall(target), 1.0};
-  checkExtent("source", source, frames.source);
-  checkExtent("target", target, frames.target);
+  const BoundingBall source_ball = boundingBall(source), target_ball = boundingBall(target);
+  checkExtent("source", source, source_ball);
+  checkExtent("target", target, target_ball);
   // The scan is what has a viewpoint, the model what shows its object from all sides.
   const bool swapped = target_seen && !source_seen;
-  frames.scale = swapped ? frames.source.radius : frames.target.radius;
-  const auto surface = [&](const Points& points, const BoundingBall& ball, const std::optional<Visibility>& seen) {
-    return PosedSurface(normalizePoints(points, ball.center, frames.scale),
-                        seen ? std::optional(seen->normalized(ball.center, frames.scale)) : std::nullopt, options.seed,
+  const SearchFrames frames{source_ball.center, target_ball.center, swapped ? source_ball.radius : target_ball.radius};
+  const auto surface = [&](const Points& points, const Eigen::Vector3d& center, const std::optional<Visibility>& seen) {
+    return PosedSurface(normalizePoints(points, center, frames.scale),
+                        seen ? std::optional(seen->normalized(center, frames.scale)) : std::nullopt, options.seed,
                         options.num_threads);
   };
-  const PosedSurface source_surface = surface(source, frames.source, source_seen);
-  const PosedSurface target_surface = surface(target, frames.target, target_seen);
+  const PosedSurface source_surface = surface(source, frames.source_center, source_seen);
+  const PosedSurface target_surface = surface(target, frames.target_center, target_seen);
   const PosedSurface& scan = swapped ? target_surface : source_surface;
   const PosedSurface& model = swapped ? source_surface : target_surface;
   const auto turnedRound = [&](const Eigen::Isometry3d& pose) { return swapped ? pose.inverse() : pose; };
@@ -143,24 +157,9 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   }
   const std::vector<RankedPose> poses = searchPoses(scan, model, hypotheses, search);
   done("search");
-
-  const double accuracy = std::max(scan.accuracy, model.accuracy);
-  const double reach = options.max_correspondence ? *options.max_correspondence / frames.scale
-                                                  : std::max(kLeastReach, kReach * accuracy);
-  Refinement icp(scan, model, reach, options);
-  const PoseScorer scorer(scan, model);
-  const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, accuracy), true};
-  RankedPose best;
-  best.score.conflict = 1.0;
-  const auto offer = [&](const Eigen::Isometry3d& pose) {
-    const PoseScore score = scorer.score(pose, detail);
-    if (score.merit() > best.score.merit()) best = {pose, score};
-  };
-  for (const RankedPose& pose : poses) {
-    if (pose.score.merit() < poses.front().score.merit() - kHopeless) break;
-    offer(pose.T_model_scan);
-    offer(icp.refine(pose.T_model_scan));
-  }
+  CloudRegistrationOptions refinement = options;
+  if (options.max_correspondence) refinement.max_correspondence = *options.max_correspondence / frames.scale;
+  const RankedPose best = refinePoses(scan, model, poses, refinement);
   done("refine");
   result.T_target_source = frames.toInput(turnedRound(best.T_model_scan));
   result.score = best.score;

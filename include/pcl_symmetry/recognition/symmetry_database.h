@@ -11,6 +11,7 @@
 #include "pcl_symmetry/core/compact_index.h"
 #include "pcl_symmetry/core/shape_description.h"
 #include "pcl_symmetry/core/signature_projection.h"
+#include "pcl_symmetry/core/view_index.h"
 #include "pcl_symmetry/registration/cloud_registration.h"
 #include "pcl_symmetry/viewpoint.h"
 
@@ -18,6 +19,7 @@ namespace pcl_symmetry {
 
 struct DatabaseOptions {
   int num_references = 128;         ///< models, spread over all, that compact forms are made from, >= 1
+  int num_views = 80;               ///< of a model, that scans are compared with, >= 1
   std::size_t max_points = 20'000;  ///< of a cloud that are kept, >= 100
   int num_threads = 0;              ///< >= 0; 0 = one per core
 
@@ -26,11 +28,12 @@ struct DatabaseOptions {
 };
 
 struct RecognitionOptions {
-  int num_candidates = 6;  ///< models that are brought to the scan, >= 1
-  /// What a factor of e between the size of the scan and that of the model adds to the distance of their signatures,
-  /// >= 0; 0 where clouds have no common unit.
-  double size_weight = 1.0;
-  double min_merit = 0.4;  ///< of a pose by which a model is known, in [-1, 1], see SymmetryRegistration
+  int num_candidates = 10;  ///< models that are brought to the scan, >= 1 ...
+  int num_refined = 4;      ///< ... and of a view, those of the best poses that are brought to it exactly, >= 1
+  /// What a factor of e between the size of the scan and that of a model's view adds to their distance, >= 0. Less
+  /// where much of an object is hidden behind others.
+  double size_weight = 0.25;
+  double min_merit = 0.6;  ///< of a pose by which a model is known, in [-1, 1], see SymmetryRegistration
   CloudRegistrationOptions registration = quickRegistration();
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -60,9 +63,9 @@ using Recognition = std::vector<RecognizedModel>;
 /// Models in a folder, found by their symmetry: whole ones of the same kind, or the very one that a scan shows (Section
 /// 5.2).
 ///
-/// The folder holds manifest.txt, the models' clouds and signatures, and the compact forms of all. A change is written
-/// beside what is there and counts from the moment that the new manifest takes the name of the old one: an interrupted
-/// one leaves the old state whole.
+/// The folder holds manifest.txt, the models' clouds, signatures and views, and the compact forms of all. A change is
+/// written beside what is there and counts from the moment that the new manifest takes the name of the old one: an
+/// interrupted one leaves the old state whole.
 ///
 /// \code
 /// pcl_symmetry::SymmetryDatabase database("models");
@@ -100,18 +103,19 @@ public:
   /// Models of like shape, whatever their size and pose, nearest first. \param cloud seen from all sides, or a scan.
   std::vector<ModelMatch> match(const Cloud& cloud, int num_nearest = 10, const Viewpoint& viewpoint = {}) const;
 
-  /// The models that a scan can be a view of. \throws pcl::BadArgumentException for bad options or a scan without
+  /// The models that a scan can be a view of, in the same unit. Candidates look like it from some side; without a
+  /// viewpoint they are those of like shape. \throws pcl::BadArgumentException for bad options or a scan without
   /// extent.
   Recognition recognize(const Cloud& scan, const RecognitionOptions& options = {},
                         const Viewpoint& viewpoint = {}) const;
 
 private:
   struct Model {
-    std::string file;  ///< name of its files without extension; empty: not stored yet
-    Cloud cloud;       ///< empty where it is stored
-    double radius = 0.0;
+    std::string file;            ///< name of its files without extension; empty: not stored yet
+    Cloud cloud;                 ///< empty where it is stored
     Eigen::MatrixXf signatures;  ///< empty where they are stored
     Eigen::MatrixXf compact;     ///< of the projection; empty: not made yet
+    std::vector<View> views;     ///< empty where they are stored
   };
 
   std::string path(const std::string& file) const;
@@ -119,9 +123,14 @@ private:
   void loadCompactForms();
   void storeModel(const std::string& name, Model& model);
   Eigen::MatrixXf signatures(const Model& model) const;
+  std::vector<View> views(const Model& model) const;
   void fillIndex();
   void removeStrayFiles() const;
   std::vector<std::pair<int, float>> nearest(const Points& points, const Visibility* seen, int count) const;
+  Recognition recognizeView(const Points& points, const Points& scan, const Visibility& seen,
+                            const RecognitionOptions& options, const CloudRegistrationOptions& registration) const;
+  Recognition recognizeWhole(const Points& points, const Points& scan, const RecognitionOptions& options,
+                             const CloudRegistrationOptions& registration) const;
 
   std::string folder_;
   DatabaseOptions options_;
@@ -132,6 +141,7 @@ private:
   SignatureProjection projection_;
   std::vector<std::string> indexed_;  // names, in the order of the index
   CompactIndex index_;
+  ViewIndex view_index_;
   bool changed_ = false;
 };
 

@@ -41,4 +41,20 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
                                  const Points& target, const std::optional<Visibility>& target_seen,
                                  const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options = {});
 
+/// Between the input frames of two clouds and those of the search for a pose, which are about their centers and in
+/// units of one scale.
+struct SearchFrames {
+  Eigen::Vector3d source_center, target_center;
+  double scale;
+
+  Eigen::Isometry3d toSearch(const Eigen::Isometry3d& T_target_source) const;
+  Eigen::Isometry3d toInput(const Eigen::Isometry3d& T_target_source) const;
+};
+
+/// Refinement and last look of registerClouds(), the best of some poses.
+/// \param scan,model in search frames. \param poses of searchPoses(), best first. \param options those of the
+/// refinement count, max_correspondence in units of the search. \return T_model_scan in search frames.
+RankedPose refinePoses(const PosedSurface& scan, const PosedSurface& model, const std::vector<RankedPose>& poses,
+                       const CloudRegistrationOptions& options);
+
 }  // namespace pcl_symmetry

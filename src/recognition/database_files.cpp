@@ -1,0 +1,91 @@
+#include "database_files.h"
+
+#include <pcl/exceptions.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace pcl_symmetry {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr Eigen::Index kPoseSize = 12;                                  // of the upper rows of a transform
+constexpr Eigen::Index kViewSize = kViewSignatureSize + 1 + kPoseSize;  // of a view in its file
+
+}  // namespace
+
+void failIO(const std::string& file, const std::string& why) {
+  PCL_THROW_EXCEPTION(pcl::IOException, file << ": " << why);
+}
+
+void writeFloats(const std::string& path, const std::vector<float>& values) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float)));
+  file.close();
+  if (!file) failIO(path, "cannot be written");
+}
+
+std::vector<float> readFloats(const std::string& path) {
+  std::error_code error;
+  const auto size = fs::file_size(path, error);
+  if (error) failIO(path, error.message());
+  std::vector<float> values(static_cast<std::size_t>(size / sizeof(float)));
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float))))
+    failIO(path, "cannot be read");
+  return values;
+}
+
+// PCL's own writer is in a library that needs VTK and drivers of cameras.
+void writeCloud(const std::string& path, const PositionCloud& cloud) {
+  std::ofstream file(path, std::ios::binary);
+  file << "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << cloud.size()
+       << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << cloud.size() << "\nDATA binary\n";
+  for (const pcl::PointXYZ& point : cloud) file.write(reinterpret_cast<const char*>(point.data), 3 * sizeof(float));
+  file.close();
+  if (!file) failIO(path, "cannot be written");
+}
+
+PositionCloud readCloud(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::size_t size = 0;
+  std::string line;
+  while (std::getline(file, line) && line != "DATA binary")
+    if (line.rfind("POINTS ", 0) == 0) size = std::strtoull(line.c_str() + 7, nullptr, 10);
+  if (!file || size == 0) failIO(path, "cannot be read, must be a PCD file of this database");
+  PositionCloud cloud(static_cast<std::uint32_t>(size), 1);
+  for (pcl::PointXYZ& point : cloud) file.read(reinterpret_cast<char*>(point.data), 3 * sizeof(float));
+  if (!file) failIO(path, "is incomplete");
+  return cloud;
+}
+
+void writeViews(const std::string& path, const std::vector<View>& views) {
+  std::vector<float> values;
+  for (const View& view : views) {
+    const Eigen::Matrix<float, 3, 4> pose = view.T_view_input.matrix().topRows<3>().cast<float>();
+    values.insert(values.end(), view.values.data(), view.values.data() + view.values.size());
+    values.push_back(static_cast<float>(view.radius));
+    values.insert(values.end(), pose.data(), pose.data() + pose.size());
+  }
+  writeFloats(path, values);
+}
+
+std::vector<View> readViews(const std::string& path) {
+  const std::vector<float> values = readFloats(path);
+  if (values.empty() || values.size() % kViewSize != 0) failIO(path, "is incomplete");
+  std::vector<View> views(values.size() / kViewSize);
+  const float* next = values.data();
+  for (View& view : views) {
+    view.values = Eigen::Map<const Eigen::VectorXf>(next, kViewSignatureSize);
+    view.radius = next[kViewSignatureSize];
+    const Eigen::Map<const Eigen::Matrix<float, 3, 4>> pose(next + kViewSignatureSize + 1);
+    view.T_view_input.matrix().topRows<3>() = pose.cast<double>();
+    next += kViewSize;
+  }
+  return views;
+}
+
+}  // namespace pcl_symmetry
