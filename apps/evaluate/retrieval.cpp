@@ -218,8 +218,9 @@ private:
     chart.title = "Precision against recall";
     chart.x = {"recall", false, std::make_pair(0.0, 1.0)};
     chart.y = {"precision", false, std::make_pair(0.0, 1.0)};
-    // All of models in random poses: as many as there are colours.
+    // Of models in random poses, distances that are not scaled: as many as there are colours.
     for (std::size_t i = kNumPublished; i < results_.size(); ++i) {
+      if (results_[i].method.name.find("scaled") != std::string::npos) continue;
       const Result& r = results_[i];
       ChartSeries series{r.method.name, {}, r.all.precision, false};
       for (int k = 0; k < kNumRecalls; ++k) series.x.push_back((k + 1.0) / kNumRecalls);

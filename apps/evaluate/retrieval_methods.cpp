@@ -13,6 +13,7 @@
 #include "pcl_symmetry/core/shape_description.h"
 #include "pcl_symmetry/core/signature_projection.h"
 #include "pcl_symmetry/core/symmetry_descriptor.h"
+#include "pcl_symmetry/core/turnable_prst.h"
 
 namespace pcl_symmetry::apps {
 
@@ -63,9 +64,16 @@ Eigen::MatrixXf scaled(const Eigen::MatrixXf& distances, const std::vector<Eigen
   return inverse_root.asDiagonal() * distances * inverse_root.asDiagonal();
 }
 
-/// Least L2 distances of signatures, a column each, in all rotations of axes.
-Eigen::MatrixXf leastDistances(const Eigen::MatrixXf& signatures, const RetrievalOptions& options,
-                               const RetrievalProgress& progress) {
+/// Descriptors of all models that can be turned to all orders and signs of their axes.
+struct TurnableDescriptors {
+  std::string name;
+  std::vector<Eigen::MatrixXf> forms;  ///< of each model, a column for each of its frames
+  SignatureRotation rotate;
+};
+
+/// Least L2 distances of the first forms in all rotations of axes.
+Eigen::MatrixXf leastDistances(const Eigen::MatrixXf& signatures, SignatureRotation rotate,
+                               const RetrievalOptions& options, const RetrievalProgress& progress) {
   constexpr Eigen::Index kColumns = 64;
   Eigen::MatrixXf cosines = Eigen::MatrixXf::Constant(signatures.cols(), signatures.cols(), -1.0f);
   const auto num_blocks = static_cast<std::size_t>((signatures.cols() + kColumns - 1) / kColumns);
@@ -74,13 +82,45 @@ Eigen::MatrixXf leastDistances(const Eigen::MatrixXf& signatures, const Retrieva
     const Eigen::Index count = std::min(kColumns, signatures.cols() - first);
     Eigen::MatrixXf rotated(signatures.rows(), count), products(signatures.cols(), count);
     for (int r = 0; r < kNumAxisRotations; ++r) {
-      for (Eigen::Index i = 0; i < count; ++i)
-        rotateSignature(signatures.col(first + i).data(), r, rotated.col(i).data());
+      for (Eigen::Index i = 0; i < count; ++i) rotate(signatures.col(first + i).data(), r, rotated.col(i).data());
       products.noalias() = signatures.transpose() * rotated;
       cosines.middleCols(first, count) = cosines.middleCols(first, count).cwiseMax(products);
     }
   });
   return (2.0f - 2.0f * cosines.cwiseMax(cosines.transpose()).array()).max(0.0f).sqrt();
+}
+
+/// By the descriptors as they are and by their compact forms, both also with scaled distances.
+std::vector<RetrievalMethod> turnableMethods(const TurnableDescriptors& descriptors, const RetrievalOptions& options,
+                                             const RetrievalProgress& progress) {
+  const std::size_t size = descriptors.forms.size();
+  Eigen::MatrixXf first(descriptors.forms.front().rows(), static_cast<Eigen::Index>(size));
+  for (std::size_t i = 0; i < size; ++i) first.col(static_cast<Eigen::Index>(i)) = descriptors.forms[i].col(0);
+  const Eigen::MatrixXf plain = leastDistances(first, descriptors.rotate, options, progress);
+
+  const std::vector<Eigen::Index> references = drawReferences(size, options);
+  Eigen::MatrixXf reference_forms(first.rows(), static_cast<Eigen::Index>(references.size()));
+  for (std::size_t r = 0; r < references.size(); ++r)
+    reference_forms.col(static_cast<Eigen::Index>(r)) = first.col(references[r]);
+  ProjectionOptions projection_options;
+  projection_options.num_threads = options.num_threads;
+  const SignatureProjection projection =
+      SignatureProjection::fit(reference_forms, projection_options, descriptors.rotate);
+  std::vector<Eigen::MatrixXf> compact(size), rotations(size);
+  forEachModel(
+      size, options, [](double) {},
+      [&](std::size_t i) {
+        compact[i] = projection.project(descriptors.forms[i]);
+        rotations[i] = projection.rotations(compact[i]);
+      });
+  const Eigen::MatrixXf distances = symmetricDistances(size, options.num_threads, [&](std::size_t i, std::size_t j) {
+    return std::min(signatureDistance(rotations[i], compact[j]), signatureDistance(rotations[j], compact[i]));
+  });
+  const std::string& name = descriptors.name;
+  return {{name, plain},
+          {name + ", scaled", scaled(plain, references, options)},
+          {"compact " + name, distances},
+          {"compact " + name + ", scaled", scaled(distances, references, options)}};
 }
 
 }  // namespace
@@ -121,41 +161,29 @@ std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds,
 
 std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,
                                               const RetrievalProgress& progress) {
-  const auto size = static_cast<Eigen::Index>(clouds.size());
-  std::vector<Eigen::MatrixXf> signatures(clouds.size());
+  TurnableDescriptors prst{"PRST, all turns", std::vector<Eigen::MatrixXf>(clouds.size()), rotateTurnablePRST};
+  TurnableDescriptors signatures{"signatures", std::vector<Eigen::MatrixXf>(clouds.size()), rotateSignature};
   forEachModel(
       clouds.size(), options, [&](double share) { progress(0.5 * share); },
       [&](std::size_t i) {
         DescriptionOptions description;
         description.num_threads = 1;
-        signatures[i] = describeShape(clouds[i], description).signatures;
+        const ShapeDescription shape = describeShape(clouds[i], description);
+        signatures.forms[i] = shape.signatures;
+        const std::vector<Eigen::Matrix3d> frames = signatureFrames(clouds[i], shape.frame);
+        prst.forms[i].resize(kTurnablePRSTSize, static_cast<Eigen::Index>(frames.size()));
+        for (std::size_t f = 0; f < frames.size(); ++f) {
+          const std::vector<float> values = turnablePRST(clouds[i], frames[f]);
+          prst.forms[i].col(static_cast<Eigen::Index>(f)) =
+              Eigen::Map<const Eigen::VectorXf>(values.data(), kTurnablePRSTSize);
+        }
       });
-  Eigen::MatrixXf first(kSignatureSize, size);
-  for (Eigen::Index i = 0; i < size; ++i) first.col(i) = signatures[static_cast<std::size_t>(i)].col(0);
-  const Eigen::MatrixXf plain = leastDistances(first, options, [&](double share) { progress(0.5 + 0.5 * share); });
-
-  const std::vector<Eigen::Index> references = drawReferences(clouds.size(), options);
-  Eigen::MatrixXf reference_signatures(kSignatureSize, static_cast<Eigen::Index>(references.size()));
-  for (std::size_t r = 0; r < references.size(); ++r)
-    reference_signatures.col(static_cast<Eigen::Index>(r)) = first.col(references[r]);
-  ProjectionOptions projection_options;
-  projection_options.num_threads = options.num_threads;
-  const SignatureProjection projection = SignatureProjection::fit(reference_signatures, projection_options);
-  std::vector<Eigen::MatrixXf> compact(clouds.size()), rotations(clouds.size());
-  forEachModel(
-      clouds.size(), options, [](double) {},
-      [&](std::size_t i) {
-        compact[i] = projection.project(signatures[i]);
-        rotations[i] = projection.rotations(compact[i]);
-      });
-  const Eigen::MatrixXf distances =
-      symmetricDistances(clouds.size(), options.num_threads, [&](std::size_t i, std::size_t j) {
-        return std::min(signatureDistance(rotations[i], compact[j]), signatureDistance(rotations[j], compact[i]));
-      });
-  return {{"signatures", plain},
-          {"signatures, scaled", scaled(plain, references, options)},
-          {"compact signatures", distances},
-          {"compact signatures, scaled", scaled(distances, references, options)}};
+  std::vector<RetrievalMethod> methods =
+      turnableMethods(prst, options, [&](double share) { progress(0.5 + 0.2 * share); });
+  for (RetrievalMethod& method :
+       turnableMethods(signatures, options, [&](double share) { progress(0.7 + 0.3 * share); }))
+    methods.push_back(std::move(method));
+  return methods;
 }
 
 }  // namespace pcl_symmetry::apps

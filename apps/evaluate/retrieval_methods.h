@@ -33,8 +33,8 @@ using RetrievalProgress = std::function<void(double)>;
 std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, bool canonical,
                                               const RetrievalOptions& options, const RetrievalProgress& progress);
 
-/// Signatures in the best of all rotations of axes, their compact forms, and these with distances scaled by those to
-/// the references.
+/// PRST in a form that turns, and signatures, in the best of all rotations of axes; their compact forms; and all these
+/// with distances scaled by those to the references.
 std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,
                                               const RetrievalProgress& progress);
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 
 #include "cell_normals.h"
-#include "check.h"
 #include "pcl_symmetry/core/axis_rotations.h"
 #include "pcl_symmetry/core/principal_axes.h"
+#include "signature_axes.h"
 
 namespace pcl_symmetry {
 
@@ -17,9 +17,8 @@ namespace {
 constexpr int kSide = kSignatureCells, kNumCells = kSide * kSide * kSide;
 // Cells that the surface passes are counted on a finer grid, so that the density of the points does not matter.
 constexpr int kFineSide = 2 * kSide, kNumFineCells = kFineSide * kFineSide * kFineSide;
-constexpr double kReach = 2.5;      // half the side of a cube, in mean distances of the points from its middle
-constexpr double kFlattest = 0.05;  // of the greatest root mean square: flatter shapes are stretched no further
-constexpr int kNormalCells = 60;    // across the bounding ball
+constexpr double kReach = 2.5;    // half the side of a cube, in mean distances of the points from its middle
+constexpr int kNormalCells = 60;  // across the bounding ball
 constexpr int kPairs[kNumOrientations][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
 
 using Orientation = Eigen::Matrix<float, kNumOrientations, 1>;
@@ -120,25 +119,13 @@ const CubeRotation& cubeRotation(int rotation) {
 }  // namespace
 
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes) {
-  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
-  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
-  const BoundingBall ball = boundingBall(points);
-  check(ball.radius > 0.0, "radius of the points", ball.radius, "> 0");
-  // In radii, so that no unit is too small or too large for the squares below.
-  const Points centered = normalizePoints(points, ball.center, ball.radius);
+  const Points centered = inRadii(points);
   const CellNormals surface = cellNormals(centered, Eigen::Vector3d::Constant(-1.0), 2.0 / kNormalCells, kNormalCells);
-  const Eigen::Matrix3f to_frame = axes.transpose().cast<float>();
-  Points turned = to_frame * centered;
-  const Eigen::Matrix3Xf normals = to_frame * surface.normals;
-  const Eigen::Vector3f mean = turned.rowwise().mean();
-  const Eigen::Vector3f middle = 0.5f * (turned.rowwise().minCoeff() + turned.rowwise().maxCoeff());
-  turned.colwise() -= 0.5f * (mean + middle);
-
+  const Points turned = aboutMiddle(centered, axes);
+  const Eigen::Matrix3Xf normals = axes.transpose().cast<float>() * surface.normals;
   std::vector<float> signature(kSignatureSize, 0.0f);
   fillCube(turned, normals, surface.cell_of_points, signature.data());
-  const Eigen::Vector3f spread_along = turned.rowwise().norm();
-  const Eigen::Vector3f stretch = spread_along.cwiseMax(kFlattest * spread_along.maxCoeff()).cwiseInverse();
-  fillCube(stretch.asDiagonal() * turned, normals, surface.cell_of_points, signature.data() + kSignatureSize / 2);
+  fillCube(stretched(turned), normals, surface.cell_of_points, signature.data() + kSignatureSize / 2);
   for (float& value : signature) value *= static_cast<float>(M_SQRT1_2);
   return signature;
 }

@@ -38,13 +38,12 @@ Eigen::MatrixXf product(const Eigen::MatrixXf& a, const Eigen::Ref<const Eigen::
 }
 
 /// Inner products of all shapes in all rotations about their common mean; shape i in rotation g has index g N + i.
-Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, int num_threads) {
+Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, SignatureRotation rotate, int num_threads) {
   const Eigen::Index n = signatures.cols();
   std::vector<Eigen::MatrixXf> with_rotated(kNumAxisRotations);
   parallelBlocks(kNumAxisRotations, num_threads, [&](std::size_t r) {
     Eigen::MatrixXf rotated(signatures.rows(), n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      rotateSignature(signatures.col(i).data(), static_cast<int>(r), rotated.col(i).data());
+    for (Eigen::Index i = 0; i < n; ++i) rotate(signatures.col(i).data(), static_cast<int>(r), rotated.col(i).data());
     with_rotated[r].noalias() = signatures.transpose() * rotated;
   });
   Eigen::MatrixXf products(kNumAxisRotations * n, kNumAxisRotations * n);
@@ -94,30 +93,32 @@ void ProjectionOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options) {
+SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options,
+                                             SignatureRotation rotate) {
   options.validate();
-  check(signatures.rows() == kSignatureSize, "size of a signature", signatures.rows(), "kSignatureSize");
+  check(rotate != rotateSignature || signatures.rows() == kSignatureSize, "size of a signature", signatures.rows(),
+        "kSignatureSize");
   check(signatures.cols() >= 1, "number of shapes", signatures.cols(), ">= 1");
   const Eigen::Index n = signatures.cols();
-  const Components components = principalComponents(innerProducts(signatures, options.num_threads), options);
+  const Components components = principalComponents(innerProducts(signatures, rotate, options.num_threads), options);
   const Eigen::Index k = components.variances.size();
   // Of values of unit norm, the scale of the weights does not matter.
   const Eigen::ArrayXf deviations = components.variances.array().sqrt();
   const Eigen::ArrayXf weights = deviations.pow(-static_cast<float>(options.whitening));
 
   SignatureProjection result;
-  result.mean_ = Eigen::VectorXf::Zero(kSignatureSize);
-  result.basis_ = Eigen::MatrixXf::Zero(kSignatureSize, k);
+  result.mean_ = Eigen::VectorXf::Zero(signatures.rows());
+  result.basis_ = Eigen::MatrixXf::Zero(signatures.rows(), k);
   const Eigen::VectorXf mean = signatures.rowwise().mean();
-  Eigen::VectorXf rotated_mean(kSignatureSize);
+  Eigen::VectorXf rotated_mean(signatures.rows());
   for (int r = 0; r < kNumAxisRotations; ++r) {
-    rotateSignature(mean.data(), r, rotated_mean.data());
+    rotate(mean.data(), r, rotated_mean.data());
     result.mean_ += rotated_mean / kNumAxisRotations;
     const Eigen::MatrixXf part = product(signatures, components.vectors.middleRows(r * n, n), options.num_threads);
     parallelBlocks(static_cast<std::size_t>(k), options.num_threads, [&](std::size_t c) {
       const auto column = static_cast<Eigen::Index>(c);
-      Eigen::VectorXf rotated(kSignatureSize);
-      rotateSignature(part.col(column).data(), r, rotated.data());
+      Eigen::VectorXf rotated(signatures.rows());
+      rotate(part.col(column).data(), r, rotated.data());
       result.basis_.col(column) += rotated;
     });
   }

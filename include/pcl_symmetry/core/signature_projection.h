@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "pcl_symmetry/core/shape_signature.h"
+
 namespace pcl_symmetry {
 
 struct ProjectionOptions {
@@ -19,6 +21,9 @@ struct ProjectionOptions {
   void validate() const;
 };
 
+/// Turns a signature or another descriptor by one of the axisRotations().
+using SignatureRotation = void (*)(const float* values, int rotation, float* rotated);
+
 /// The compact form of signatures: their principal components, with all rotations of axes at the price of one.
 ///
 /// The components are those of the reference shapes in all 24 rotations of their axes. So the space that they span is
@@ -28,14 +33,16 @@ class SignatureProjection {
 public:
   SignatureProjection() = default;
 
-  /// \param signatures kSignatureSize x N, one reference shape a column, N >= 1; 200 are enough for any number of
-  /// shapes. \throws std::invalid_argument for bad options, too few shapes, or shapes that are all alike.
-  static SignatureProjection fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options = {});
+  /// \param signatures S x N, one reference shape a column, N >= 1; 200 are enough for any number of shapes.
+  /// \param rotate turns such a column. \throws std::invalid_argument for bad options, too few shapes, or shapes that
+  /// are all alike.
+  static SignatureProjection fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options = {},
+                                 SignatureRotation rotate = rotateSignature);
 
   bool empty() const { return basis_.size() == 0; }
   int numDimensions() const { return static_cast<int>(basis_.cols()); }
 
-  /// \param signatures kSignatureSize x M, as of ShapeDescription. \return numDimensions() x M, columns of unit norm.
+  /// \param signatures S x M, S as in fit(). \return numDimensions() x M, columns of unit norm.
   Eigen::MatrixXf project(const Eigen::Ref<const Eigen::MatrixXf>& signatures) const;
 
   /// \param compact numDimensions() x M, of project(). \return the compact forms of the 24 rotations of each,
@@ -44,12 +51,12 @@ public:
 
   /// All numbers that make up the projection, to be stored. \return and their counterpart.
   std::vector<float> toValues() const;
-  /// \throws std::invalid_argument where the values are not those of a projection.
+  /// \throws std::invalid_argument where the values are not those of a projection of signatures.
   static SignatureProjection fromValues(const std::vector<float>& values);
 
 private:
-  Eigen::VectorXf mean_;                // kSignatureSize
-  Eigen::MatrixXf basis_;               // kSignatureSize x K, whitening included
+  Eigen::VectorXf mean_;                // S
+  Eigen::MatrixXf basis_;               // S x K, whitening included
   std::vector<Eigen::MatrixXf> turns_;  // 24, K x K
 };
 
