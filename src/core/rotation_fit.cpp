@@ -19,14 +19,14 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr int kOverlapSamples = 256, kFewSamples = 150, kSomeSamples = 1000;
+constexpr int kOverlapSamples = 256, kFewSamples = 150, kSomeSamples = 1000, kManySamples = 3000;
 constexpr double kFinalSigmaInSpacings = 3.0;  // as of planes
 constexpr int kRoughIterations = 8, kCloseIterations = 12;
 constexpr double kLeastStiffness = 1e-3;  // of the greatest: what is softer is free, as turns of a cylinder are
 constexpr double kLongestStep = 0.2;      // radians and radii together
 constexpr double kRest = 0.1;             // sigmas: steps that count as rest
-constexpr double kSettled = 2e-5;         // radians and radii together
-constexpr std::size_t kMostFitted = 12;   // of a large group, spread over it
+constexpr double kSettled = 1e-4;         // radians and radii together
+constexpr std::size_t kMostFitted = 6;    // of a large group, spread over it
 
 double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -89,10 +89,17 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, std::uint64_t se
       final_sigma_(std::min(sigma_, std::max(1e-6, kFinalSigmaInSpacings * spacing_))),
       few_(drawSamples(points_.cols(), kFewSamples, seed)),
       some_(drawSamples(points_.cols(), kSomeSamples, seed + 1)),
+      many_(drawSamples(points_.cols(), kManySamples, seed + 3)),
       all_(allOf(points_.cols())),
       scattered_(pointsAt(points_, drawSamples(points_.cols(), kOverlapSamples, seed + 2))),
       own_overlap_(1.0) {
-  own_overlap_ = std::max(overlap(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()), 1e-3);
+  // A rotated sample finds another one as far away as the closest other one of a sample is.
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < points_.cols(); ++i) {
+    const double sq_distance = (points_.col(i) - points_.col(geometry_.nearest[i][0])).squaredNorm();
+    sum += std::exp(-sq_distance / (sigma_ * sigma_));
+  }
+  own_overlap_ = std::max(sum / static_cast<double>(points_.cols()), 1e-3);
 }
 
 double RotationFit::overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const {
@@ -111,11 +118,13 @@ double RotationFit::overlap(const RotationSet& set) const {
 }
 
 RotationSet RotationFit::roughlyFitted(const RotationSet& set) const {
-  return fitted(set, few_, {sigma_, std::max(final_sigma_, 0.5 * sigma_), kRoughIterations});
+  return fitted(set, spreadOver(set.num_judged, kMostFitted), few_,
+                {sigma_, std::max(final_sigma_, 0.5 * sigma_), kRoughIterations});
 }
 
 RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
-  return fitted(set, set.rotations.size() > 2 ? some_ : all_, {final_sigma_, final_sigma_, kCloseIterations});
+  const std::vector<std::size_t> used = spreadOver(set.rotations.size(), kMostFitted);
+  return fitted(set, used, used.size() == 1 ? all_ : many_, {final_sigma_, final_sigma_, kCloseIterations});
 }
 
 /// With R' = exp(omega) R exp(-omega) and c' = c + t, x' = R (x - c) + c moves by ((1 - R) omega) x (x' - c) + (1 - R) t.
@@ -148,8 +157,8 @@ RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std:
   return sums;
 }
 
-RotationSet RotationFit::fitted(RotationSet set, const std::vector<int>& samples, Weights weights) const {
-  const std::vector<std::size_t> used = spreadOver(set.rotations.size(), kMostFitted);
+RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>& used, const std::vector<int>& samples,
+                                Weights weights) const {
   std::vector<NormalEquations> parts(used.size());
   for (int iteration = 0; iteration < weights.max_iterations; ++iteration) {
     parallelBlocks(used.size(), num_threads_,
@@ -200,33 +209,48 @@ double RotationFit::score(const RotationSet& set, std::size_t i) const {
       edt_, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return rotation * x + shift; }, rotation.col(0));
 }
 
-RotationEvidence RotationFit::roughEvidence(const RotationSet& set) const {
-  double least = 1.0;
-  for (std::size_t i = 0; i < set.rotations.size(); ++i)
-    least = std::min(least, mean(support(set, i, some_)) / baseline_);
-  return {least, 0.0, 0.0};
+double RotationFit::roughSupport(const RotationSet& set) const {
+  std::vector<double> supports(set.num_judged);
+  parallelBlocks(supports.size(), num_threads_, [&](std::size_t i) { supports[i] = mean(support(set, i, some_)); });
+  return *std::min_element(supports.begin(), supports.end()) / baseline_;
 }
 
-RotationEvidence RotationFit::evidence(const RotationSet& set) const {
-  const std::size_t size = set.rotations.size();
-  std::vector<double> supports(size), features(size), scores(size);
-  parallelBlocks(size, num_threads_, [&](std::size_t i) {
+std::vector<RotationFit::Agreement> RotationFit::agreements(const RotationSet& set) const {
+  std::vector<Agreement> result(set.num_judged);
+  parallelBlocks(result.size(), num_threads_, [&](std::size_t i) {
     const std::vector<float> point_support = support(set, i, all_);
-    supports[i] = mean(point_support);
-    features[i] = featureShare(point_support);
-    scores[i] = score(set, i);
+    result[i] = {mean(point_support), featureShare(point_support), score(set, i)};
   });
-  const double count = static_cast<double>(size);
-  const double support = std::accumulate(supports.begin(), supports.end(), 0.0) / count;
-  const PlaneEvidence together{support,
-                               1.0 - support,
-                               std::accumulate(scores.begin(), scores.end(), 0.0) / count,
+  return result;
+}
+
+RotationEvidence RotationFit::judged(const Agreement& agreement) const {
+  const PlaneEvidence evidence{agreement.support,
+                               1.0 - agreement.support,
+                               agreement.score,
                                baseline_,
                                spacing_,
                                roughness_,
                                false,
                                false};
-  return {seenSupport(together), *std::max_element(features.begin(), features.end()), planeConfidence(together)};
+  return {seenSupport(evidence), agreement.feature, planeConfidence(evidence)};
+}
+
+std::vector<RotationEvidence> RotationFit::evidenceOfEach(const RotationSet& set) const {
+  std::vector<RotationEvidence> result;
+  for (const Agreement& agreement : agreements(set)) result.push_back(judged(agreement));
+  return result;
+}
+
+RotationEvidence RotationFit::evidence(const RotationSet& set) const {
+  Agreement together{};
+  const double count = static_cast<double>(set.num_judged);
+  for (const Agreement& agreement : agreements(set)) {
+    together.support += agreement.support / count;
+    together.score += agreement.score / count;
+    together.feature = std::max(together.feature, agreement.feature);
+  }
+  return judged(together);
 }
 
 }  // namespace pcl_symmetry

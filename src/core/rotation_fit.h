@@ -13,6 +13,7 @@ namespace pcl_symmetry {
 struct RotationSet {
   std::vector<Eigen::Matrix3d> rotations;
   Eigen::Vector3d center;
+  std::size_t num_judged;  ///< the first of them, from which the others follow
 
   Eigen::Vector3d image(std::size_t i, const Eigen::Vector3d& x) const { return center + rotations[i] * (x - center); }
 };
@@ -37,13 +38,15 @@ public:
   double overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const;
   double overlap(const RotationSet& set) const;  ///< the least of any
 
-  /// Turns and moves the set as a whole to where the rotated samples lie closest to the surface, in few samples with
-  /// wide weights, and on request in all with narrow ones.
+  /// Turns and moves the set as a whole to where the rotated samples lie closest to the surface: in few samples with
+  /// wide weights, or in many with narrow ones.
   RotationSet roughlyFitted(const RotationSet& set) const;
   RotationSet closelyFitted(const RotationSet& set) const;
 
-  /// From some of the points (confidence and feature are 0 then), or from all.
-  RotationEvidence roughEvidence(const RotationSet& set) const;
+  /// Support from some of the points, of the least of the rotations that are judged.
+  double roughSupport(const RotationSet& set) const;
+  /// From all points, of the rotations that are judged: each, or together.
+  std::vector<RotationEvidence> evidenceOfEach(const RotationSet& set) const;
   RotationEvidence evidence(const RotationSet& set) const;
 
 private:
@@ -52,12 +55,19 @@ private:
     int max_iterations;
   };
   struct NormalEquations;
+  /// Means over the points.
+  struct Agreement {
+    double support, feature, score;
+  };
 
   NormalEquations equations(const RotationSet& set, std::size_t i, const std::vector<int>& samples, double sigma) const;
-  RotationSet fitted(RotationSet set, const std::vector<int>& samples, Weights weights) const;
+  RotationSet fitted(RotationSet set, const std::vector<std::size_t>& used, const std::vector<int>& samples,
+                     Weights weights) const;
   std::vector<float> support(const RotationSet& set, std::size_t i, const std::vector<int>& samples) const;
   double featureShare(const std::vector<float>& support) const;
   double score(const RotationSet& set, std::size_t i) const;
+  std::vector<Agreement> agreements(const RotationSet& set) const;
+  RotationEvidence judged(const Agreement& agreement) const;
 
   Points points_;
   const GaussianEdt& edt_;
@@ -66,7 +76,7 @@ private:
   LocalGeometry geometry_;
   double spacing_, roughness_, baseline_;
   double sigma_, final_sigma_;
-  std::vector<int> few_, some_, all_;
+  std::vector<int> few_, some_, many_, all_;
   Points scattered_;  ///< the points that overlap() asks about
   double own_overlap_;
 };

@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kGoldenRatio = 0.61803398874989485;
 constexpr double kSameLine = 0.05;      // radians and radii
-constexpr double kAcross = 0.1;         // radians from a right angle
 constexpr double kMeets = 0.1;          // radians between angles of axes, found and of a group
-constexpr double kRoughOverlap = 0.75;  // of a candidate before its fit
+constexpr double kLeastOverlap = 0.5;   // of a line before its fit
+constexpr double kRoughOverlap = 0.75;  // of a group before it
 constexpr double kFairOverlap = 0.85;   // after it
 constexpr double kRoughSupport = 0.85;
 constexpr std::size_t kMostLines = 12;
@@ -50,7 +50,7 @@ double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
-/// Turns about z that are in step with no polygon.
+/// Turns about an axis that are in step with no polygon.
 std::vector<Eigen::Matrix3d> turnsAbout(const Eigen::Vector3d& axis) {
   std::vector<Eigen::Matrix3d> turns;
   for (int k = 1; k <= kTurns; ++k) turns.push_back(rotationAbout(axis, 2.0 * M_PI * golden(k)));
@@ -86,17 +86,27 @@ public:
     return lines;
   }
 
-  /// Lines about which turns are symmetries, each once, those of the greatest order first.
+  /// Lines about which turns are symmetries, each once, those of the greatest order first; two continuous ones, or one
+  /// and no others, tell all.
   std::vector<FoundAxis> axes(const std::vector<AxisLineCandidate>& lines) const {
     std::vector<FoundAxis> found;
-    for (const AxisLineCandidate& line : lines) {
-      if (found.size() >= kMostLines || isKnown(found, line)) continue;
-      std::optional<FoundAxis> axis = axisAt(line);
-      if (axis && !isKnown(found, axis->line)) found.push_back(std::move(*axis));
+    std::vector<AxisLineCandidate> tried;
+    for (const AxisLineCandidate& start : lines) {
+      const bool continuous = !found.empty() && found.front().fold == 0;
+      if (found.size() >= (continuous ? 2 : kMostLines)) break;
+      if (isKnown(tried, start)) continue;
+      const std::optional<AxisLineCandidate> line = fittedLine(start);
+      if (!line || isKnown(tried, *line)) continue;
+      tried.push_back(*line);
+      if (auto revolution = revolutionAbout(*line)) {
+        if (!continuous) found.clear();
+        found.push_back(*revolution);
+      } else if (!continuous) {
+        if (auto cyclic = cyclicAbout(*line)) found.push_back(*cyclic);
+      }
     }
-    std::stable_sort(found.begin(), found.end(), [](const FoundAxis& a, const FoundAxis& b) {
-      return (a.fold == 0 ? 1000 : a.fold) > (b.fold == 0 ? 1000 : b.fold);
-    });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const FoundAxis& a, const FoundAxis& b) { return a.fold > b.fold; });
     return found;
   }
 
@@ -116,11 +126,10 @@ public:
   }
 
 private:
-  static bool isKnown(const std::vector<FoundAxis>& found, const AxisLineCandidate& line) {
-    return std::any_of(found.begin(), found.end(), [&](const FoundAxis& axis) {
-      const Eigen::Vector3d between = line.center - axis.line.center;
-      return angleBetween(axis.line.direction, line.direction) < kSameLine &&
-             between.cross(axis.line.direction).norm() < kSameLine;
+  static bool isKnown(const std::vector<AxisLineCandidate>& lines, const AxisLineCandidate& line) {
+    return std::any_of(lines.begin(), lines.end(), [&](const AxisLineCandidate& other) {
+      return angleBetween(other.direction, line.direction) < kSameLine &&
+             (line.center - other.center).cross(other.direction).norm() < kSameLine;
     });
   }
 
@@ -132,54 +141,94 @@ private:
   std::optional<PlacedGroup> placed(RotationGroupKind kind, int fold, RotationSet set) const {
     if (fit_.overlap(set) < kRoughOverlap) return std::nullopt;
     set = fit_.roughlyFitted(set);
-    if (fit_.overlap(set) < kFairOverlap) return std::nullopt;
+    if (fit_.overlap(set) < kFairOverlap || fit_.roughSupport(set) < kRoughSupport) return std::nullopt;
     set = fit_.closelyFitted(set);
-    if (fit_.roughEvidence(set).support < kRoughSupport) return std::nullopt;
     const RotationEvidence evidence = fit_.evidence(set);
     if (!holds(evidence)) return std::nullopt;
     const Eigen::Vector3d axis = axisOf(set.rotations.front());
     return PlacedGroup{kind, fold, std::move(set), axis, evidence};
   }
 
+  /// Its generators, then the other elements but for the identity.
   static RotationSet turnedTo(const Eigen::Matrix3d& frame, const Eigen::Vector3d& center, const RotationGroup& group) {
-    RotationSet set{{}, center};
-    for (const Eigen::Matrix3d& element : group.elements())
-      if (!element.isIdentity(1e-9)) set.rotations.push_back(frame * element * frame.transpose());
+    const std::vector<Eigen::Matrix3d> generators = group.generators();
+    RotationSet set{{}, center, generators.size()};
+    for (const Eigen::Matrix3d& generator : generators) set.rotations.push_back(frame * generator * frame.transpose());
+    for (const Eigen::Matrix3d& element : group.elements()) {
+      const bool listed = std::any_of(generators.begin(), generators.end(),
+                                      [&](const Eigen::Matrix3d& g) { return element.isApprox(g, 1e-9); });
+      if (!listed && !element.isIdentity(1e-9)) set.rotations.push_back(frame * element * frame.transpose());
+    }
     return set;
   }
 
-  std::optional<FoundAxis> axisAt(const AxisLineCandidate& start) const {
-    AxisLineCandidate line = start;
-    const std::vector<int> likely = likelyFolds(fit_, line, options_.max_fold);
-    if (likely.empty()) return std::nullopt;
-    // One turn places the line well enough to tell others about it.
-    const int first = likely.back();
-    RotationSet turn{{rotationAbout(line.direction, 2.0 * M_PI / first)}, line.center};
-    if (fit_.overlap(turn) < kLeastStart) return std::nullopt;
+  static RotationSet turnsOf(const AxisLineCandidate& line) {
+    return {turnsAbout(line.direction), line.center, static_cast<std::size_t>(kTurns)};
+  }
+
+  static RotationSet turnOf(const AxisLineCandidate& line, int fold) {
+    return {{rotationAbout(line.direction, 2.0 * M_PI / fold)}, line.center, 1};
+  }
+
+  /// The line moved to where the least of its likely turns fits best.
+  std::optional<AxisLineCandidate> fittedLine(const AxisLineCandidate& start) const {
+    const std::vector<int> likely = likelyFolds(fit_, start, options_.max_fold);
+    RotationSet turn = turnOf(start, likely.back());
+    if (fit_.overlap(turn) < kLeastOverlap) return std::nullopt;
     turn = fit_.roughlyFitted(turn);
     if (fit_.overlap(turn) < kRoughOverlap) return std::nullopt;
+    turn = fit_.closelyFitted(turn);
+    if (fit_.overlap(turn) < kFairOverlap) return std::nullopt;
     const Eigen::Vector3d direction = axisOf(turn.rotations[0]);
-    line.center = turn.center + direction.dot(line.center - turn.center) * direction;
-    line.direction = direction;
-    if (auto revolution = placed(RotationGroupKind::Revolution, 0, {turnsAbout(line.direction), line.center}))
-      return foundAt(*revolution);
-    for (const int fold : likelyFolds(fit_, line, options_.max_fold)) {
-      const RotationGroup group{RotationGroupKind::Cyclic, fold};
+    return AxisLineCandidate{direction, turn.center + direction.dot(start.center - turn.center) * direction};
+  }
+
+  std::optional<FoundAxis> revolutionAbout(const AxisLineCandidate& line) const {
+    auto group = placed(RotationGroupKind::Revolution, 0, turnsOf(line));
+    if (!group) return std::nullopt;
+    const AxisLineCandidate fitted{group->axis, group->set.center};
+    return FoundAxis{fitted, 0, std::move(*group)};
+  }
+
+  /// The greatest cyclic group about a line.
+  std::optional<FoundAxis> cyclicAbout(const AxisLineCandidate& line) const {
+    int fold = greatestFold(line);
+    for (; fold >= 2; --fold) {
+      const RotationGroup cyclic{RotationGroupKind::Cyclic, fold};
       const Eigen::Matrix3d frame = frameOf(line.direction, line.direction.unitOrthogonal());
-      if (auto cyclic = placed(group.kind, fold, turnedTo(frame, line.center, group))) return foundAt(*cyclic);
+      auto group = placed(cyclic.kind, fold, turnedTo(frame, line.center, cyclic));
+      if (!group) continue;
+      const AxisLineCandidate fitted{group->axis, group->set.center};
+      return FoundAxis{fitted, fold, std::move(*group)};
     }
     return std::nullopt;
   }
 
-  static FoundAxis foundAt(const PlacedGroup& group) {
-    return {{group.axis, group.set.center}, group.kind == RotationGroupKind::Revolution ? 0 : group.fold, group};
+  /// The greatest n of which the turns by 2 pi / n and by its multiples are symmetries.
+  int greatestFold(const AxisLineCandidate& line) const {
+    std::vector<int> likely = likelyFolds(fit_, line, options_.max_fold);
+    std::reverse(likely.begin(), likely.end());
+    std::vector<char> is_fold(static_cast<std::size_t>(options_.max_fold) + 1, 0);
+    is_fold[1] = 1;
+    int greatest = 1;
+    for (const int n : likely) {
+      bool parts = true;
+      for (int part = 1; part < n; ++part) parts &= n % part != 0 || is_fold[part];
+      if (!parts) continue;
+      const RotationSet turn = turnOf(line, n);
+      if (fit_.roughSupport(turn) < kRoughSupport || !holds(fit_.evidence(turn))) continue;
+      is_fold[n] = 1;
+      greatest = n;
+    }
+    return greatest;
   }
 
   std::optional<PlacedGroup> spherical(const std::vector<FoundAxis>& axes) const {
-    if (axes.size() < 2 || axes[1].fold != 0) return std::nullopt;
-    RotationSet set{turnsAbout(axes[0].line.direction), axes[0].line.center};
+    if (axes.size() < 2) return std::nullopt;
+    RotationSet set = turnsOf(axes[0].line);
     const std::vector<Eigen::Matrix3d> others = turnsAbout(axes[1].line.direction);
     set.rotations.insert(set.rotations.end(), others.begin(), others.end());
+    set.num_judged = set.rotations.size();
     return placed(RotationGroupKind::Spherical, 0, set);
   }
 
@@ -187,8 +236,9 @@ private:
     std::vector<double> offsets;
     for (int k = -25; k <= 25; ++k) offsets.push_back(0.02 * k);
     const AxisLineCandidate across = bestAcross(fit_, main.line, M_PI, 1, offsets);
-    RotationSet set{turnsAbout(main.line.direction), across.center};
-    set.rotations.push_back(rotationAbout(across.direction, M_PI));
+    RotationSet set = turnsOf({main.line.direction, across.center});
+    set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction, M_PI));
+    set.num_judged = 2;
     return placed(RotationGroupKind::Cylindrical, 0, set);
   }
 
@@ -205,37 +255,32 @@ private:
   std::optional<PlacedGroup> polyhedralGroup(const std::vector<FoundAxis>& axes) const {
     for (const RotationGroup& group : {RotationGroup{RotationGroupKind::Icosahedral, 5},
                                        RotationGroup{RotationGroupKind::Octahedral, 4},
-                                       RotationGroup{RotationGroupKind::Tetrahedral, 3}})
-      if (auto found = polyhedralGroup(axes, group)) return found;
-    return std::nullopt;
-  }
-
-  /// Two axes that are not parallel place a group, up to itself.
-  std::optional<PlacedGroup> polyhedralGroup(const std::vector<FoundAxis>& axes, const RotationGroup& group) const {
-    const std::vector<RotationAxis> own = axesOf(group.elements());
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      for (std::size_t j = i + 1; j < axes.size(); ++j) {
-        for (const RotationAxis& a : own) {
-          for (const RotationAxis& b : own) {
-            for (const double sign : {1.0, -1.0}) {
-              if (a.order % axes[i].fold != 0 || b.order % axes[j].fold != 0) continue;
-              const Eigen::Vector3d second = sign * axes[j].line.direction;
-              const double between = std::acos(std::clamp(axes[i].line.direction.dot(second), -1.0, 1.0));
-              const double expected = std::acos(std::clamp(a.direction.dot(b.direction), -1.0, 1.0));
-              if (expected < kAcross || expected > M_PI - kAcross || std::abs(between - expected) > kMeets) continue;
-              const Eigen::Matrix3d frame =
-                  frameOf(axes[i].line.direction, second) * frameOf(a.direction, b.direction).transpose();
-              if (auto found = placed(group.kind, group.fold, turnedTo(frame, axes[i].line.center, group)))
-                return found;
-            }
-          }
-        }
-      }
+                                       RotationGroup{RotationGroupKind::Tetrahedral, 3}}) {
+      const std::vector<RotationAxis> own = axesOf(group.elements());
+      for (std::size_t i = 0; i < axes.size(); ++i)
+        for (std::size_t j = i + 1; j < axes.size(); ++j)
+          for (const RotationAxis& a : own)
+            for (const RotationAxis& b : own)
+              if (auto found = polyhedralGroup(group, axes[i], axes[j], a, b)) return found;
     }
     return std::nullopt;
   }
 
-  static constexpr double kLeastStart = 0.5;
+  /// Two axes that are not parallel place a group, up to itself.
+  std::optional<PlacedGroup> polyhedralGroup(const RotationGroup& group, const FoundAxis& first,
+                                             const FoundAxis& second, const RotationAxis& a,
+                                             const RotationAxis& b) const {
+    if (a.order % first.fold != 0 || b.order % second.fold != 0) return std::nullopt;
+    const double cosine = a.direction.dot(b.direction);
+    const Eigen::Vector3d direction =
+        first.line.direction.dot(second.line.direction) * cosine < 0.0 ? -second.line.direction : second.line.direction;
+    const double expected = angleBetween(a.direction, b.direction);
+    if (expected < kMeets || std::abs(angleBetween(first.line.direction, direction) - expected) > kMeets)
+      return std::nullopt;
+    const Eigen::Matrix3d frame =
+        frameOf(first.line.direction, direction) * frameOf(a.direction, b.direction).transpose();
+    return placed(group.kind, group.fold, turnedTo(frame, first.line.center, group));
+  }
 
   const RotationFit& fit_;
   const ObjectSymmetryOptions& options_;
@@ -260,7 +305,7 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const BoundingBall& ball
     for (int k = 0; k < 3; ++k) result.continuous.push_back({Eigen::Vector3d::Unit(k), result.center});
   } else if (isContinuous(group.kind)) {
     result.continuous.push_back({group.axis, result.center});
-    if (group.kind == RotationGroupKind::Cylindrical) result.discrete.push_back(motion(group.set.rotations.back()));
+    if (group.kind == RotationGroupKind::Cylindrical) result.discrete.push_back(motion(group.set.rotations[1]));
   } else {
     for (const Eigen::Matrix3d& rotation : group.set.rotations) result.discrete.push_back(motion(rotation));
   }
