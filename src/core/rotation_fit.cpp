@@ -23,6 +23,7 @@ constexpr int kOverlapSamples = 256, kFewSamples = 150, kSomeSamples = 1000, kMa
 constexpr double kFinalSigmaInSpacings = 3.0;  // as of planes
 constexpr int kRoughIterations = 8, kCloseIterations = 12;
 constexpr double kLeastStiffness = 1e-3;  // of the greatest: what is softer is free, as turns of a cylinder are
+constexpr int kMostWitnesses = 3;         // of four neighbours
 constexpr double kLongestStep = 0.2;      // radians and radii together
 constexpr double kRest = 0.1;             // sigmas: steps that count as rest
 constexpr double kSettled = 1e-4;         // radians and radii together
@@ -92,7 +93,8 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, std::uint64_t se
       many_(drawSamples(points_.cols(), kManySamples, seed + 3)),
       all_(allOf(points_.cols())),
       scattered_(pointsAt(points_, drawSamples(points_.cols(), kOverlapSamples, seed + 2))),
-      own_overlap_(1.0) {
+      own_overlap_(1.0),
+      own_feature_(featureShare(ownSupport(points_, geometry_))) {
   // A rotated sample finds another one as far away as the closest other one of a sample is.
   double sum = 0.0;
   for (Eigen::Index i = 0; i < points_.cols(); ++i) {
@@ -124,7 +126,7 @@ RotationSet RotationFit::roughlyFitted(const RotationSet& set) const {
 
 RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
   const std::vector<std::size_t> used = spreadOver(set.rotations.size(), kMostFitted);
-  return fitted(set, used, used.size() == 1 ? all_ : many_, {final_sigma_, final_sigma_, kCloseIterations});
+  return fitted(set, used, many_, {final_sigma_, final_sigma_, kCloseIterations});
 }
 
 /// With R' = exp(omega) R exp(-omega) and c' = c + t, x' = R (x - c) + c moves by ((1 - R) omega) x (x' - c) + (1 - R) t.
@@ -197,7 +199,7 @@ double RotationFit::featureShare(const std::vector<float>& support) const {
     if (support[i] > 0.5f) continue;
     int off = 0;
     for (const int j : geometry_.nearest[i]) off += support[j] <= 0.5f ? 1 : 0;
-    count += 2 * off >= kNumWitnesses ? 1 : 0;
+    count += off >= kMostWitnesses ? 1 : 0;
   }
   return static_cast<double>(count) / static_cast<double>(support.size());
 }
@@ -215,42 +217,21 @@ double RotationFit::roughSupport(const RotationSet& set) const {
   return *std::min_element(supports.begin(), supports.end()) / baseline_;
 }
 
-std::vector<RotationFit::Agreement> RotationFit::agreements(const RotationSet& set) const {
-  std::vector<Agreement> result(set.num_judged);
-  parallelBlocks(result.size(), num_threads_, [&](std::size_t i) {
-    const std::vector<float> point_support = support(set, i, all_);
-    result[i] = {mean(point_support), featureShare(point_support), score(set, i)};
-  });
-  return result;
-}
-
-RotationEvidence RotationFit::judged(const Agreement& agreement) const {
-  const PlaneEvidence evidence{agreement.support,
-                               1.0 - agreement.support,
-                               agreement.score,
-                               baseline_,
-                               spacing_,
-                               roughness_,
-                               false,
-                               false};
-  return {seenSupport(evidence), agreement.feature, planeConfidence(evidence)};
-}
-
-std::vector<RotationEvidence> RotationFit::evidenceOfEach(const RotationSet& set) const {
-  std::vector<RotationEvidence> result;
-  for (const Agreement& agreement : agreements(set)) result.push_back(judged(agreement));
-  return result;
-}
-
 RotationEvidence RotationFit::evidence(const RotationSet& set) const {
-  Agreement together{};
-  const double count = static_cast<double>(set.num_judged);
-  for (const Agreement& agreement : agreements(set)) {
-    together.support += agreement.support / count;
-    together.score += agreement.score / count;
-    together.feature = std::max(together.feature, agreement.feature);
-  }
-  return judged(together);
+  std::vector<double> supports(set.num_judged), features(set.num_judged), scores(set.num_judged);
+  parallelBlocks(set.num_judged, num_threads_, [&](std::size_t i) {
+    const std::vector<float> point_support = support(set, i, all_);
+    supports[i] = mean(point_support);
+    features[i] = std::max(0.0, featureShare(point_support) - own_feature_);
+    scores[i] = score(set, i);
+  });
+  const auto mean_of = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  const double support = mean_of(supports);
+  const PlaneEvidence together{support,    1.0 - support, mean_of(scores), baseline_, spacing_,
+                               roughness_, false,         false};
+  return {seenSupport(together), *std::max_element(features.begin(), features.end()), planeConfidence(together)};
 }
 
 }  // namespace pcl_symmetry

@@ -45,8 +45,7 @@ public:
 
   /// Support from some of the points, of the least of the rotations that are judged.
   double roughSupport(const RotationSet& set) const;
-  /// From all points, of the rotations that are judged: each, or together.
-  std::vector<RotationEvidence> evidenceOfEach(const RotationSet& set) const;
+  /// From all points, of the rotations that are judged, together.
   RotationEvidence evidence(const RotationSet& set) const;
 
 private:
@@ -55,10 +54,6 @@ private:
     int max_iterations;
   };
   struct NormalEquations;
-  /// Means over the points.
-  struct Agreement {
-    double support, feature, score;
-  };
 
   NormalEquations equations(const RotationSet& set, std::size_t i, const std::vector<int>& samples, double sigma) const;
   RotationSet fitted(RotationSet set, const std::vector<std::size_t>& used, const std::vector<int>& samples,
@@ -66,8 +61,6 @@ private:
   std::vector<float> support(const RotationSet& set, std::size_t i, const std::vector<int>& samples) const;
   double featureShare(const std::vector<float>& support) const;
   double score(const RotationSet& set, std::size_t i) const;
-  std::vector<Agreement> agreements(const RotationSet& set) const;
-  RotationEvidence judged(const Agreement& agreement) const;
 
   Points points_;
   const GaussianEdt& edt_;
@@ -79,6 +72,7 @@ private:
   std::vector<int> few_, some_, many_, all_;
   Points scattered_;  ///< the points that overlap() asks about
   double own_overlap_;
+  double own_feature_;
 };
 
 }  // namespace pcl_symmetry

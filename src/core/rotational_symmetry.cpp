@@ -22,7 +22,8 @@ constexpr double kMeets = 0.1;          // radians between angles of axes, found
 constexpr double kLeastOverlap = 0.5;   // of a line before its fit
 constexpr double kRoughOverlap = 0.75;  // of a group before it
 constexpr double kFairOverlap = 0.85;   // after it
-constexpr double kRoughSupport = 0.85;
+constexpr double kLeastSupport = 0.6;   // of a line that has been placed roughly
+constexpr double kRoughSupport = 0.85;  // of what goes on to be judged
 constexpr std::size_t kMostLines = 12;
 constexpr int kTurns = 8;  // that stand for all turns about an axis
 
@@ -176,7 +177,7 @@ private:
     RotationSet turn = turnOf(start, likely.back());
     if (fit_.overlap(turn) < kLeastOverlap) return std::nullopt;
     turn = fit_.roughlyFitted(turn);
-    if (fit_.overlap(turn) < kRoughOverlap) return std::nullopt;
+    if (fit_.overlap(turn) < kRoughOverlap || fit_.roughSupport(turn) < kLeastSupport) return std::nullopt;
     turn = fit_.closelyFitted(turn);
     if (fit_.overlap(turn) < kFairOverlap) return std::nullopt;
     const Eigen::Vector3d direction = axisOf(turn.rotations[0]);
@@ -192,35 +193,37 @@ private:
 
   /// The greatest cyclic group about a line.
   std::optional<FoundAxis> cyclicAbout(const AxisLineCandidate& line) const {
-    int fold = greatestFold(line);
-    for (; fold >= 2; --fold) {
-      const RotationGroup cyclic{RotationGroupKind::Cyclic, fold};
-      const Eigen::Matrix3d frame = frameOf(line.direction, line.direction.unitOrthogonal());
-      auto group = placed(cyclic.kind, fold, turnedTo(frame, line.center, cyclic));
-      if (!group) continue;
-      const AxisLineCandidate fitted{group->axis, group->set.center};
-      return FoundAxis{fitted, fold, std::move(*group)};
-    }
-    return std::nullopt;
+    const int fold = foldOf(line);
+    if (fold == 1) return std::nullopt;
+    const RotationGroup cyclic{RotationGroupKind::Cyclic, fold};
+    const Eigen::Matrix3d frame = frameOf(line.direction, line.direction.unitOrthogonal());
+    auto group = placed(cyclic.kind, fold, turnedTo(frame, line.center, cyclic));
+    if (!group) return std::nullopt;
+    const AxisLineCandidate fitted{group->axis, group->set.center};
+    return FoundAxis{fitted, fold, std::move(*group)};
   }
 
-  /// The greatest n of which the turns by 2 pi / n and by its multiples are symmetries.
-  int greatestFold(const AxisLineCandidate& line) const {
+  /// The n of which the turns by 2 pi / n and by its multiples are symmetries. Of two of which none divides the other
+  /// the surer one: what is both is round.
+  int foldOf(const AxisLineCandidate& line) const {
     std::vector<int> likely = likelyFolds(fit_, line, options_.max_fold);
     std::reverse(likely.begin(), likely.end());
-    std::vector<char> is_fold(static_cast<std::size_t>(options_.max_fold) + 1, 0);
-    is_fold[1] = 1;
-    int greatest = 1;
+    std::vector<double> confidence(static_cast<std::size_t>(options_.max_fold) + 1, 0.0);
+    confidence[1] = 0.01;
+    std::vector<int> folds{1};
     for (const int n : likely) {
       bool parts = true;
-      for (int part = 1; part < n; ++part) parts &= n % part != 0 || is_fold[part];
+      for (int part = 1; part < n; ++part) parts &= n % part != 0 || confidence[part] > 0.0;
       if (!parts) continue;
       const RotationSet turn = turnOf(line, n);
-      if (fit_.roughSupport(turn) < kRoughSupport || !holds(fit_.evidence(turn))) continue;
-      is_fold[n] = 1;
-      greatest = n;
+      if (fit_.roughSupport(turn) < kRoughSupport) continue;
+      const RotationEvidence evidence = fit_.evidence(turn);
+      if (!holds(evidence)) continue;
+      confidence[n] = evidence.confidence;
+      folds.erase(std::remove_if(folds.begin(), folds.end(), [&](int part) { return n % part == 0; }), folds.end());
+      folds.push_back(n);
     }
-    return greatest;
+    return *std::max_element(folds.begin(), folds.end(), [&](int a, int b) { return confidence[a] < confidence[b]; });
   }
 
   std::optional<PlacedGroup> spherical(const std::vector<FoundAxis>& axes) const {
