@@ -4,69 +4,64 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <queue>
 #include <vector>
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kLeafSize = 16;
+constexpr int kLeafSize = 8;
 
-/// Boxes around halves of halves of the points.
-class BoxTree {
+/// Boxes, and cones from the center, around halves of halves of the points.
+class HalvingTree {
 public:
-  explicit BoxTree(const PointsRef& points) : points_(points), order_(static_cast<std::size_t>(points.cols())) {
+  explicit HalvingTree(const PointsRef& points)
+      : points_(points), center_(boundingBall(points).center), order_(static_cast<std::size_t>(points.cols())) {
     std::iota(order_.begin(), order_.end(), 0);
     build(0, static_cast<int>(order_.size()));
   }
 
   /// \return squared.
   double greatestDistance() const {
-    double best = 0.0;
-    std::priority_queue<Pair> open;
-    const auto consider = [&](int a, int b) {
-      const double bound = sqBound(nodes_[a], nodes_[b]);
-      if (bound > best) open.push({bound, a, b});
-    };
-    consider(0, 0);
-    while (!open.empty() && open.top().bound > best) {
-      const Pair pair = open.top();
-      open.pop();
-      const Node &a = nodes_[pair.a], &b = nodes_[pair.b];
-      if (a.right < 0 && b.right < 0) {
-        best = std::max(best, greatestDistance(a, b));
-      } else if (pair.a == pair.b) {
-        consider(pair.a + 1, pair.a + 1);
-        consider(pair.a + 1, a.right);
-        consider(a.right, a.right);
-      } else if (b.right < 0 || (a.right >= 0 && a.end - a.begin >= b.end - b.begin)) {
-        consider(pair.a + 1, pair.b);
-        consider(a.right, pair.b);
-      } else {
-        consider(pair.a, pair.b + 1);
-        consider(pair.a, b.right);
-      }
-    }
+    double best = hop();
+    search(0, 0, best);
     return best;
   }
 
 private:
   struct Node {
-    Eigen::AlignedBox3f box;
-    int begin, end;  // of order_
-    int right;       // the left child is the next node; -1: a leaf
+    Eigen::AlignedBox3d box;
+    Eigen::Vector3d axis;     // of a cone from the center
+    double half_angle = 0.0;  // of the cone
+    double reach = 0.0;       // greatest distance from the center
+    int begin = 0, end = 0;   // of order_
+    int right = -1;           // the left child is the next node; -1: a leaf
   };
-  struct Pair {
-    double bound;
-    int a, b;
-    bool operator<(const Pair& other) const { return bound < other.bound; }
-  };
+  Node around(int begin, int end) const {
+    constexpr double kRounding = 1e-9;
+    Node node;
+    node.begin = begin;
+    node.end = end;
+    for (int i = begin; i < end; ++i) node.box.extend(Eigen::Vector3d(points_.col(order_[i]).cast<double>()));
+    const Eigen::Vector3d middle = node.box.center() - center_;
+    node.axis = middle.norm() > 0.0 ? middle.normalized() : Eigen::Vector3d::UnitZ().eval();
+    for (int i = begin; i < end; ++i) {
+      const Eigen::Vector3d x = points_.col(order_[i]).cast<double>() - center_;
+      node.reach = std::max(node.reach, x.norm());
+      node.half_angle = std::max(node.half_angle, angleBetween(node.axis, x));
+    }
+    node.reach *= 1.0 + kRounding;
+    node.half_angle += kRounding;
+    return node;
+  }
+
+  static double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  }
 
   int build(int begin, int end) {
     const int index = static_cast<int>(nodes_.size());
-    Node node{Eigen::AlignedBox3f(), begin, end, -1};
-    for (int i = begin; i < end; ++i) node.box.extend(Eigen::Vector3f(points_.col(order_[i])));
+    const Node node = around(begin, end);
     nodes_.push_back(node);
     if (end - begin <= kLeafSize) return index;
     int axis = 0;
@@ -80,11 +75,46 @@ private:
     return index;
   }
 
+  /// From any point to the farthest one, and on from there: nearly the diameter, mostly.
+  double hop() const {
+    double best = 0.0;
+    Eigen::Index at = 0;
+    for (int k = 0; k < 4; ++k) {
+      const Eigen::Vector3f from = points_.col(at);
+      (points_.colwise() - from).colwise().squaredNorm().maxCoeff(&at);
+      best = std::max(best, (points_.col(at).cast<double>() - from.cast<double>()).squaredNorm());
+    }
+    return best;
+  }
+
+  void search(int a, int b, double& best) const {
+    const Node &first = nodes_[a], &second = nodes_[b];
+    if (sqBoundOfBoxes(first, second) <= best || sqBoundOfCones(first, second) <= best) return;
+    if (first.right < 0 && second.right < 0) {
+      best = std::max(best, greatestDistance(first, second));
+    } else if (a == b) {
+      search(a + 1, first.right, best);
+      search(a + 1, a + 1, best);
+      search(first.right, first.right, best);
+    } else if (second.right < 0 || (first.right >= 0 && first.end - first.begin >= second.end - second.begin)) {
+      search(a + 1, b, best);
+      search(first.right, b, best);
+    } else {
+      search(a, b + 1, best);
+      search(a, second.right, best);
+    }
+  }
+
   /// No two points of the boxes are farther apart.
-  static double sqBound(const Node& a, const Node& b) {
-    const Eigen::Vector3d one = (a.box.max().cast<double>() - b.box.min().cast<double>()).cwiseAbs();
-    const Eigen::Vector3d other = (b.box.max().cast<double>() - a.box.min().cast<double>()).cwiseAbs();
-    return one.cwiseMax(other).squaredNorm();
+  static double sqBoundOfBoxes(const Node& a, const Node& b) {
+    return (a.box.max() - b.box.min()).cwiseAbs().cwiseMax((b.box.max() - a.box.min()).cwiseAbs()).squaredNorm();
+  }
+
+  /// The same for the cones: what makes round shapes, where all boxes are equally far apart, no harder than others.
+  static double sqBoundOfCones(const Node& a, const Node& b) {
+    const double angle = std::min(M_PI, angleBetween(a.axis, b.axis) + a.half_angle + b.half_angle);
+    const double cosine = std::cos(angle);
+    return a.reach * a.reach + b.reach * b.reach - 2.0 * std::min(0.0, cosine) * a.reach * b.reach;
   }
 
   double greatestDistance(const Node& a, const Node& b) const {
@@ -98,6 +128,7 @@ private:
   }
 
   const PointsRef& points_;
+  Eigen::Vector3d center_;
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };
@@ -105,7 +136,7 @@ private:
 }  // namespace
 
 double diameter(const PointsRef& points) {
-  return points.cols() < 2 ? 0.0 : std::sqrt(BoxTree(points).greatestDistance());
+  return points.cols() < 2 ? 0.0 : std::sqrt(HalvingTree(points).greatestDistance());
 }
 
 }  // namespace pcl_symmetry

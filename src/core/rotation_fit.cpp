@@ -129,7 +129,8 @@ RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
   return fitted(set, used, many_, {final_sigma_, final_sigma_, kCloseIterations});
 }
 
-/// With R' = exp(omega) R exp(-omega) and c' = c + t, x' = R (x - c) + c moves by ((1 - R) omega) x (x' - c) + (1 - R) t.
+/// With R' = exp(omega) R exp(-omega) and c' = c + t, x' = R (x - c) + c moves by ((1 - R) omega) x (x' - c) + (1 - R)
+/// t.
 RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std::size_t i,
                                                     const std::vector<int>& samples, double sigma) const {
   constexpr double kReach = 3.0;  // sigmas: beyond, weights are below 1.3e-4
@@ -229,8 +230,7 @@ RotationEvidence RotationFit::evidence(const RotationSet& set) const {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
   const double support = mean_of(supports);
-  const PlaneEvidence together{support,    1.0 - support, mean_of(scores), baseline_, spacing_,
-                               roughness_, false,         false};
+  const PlaneEvidence together{support, 1.0 - support, mean_of(scores), baseline_, spacing_, roughness_, false, false};
   return {seenSupport(together), *std::max_element(features.begin(), features.end()), planeConfidence(together)};
 }
 

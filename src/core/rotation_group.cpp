@@ -40,14 +40,19 @@ std::vector<Eigen::Matrix3d> RotationGroup::generators() const {
   const Eigen::Matrix3d diagonal = rotationAbout(Eigen::Vector3d::Ones().normalized(), 2.0 * M_PI / 3.0);
   const double golden_ratio = 0.5 * (1.0 + std::sqrt(5.0));
   switch (kind) {
-    case RotationGroupKind::Cyclic: return fold == 1 ? std::vector<Eigen::Matrix3d>{} : std::vector{cyclic};
+    case RotationGroupKind::Cyclic:
+      return fold == 1 ? std::vector<Eigen::Matrix3d>{} : std::vector{cyclic};
     case RotationGroupKind::Dihedral:
       return fold == 1 ? std::vector{rotationAbout(x, M_PI)} : std::vector{cyclic, rotationAbout(x, M_PI)};
-    case RotationGroupKind::Tetrahedral: return {rotationAbout(z, M_PI), diagonal};
-    case RotationGroupKind::Octahedral: return {rotationAbout(z, 0.5 * M_PI), diagonal};
+    case RotationGroupKind::Tetrahedral:
+      return {rotationAbout(z, M_PI), diagonal};
+    case RotationGroupKind::Octahedral:
+      return {rotationAbout(z, 0.5 * M_PI), diagonal};
     case RotationGroupKind::Icosahedral:
       return {rotationAbout(Eigen::Vector3d(0.0, 1.0, golden_ratio).normalized(), 0.4 * M_PI), diagonal};
-    default: check(false, "kind", nameOf(kind, fold), "a finite group"); return {};
+    default:
+      check(false, "kind", nameOf(kind, fold), "a finite group");
+      return {};
   }
 }
 
@@ -75,14 +80,22 @@ std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements) {
 
 std::string nameOf(RotationGroupKind kind, int fold) {
   switch (kind) {
-    case RotationGroupKind::Cyclic: return "C" + std::to_string(fold);
-    case RotationGroupKind::Dihedral: return "D" + std::to_string(fold);
-    case RotationGroupKind::Tetrahedral: return "T";
-    case RotationGroupKind::Octahedral: return "O";
-    case RotationGroupKind::Icosahedral: return "I";
-    case RotationGroupKind::Revolution: return "Cinf";
-    case RotationGroupKind::Cylindrical: return "Dinf";
-    case RotationGroupKind::Spherical: return "SO3";
+    case RotationGroupKind::Cyclic:
+      return "C" + std::to_string(fold);
+    case RotationGroupKind::Dihedral:
+      return "D" + std::to_string(fold);
+    case RotationGroupKind::Tetrahedral:
+      return "T";
+    case RotationGroupKind::Octahedral:
+      return "O";
+    case RotationGroupKind::Icosahedral:
+      return "I";
+    case RotationGroupKind::Revolution:
+      return "Cinf";
+    case RotationGroupKind::Cylindrical:
+      return "Dinf";
+    case RotationGroupKind::Spherical:
+      return "SO3";
   }
   return "";
 }

@@ -13,9 +13,9 @@ namespace pcl_symmetry {
 namespace {
 
 constexpr int kPrimes[] = {2, 3, 5, 7};  // axes of greater ones alone are principal axes
-constexpr std::size_t kKept = 6;       // of the directions of each order
-constexpr double kApart = 0.17;        // radians between them
-constexpr double kLeastOverlap = 0.5;  // of a candidate
+constexpr std::size_t kKept = 6;         // of the directions of each order
+constexpr double kApart = 0.17;          // radians between them
+constexpr double kLeastOverlap = 0.5;    // of a candidate
 constexpr double kGoldenAngle = 2.39996322972865332;
 
 /// A Fibonacci half sphere.
@@ -51,8 +51,8 @@ std::vector<AxisLineCandidate> searchAxes(const RotationFit& fit, const Eigen::V
     std::vector<double> overlaps(static_cast<std::size_t>(num_directions));
     parallelRanges(overlaps.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
-        overlaps[k] = fit.overlap(
-            rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * M_PI / prime), center);
+        overlaps[k] =
+            fit.overlap(rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * M_PI / prime), center);
     });
     for (const int k : peaks(overlaps)) lines.push_back({directionAt(k, num_directions), center});
   }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "check.h"
+#include "distinct_points.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/principal_axes.h"
 #include "point_samples.h"
@@ -17,13 +18,15 @@ namespace pcl_symmetry {
 namespace {
 
 constexpr double kGoldenRatio = 0.61803398874989485;
-constexpr double kSameLine = 0.05;      // radians and radii
-constexpr double kMeets = 0.1;          // radians between angles of axes, found and of a group
-constexpr double kLeastOverlap = 0.5;   // of a line before its fit
-constexpr double kRoughOverlap = 0.75;  // of a group before it
-constexpr double kFairOverlap = 0.85;   // after it
-constexpr double kLeastSupport = 0.6;   // of a line that has been placed roughly
-constexpr double kRoughSupport = 0.85;  // of what goes on to be judged
+constexpr double kSameLine = 0.05;         // radians and radii
+constexpr double kMeets = 0.1;             // radians between angles of axes, found and of a group
+constexpr double kLeastOverlap = 0.5;      // of a line before its fit
+constexpr double kRoughOverlap = 0.75;     // of a group before it
+constexpr double kFairOverlap = 0.85;      // after it
+constexpr double kLeastSupport = 0.6;      // of a line that has been placed roughly
+constexpr double kRoughSupport = 0.85;     // of what goes on to be judged
+constexpr Eigen::Index kLeastPoints = 20;  // fewer show no surface
+constexpr double kLeastWidth = 1e-10;      // of a variance, the greatest: less is a line
 constexpr std::size_t kMostLines = 12;
 constexpr int kTurns = 8;  // that stand for all turns about an axis
 
@@ -75,15 +78,21 @@ class SymmetrySearch {
 public:
   SymmetrySearch(const RotationFit& fit, const ObjectSymmetryOptions& options) : fit_(fit), options_(options) {}
 
+  /// Through the center of mass, and where the points are unevenly dense through that of their bounding ball, which is
+  /// 0: both lie on every axis of a shape.
   std::vector<AxisLineCandidate> candidates() const {
     const PrincipalAxes principal = principalAxes(fit_.points());
     std::vector<AxisLineCandidate> lines;
-    for (int k = 0; k < 3; ++k) lines.push_back({principal.axes.col(k), principal.center});
-    // Both lie on every axis: the center of mass, and that of the bounding ball, which is 0.
-    if (principal.center.norm() > kSameLine) lines.push_back({principal.center.normalized(), principal.center});
-    const auto found =
-        searchAxes(fit_, principal.center, options_.num_directions, options_.max_fold, options_.num_threads);
-    lines.insert(lines.end(), found.begin(), found.end());
+    std::vector<Eigen::Vector3d> centers{principal.center};
+    if (principal.center.norm() > kSameLine) {
+      lines.push_back({principal.center.normalized(), principal.center});
+      centers.push_back(Eigen::Vector3d::Zero());
+    }
+    for (const Eigen::Vector3d& center : centers) {
+      for (int k = 0; k < 3; ++k) lines.push_back({principal.axes.col(k), center});
+      const auto found = searchAxes(fit_, center, options_.num_directions, options_.max_fold, options_.num_threads);
+      lines.insert(lines.end(), found.begin(), found.end());
+    }
     return lines;
   }
 
@@ -150,17 +159,26 @@ private:
     return PlacedGroup{kind, fold, std::move(set), axis, evidence};
   }
 
-  /// Its generators, then the other elements but for the identity.
+  /// All elements but the identity. Judged are the generators and, as one step cannot be told from that of one fold
+  /// more or less where there are many, the turns of about a quarter and a half.
   static RotationSet turnedTo(const Eigen::Matrix3d& frame, const Eigen::Vector3d& center, const RotationGroup& group) {
-    const std::vector<Eigen::Matrix3d> generators = group.generators();
-    RotationSet set{{}, center, generators.size()};
-    for (const Eigen::Matrix3d& generator : generators) set.rotations.push_back(frame * generator * frame.transpose());
+    std::vector<Eigen::Matrix3d> first = group.generators();
+    const bool about_z = group.kind == RotationGroupKind::Cyclic || group.kind == RotationGroupKind::Dihedral;
+    for (const int step : {group.fold / 4, group.fold / 2})
+      if (about_z && step > 1) first.push_back(rotationAbout(Eigen::Vector3d::UnitZ(), 2.0 * M_PI * step / group.fold));
+    RotationSet set{{}, center, first.size()};
+    for (const Eigen::Matrix3d& rotation : first) set.rotations.push_back(frame * rotation * frame.transpose());
     for (const Eigen::Matrix3d& element : group.elements()) {
-      const bool listed = std::any_of(generators.begin(), generators.end(),
-                                      [&](const Eigen::Matrix3d& g) { return element.isApprox(g, 1e-9); });
+      const bool listed = std::any_of(first.begin(), first.end(),
+                                      [&](const Eigen::Matrix3d& other) { return element.isApprox(other, 1e-9); });
       if (!listed && !element.isIdentity(1e-9)) set.rotations.push_back(frame * element * frame.transpose());
     }
     return set;
+  }
+
+  static RotationSet cyclicSet(const AxisLineCandidate& line, int fold) {
+    const Eigen::Matrix3d frame = frameOf(line.direction, line.direction.unitOrthogonal());
+    return turnedTo(frame, line.center, RotationGroup{RotationGroupKind::Cyclic, fold});
   }
 
   static RotationSet turnsOf(const AxisLineCandidate& line) {
@@ -195,9 +213,7 @@ private:
   std::optional<FoundAxis> cyclicAbout(const AxisLineCandidate& line) const {
     const int fold = foldOf(line);
     if (fold == 1) return std::nullopt;
-    const RotationGroup cyclic{RotationGroupKind::Cyclic, fold};
-    const Eigen::Matrix3d frame = frameOf(line.direction, line.direction.unitOrthogonal());
-    auto group = placed(cyclic.kind, fold, turnedTo(frame, line.center, cyclic));
+    auto group = placed(RotationGroupKind::Cyclic, fold, cyclicSet(line, fold));
     if (!group) return std::nullopt;
     const AxisLineCandidate fitted{group->axis, group->set.center};
     return FoundAxis{fitted, fold, std::move(*group)};
@@ -215,9 +231,9 @@ private:
       bool parts = true;
       for (int part = 1; part < n; ++part) parts &= n % part != 0 || confidence[part] > 0.0;
       if (!parts) continue;
-      const RotationSet turn = turnOf(line, n);
-      if (fit_.roughSupport(turn) < kRoughSupport) continue;
-      const RotationEvidence evidence = fit_.evidence(turn);
+      const RotationSet turns = cyclicSet(line, n);
+      if (fit_.roughSupport(turns) < kRoughSupport) continue;
+      const RotationEvidence evidence = fit_.evidence(turns);
       if (!holds(evidence)) continue;
       confidence[n] = evidence.confidence;
       folds.erase(std::remove_if(folds.begin(), folds.end(), [&](int part) { return n % part == 0; }), folds.end());
@@ -256,9 +272,9 @@ private:
   }
 
   std::optional<PlacedGroup> polyhedralGroup(const std::vector<FoundAxis>& axes) const {
-    for (const RotationGroup& group : {RotationGroup{RotationGroupKind::Icosahedral, 5},
-                                       RotationGroup{RotationGroupKind::Octahedral, 4},
-                                       RotationGroup{RotationGroupKind::Tetrahedral, 3}}) {
+    for (const RotationGroup& group :
+         {RotationGroup{RotationGroupKind::Icosahedral, 5}, RotationGroup{RotationGroupKind::Octahedral, 4},
+          RotationGroup{RotationGroupKind::Tetrahedral, 3}}) {
       const std::vector<RotationAxis> own = axesOf(group.elements());
       for (std::size_t i = 0; i < axes.size(); ++i)
         for (std::size_t j = i + 1; j < axes.size(); ++j)
@@ -329,12 +345,14 @@ void ObjectSymmetryOptions::validate() const {
 
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options) {
   options.validate();
-  check(points.cols() >= 1, "number of points", points.cols(), ">= 1");
   check(points.allFinite(), "points", "not finite", "finite");
   Stopwatch watch;
-  const Points used = pointsAt(points, drawSamples(points.cols(), options.max_points, options.seed));
+  const Points distinct = DistinctPoints(points).points;
+  check(distinct.cols() >= kLeastPoints, "number of different points", distinct.cols(), ">= 20");
+  const PrincipalAxes principal = principalAxes(distinct);
+  check(principal.variances[1] > kLeastWidth * principal.variances[0], "extent across the longest axis", 0, "> 0");
+  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), options.max_points, options.seed));
   const BoundingBall ball = boundingBall(used);
-  check(ball.radius > 0.0, "extent of the points", ball.radius, "> 0");
   const Points normalized = normalizePoints(used, ball.center, ball.radius);
   GaussianEdtOptions edt_options;
   edt_options.num_cells = options.num_cells;

@@ -15,9 +15,9 @@ namespace pcl_symmetry::test {
 /// A body of triangles about the origin, and the rotations that map it onto itself.
 struct TurningShape {
   std::string name;
-  std::string group;                         ///< as nameOf() has it
-  std::vector<Eigen::Matrix3d> rotations;    ///< all but the identity; empty for continuous groups
-  Eigen::Vector3d axis{0.0, 0.0, 1.0};       ///< of revolution
+  std::string group;                       ///< as nameOf() has it
+  std::vector<Eigen::Matrix3d> rotations;  ///< all but the identity; empty for continuous groups
+  Eigen::Vector3d axis{0.0, 0.0, 1.0};     ///< of revolution
   std::vector<Eigen::Vector3d> vertices = {};
   std::vector<Eigen::Vector3i> triangles = {};
 
@@ -52,7 +52,8 @@ struct TurningShape {
   /// \param noise standard deviation of each coordinate.
   Shape sampled(int num_points, std::uint64_t seed, double noise = 0.0) const {
     Points corners(3, static_cast<Eigen::Index>(vertices.size()));
-    for (std::size_t i = 0; i < vertices.size(); ++i) corners.col(static_cast<Eigen::Index>(i)) = vertices[i].cast<float>();
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      corners.col(static_cast<Eigen::Index>(i)) = vertices[i].cast<float>();
     Shape shape{sampleTriangles(corners, triangles, num_points, seed).cast<double>(), {}};
     RandomStream random(seed, 5);
     for (Eigen::Index i = 0; i < shape.points.size(); ++i) shape.points(i) += noise * gaussian(random);

@@ -12,10 +12,10 @@
 namespace pcl_symmetry {
 
 struct ObjectSymmetryOptions {
-  int num_cells = 64;        ///< of the distance transform along each side, in [8, 512]
-  int num_directions = 3000; ///< of axes, on a half sphere, >= 100: 3000 are 2.6 degrees apart
-  int max_fold = 24;         ///< greatest order of a rotation that is looked for, >= 2
-  int max_points = 10'000;   ///< of larger clouds so many are drawn, >= 100
+  int num_cells = 64;         ///< of the distance transform along each side, in [8, 512]
+  int num_directions = 3000;  ///< of axes, on a half sphere, >= 100: 3000 are 2.6 degrees apart
+  int max_fold = 24;          ///< greatest order of a rotation that is looked for, >= 2
+  int max_points = 10'000;    ///< of larger clouds so many are drawn, >= 100
   /// A rotation that maps a part of the surface off it, in one or more pieces of together more than this share, is no
   /// symmetry: a handle, a notch. In [0, 1].
   double max_feature = 0.01;
@@ -55,11 +55,10 @@ struct ObjectSymmetries {
 ///
 /// Axes are looked for in all directions through the center of mass, by the distance transform; the rotations about
 /// those found are made precise and judged by the surface, as planes are; the greatest group that explains them is
-/// then fitted as a whole, and has to stand the same test. A prism with so many sides that the surface cannot be told
-/// from a round one (within a hundredth of the radius) counts as round.
-/// \param points 3 x N, finite, input units; at least two different ones. They show the object from all sides, and
-/// about evenly.
-/// \throws std::invalid_argument for bad options, values that are not finite, or points without extent.
+/// then fitted as a whole, and has to stand the same test. What the surface cannot tell from a symmetry counts as one:
+/// a plate whose sides differ by a hundredth is square, a prism of 16 sides is round. \param points 3 x N, finite,
+/// input units; at least 20 different ones, not all on a line. They show the object from all sides. \throws
+/// std::invalid_argument for bad options, values that are not finite, and too few points.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
 
 }  // namespace pcl_symmetry
