@@ -40,6 +40,14 @@ std::vector<int> peaks(const std::vector<double>& values) {
   return kept;
 }
 
+/// Of the turns by 2 pi / n, at n.
+std::vector<double> turnOverlaps(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
+  std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
+  for (int n = 2; n <= max_fold; ++n)
+    overlaps[n] = fit.overlap(rotationAbout(line.direction, 2.0 * M_PI / n), line.center);
+  return overlaps;
+}
+
 }  // namespace
 
 std::vector<AxisLineCandidate> searchAxes(const RotationFit& fit, const Eigen::Vector3d& center, int num_directions,
@@ -59,14 +67,17 @@ std::vector<AxisLineCandidate> searchAxes(const RotationFit& fit, const Eigen::V
   return lines;
 }
 
+int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
+  const std::vector<double> overlaps = turnOverlaps(fit, line, max_fold);
+  return static_cast<int>(std::max_element(overlaps.begin(), overlaps.end()) - overlaps.begin());
+}
+
 std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
-  constexpr double kBehind = 0.1;  // of the overlap, the best turn
-  std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
-  for (int n = 2; n <= max_fold; ++n)
-    overlaps[n] = fit.overlap(rotationAbout(line.direction, 2.0 * M_PI / n), line.center);
+  constexpr double kBehind = 0.1;
+  const std::vector<double> overlaps = turnOverlaps(fit, line, max_fold);
   const double best = *std::max_element(overlaps.begin(), overlaps.end());
   std::vector<int> folds;
-  for (int n = max_fold; n >= 2; --n)
+  for (int n = 2; n <= max_fold; ++n)
     if (overlaps[n] >= best - kBehind) folds.push_back(n);
   return folds;
 }

@@ -17,7 +17,10 @@ struct AxisLineCandidate {
 std::vector<AxisLineCandidate> searchAxes(const RotationFit& fit, const Eigen::Vector3d& center, int num_directions,
                                           int max_fold, int num_threads);
 
-/// Orders n, the greatest first, whose turns by 2 pi / n overlap with the surface nearly as well as any turn does.
+/// The n of 2 to \p max_fold whose turn by 2 pi / n overlaps best with the surface.
+int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
+
+/// Those whose turns overlap nearly as well, the least first.
 std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
 
 /// Of the turns by pi about axes across a line, at \p num_angles in [0, width), the one that overlaps most.

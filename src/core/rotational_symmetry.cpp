@@ -28,7 +28,8 @@ constexpr double kRoughSupport = 0.85;     // of what goes on to be judged
 constexpr Eigen::Index kLeastPoints = 20;  // fewer show no surface
 constexpr double kLeastWidth = 1e-10;      // of a variance, the greatest: less is a line
 constexpr std::size_t kMostLines = 12;
-constexpr int kTurns = 8;  // that stand for all turns about an axis
+constexpr double kAllowance = 0.015;  // of the support, from the best turn to all turns, as of planes
+constexpr int kTurns = 8;             // that stand for all turns about an axis
 
 /// A group of rotations in place, in the normalised frame.
 struct PlacedGroup {
@@ -108,12 +109,15 @@ public:
       const std::optional<AxisLineCandidate> line = fittedLine(start);
       if (!line || isKnown(tried, *line)) continue;
       tried.push_back(*line);
-      if (auto revolution = revolutionAbout(*line)) {
-        if (!continuous) found.clear();
-        found.push_back(*revolution);
-      } else if (!continuous) {
-        if (auto cyclic = cyclicAbout(*line)) found.push_back(*cyclic);
+      std::optional<FoundAxis> axis = revolutionAbout(*line);
+      if (continuous && !axis) continue;
+      if (!axis || axis->group.evidence.support < 1.0 - kAllowance) {
+        std::optional<FoundAxis> cyclic = cyclicAbout(*line);
+        if (cyclic && (!axis || isBetter(*cyclic, *axis))) axis = std::move(cyclic);
       }
+      if (!axis) continue;
+      if (axis->fold == 0 && !continuous) found.clear();
+      found.push_back(std::move(*axis));
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const FoundAxis& a, const FoundAxis& b) { return a.fold > b.fold; });
@@ -141,6 +145,11 @@ private:
       return angleBetween(other.direction, line.direction) < kSameLine &&
              (line.center - other.center).cross(other.direction).norm() < kSameLine;
     });
+  }
+
+  /// Whether the turns by one angle map clearly more onto the surface than all turns: a slender prism is not round.
+  static bool isBetter(const FoundAxis& cyclic, const FoundAxis& revolution) {
+    return cyclic.group.evidence.support > revolution.group.evidence.support + kAllowance;
   }
 
   bool holds(const RotationEvidence& evidence) const {
@@ -189,10 +198,9 @@ private:
     return {{rotationAbout(line.direction, 2.0 * M_PI / fold)}, line.center, 1};
   }
 
-  /// The line moved to where the least of its likely turns fits best.
+  /// The line moved to where its likeliest turn fits best.
   std::optional<AxisLineCandidate> fittedLine(const AxisLineCandidate& start) const {
-    const std::vector<int> likely = likelyFolds(fit_, start, options_.max_fold);
-    RotationSet turn = turnOf(start, likely.back());
+    RotationSet turn = turnOf(start, likeliestFold(fit_, start, options_.max_fold));
     if (fit_.overlap(turn) < kLeastOverlap) return std::nullopt;
     turn = fit_.roughlyFitted(turn);
     if (fit_.overlap(turn) < kRoughOverlap || fit_.roughSupport(turn) < kLeastSupport) return std::nullopt;
@@ -222,12 +230,10 @@ private:
   /// The n of which the turns by 2 pi / n and by its multiples are symmetries. Of two of which none divides the other
   /// the surer one: what is both is round.
   int foldOf(const AxisLineCandidate& line) const {
-    std::vector<int> likely = likelyFolds(fit_, line, options_.max_fold);
-    std::reverse(likely.begin(), likely.end());
     std::vector<double> confidence(static_cast<std::size_t>(options_.max_fold) + 1, 0.0);
     confidence[1] = 0.01;
     std::vector<int> folds{1};
-    for (const int n : likely) {
+    for (const int n : likelyFolds(fit_, line, options_.max_fold)) {
       bool parts = true;
       for (int part = 1; part < n; ++part) parts &= n % part != 0 || confidence[part] > 0.0;
       if (!parts) continue;
