@@ -11,7 +11,6 @@
 #include "console.h"
 #include "options.h"
 #include "pcl_symmetry/core/diameter.h"
-#include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/object_symmetries.h"
 #include "shape_input.h"
 #include "shape_output.h"
@@ -34,7 +33,8 @@ CommandLine commandLine(BopOptions& options) {
                    "models_info.json of the BOP pose benchmark, in the unit of the input (BOP's is the millimetre).",
                    "pcl_symmetry_bop models/obj_*.ply -json models/models_info.json");
   line.positionals("input", options.inputs,
-                   ".pcd, .ply, .obj, .stl or .off; obj_000012.ply is model 12, a name without a number counts from 1")
+                   ".pcd, .ply, .obj, .stl or .off; obj_000012.ply is model 12, a name without a number takes the "
+                   "first free one")
       .number("feature", options.symmetries.max_feature, Range::closed(0, 1),
               "share of the surface, as a handle or a notch, from which on it breaks a symmetry")
       .number("min_confidence", options.symmetries.min_confidence, Range::closed(0, 1),
@@ -44,24 +44,31 @@ CommandLine commandLine(BopOptions& options) {
   return line;
 }
 
-/// The number that the name of a file ends in, or else its place on the command line.
-std::string keyOf(const std::string& path, std::size_t place) {
+/// The number that the name of a file ends in; empty where it ends in none.
+std::string numberOf(const std::string& path) {
   const std::string stem = boost::filesystem::path(path).stem().string();
   const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
   const auto digits = std::find_if_not(stem.rbegin(), stem.rend(), is_digit).base();
-  if (digits == stem.end()) return std::to_string(place + 1);
-  const std::string number(std::find_if(digits, stem.end(), [](char c) { return c != '0'; }), stem.end());
-  return number.empty() ? "0" : number;
+  const auto number = std::find_if(digits, stem.end(), [](char c) { return c != '0'; });
+  return digits != stem.end() && number == stem.end() ? "0" : std::string(number, stem.end());
 }
 
-/// \throws UsageError where two files claim one model.
+/// The number of each file; where there is none the first from 1 on that is free.
+/// \throws UsageError where two files have one number.
 std::vector<std::string> keysOf(const std::vector<std::string>& paths) {
   std::map<std::string, std::string> path_of;
   std::vector<std::string> keys;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    keys.push_back(keyOf(paths[i], i));
-    const auto [entry, is_new] = path_of.insert({keys.back(), paths[i]});
-    if (!is_new) throw UsageError(paths[i] + " and " + entry->second + " are both model " + keys.back());
+  for (const std::string& path : paths) {
+    keys.push_back(numberOf(path));
+    if (keys.back().empty()) continue;
+    const auto [entry, is_new] = path_of.insert({keys.back(), path});
+    if (!is_new) throw UsageError(path + " and " + entry->second + " are both model " + keys.back());
+  }
+  int free = 1;
+  for (std::string& key : keys) {
+    if (!key.empty()) continue;
+    while (path_of.count(std::to_string(free)) > 0) ++free;
+    key = std::to_string(free++);
   }
   return keys;
 }
@@ -86,11 +93,9 @@ Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {
 ModelInfo analyse(const Console& console, const std::string& path, const BopOptions& options) {
   Step loading(console, "Loading " + path);
   const Shape shape = loadShape(path);
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud = shape.points;
-  const Points vertices = finitePoints(*cloud);
+  const Points vertices = finitePoints(*shape.points);
   if (vertices.cols() == 0) throw InputError(path + ": has no finite points");
-  if (shape.mesh) cloud = sampleMesh(*shape.mesh, options.mesh_points, options.common.seed + 1);
-  loading.done(std::to_string(cloud->size()) + " points");
+  loading.done(std::to_string(vertices.cols()) + (shape.mesh ? " vertices" : " points"));
   ModelInfo info;
   info.file = path;
   info.low = vertices.rowwise().minCoeff().cast<double>();
@@ -98,7 +103,8 @@ ModelInfo analyse(const Console& console, const std::string& path, const BopOpti
   info.diameter = diameter(vertices);
   Step searching(console, "Searching rotations");
   try {
-    info.symmetries = detectObjectSymmetries(*cloud, options.symmetries);
+    info.symmetries = shape.mesh ? detectObjectSymmetries(*shape.mesh, options.symmetries, options.mesh_points)
+                                 : detectObjectSymmetries(*shape.points, options.symmetries);
   } catch (const pcl::BadArgumentException& error) {
     throw InputError(path + ": " + error.detailedMessage());
   }
