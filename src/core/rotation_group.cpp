@@ -34,6 +34,12 @@ Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }
 
+Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction) {
+  int largest = 0;
+  direction.cwiseAbs().maxCoeff(&largest);
+  return direction[largest] < 0.0 ? -direction : direction;
+}
+
 std::vector<Eigen::Matrix3d> RotationGroup::generators() const {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
   const Eigen::Matrix3d cyclic = rotationAbout(z, 2.0 * M_PI / fold);
@@ -71,7 +77,7 @@ std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements) {
       return std::abs(axis.direction.dot(turn.axis())) > kParallel;
     });
     if (known == axes.end())
-      axes.push_back({turn.axis(), 2});
+      axes.push_back({signedDirection(turn.axis()), 2});
     else
       ++known->order;
   }

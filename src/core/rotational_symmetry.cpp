@@ -311,6 +311,14 @@ private:
   const ObjectSymmetryOptions& options_;
 };
 
+/// Of all directions across \p axis the one closest to a coordinate axis.
+Eigen::Vector3d directionAcross(const Eigen::Vector3d& axis) {
+  int most_across = 0;
+  axis.cwiseAbs().minCoeff(&most_across);
+  const Eigen::Vector3d unit = Eigen::Vector3d::Unit(most_across);
+  return (unit - axis.dot(unit) * axis).normalized();
+}
+
 /// A normalised group in the input frame.
 ObjectSymmetries inInputFrame(const PlacedGroup& group, const BoundingBall& ball) {
   ObjectSymmetries result;
@@ -329,8 +337,9 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const BoundingBall& ball
   if (group.kind == RotationGroupKind::Spherical) {
     for (int k = 0; k < 3; ++k) result.continuous.push_back({Eigen::Vector3d::Unit(k), result.center});
   } else if (isContinuous(group.kind)) {
-    result.continuous.push_back({group.axis, result.center});
-    if (group.kind == RotationGroupKind::Cylindrical) result.discrete.push_back(motion(group.set.rotations[1]));
+    result.continuous.push_back({signedDirection(group.axis), result.center});
+    if (group.kind == RotationGroupKind::Cylindrical)
+      result.discrete.push_back(motion(rotationAbout(directionAcross(group.axis), M_PI)));
   } else {
     for (const Eigen::Matrix3d& rotation : group.set.rotations) result.discrete.push_back(motion(rotation));
   }

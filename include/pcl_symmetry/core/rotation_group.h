@@ -26,6 +26,9 @@ inline bool isContinuous(RotationGroupKind kind) {
 /// The rotation by \p angle, radians, about the unit vector \p axis.
 Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle);
 
+/// Of the two directions of a line the one whose largest coordinate is positive.
+Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction);
+
 /// A finite group of rotations in a frame of its own, exact but for rounding.
 struct RotationGroup {
   RotationGroupKind kind = RotationGroupKind::Cyclic;
@@ -41,7 +44,7 @@ struct RotationGroup {
 
 /// A line through the center that a group turns about.
 struct RotationAxis {
-  Eigen::Vector3d direction;  ///< unit
+  Eigen::Vector3d direction;  ///< unit, its largest coordinate positive
   int order;                  ///< of the rotations about it
 };
 
