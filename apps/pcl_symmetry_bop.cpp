@@ -164,6 +164,7 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   const std::vector<std::string> keys = keysOf(options.inputs);
   options.symmetries.num_cells = options.common.grid;
+  options.symmetries.max_points = std::max(options.symmetries.max_points, options.mesh_points);
   options.symmetries.seed = options.common.seed + 1;
   options.symmetries.num_threads = options.common.threads;
   const Console console(options.common.quiet);

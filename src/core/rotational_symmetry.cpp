@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "check.h"
 #include "distinct_points.h"
@@ -110,8 +111,7 @@ public:
       if (!line || isKnown(tried, *line)) continue;
       tried.push_back(*line);
       std::optional<FoundAxis> axis = revolutionAbout(*line);
-      if (continuous && !axis) continue;
-      if (!axis || axis->group.evidence.support < 1.0 - kAllowance) {
+      if (!continuous && (!axis || axis->group.evidence.support < 1.0 - kAllowance)) {
         std::optional<FoundAxis> cyclic = cyclicAbout(*line);
         if (cyclic && (!axis || isBetter(*cyclic, *axis))) axis = std::move(cyclic);
       }
@@ -134,8 +134,10 @@ public:
       return main.group;
     }
     if (auto polyhedral = polyhedralGroup(axes)) return *polyhedral;
-    for (const FoundAxis& axis : axes)
+    for (const FoundAxis& axis : axes) {
+      if (2 * axis.fold <= main.fold) break;
       if (auto dihedral = dihedralGroup(axis)) return *dihedral;
+    }
     return main.group;
   }
 
@@ -237,9 +239,12 @@ private:
       bool parts = true;
       for (int part = 1; part < n; ++part) parts &= n % part != 0 || confidence[part] > 0.0;
       if (!parts) continue;
-      const RotationSet turns = cyclicSet(line, n);
+      RotationSet turns = cyclicSet(line, n);
       if (fit_.roughSupport(turns) < kRoughSupport) continue;
-      const RotationEvidence evidence = fit_.evidence(turns);
+      const std::size_t num_judged = std::exchange(turns.num_judged, 1);  // one is quicker, and mostly enough
+      RotationEvidence evidence = fit_.evidence(turns);
+      turns.num_judged = num_judged;
+      if (holds(evidence) && num_judged > 1) evidence = fit_.evidence(turns);
       if (!holds(evidence)) continue;
       confidence[n] = evidence.confidence;
       folds.erase(std::remove_if(folds.begin(), folds.end(), [&](int part) { return n % part == 0; }), folds.end());
