@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "edt_correlation.h"
 #include "part_search.h"
 #include "pcl_symmetry/core/parallel.h"
 #include "pcl_symmetry/core/principal_axes.h"
@@ -55,21 +56,12 @@ bool samePlane(const ReflectionPlane& a, const ReflectionPlane& b, double angle,
   return a.angleTo(b) <= angle && std::abs(a.offset() - sign * b.offset()) <= offset;
 }
 
-/// D at one plane: the full sum over the cells of the EDT.
+/// D at one plane.
 double correlation(const GaussianEdt& edt, const ReflectionPlane& plane) {
-  const int n = edt.numCells();
-  const float* f = edt.values().data();
   const ReflectionPlane cells(plane.normal(), plane.signedDistance(edt.origin()) / -edt.cellSize());
   const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * plane.normal().x() * plane.normal();
-  double sum = 0.0;
-  for (int z = 0; z < n; ++z) {
-    for (int y = 0; y < n; ++y, f += n) {
-      const Eigen::Vector3d first = cells.reflect(Eigen::Vector3d(0.0, y, z));
-      for (int x = 0; x < n; ++x)
-        if (f[x] > 0.0f) sum += f[x] * edt.atCell(first + x * step);
-    }
-  }
-  return std::clamp(sum / edt.sqNorm(), 0.0, 1.0);
+  return correlation(
+      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step);
 }
 
 }  // namespace

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "pcl_symmetry/impl/bad_argument.hpp"
+#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/object_symmetries.h"
+
+namespace pcl_symmetry {
+
+template <typename PointT>
+ObjectSymmetries detectObjectSymmetries(const pcl::PointCloud<PointT>& cloud, const ObjectSymmetryOptions& options) {
+  return withBadArguments(
+      [&] { return objectSymmetries(selectPoints(cloud, nullptr, cloud.size(), options.seed).points, options); });
+}
+
+}  // namespace pcl_symmetry
+
+#define PCL_INSTANTIATE_detectObjectSymmetries(T)                                       \
+  template pcl_symmetry::ObjectSymmetries pcl_symmetry::detectObjectSymmetries(         \
+      const pcl::PointCloud<T>&, const pcl_symmetry::ObjectSymmetryOptions&);

@@ -1,0 +1,61 @@
+#include "pcl_symmetry/object_symmetries.h"
+
+#include <gtest/gtest.h>
+#include <pcl/conversions.h>
+#include <pcl/exceptions.h>
+
+#include "clouds.h"
+#include "turning_shapes.h"
+
+namespace pcl_symmetry {
+namespace {
+
+void expectSame(const ObjectSymmetries& a, const ObjectSymmetries& b) {
+  EXPECT_EQ(a.name(), b.name());
+  ASSERT_EQ(a.discrete.size(), b.discrete.size());
+  for (std::size_t i = 0; i < a.discrete.size(); ++i) EXPECT_EQ(a.discrete[i].matrix(), b.discrete[i].matrix());
+}
+
+pcl::PolygonMesh toMesh(const test::TurningShape& shape) {
+  pcl::PointCloud<pcl::PointXYZ> vertices;
+  for (const Eigen::Vector3d& v : shape.vertices)
+    vertices.emplace_back(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
+  pcl::PolygonMesh mesh;
+  pcl::toPCLPointCloud2(vertices, mesh.cloud);
+  for (const Eigen::Vector3i& triangle : shape.triangles) {
+    mesh.polygons.emplace_back();
+    mesh.polygons.back().vertices.assign(triangle.data(), triangle.data() + 3);
+  }
+  return mesh;
+}
+
+TEST(DetectObjectSymmetries, OfACloudAreThoseOfItsFinitePoints) {
+  const test::Shape shape = test::moved(test::prismShape(6, 0.8).sampled(3000, 1), test::randomPose(1));
+  const ObjectSymmetries expected = objectSymmetries(shape.cloud());
+  EXPECT_EQ(expected.name(), "D6");
+  expectSame(detectObjectSymmetries(*test::toCloud(shape)), expected);
+  expectSame(detectObjectSymmetries(*test::toCloud<pcl::PointXYZRGB>(shape)), expected);
+  expectSame(detectObjectSymmetries(*test::withHoles(*test::toCloud(shape), 5)), expected);
+}
+
+TEST(DetectObjectSymmetries, OfAMeshDoNotDependOnItsVertices) {
+  test::TurningShape shape = test::propellerShape(3, true);
+  // A corner of the first blade where all vertices but it are left alone.
+  shape.vertices.insert(shape.vertices.end(), 5000, shape.vertices.front());
+  const ObjectSymmetries found = detectObjectSymmetries(toMesh(shape));
+  EXPECT_EQ(found.name(), "C3");
+  EXPECT_EQ(found.discrete.size(), 2u);
+}
+
+TEST(DetectObjectSymmetries, RefuseWhatHasNoSurface) {
+  EXPECT_THROW(detectObjectSymmetries(pcl::PointCloud<pcl::PointXYZ>()), pcl::BadArgumentException);
+  EXPECT_THROW(detectObjectSymmetries(pcl::PointCloud<pcl::PointXYZ>(50, 1, pcl::PointXYZ(NAN, 0.0f, 0.0f))),
+               pcl::BadArgumentException);
+  EXPECT_THROW(detectObjectSymmetries(pcl::PolygonMesh()), pcl::BadArgumentException);
+  ObjectSymmetryOptions options;
+  options.max_fold = 0;
+  EXPECT_THROW(detectObjectSymmetries(*test::toCloud(test::sphere(500, 1)), options), pcl::BadArgumentException);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry
