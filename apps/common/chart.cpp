@@ -18,6 +18,7 @@
 #include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
+#include <boost/filesystem/path.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -94,6 +95,11 @@ void setUp(vtkAxis& drawn, const ChartAxis& axis, std::pair<double, double> rang
 }
 
 }  // namespace
+
+std::string chartBeside(const std::string& path, const std::string& what) {
+  const boost::filesystem::path file(path);
+  return (file.parent_path() / (file.stem().string() + what + ".png")).string();
+}
 
 void writeChart(const Chart& chart, const std::string& path, int width, int height) {
   for (const ChartSeries& series : chart.series) {

@@ -30,6 +30,9 @@ struct Chart {
   bool legend_at_bottom_left = false;  ///< or else at the top right
 };
 
+/// For several charts under one name: NAME.png and "_what" to NAME_what.png.
+std::string chartBeside(const std::string& path, const std::string& what);
+
 /// Draws off screen and writes a PNG whole. Uses the display if there is one, or else a private Xvfb.
 /// \throws std::invalid_argument where no series holds a value that can be drawn, InputError if nothing can draw or the
 /// file cannot be written.

@@ -1,7 +1,6 @@
 #include "alignment_report.h"
 
 #include <algorithm>
-#include <boost/filesystem.hpp>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -219,14 +218,10 @@ std::string histogramCSV(const std::vector<FrameErrors>& errors) {
 }
 
 void drawHistograms(const std::vector<FrameErrors>& errors, const std::string& path) {
-  const boost::filesystem::path file(path);
-  const auto beside = [&](const char* what) {
-    return (file.parent_path() / (file.stem().string() + what + ".png")).string();
-  };
   draw(translationHistograms(errors), "Translational misalignment of scans",
-       "distance of the centers, % of the diagonal", beside("_translation"));
+       "distance of the centers, % of the diagonal", chartBeside(path, "_translation"));
   draw(rotationHistograms(errors), "Rotational misalignment of scans",
-       "angle between the axes in any order and sign, degrees", beside("_rotation"));
+       "angle between the axes in any order and sign, degrees", chartBeside(path, "_rotation"));
 }
 
 }  // namespace pcl_symmetry::apps

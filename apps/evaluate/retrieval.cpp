@@ -51,7 +51,8 @@ CommandLine commandLine(EvaluateRetrievalOptions& o) {
       .number("nearest", o.retrieval.num_nearest, Range::closed(1, 1'000'000), "of these that distances are scaled by")
       .text("csv", "FILE", o.csv, "precision at each recall, for each method")
       .text("class_csv", "FILE", o.class_csv, "a row for each class and method (Figure 14)")
-      .text("png", "FILE", o.png, "chart of precision against recall (Figure 13), of meshes turned at random")
+      .text("png", "NAME.png", o.png,
+            "precision against recall (Figure 13), NAME_files.png and NAME_turned.png; NAME_classes.png (Figure 14)")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }
@@ -147,21 +148,33 @@ private:
                   100.0 * r.all.first_tier, 100.0 * r.all.second_tier, 100.0 * r.all.e_measure, 100.0 * r.all.dcg);
   }
 
-  /// The classes that PRST finds better than GEDT and the other way round, as the paper's Figure 14 has them.
-  void printGains() const {
-    constexpr std::size_t kShown = 5;
+  struct ClassGain {
+    std::string name;
+    double prst, gedt, product;  ///< discounted cumulative gain in the axes of the files
+  };
+
+  /// First those that PRST finds best compared with GEDT.
+  std::vector<ClassGain> classGains() const {
     const auto prst = statisticsByClass(results_[1].method.distances, classes_);
     const auto gedt = statisticsByClass(results_[2].method.distances, classes_);
     const auto product = statisticsByClass(results_[3].method.distances, classes_);
-    std::vector<std::pair<double, std::string>> gains;
-    for (const auto& [name, statistics] : prst) gains.emplace_back(gedt.at(name).dcg - statistics.dcg, name);
-    std::sort(gains.begin(), gains.end());
+    std::vector<ClassGain> gains;
+    for (const auto& [name, statistics] : prst)
+      gains.push_back({name, statistics.dcg, gedt.at(name).dcg, product.at(name).dcg});
+    std::stable_sort(gains.begin(), gains.end(),
+                     [](const ClassGain& a, const ClassGain& b) { return a.prst - a.gedt > b.prst - b.gedt; });
+    return gains;
+  }
+
+  /// The classes that PRST finds better than GEDT and the other way round, as the paper's Figure 14 has them.
+  void printGains() const {
+    constexpr std::size_t kShown = 5;
+    const std::vector<ClassGain> gains = classGains();
     std::printf("\n%-44s %8s %8s %8s   DCG, %s\n", "", "PRST", "GEDT", "product", "axes of the files");
     for (std::size_t i = 0; i < gains.size(); ++i) {
       if (i >= kShown && i + kShown < gains.size()) continue;
-      const std::string& name = gains[i].second;
-      std::printf("%-44s %8.1f %8.1f %8.1f\n", name.c_str(), 100.0 * prst.at(name).dcg, 100.0 * gedt.at(name).dcg,
-                  100.0 * product.at(name).dcg);
+      std::printf("%-44s %8.1f %8.1f %8.1f\n", gains[i].name.c_str(), 100.0 * gains[i].prst, 100.0 * gains[i].gedt,
+                  100.0 * gains[i].product);
     }
   }
 
@@ -214,19 +227,41 @@ private:
   }
 
   void draw() const {
+    drawCurves("Precision against recall, axes of the files", 0, kNumPublished, "_files");
+    drawCurves("Precision against recall, models turned at random", kNumPublished, results_.size(), "_turned");
+    drawClasses();
+  }
+
+  /// Figure 13. Distances that are not scaled: as many as there are colours.
+  void drawCurves(const std::string& title, std::size_t begin, std::size_t end, const std::string& what) const {
     Chart chart;
-    chart.title = "Precision against recall";
+    chart.title = title;
     chart.x = {"recall", false, std::make_pair(0.0, 1.0)};
     chart.y = {"precision", false, std::make_pair(0.0, 1.0)};
-    // Of models in random poses, distances that are not scaled: as many as there are colours.
-    for (std::size_t i = kNumPublished; i < results_.size(); ++i) {
-      if (results_[i].method.name.find("scaled") != std::string::npos) continue;
+    for (std::size_t i = begin; i < end; ++i) {
       const Result& r = results_[i];
+      if (r.method.scaled) continue;
       ChartSeries series{r.method.name, {}, r.all.precision, false};
       for (int k = 0; k < kNumRecalls; ++k) series.x.push_back((k + 1.0) / kNumRecalls);
       chart.series.push_back(std::move(series));
     }
-    writeChart(chart, *options_.png);
+    writeChart(chart, chartBeside(*options_.png, what));
+  }
+
+  /// Figure 14: class by class.
+  void drawClasses() const {
+    Chart chart;
+    chart.title = "Classes, by what PRST gains over GEDT, axes of the files";
+    chart.x = {"rank of the class", false, {}};
+    chart.y = {"discounted cumulative gain", false, std::make_pair(0.0, 1.0)};
+    chart.series = {{"PRST", {}, {}, true}, {"GEDT", {}, {}, true}, {"PRST x GEDT", {}, {}, false}};
+    for (const ClassGain& gain : classGains()) {
+      for (ChartSeries& series : chart.series) series.x.push_back(1.0 + static_cast<double>(series.x.size()));
+      chart.series[0].y.push_back(gain.prst);
+      chart.series[1].y.push_back(gain.gedt);
+      chart.series[2].y.push_back(gain.product);
+    }
+    writeChart(chart, chartBeside(*options_.png, "_classes"));
   }
 
   const EvaluateRetrievalOptions& options_;

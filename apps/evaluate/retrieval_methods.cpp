@@ -118,9 +118,9 @@ std::vector<RetrievalMethod> turnableMethods(const TurnableDescriptors& descript
   });
   const std::string& name = descriptors.name;
   return {{name, plain},
-          {name + ", scaled", scaled(plain, references, options)},
+          {name + ", scaled", scaled(plain, references, options), true},
           {"compact " + name, distances},
-          {"compact " + name + ", scaled", scaled(distances, references, options)}};
+          {"compact " + name + ", scaled", scaled(distances, references, options), true}};
 }
 
 }  // namespace

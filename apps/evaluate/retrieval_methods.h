@@ -23,6 +23,7 @@ struct RetrievalOptions {
 struct RetrievalMethod {
   std::string name;
   Eigen::MatrixXf distances;  ///< N x N, symmetric
+  bool scaled = false;        ///< by those to the references
 };
 
 /// Told the share of the work that is done, in [0, 1].

@@ -93,12 +93,13 @@ TEST_F(EvaluateRetrieval, ComparesMethods) {
       << error_;
   const json summary = json::parse(contentOf(folder_ / "s.json"));
   EXPECT_EQ(summary["num_queries"], 6);
-  EXPECT_EQ(summary["methods"].size(), 12u);
+  EXPECT_EQ(summary["methods"].size(), 16u);
   for (const auto& [name, method] : summary["methods"].items()) EXPECT_EQ(method["precision"].size(), 20u) << name;
   EXPECT_GE(summary["methods"]["compact signatures"]["nearest"].get<double>(), 0.6);
   EXPECT_NE(output_.find("compact signatures, scaled"), std::string::npos);
   EXPECT_NE(contentOf(folder_ / "k.csv").find("vase,3,"), std::string::npos);
-  EXPECT_EQ(contentOf(folder_ / "a.png").substr(1, 3), "PNG");
+  for (const char* chart : {"a_files.png", "a_turned.png", "a_classes.png"})
+    EXPECT_EQ(contentOf(folder_ / chart).substr(1, 3), "PNG") << chart;
 }
 
 TEST_F(EvaluateRetrieval, SaysWhatIsWrong) {

@@ -47,7 +47,9 @@ TEST(TurnablePRST, RotationsAreWhatTurnedAxesGive) {
     rotateTurnablePRST(prst.data(), r, rotated.data());
     // Samples of the transform are drawn anew: the error of PRST is 1 to 2 %.
     EXPECT_LT((asVector(rotated) - asVector(expected)).norm(), 0.06) << r;
-    if (r > 0) EXPECT_GT((asVector(rotated) - asVector(prst)).norm(), 0.12) << r;
+    if (r > 0) {
+      EXPECT_GT((asVector(rotated) - asVector(prst)).norm(), 0.12) << r;
+    }
   }
 }
 
