@@ -13,16 +13,16 @@ namespace {
 
 constexpr std::size_t kShapes = 16;  // of a block
 
-struct RankedPose {
+struct NearView {
   double distance;
   const View* view;
   double turn;
 };
 
 /// The nearest views of one shape, nearest first.
-std::vector<RankedPose> nearestViews(const std::vector<View>& views, const View& scan, const ViewComparison& comparison,
-                                     const ViewSearchOptions& options) {
-  std::vector<RankedPose> nearest;
+std::vector<NearView> nearestViews(const std::vector<View>& views, const View& scan, const ViewComparison& comparison,
+                                   const ViewSearchOptions& options) {
+  std::vector<NearView> nearest;
   for (const View& view : views) {
     const double size = options.size_weight * std::abs(std::log(view.radius / scan.radius));
     const bool full = nearest.size() >= static_cast<std::size_t>(options.num_poses);
@@ -30,10 +30,10 @@ std::vector<RankedPose> nearestViews(const std::vector<View>& views, const View&
     if (enough <= 0.0) continue;
     const ViewAgreement agreement = comparison.compare(view.values.data(), static_cast<float>(enough));
     if (agreement.distance >= enough) continue;
-    const RankedPose pose{agreement.distance + size, &view, agreement.turn};
+    const NearView pose{agreement.distance + size, &view, agreement.turn};
     if (full) nearest.pop_back();
     nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), pose,
-                                    [](const RankedPose& a, const RankedPose& b) { return a.distance < b.distance; }),
+                                    [](const NearView& a, const NearView& b) { return a.distance < b.distance; }),
                    pose);
   }
   return nearest;
@@ -55,7 +55,7 @@ void ViewIndex::add(const std::vector<View>& views) {
 std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, const ViewSearchOptions& options) const {
   options.validate();
   const ViewComparison comparison(scan);
-  std::vector<std::vector<RankedPose>> views(shapes_.size());
+  std::vector<std::vector<NearView>> views(shapes_.size());
   parallelRanges(shapes_.size(), kShapes, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) views[i] = nearestViews(shapes_[i], scan, comparison, options);
   });
@@ -68,7 +68,7 @@ std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, const ViewSearchOp
   std::vector<ShapeOfView> found;
   for (const int shape : order) {
     found.push_back({shape, distance(shape), {}});
-    for (const RankedPose& pose : views[static_cast<std::size_t>(shape)])
+    for (const NearView& pose : views[static_cast<std::size_t>(shape)])
       found.back().T_shape_scan.push_back(poseOfView(scan, *pose.view, pose.turn));
   }
   return found;

@@ -22,24 +22,20 @@ constexpr float kDeepest = 2.0f;      // radii: a depth farther from the mean co
 constexpr int kRow = 2 * kViewRings;  // values of a harmonic's real or imaginary part
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-using Turns = std::array<std::array<float, kNumAngles>, kViewHarmonics + 1>;
+/// Cosines and sines of m times the angle of each turn.
+struct Turns {
+  std::array<std::array<float, kNumAngles>, kViewHarmonics + 1> cosines, sines;
+};
 
-/// Cosines of m times the angle of each turn.
-const Turns& cosines() {
+const Turns& turns() {
   static const Turns values = [] {
     Turns made;
-    for (int m = 0; m <= kViewHarmonics; ++m)
-      for (int a = 0; a < kNumAngles; ++a) made[m][a] = static_cast<float>(std::cos(2.0 * M_PI * m * a / kNumAngles));
-    return made;
-  }();
-  return values;
-}
-
-const Turns& sines() {
-  static const Turns values = [] {
-    Turns made;
-    for (int m = 0; m <= kViewHarmonics; ++m)
-      for (int a = 0; a < kNumAngles; ++a) made[m][a] = static_cast<float>(std::sin(2.0 * M_PI * m * a / kNumAngles));
+    for (int m = 0; m <= kViewHarmonics; ++m) {
+      for (int a = 0; a < kNumAngles; ++a) {
+        made.cosines[m][a] = static_cast<float>(std::cos(2.0 * M_PI * m * a / kNumAngles));
+        made.sines[m][a] = static_cast<float>(std::sin(2.0 * M_PI * m * a / kNumAngles));
+      }
+    }
     return made;
   }();
   return values;
@@ -161,14 +157,15 @@ Eigen::VectorXf harmonicsOf(const SmoothPicture& picture) {
   for (int ring = 0; ring < kViewRings; ++ring) {
     const double radius = (ring + 0.5) * kOuterRing / kViewRings;
     for (int a = 0; a < kNumAngles; ++a) {
-      const float x = static_cast<float>(radius) * cosines()[1][a], y = static_cast<float>(radius) * sines()[1][a];
+      const float x = static_cast<float>(radius) * turns().cosines[1][a],
+                  y = static_cast<float>(radius) * turns().sines[1][a];
       const Eigen::Array2f sample = picture.sample((Eigen::Array2f(x, y) + kReach) * to_cells);
       for (int m = 0; m <= kViewHarmonics; ++m) {
         // Rings count as their area, pairs of conjugate harmonics as two.
         const float weight = static_cast<float>(std::sqrt((m > 0 ? 2.0 : 1.0) * radius));
         for (int c = 0; c < 2; ++c) {
-          values[realPart(m) + c * kViewRings + ring] += weight * cosines()[m][a] * sample[c];
-          if (m > 0) values[imaginaryPart(m) + c * kViewRings + ring] -= weight * sines()[m][a] * sample[c];
+          values[realPart(m) + c * kViewRings + ring] += weight * turns().cosines[m][a] * sample[c];
+          if (m > 0) values[imaginaryPart(m) + c * kViewRings + ring] -= weight * turns().sines[m][a] * sample[c];
         }
       }
     }
@@ -258,7 +255,8 @@ ViewAgreement ViewComparison::compare(const float* values, float enough) const {
   std::array<float, kNumAngles> correlation;
   correlation.fill(real[0]);
   for (int m = 1; m <= kViewHarmonics; ++m)
-    for (int a = 0; a < kNumAngles; ++a) correlation[a] += real[m] * cosines()[m][a] - imaginary[m] * sines()[m][a];
+    for (int a = 0; a < kNumAngles; ++a)
+      correlation[a] += real[m] * turns().cosines[m][a] - imaginary[m] * turns().sines[m][a];
   const auto at = std::max_element(correlation.begin(), correlation.end());
   if (*at <= least) return best;
   best.distance = std::sqrt(std::max(0.0f, 2.0f - 2.0f * *at));
