@@ -251,15 +251,15 @@ private:
   /// Figure 14: class by class.
   void drawClasses() const {
     Chart chart;
-    chart.title = "Classes, by what PRST gains over GEDT, axes of the files";
-    chart.x = {"rank of the class", false, {}};
-    chart.y = {"discounted cumulative gain", false, std::make_pair(0.0, 1.0)};
-    chart.series = {{"PRST", {}, {}, true}, {"GEDT", {}, {}, true}, {"PRST x GEDT", {}, {}, false}};
+    chart.title = "Classes, axes of the files";
+    chart.x.title = "rank of the class, by what PRST gains over GEDT";
+    chart.y.title = "discounted cumulative gain, less that of GEDT";
+    chart.series = {{"PRST", {}, {}, true}, {"PRST x GEDT", {}, {}, true}, {"GEDT", {}, {}, false, true}};
     for (const ClassGain& gain : classGains()) {
       for (ChartSeries& series : chart.series) series.x.push_back(1.0 + static_cast<double>(series.x.size()));
-      chart.series[0].y.push_back(gain.prst);
-      chart.series[1].y.push_back(gain.gedt);
-      chart.series[2].y.push_back(gain.product);
+      chart.series[0].y.push_back(gain.prst - gain.gedt);
+      chart.series[1].y.push_back(gain.product - gain.gedt);
+      chart.series[2].y.push_back(0.0);
     }
     writeChart(chart, chartBeside(*options_.png, "_classes"));
   }

@@ -75,8 +75,8 @@ figure_8() {
 }
 figure_8 1 v
 figure_8 2 n
-figure_8 5 n,n,n,n
-figure_8 8 n,n,n,n,n,n,n
+figure_8 4 n,n,n
+figure_8 7 n,n,n,n,n,n
 
 for model in cow elephant; do
   show pcl_symmetry_viewer "$model.off" -up 0,1,0 -width 480 -height 360 -keys g,s,a -screenshot "$pictures/figure_10_$model.png"

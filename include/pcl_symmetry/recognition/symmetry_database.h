@@ -33,7 +33,9 @@ struct RecognitionOptions {
   /// What a factor of e between the size of the scan and that of a model's view adds to their distance, >= 0. Less
   /// where much of an object is hidden behind others.
   double size_weight = 0.25;
-  double min_merit = 0.6;  ///< of a pose by which a model is known, in [-1, 1], see SymmetryRegistration
+  /// Of a pose by which a model is known, in [-1, 1], see SymmetryRegistration. For clouds that are sampled evenly, as
+  /// by scanners; points drawn at random meet less well.
+  double min_merit = 0.64;
   CloudRegistrationOptions registration = quickRegistration();
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
