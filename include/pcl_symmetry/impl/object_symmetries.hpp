@@ -14,6 +14,6 @@ ObjectSymmetries detectObjectSymmetries(const pcl::PointCloud<PointT>& cloud, co
 
 }  // namespace pcl_symmetry
 
-#define PCL_INSTANTIATE_detectObjectSymmetries(T)                                       \
-  template pcl_symmetry::ObjectSymmetries pcl_symmetry::detectObjectSymmetries(         \
+#define PCL_INSTANTIATE_detectObjectSymmetries(T)                               \
+  template pcl_symmetry::ObjectSymmetries pcl_symmetry::detectObjectSymmetries( \
       const pcl::PointCloud<T>&, const pcl_symmetry::ObjectSymmetryOptions&);
