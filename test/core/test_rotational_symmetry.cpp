@@ -193,10 +193,12 @@ TEST(ObjectSymmetries, OfAFlatSheetTurnItOver) {
 
 TEST(ObjectSymmetries, AreTheSameForAnyNumberOfThreads) {
   for (const TurningShape& shape : {prismShape(6, 0.8), cylinderShape(), tetrahedronShape()}) {
-    const Points cloud = moved(shape.sampled(3000, 1), randomPose(1)).cloud();
+    const Points cloud = moved(shape.sampled(1500, 1), randomPose(1)).cloud();
     std::vector<ObjectSymmetries> found;
-    for (const int threads : {1, 2, 5}) {
-      ObjectSymmetryOptions options;
+    for (const int threads : {1, 5}) {
+      ObjectSymmetryOptions options;  // coarse: sanitizers make it slow
+      options.num_cells = 32;
+      options.num_directions = 1000;
       options.num_threads = threads;
       found.push_back(objectSymmetries(cloud, options));
     }
