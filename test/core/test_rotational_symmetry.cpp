@@ -192,7 +192,7 @@ TEST(ObjectSymmetries, OfAFlatSheetTurnItOver) {
 }
 
 TEST(ObjectSymmetries, AreTheSameForAnyNumberOfThreads) {
-  for (const TurningShape& shape : {prismShape(6, 0.8), cylinderShape(), tetrahedronShape()}) {
+  for (const TurningShape& shape : {prismShape(3, 0.8), cylinderShape()}) {
     const Points cloud = moved(shape.sampled(1500, 1), randomPose(1)).cloud();
     std::vector<ObjectSymmetries> found;
     for (const int threads : {1, 5}) {
