@@ -85,6 +85,9 @@ protected:
   /// The group by name, each of its rotations, and the line of a continuous one.
   static void expectFound(const TurningShape& shape, const Eigen::Isometry3d& pose, double scale, int num_points,
                           std::uint64_t seed, double noise = 0.0) {
+#ifdef __SANITIZE_ADDRESS__
+    num_points = std::min(num_points, 2000);  // sanitizers take twenty times as long
+#endif
     SCOPED_TRACE(std::to_string(num_points) + " points, seed " + std::to_string(seed));
     ObjectSymmetryOptions options;
     options.seed = seed;
