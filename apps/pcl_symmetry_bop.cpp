@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "console.h"
+#include "core/geometry/diameter.h"
 #include "options.h"
-#include "pcl_symmetry/core/diameter.h"
 #include "pcl_symmetry/object_symmetries.h"
 #include "shape_input.h"
 #include "shape_output.h"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "console.h"
+#include "core/base/parallel.h"
+#include "core/matching/shape_description.h"
 #include "input_cloud.h"
 #include "options.h"
-#include "pcl_symmetry/core/parallel.h"
-#include "pcl_symmetry/core/shape_description.h"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"
 #include "pcl_symmetry/point_types.h"

@@ -11,7 +11,7 @@
 #include "console.h"
 #include "contour_input.h"
 #include "options.h"
-#include "pcl_symmetry/core/point_symmetry.h"
+#include "pcl_symmetry/core/transform/symmetry_map.h"
 #include "pcl_symmetry/planar_symmetry_transform_2d.h"
 #include "raster_image.h"
 #include "shape_output.h"

@@ -18,7 +18,7 @@
 #include "cloud_fields.h"
 #include "console.h"
 #include "options.h"
-#include "pcl_symmetry/core/point_symmetry.h"
+#include "pcl_symmetry/core/transform/symmetry_map.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "picture.h"

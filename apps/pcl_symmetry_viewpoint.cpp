@@ -10,7 +10,7 @@
 
 #include "console.h"
 #include "options.h"
-#include "pcl_symmetry/core/local_maxima.h"
+#include "pcl_symmetry/core/detection/local_maxima.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pcl_symmetry/viewpoint_selection.h"

@@ -2,7 +2,7 @@
 
 #include <pcl/conversions.h>
 
-#include "pcl_symmetry/core/mesh_sampling.h"
+#include "core/geometry/mesh_sampling.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 
 namespace pcl_symmetry {

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "pcl_symmetry/core/visibility.h"
+#include "core/base/constants.h"
+#include "core/base/check.h"
+#include "pcl_symmetry/core/scan/visibility.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 
@@ -12,7 +13,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kViewAngle = 25.0 * kPi / 180.0;
 constexpr double kNearBest = 0.98;
 constexpr std::size_t kMaxPoints = 20'000;

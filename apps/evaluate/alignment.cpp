@@ -11,7 +11,7 @@
 #include "model_list.h"
 #include "options.h"
 #include "patches.h"
-#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/core/frame/symmetry_frame.h"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "shape_input.h"
 #include "shape_output.h"

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 
 #include "console.h"
-#include "pcl_symmetry/core/principal_axes.h"
+#include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/symmetry_alignment.h"
 

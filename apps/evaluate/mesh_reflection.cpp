@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pcl_symmetry/core/mesh_sampling.h"
+#include "core/geometry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {
 

@@ -1,7 +1,7 @@
 /// Whether the segments of a symmetric surface are each other's mirror images.
 #pragma once
 
-#include "pcl_symmetry/core/surface_segmentation.h"
+#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 
 namespace pcl_symmetry::apps {
 

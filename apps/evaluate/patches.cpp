@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "pcl_symmetry/core/random.h"
+#include "core/base/random.h"
 
 namespace pcl_symmetry::apps {
 

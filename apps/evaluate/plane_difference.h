@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/geometry/reflection_plane.h"
 
 namespace pcl_symmetry::apps {
 

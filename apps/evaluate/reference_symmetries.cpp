@@ -6,12 +6,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/base/parallel.h"
+#include "core/geometry/principal_axes.h"
 #include "mesh_reflection.h"
-#include "pcl_symmetry/core/gaussian_edt.h"
-#include "pcl_symmetry/core/local_maxima.h"
-#include "pcl_symmetry/core/parallel.h"
-#include "pcl_symmetry/core/principal_axes.h"
-#include "pcl_symmetry/core/sampled_transform.h"
+#include "pcl_symmetry/core/detection/local_maxima.h"
+#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+#include "pcl_symmetry/core/transform/planar_transform.h"
 #include "plane_difference.h"
 #include "plane_families.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/geometry/reflection_plane.h"
 
 namespace pcl_symmetry::apps {
 

@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "console.h"
-#include "pcl_symmetry/core/parallel.h"
-#include "pcl_symmetry/core/principal_axes.h"
+#include "core/base/parallel.h"
+#include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/registration/symmetry_registration.h"
 
 namespace pcl_symmetry::apps {

@@ -6,14 +6,14 @@
 #include <limits>
 #include <numeric>
 
-#include "pcl_symmetry/core/axis_rotations.h"
-#include "pcl_symmetry/core/parallel.h"
-#include "pcl_symmetry/core/random.h"
-#include "pcl_symmetry/core/reference_scaling.h"
-#include "pcl_symmetry/core/shape_description.h"
-#include "pcl_symmetry/core/signature_projection.h"
-#include "pcl_symmetry/core/symmetry_descriptor.h"
-#include "pcl_symmetry/core/turnable_prst.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+#include "core/descriptors/symmetry_descriptor.h"
+#include "core/descriptors/turnable_prst.h"
+#include "core/geometry/axis_rotations.h"
+#include "core/matching/reference_scaling.h"
+#include "core/matching/shape_description.h"
+#include "core/matching/signature_projection.h"
 
 namespace pcl_symmetry::apps {
 

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "pcl_symmetry/core/closest_point_search.h"
-#include "pcl_symmetry/core/k_means.h"
+#include "core/base/k_means.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_segmentation.h"
 #include "tool_errors.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/core/surface_segmentation.h"
+#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 
 namespace pcl_symmetry::apps {
 

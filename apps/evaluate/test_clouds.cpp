@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/random.h"
+#include "core/base/random.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "random_numbers.h"
 

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <vector>
 
+#include "core/geometry/principal_axes.h"
 #include "mug_mesh.h"
 #include "options.h"
 #include "parametric_mesh.h"
-#include "pcl_symmetry/core/principal_axes.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "picture.h"

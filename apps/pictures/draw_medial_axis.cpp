@@ -7,7 +7,7 @@
 
 #include "contour_input.h"
 #include "options.h"
-#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "raster_image.h"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pcl_symmetry/core/iterative_symmetric_points.h"
-#include "pcl_symmetry/core/surface_normals.h"
+#include "core/neighbours/surface_normals.h"
+#include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
 
 namespace pcl_symmetry::apps {
 

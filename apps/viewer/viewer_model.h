@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "options.h"
-#include "pcl_symmetry/core/plane_detection.h"
-#include "pcl_symmetry/core/surface_segmentation.h"
-#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 #include "shape_input.h"
 

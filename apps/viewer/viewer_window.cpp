@@ -24,7 +24,7 @@
 #include <optional>
 
 #include "isp_frames.h"
-#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "picture_actors.h"
 #include "shape_output.h"
 

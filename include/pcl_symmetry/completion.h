@@ -2,7 +2,7 @@
 
 #include <pcl/point_cloud.h>
 
-#include "pcl_symmetry/core/symmetric_completion.h"
+#include "pcl_symmetry/core/registration/symmetric_completion.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry {

@@ -3,7 +3,7 @@
 #include <pcl/PolygonMesh.h>
 #include <pcl/point_cloud.h>
 
-#include "pcl_symmetry/core/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
 
 namespace pcl_symmetry {
 

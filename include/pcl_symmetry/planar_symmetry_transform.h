@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/transform/planar_transform.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry {

@@ -4,8 +4,8 @@
 #include <pcl/point_types.h>
 #include <pcl/register_point_struct.h>
 
-#include "pcl_symmetry/core/shape_signature.h"
-#include "pcl_symmetry/core/symmetry_descriptor.h"
+#include "core/descriptors/shape_signature.h"
+#include "core/descriptors/symmetry_descriptor.h"
 
 namespace pcl_symmetry {
 

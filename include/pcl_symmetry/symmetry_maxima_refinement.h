@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detection/plane_detection.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry {

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcl_symmetry/core/surface_segmentation.h"
+#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 
 namespace pcl_symmetry {
 

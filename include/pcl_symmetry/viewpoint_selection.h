@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
-#include "pcl_symmetry/core/viewpoint_score.h"
+#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
 
 namespace pcl_symmetry {
 

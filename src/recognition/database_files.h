@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/core/view_signature.h"
+#include "core/views/view_signature.h"
 
 namespace pcl_symmetry {
 

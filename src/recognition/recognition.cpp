@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/check.h"
+#include "core/base/check.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"

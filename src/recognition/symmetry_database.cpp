@@ -6,9 +6,9 @@
 #include <fstream>
 #include <set>
 
-#include "../core/check.h"
+#include "core/base/check.h"
+#include "core/base/parallel.h"
 #include "database_files.h"
-#include "pcl_symmetry/core/parallel.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "../core/stopwatch.h"
-#include "pcl_symmetry/core/frame_hypotheses.h"
+#include "core/base/stopwatch.h"
+#include "core/frame/frame_hypotheses.h"
 
 namespace pcl_symmetry {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "lathe_mesh.h"
+#include "shapes/turning_shapes.h"
 #include "tool_run.h"
-#include "turning_shapes.h"
 
 namespace {
 

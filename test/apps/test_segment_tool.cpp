@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "face_labels.h"
-#include "meshes.h"
 #include "raster_image.h"
+#include "shapes/meshes.h"
 #include "tool_run.h"
 
 namespace {

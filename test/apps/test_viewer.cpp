@@ -3,8 +3,8 @@
 #include <set>
 
 #include "box_mesh.h"
+#include "core/base/random.h"
 #include "isp_frames.h"
-#include "pcl_symmetry/core/random.h"
 #include "raster_image.h"
 #include "tool_run.h"
 #include "viewer_model.h"

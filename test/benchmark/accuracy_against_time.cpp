@@ -9,12 +9,12 @@
 #include <optional>
 
 #include "chart.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
 #include "models.h"
 #include "options.h"
-#include "pcl_symmetry/core/closest_point_search.h"
-#include "pcl_symmetry/core/parallel.h"
-#include "pcl_symmetry/core/planar_transform.h"
-#include "pcl_symmetry/core/random.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/core/transform/planar_transform.h"
 
 namespace {
 

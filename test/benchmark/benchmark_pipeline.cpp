@@ -4,11 +4,10 @@
 #include <cstdlib>
 #include <map>
 
+#include "core/base/random.h"
 #include "models.h"
-#include "pcl_symmetry/core/convolution_transform.h"
-#include "pcl_symmetry/core/plane_detection.h"
-#include "pcl_symmetry/core/random.h"
-#include "pcl_symmetry/core/sampled_transform.h"
+#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/transform/planar_transform.h"
 
 namespace {
 

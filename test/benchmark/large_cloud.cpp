@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "pcl_symmetry/core/random.h"
+#include "core/base/random.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace {

@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <vector>
 
-#include "pcl_symmetry/core/axis_rotations.h"
-#include "pcl_symmetry/core/compact_index.h"
-#include "pcl_symmetry/core/random.h"
-#include "pcl_symmetry/core/symmetry_descriptor.h"
+#include "core/base/random.h"
+#include "core/descriptors/symmetry_descriptor.h"
+#include "core/geometry/axis_rotations.h"
+#include "core/matching/compact_index.h"
 
 namespace {
 

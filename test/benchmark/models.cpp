@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/mesh_sampling.h"
+#include "core/geometry/mesh_sampling.h"
 
 namespace pcl_symmetry::benchmarks {
 

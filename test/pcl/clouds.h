@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "shapes.h"
+#include "shapes/shapes.h"
 
 namespace pcl_symmetry::test {
 

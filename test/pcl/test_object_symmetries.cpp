@@ -5,7 +5,7 @@
 #include <pcl/exceptions.h>
 
 #include "clouds.h"
-#include "turning_shapes.h"
+#include "shapes/turning_shapes.h"
 
 namespace pcl_symmetry {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "clouds.h"
-#include "contours.h"
 #include "error_message.h"
+#include "shapes/contours.h"
 
 namespace pcl_symmetry {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "pcl_symmetry/core/random.h"
+#include "core/base/random.h"
 #include "pcl_symmetry/features/prst.h"
 
 namespace pcl_symmetry {

@@ -5,7 +5,7 @@
 #include <pcl/exceptions.h>
 
 #include "clouds.h"
-#include "scans.h"
+#include "shapes/scans.h"
 
 namespace pcl_symmetry {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "pcl_symmetry/core/random.h"
+#include "core/base/random.h"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 
 namespace pcl_symmetry {

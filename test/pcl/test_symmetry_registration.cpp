@@ -6,7 +6,7 @@
 #include "clouds.h"
 #include "pcl_symmetry/completion.h"
 #include "pcl_symmetry/registration/symmetry_registration.h"
-#include "scans.h"
+#include "shapes/scans.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "error_message.h"
-#include "meshes.h"
 #include "pcl_symmetry/mesh_sampling.h"
+#include "shapes/meshes.h"
 
 namespace pcl_symmetry {
 namespace {

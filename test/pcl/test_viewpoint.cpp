@@ -11,7 +11,7 @@
 #include "pcl_symmetry/impl/seen_space.hpp"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
-#include "scans.h"
+#include "shapes/scans.h"
 
 namespace pcl_symmetry {
 namespace {

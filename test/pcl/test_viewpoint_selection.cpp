@@ -1,3 +1,4 @@
+#include "core/geometry/directions.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 
 #include <gtest/gtest.h>

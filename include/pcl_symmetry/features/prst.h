@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "pcl_symmetry/core/symmetry_descriptor.h"
+#include "core/descriptors/symmetry_descriptor.h"
 #include "pcl_symmetry/point_types.h"
 #include "pcl_symmetry/viewpoint.h"
 

@@ -2,6 +2,7 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
+#include "core/distance_transform/free_space.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"

@@ -2,7 +2,7 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
-#include "pcl_symmetry/core/principal_axes.h"
+#include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/planar_symmetry_transform_2d.h"

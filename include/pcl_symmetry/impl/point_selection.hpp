@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
-#include "pcl_symmetry/core/point_set.h"
-#include "pcl_symmetry/core/random.h"
+#include "core/base/random.h"
+#include "pcl_symmetry/core/geometry/point_set.h"
 
 namespace pcl_symmetry {
 

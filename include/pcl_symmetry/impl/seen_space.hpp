@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/viewpoint_recognition.h"
+#include "core/scan/single_view.h"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/viewpoint.h"
 

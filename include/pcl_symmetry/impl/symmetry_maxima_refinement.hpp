@@ -6,7 +6,7 @@
 #include <limits>
 #include <mutex>
 
-#include "pcl_symmetry/core/plane_support.h"
+#include "core/evidence/plane_support.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"

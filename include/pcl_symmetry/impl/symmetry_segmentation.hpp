@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/symmetry_segmentation.h"

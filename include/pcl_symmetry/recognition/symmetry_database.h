@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/compact_index.h"
-#include "pcl_symmetry/core/shape_description.h"
-#include "pcl_symmetry/core/signature_projection.h"
-#include "pcl_symmetry/core/view_index.h"
+#include "core/matching/compact_index.h"
+#include "core/matching/shape_description.h"
+#include "core/matching/signature_projection.h"
+#include "core/views/view_index.h"
 #include "pcl_symmetry/registration/cloud_registration.h"
 #include "pcl_symmetry/viewpoint.h"
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/pose_search.h"
-#include "pcl_symmetry/core/symmetry_frame.h"
+#include "core/registration/pose_search.h"
+#include "pcl_symmetry/core/frame/symmetry_frame.h"
 
 namespace pcl_symmetry {
 

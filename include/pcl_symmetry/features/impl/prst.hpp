@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/core/frame/symmetry_frame.h"
 #include "pcl_symmetry/features/prst.h"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"

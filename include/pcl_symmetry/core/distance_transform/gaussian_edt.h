@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "pcl_symmetry/core/geometry/point_set.h"
+
+namespace pcl_symmetry {
+
+/// Options of the Gaussian Euclidean distance transform. Zero means: choose from the data.
+struct GaussianEdtOptions {
+  int num_cells = 64;   ///< cells along each side, in [8, 512]
+  double sigma = 0.0;   ///< width in input units, >= 0; 0 = two cells, or the spacing of the points where that is more
+  double radius = 0.0;  ///< radius of the ball to cover, input units, >= 0; 0 = the bounding ball of the points
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of that ball; used only with radius > 0
+  int num_threads = 0;                               ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// f(x) = exp(-dist^2(x, points) / sigma^2) on a cube of cells around the points (Section 4.1).
+///
+/// The distance at every cell center is exact with respect to the points' true positions (not to occupied cells) where
+/// f > 1.2e-3 and f is 0 beyond. Clouds with many points to a cell are thinned to one point per 1/64 cell first, which
+/// adds at most 0.43 cells to a distance, and lowers the sum of f by less than 1 % at 32 cells a side and more.
+class GaussianEdt {
+public:
+  /// \param points 3 x N, finite, input units, N >= 1, not all equal unless options.radius is set.
+  /// \throws std::invalid_argument for bad options, no points, points without extent, or non-finite values.
+  explicit GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options = {});
+
+  int numCells() const { return num_cells_; }
+  double cellSize() const { return cell_size_; }  ///< input units
+  double sigma() const { return sigma_; }         ///< input units
+  /// The ball that the grid covers; a margin of two cells and more lies outside it.
+  const Eigen::Vector3d& center() const { return center_; }
+  double radius() const { return radius_; }
+  /// Center of cell (0, 0, 0), input frame.
+  const Eigen::Vector3d& origin() const { return origin_; }
+
+  /// num_cells^3 values of f in [0, 1] at the cell centers, x fastest.
+  const std::vector<float>& values() const { return values_; }
+  Eigen::Vector3d cellCenter(std::size_t index) const;
+
+  double sum() const { return sum_; }         ///< sum of f over cells
+  double sqNorm() const { return sq_norm_; }  ///< sum of f^2 over cells
+
+  /// f in between the cells: trilinear over coefficients (sharpened()) that make its mean over a cell right.
+  /// \param x input frame; 0 outside the grid.
+  double operator()(const Eigen::Vector3d& x) const { return atCell((x - origin_) / cell_size_); }
+
+  /// The same at \p p cells from the center of cell (0, 0, 0).
+  double atCell(const Eigen::Vector3d& p) const {
+    if (!((p.array() >= 0.0).all() && (p.array() < num_cells_ - 1.0).all())) return 0.0;
+    const Eigen::Vector3i c = p.cast<int>();
+    const Eigen::Vector3d t = p - c.cast<double>();
+    const std::size_t n = num_cells_;
+    const float* f = interpolation_.data() + (static_cast<std::size_t>(c.z()) * n + c.y()) * n + c.x();
+    const auto row = [&](std::size_t offset) { return f[offset] + t.x() * (f[offset + 1] - f[offset]); };
+    const double near = row(0) + t.y() * (row(n) - row(0));
+    const double far = row(n * n) + t.y() * (row(n * n + n) - row(n * n));
+    return near + t.z() * (far - near);
+  }
+
+  /// f - c h^2 Laplace(f): taking the value of the nearest cell blurs f by a box, which adds h^2 / 24 times the
+  /// Laplacian to its mean, trilinear interpolation adds twice as much; the coefficients take that away again. With
+  /// sigma of two cells, a plain look-up would understate D at a perfect symmetry by 2 to 4 per cent.
+  /// \param c 1/24 for each box, 1/12 for trilinear interpolation or two boxes.
+  std::vector<float> sharpened(double c, int num_threads = 0) const;
+
+private:
+  void computeDistances(const PointsRef& points, int num_threads);
+
+  int num_cells_ = 0;
+  double cell_size_ = 0.0;
+  double sigma_ = 0.0;
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
+  double radius_ = 0.0;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  std::vector<float> values_;
+  std::vector<float> interpolation_;
+  double sum_ = 0.0;
+  double sq_norm_ = 0.0;
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,87 @@
+#include "core/base/k_means.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/check.h"
+#include "core/base/random.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// The first center by weight, each next one by weight times squared distance from those before.
+Eigen::MatrixXf spreadCenters(const Eigen::MatrixXf& features, const std::vector<float>& weights, int num_clusters,
+                              RandomStream& random) {
+  const Eigen::Index size = features.cols();
+  Eigen::MatrixXf centers(features.rows(), 0);
+  Eigen::VectorXd chance = Eigen::Map<const Eigen::VectorXf>(weights.data(), size).cast<double>();
+  Eigen::VectorXf sq_distance = Eigen::VectorXf::Constant(size, std::numeric_limits<float>::infinity());
+  while (centers.cols() < num_clusters && chance.sum() > 0.0) {
+    double rest = random.uniform() * chance.sum();
+    Eigen::Index chosen = 0;
+    while (chosen + 1 < size && (rest -= chance[chosen]) >= 0.0) ++chosen;
+    while (chance[chosen] <= 0.0) --chosen;  // rounding left the walk at a place without a chance
+    centers.conservativeResize(Eigen::NoChange, centers.cols() + 1);
+    centers.rightCols(1) = features.col(chosen);
+    sq_distance = sq_distance.cwiseMin((features.colwise() - features.col(chosen)).colwise().squaredNorm().transpose());
+    for (Eigen::Index i = 0; i < size; ++i) chance[i] = static_cast<double>(weights[i]) * sq_distance[i];
+  }
+  return centers;
+}
+
+/// Assigns every feature to the closest center. \return whether a label changed.
+bool assign(const Eigen::MatrixXf& features, const std::vector<float>& weights, Clusters& clusters) {
+  bool changed = false;
+  clusters.sq_error = 0.0;
+  for (Eigen::Index i = 0; i < features.cols(); ++i) {
+    Eigen::Index closest = 0;
+    const float sq_distance = (clusters.centers.colwise() - features.col(i)).colwise().squaredNorm().minCoeff(&closest);
+    clusters.sq_error += static_cast<double>(weights[i]) * sq_distance;
+    changed |= clusters.labels[i] != static_cast<int>(closest);
+    clusters.labels[i] = static_cast<int>(closest);
+  }
+  return changed;
+}
+
+/// Moves each center to the mean of its features; one that has none stays.
+void moveCenters(const Eigen::MatrixXf& features, const std::vector<float>& weights, Clusters& clusters) {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(features.rows(), clusters.centers.cols());
+  Eigen::VectorXd totals = Eigen::VectorXd::Zero(clusters.centers.cols());
+  for (Eigen::Index i = 0; i < features.cols(); ++i) {
+    const double weight = weights[i];
+    sums.col(clusters.labels[i]) += weight * features.col(i).cast<double>();
+    totals[clusters.labels[i]] += weight;
+  }
+  for (Eigen::Index k = 0; k < totals.size(); ++k)
+    if (totals[k] > 0.0) clusters.centers.col(k) = (sums.col(k) / totals[k]).cast<float>();
+}
+
+}  // namespace
+
+void KMeansOptions::validate() const {
+  check(num_clusters >= 1, "num_clusters", num_clusters, ">= 1");
+  check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
+  check(num_tries >= 1, "num_tries", num_tries, ">= 1");
+}
+
+Clusters kMeans(const Eigen::MatrixXf& features, const std::vector<float>& weights, const KMeansOptions& options) {
+  options.validate();
+  check(features.cols() >= 1, "number of features", features.cols(), ">= 1");
+  check(weights.size() == static_cast<std::size_t>(features.cols()), "number of weights", weights.size(),
+        "that of the features");
+  check(std::any_of(weights.begin(), weights.end(), [](float w) { return w > 0.0f; }), "sum of the weights", 0, "> 0");
+  Clusters best;
+  for (int attempt = 0; attempt < options.num_tries; ++attempt) {
+    RandomStream random(options.seed, attempt);
+    Clusters clusters;
+    clusters.labels.assign(features.cols(), -1);
+    clusters.centers = spreadCenters(features, weights, options.num_clusters, random);
+    for (int i = 0; i < options.max_iterations && assign(features, weights, clusters); ++i)
+      moveCenters(features, weights, clusters);
+    if (attempt == 0 || clusters.sq_error < best.sq_error) best = std::move(clusters);
+  }
+  return best;
+}
+
+}  // namespace pcl_symmetry

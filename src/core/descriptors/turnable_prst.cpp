@@ -1,0 +1,129 @@
+#include "core/descriptors/turnable_prst.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/descriptors/signature_axes.h"
+#include "core/frame/plane_profiles.h"
+#include "core/geometry/axis_rotations.h"
+#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr int kCells = 64;             // of the distance transform
+constexpr double kSigma = 1.0 / 16.0;  // of its radius
+constexpr int kNumSamples = 256;
+constexpr int kSide = 10;                                // normals along each side of a face of the cube
+constexpr int kFineOffsets = 2 * kTurnableOffsets;       // averaged in pairs
+constexpr double kRadius = 2.2, kStretchedRadius = 2.0;  // mean distances of the points from the middle
+
+struct Normals {
+  Eigen::Matrix<double, 3, kTurnableNormals> directions;
+  Eigen::Matrix<float, kTurnableNormals, 1> weights;
+};
+
+/// Of each pair of opposite normals the one whose first coordinate that is not 0 is positive.
+const Normals& normals() {
+  static const Normals values = [] {
+    Normals made;
+    Eigen::Index count = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < kSide * kSide; ++i) {
+        const auto place = [](int k) { return std::tan(((k + 0.5) / kSide - 0.5) * M_PI_2); };
+        const double u = place(i % kSide), v = place(i / kSide), sq = 1.0 + u * u + v * v;
+        Eigen::Vector3d x;
+        x[axis] = 1.0;
+        x[(axis + 1) % 3] = u;
+        x[(axis + 2) % 3] = v;
+        made.directions.col(count) = x / std::sqrt(sq);
+        made.weights[count++] = static_cast<float>(std::sqrt((1.0 + u * u) * (1.0 + v * v) / (sq * std::sqrt(sq))));
+      }
+    }
+    return made;
+  }();
+  return values;
+}
+
+/// Which normal each comes from, and whether it is that or its opposite.
+struct NormalRotation {
+  std::array<int, kTurnableNormals> source;
+  std::array<bool, kTurnableNormals> opposite;
+};
+
+NormalRotation makeNormalRotation(const Eigen::Matrix3i& rotation) {
+  NormalRotation result;
+  const auto& directions = normals().directions;
+  for (int i = 0; i < kTurnableNormals; ++i) {
+    const Eigen::Vector3d from = rotation.transpose().cast<double>() * directions.col(i);
+    const Eigen::Matrix<double, kTurnableNormals, 1> cosines = directions.transpose() * from;
+    Eigen::Index source;
+    cosines.cwiseAbs().maxCoeff(&source);
+    result.source[static_cast<std::size_t>(i)] = static_cast<int>(source);
+    result.opposite[static_cast<std::size_t>(i)] = cosines[source] < 0.0;
+  }
+  return result;
+}
+
+const NormalRotation& normalRotation(int rotation) {
+  static const std::vector<NormalRotation> rotations = [] {
+    std::vector<NormalRotation> made;
+    for (const Eigen::Matrix3i& matrix : axisRotations()) made.push_back(makeNormalRotation(matrix));
+    return made;
+  }();
+  return rotations[static_cast<std::size_t>(rotation)];
+}
+
+/// PRST at the normals, of unit norm. \param points about their middle, in the axes.
+void fillPRST(const Points& points, double radius, float* prst) {
+  GaussianEdtOptions options;
+  options.num_cells = kCells;
+  options.num_threads = 1;
+  options.radius = 1.0;
+  options.sigma = kSigma;
+  const double scale = radius * points.colwise().norm().mean();
+  const GaussianEdt edt(points / static_cast<float>(scale), options);
+  const PlaneProfiles profiles(edt, {}, kNumSamples, 1, 1);
+  // The middle of the points is not that of the grid.
+  const Eigen::Vector3d origin =
+      -(edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize())) / edt.cellSize();
+  const double reach = 1.0 / edt.cellSize(), step = 2.0 * reach / kFineOffsets;
+  Eigen::Map<Eigen::MatrixXf> values(prst, kTurnableOffsets, kTurnableNormals);
+  for (int i = 0; i < kTurnableNormals; ++i) {
+    const Eigen::Vector3d normal = normals().directions.col(i);
+    const double first = normal.dot(origin) - reach + 0.5 * step;
+    const std::vector<float> d =
+        profiles.scores(normal.cast<float>(), static_cast<float>(first), static_cast<float>(step), kFineOffsets);
+    for (int k = 0; k < kTurnableOffsets; ++k)
+      values(k, i) = normals().weights[i] * 0.5f * (std::sqrt(d[2 * k]) + std::sqrt(d[2 * k + 1]));
+  }
+  values.stableNormalize();
+}
+
+}  // namespace
+
+std::vector<float> turnablePRST(const PointsRef& points, const Eigen::Matrix3d& axes) {
+  const Points turned = aboutMiddle(inRadii(points), axes);
+  std::vector<float> prst(kTurnablePRSTSize);
+  fillPRST(turned, kRadius, prst.data());
+  fillPRST(stretched(turned), kStretchedRadius, prst.data() + kTurnablePRSTSize / 2);
+  for (float& value : prst) value *= static_cast<float>(M_SQRT1_2);
+  return prst;
+}
+
+void rotateTurnablePRST(const float* prst, int rotation, float* rotated) {
+  const NormalRotation& table = normalRotation(rotation);
+  for (int shape = 0; shape < 2; ++shape) {
+    for (std::size_t i = 0; i < kTurnableNormals; ++i, rotated += kTurnableOffsets) {
+      const float* from = prst + kTurnableOffsets * (shape * kTurnableNormals + table.source[i]);
+      if (table.opposite[i])
+        std::reverse_copy(from, from + kTurnableOffsets, rotated);
+      else
+        std::copy(from, from + kTurnableOffsets, rotated);
+    }
+  }
+}
+
+}  // namespace pcl_symmetry

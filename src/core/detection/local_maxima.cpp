@@ -1,0 +1,75 @@
+#include "pcl_symmetry/core/detection/local_maxima.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+bool isLocalMaximum(const SymmetryMap& map, std::size_t index) {
+  const float value = map[index];
+  return map.grid.visitNeighbours(map.grid.bin(index), [&](std::size_t neighbour) {
+    return map[neighbour] < value || (map[neighbour] == value && neighbour > index);
+  });
+}
+
+/// Sum of the second differences; planes beyond the ends of r have no symmetry.
+double laplacian(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
+  const auto value = [&](int dt, int dp, int dk) {
+    const auto at = map.grid.step(bin, dt, dp, dk);
+    return at ? static_cast<double>(map[map.grid.index(*at)]) : 0.0;
+  };
+  return value(-1, 0, 0) + value(1, 0, 0) + value(0, -1, 0) + value(0, 1, 0) + value(0, 0, -1) + value(0, 0, 1) -
+         6.0 * value(0, 0, 0);
+}
+
+}  // namespace
+
+void LocalMaximaOptions::validate() const {
+  check(strength >= 0.0 && strength <= 1.0, "strength", strength, "in [0, 1]");
+  checkNumThreads(num_threads);
+  check(laplacian >= 0.0 && laplacian <= 1.0, "laplacian", laplacian, "in [0, 1]");
+}
+
+std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMaximaOptions& options) {
+  options.validate();
+  std::vector<LocalMaximum> maxima;
+  if (map.empty()) return maxima;
+  const std::size_t strongest = map.strongest();
+  const double strength = options.strength * map[strongest];
+  const double curvature = options.laplacian * -laplacian(map, map.grid.bin(strongest));
+  const PlaneGrid& grid = map.grid;
+  std::vector<std::vector<LocalMaximum>> rows(grid.numTheta());
+  parallelBlocks(rows.size(), options.num_threads, [&](std::size_t row) {
+    const int t = static_cast<int>(row);
+    const std::size_t next_phi = grid.numRadius(), next_theta = next_phi * grid.numPhi();
+    for (int p = 0; p < grid.numPhi(); ++p) {
+      const double center_offset = grid.normal(t, p).dot(map.center_of_mass - grid.center());
+      for (int k = 0; k < grid.numRadius(); ++k) {
+        const PlaneGrid::Bin bin{t, p, k};
+        const std::size_t index = grid.index(bin);
+        const float value = map[index];
+        const double share = 1.0 - std::abs(grid.offset(k) - center_offset) / grid.radius();
+        if (value <= 0.0f || value < strength * share) continue;
+        // Most bins fail at a neighbour that is quickly reached.
+        if (k > 0 && map[index - 1] > value) continue;
+        if (k + 1 < grid.numRadius() && map[index + 1] > value) continue;
+        if (p > 0 && map[index - next_phi] > value) continue;
+        if (p + 1 < grid.numPhi() && map[index + next_phi] > value) continue;
+        if (t > 0 && map[index - next_theta] > value) continue;
+        if (t + 1 < grid.numTheta() && map[index + next_theta] > value) continue;
+        if (!isLocalMaximum(map, index) || -laplacian(map, bin) < curvature) continue;
+        rows[row].push_back({bin, grid.plane(bin), value});
+      }
+    }
+  });
+  for (const auto& row : rows) maxima.insert(maxima.end(), row.begin(), row.end());
+  std::stable_sort(maxima.begin(), maxima.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
+  return maxima;
+}
+
+}  // namespace pcl_symmetry

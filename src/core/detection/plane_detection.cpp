@@ -1,0 +1,106 @@
+#include "pcl_symmetry/core/detection/plane_detection.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/base/check.h"
+#include "core/base/stopwatch.h"
+#include "core/detection/refinement.h"
+#include "core/distance_transform/free_space.h"
+#include "core/geometry/distinct_points.h"
+#include "pcl_symmetry/core/transform/planar_transform.h"
+
+namespace pcl_symmetry {
+
+void DetectionOptions::validate() const {
+  edt.validate();
+  maxima.validate();
+  check(num_theta >= 1, "num_theta", num_theta, ">= 1");
+  check(num_phi >= 2 && num_phi % 2 == 0, "num_phi", num_phi, "even and >= 2");
+  check(num_radius >= 1, "num_radius", num_radius, ">= 1");
+  check(num_samples >= 1, "num_samples", num_samples, ">= 1");
+  check(max_candidates >= 1, "max_candidates", max_candidates, ">= 1");
+  check(max_drift >= 0.0, "max_drift", max_drift, ">= 0");
+  check(num_coarse_samples >= 10, "num_coarse_samples", num_coarse_samples, ">= 10");
+  check(num_refine_samples >= 10, "num_refine_samples", num_refine_samples, ">= 10");
+  check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
+  check(merge_angle >= 0.0, "merge_angle", merge_angle, ">= 0");
+  check(merge_offset >= 0.0, "merge_offset", merge_offset, ">= 0");
+  check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
+  check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
+  check(max_possible >= 1, "max_possible", max_possible, ">= 1");
+  check(max_planes >= 1, "max_planes", max_planes, ">= 1");
+  checkNumThreads(num_threads);
+}
+
+Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
+                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search,
+                       const Visibility* visibility) {
+  options.validate();
+  Stopwatch watch;
+  const GaussianEdt edt(points, options.edt);
+  const double edt_ms = watch.lap();
+  std::vector<float> free_space;
+  if (visibility) free_space = freeSpace(edt, *visibility, options.num_threads);
+  const double visibility_ms = watch.lap();
+  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
+  SampledTransformOptions sampling;
+  sampling.num_samples = options.num_samples;
+  sampling.seed = options.seed;
+  sampling.num_threads = options.num_threads;
+  SymmetryMap map = sampledTransform(edt, grid, sampling, free_space);
+  map.center_of_mass = centerOfMass(points);
+  const double transform_ms = watch.lap();
+  Detection detection = refineMaxima(points, edt, map, options, make_search ? make_search(edt) : nullptr, visibility);
+  detection.map = std::move(map);
+  detection.timing_ms.insert(
+      detection.timing_ms.begin(),
+      {{"distance_transform", edt_ms}, {"free_space", visibility_ms}, {"transform", transform_ms}});
+  return detection;
+}
+
+Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
+                       const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility) {
+  options.validate();
+  Stopwatch watch;
+  Detection detection;
+  const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
+  const DistinctPoints distinct(points);
+  const bool repeated = distinct.points.cols() < points.cols();
+  if (repeated) search = nullptr;  // it knows the copies
+  const Refinement refinement(distinct.points, edt, options, std::move(search), visibility);
+  timed("surface");
+  std::vector<Candidate> candidates = refinement.gather(map);
+  timed("maxima");
+  refinement.refineCoarsely(map, candidates);
+  timed("coarse_refinement");
+  refinement.refineClosely(candidates);
+  timed("close_refinement");
+  detection.planes = refinement.finish(candidates);
+  timed("full_refinement");
+  std::vector<ReflectionPlane> known;
+  while (!(candidates = refinement.closure(detection.planes, known)).empty()) {
+    std::vector<SymmetryPlane> found = refinement.finish(candidates);
+    std::move(found.begin(), found.end(), std::back_inserter(detection.planes));
+  }
+  timed("closure");
+  if (options.families) refinement.collectFamilies(detection);
+  timed("families");
+  if (options.approximate) {
+    std::vector<SymmetryPlane> parts = refinement.findParts(detection.planes);
+    std::move(parts.begin(), parts.end(), std::back_inserter(detection.planes));
+  }
+  timed("parts");
+  detection.planes = refinement.report(std::move(detection.planes));
+  if (repeated) {
+    for (SymmetryPlane& plane : detection.planes) {
+      std::vector<float> support(distinct.index_of.size());
+      for (std::size_t i = 0; i < support.size(); ++i) support[i] = plane.point_support[distinct.index_of[i]];
+      plane.point_support = std::move(support);
+    }
+  }
+  timed("report");
+  return detection;
+}
+
+}  // namespace pcl_symmetry

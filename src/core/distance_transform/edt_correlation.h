@@ -1,0 +1,27 @@
+#pragma once
+
+#include <algorithm>
+
+#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+
+namespace pcl_symmetry {
+
+/// D at one motion of space, reflection or rotation: the full sum over the cells of the EDT.
+/// \param image of a place in cells, both from the center of cell (0, 0, 0). \param step image of the unit vector along
+/// x, as a direction.
+template <typename Image>
+double correlation(const GaussianEdt& edt, const Image& image, const Eigen::Vector3d& step) {
+  const int n = edt.numCells();
+  const float* f = edt.values().data();
+  double sum = 0.0;
+  for (int z = 0; z < n; ++z) {
+    for (int y = 0; y < n; ++y, f += n) {
+      const Eigen::Vector3d first = image(Eigen::Vector3d(0.0, y, z));
+      for (int x = 0; x < n; ++x)
+        if (f[x] > 0.0f) sum += f[x] * edt.atCell(first + x * step);
+    }
+  }
+  return std::clamp(sum / edt.sqNorm(), 0.0, 1.0);
+}
+
+}  // namespace pcl_symmetry

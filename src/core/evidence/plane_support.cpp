@@ -1,0 +1,104 @@
+#include "core/evidence/plane_support.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/neighbours/surface_normals.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// How far a point with a normal lies off the surface at sample \p j, squared, in units of what its support allows;
+/// anything >= \p most where it is not less.
+float sqDeviation(int j, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal, const Points& samples,
+                  const LocalGeometry& geometry, float most) {
+  constexpr float kReach = 1.25f;                            // spacings, along the surface
+  constexpr float kNormalReach = 0.01f, kRoughReach = 3.0f;  // across the surface: of the radius, of the roughness
+  constexpr float kRoughShare = 0.25f, kTrustWidth = 0.1f;   // of the spacing: from there on normals mean nothing
+  constexpr float kNormalAngle = 0.5f;                       // radians between normals that agree
+  const Eigen::Vector3f difference = point - samples.col(j);
+  const float reach = std::max(1e-6f, kReach * geometry.spacing[j]);
+  const float along = std::max(0.0f, difference.norm() / reach - 1.0f);
+  if (along * along >= most) return most;
+  const auto normal = geometry.normals.col(j);
+  const float normal_reach = std::max(kNormalReach, kRoughReach * geometry.roughness[j]);
+  const float across = std::max(0.0f, std::abs(normal.dot(difference)) / normal_reach - 1.0f);
+  const float sq_distance = along * along + across * across;
+  if (sq_distance >= most) return most;
+  // Normals count as far as they can be trusted, without a jump.
+  const float rough = geometry.roughness[j] / std::max(geometry.spacing[j], 1e-6f);
+  const float trust = std::clamp((kRoughShare - rough) / kTrustWidth, 0.0f, 1.0f);
+  if (trust == 0.0f) return sq_distance;
+  const float cosine = std::min(1.0f, std::abs(normal.dot(point_normal)));
+  const float turned = trust * std::max(0.0f, std::acos(cosine) / kNormalAngle - 1.0f);
+  return sq_distance + turned * turned;
+}
+
+/// The best at the closest sample and those next to it, but for sample \p self.
+float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
+                  const Points& samples, const LocalGeometry& geometry) {
+  constexpr float kMost = 9.0f;  // a support of 1e-4, which counts as none
+  float least = sqDeviation(closest, point, point_normal, samples, geometry, kMost);
+  for (const int j : geometry.nearest[closest]) {
+    if (least == 0.0f) return 1.0f;
+    if (j != self) least = std::min(least, sqDeviation(j, point, point_normal, samples, geometry, least));
+  }
+  return least < kMost ? std::exp(-least) : 0.0f;
+}
+
+}  // namespace
+
+PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
+                            const Points& samples, const LocalGeometry& geometry, const Visibility* visibility) {
+  const std::size_t size = closest.size();
+  PointEvidence evidence{std::vector<float>(size), std::vector<float>(size)};
+  for (std::size_t i = 0; i < size; ++i) {
+    if (closest[i] >= 0)
+      evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples, geometry);
+    const bool seen = !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0;
+    evidence.conflict[i] = seen ? 1.0f - evidence.support[i] : 0.0f;
+  }
+  return evidence;
+}
+
+std::vector<float> ownSupport(const Points& samples, const LocalGeometry& geometry) {
+  std::vector<float> support(static_cast<std::size_t>(samples.cols()));
+  for (int i = 0; i < samples.cols(); ++i)
+    support[i] = supportNear(geometry.nearest[i][0], i, samples.col(i), geometry.normals.col(i), samples, geometry);
+  return support;
+}
+
+std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,
+                                int num_threads) {
+  constexpr std::size_t kBlockSize = 4096;
+  const BoundingBall ball = boundingBall(samples);
+  check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
+  const Points surface = normalizePoints(samples, ball.center, ball.radius);
+  const auto search = makeFlannSearch(surface);
+  const LocalGeometry geometry = localGeometry(surface, *search, kNumSupportNeighbours, num_threads);
+  const Eigen::Vector3f n = plane.normal().cast<float>();
+  std::vector<float> support(points.cols());
+  parallelRanges(points.cols(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto size = static_cast<Eigen::Index>(end - begin);
+    const Points own = normalizePoints(points.middleCols(begin, size), ball.center, ball.radius);
+    Points reflected(3, size), normals(3, size);
+    std::vector<int> closest;
+    std::vector<float> sq_distances;
+    search->search(own, 1, closest, sq_distances);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Eigen::Vector3d x = points.col(begin + i).cast<double>();
+      reflected.col(i) = ((plane.reflect(x) - ball.center) / ball.radius).cast<float>();
+      const Eigen::Vector3f normal = geometry.normals.col(closest[i]);
+      normals.col(i) = normal - 2.0f * n.dot(normal) * n;
+    }
+    search->search(reflected, 1, closest, sq_distances);
+    const PointEvidence part = pointEvidence(reflected, normals, closest, surface, geometry, nullptr);
+    std::copy(part.support.begin(), part.support.end(), support.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
+  return support;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,31 @@
+#include "core/geometry/axis_rotations.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+std::array<Eigen::Matrix3i, kNumAxisRotations> makeRotations() {
+  constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+  std::array<Eigen::Matrix3i, kNumAxisRotations> rotations;
+  std::size_t count = 0;
+  for (int order = 0; order < 6; ++order) {
+    for (int signs = 0; signs < 8; ++signs) {
+      const int num_turned = (signs & 1) + (signs >> 1 & 1) + (signs >> 2);
+      const bool odd_order = order >= 3;
+      if ((num_turned % 2 == 1) != odd_order) continue;
+      Eigen::Matrix3i rotation = Eigen::Matrix3i::Zero();
+      for (int axis = 0; axis < 3; ++axis) rotation(kOrders[order][axis], axis) = signs >> axis & 1 ? -1 : 1;
+      rotations[count++] = rotation;
+    }
+  }
+  return rotations;
+}
+
+}  // namespace
+
+const std::array<Eigen::Matrix3i, kNumAxisRotations>& axisRotations() {
+  static const std::array<Eigen::Matrix3i, kNumAxisRotations> rotations = makeRotations();
+  return rotations;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,142 @@
+#include "core/geometry/diameter.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr int kLeafSize = 8;
+
+/// Boxes, and cones from the center, around halves of halves of the points.
+class HalvingTree {
+public:
+  explicit HalvingTree(const PointsRef& points)
+      : points_(points), center_(boundingBall(points).center), order_(static_cast<std::size_t>(points.cols())) {
+    std::iota(order_.begin(), order_.end(), 0);
+    build(0, static_cast<int>(order_.size()));
+  }
+
+  /// \return squared.
+  double greatestDistance() const {
+    double best = hop();
+    search(0, 0, best);
+    return best;
+  }
+
+private:
+  struct Node {
+    Eigen::AlignedBox3d box;
+    Eigen::Vector3d axis;     // of a cone from the center
+    double half_angle = 0.0;  // of the cone
+    double reach = 0.0;       // greatest distance from the center
+    int begin = 0, end = 0;   // of order_
+    int right = -1;           // the left child is the next node; -1: a leaf
+  };
+  Node around(int begin, int end) const {
+    constexpr double kRounding = 1e-9;
+    Node node;
+    node.begin = begin;
+    node.end = end;
+    for (int i = begin; i < end; ++i) node.box.extend(Eigen::Vector3d(points_.col(order_[i]).cast<double>()));
+    const Eigen::Vector3d middle = node.box.center() - center_;
+    node.axis = middle.norm() > 0.0 ? middle.normalized() : Eigen::Vector3d::UnitZ().eval();
+    for (int i = begin; i < end; ++i) {
+      const Eigen::Vector3d x = points_.col(order_[i]).cast<double>() - center_;
+      node.reach = std::max(node.reach, x.norm());
+      node.half_angle = std::max(node.half_angle, angleBetween(node.axis, x));
+    }
+    node.reach *= 1.0 + kRounding;
+    node.half_angle += kRounding;
+    return node;
+  }
+
+  static double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  }
+
+  int build(int begin, int end) {
+    const int index = static_cast<int>(nodes_.size());
+    const Node node = around(begin, end);
+    nodes_.push_back(node);
+    if (end - begin <= kLeafSize) return index;
+    int axis = 0;
+    node.box.sizes().maxCoeff(&axis);
+    const int middle = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                     [&](int a, int b) { return points_(axis, a) < points_(axis, b); });
+    build(begin, middle);
+    const int right = build(middle, end);
+    nodes_[index].right = right;
+    return index;
+  }
+
+  /// From any point to the farthest one, and on from there: nearly the diameter, mostly.
+  double hop() const {
+    double best = 0.0;
+    Eigen::Index at = 0;
+    for (int k = 0; k < 4; ++k) {
+      const Eigen::Vector3f from = points_.col(at);
+      (points_.colwise() - from).colwise().squaredNorm().maxCoeff(&at);
+      best = std::max(best, (points_.col(at).cast<double>() - from.cast<double>()).squaredNorm());
+    }
+    return best;
+  }
+
+  void search(int a, int b, double& best) const {
+    const Node &first = nodes_[a], &second = nodes_[b];
+    if (sqBoundOfBoxes(first, second) <= best || sqBoundOfCones(first, second) <= best) return;
+    if (first.right < 0 && second.right < 0) {
+      best = std::max(best, greatestDistance(first, second));
+    } else if (a == b) {
+      search(a + 1, first.right, best);
+      search(a + 1, a + 1, best);
+      search(first.right, first.right, best);
+    } else if (second.right < 0 || (first.right >= 0 && first.end - first.begin >= second.end - second.begin)) {
+      search(a + 1, b, best);
+      search(first.right, b, best);
+    } else {
+      search(a, b + 1, best);
+      search(a, second.right, best);
+    }
+  }
+
+  /// No two points of the boxes are farther apart.
+  static double sqBoundOfBoxes(const Node& a, const Node& b) {
+    return (a.box.max() - b.box.min()).cwiseAbs().cwiseMax((b.box.max() - a.box.min()).cwiseAbs()).squaredNorm();
+  }
+
+  /// The same for the cones: what makes round shapes, where all boxes are equally far apart, no harder than others.
+  static double sqBoundOfCones(const Node& a, const Node& b) {
+    const double angle = std::min(M_PI, angleBetween(a.axis, b.axis) + a.half_angle + b.half_angle);
+    const double cosine = std::cos(angle);
+    return a.reach * a.reach + b.reach * b.reach - 2.0 * std::min(0.0, cosine) * a.reach * b.reach;
+  }
+
+  double greatestDistance(const Node& a, const Node& b) const {
+    double best = 0.0;
+    for (int i = a.begin; i < a.end; ++i) {
+      const Eigen::Vector3d x = points_.col(order_[i]).cast<double>();
+      for (int j = b.begin; j < b.end; ++j)
+        best = std::max(best, (points_.col(order_[j]).cast<double>() - x).squaredNorm());
+    }
+    return best;
+  }
+
+  const PointsRef& points_;
+  Eigen::Vector3d center_;
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace
+
+double diameter(const PointsRef& points) {
+  return points.cols() < 2 ? 0.0 : std::sqrt(HalvingTree(points).greatestDistance());
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,45 @@
+#include "core/geometry/mesh_sampling.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/base/random.h"
+
+namespace pcl_symmetry {
+
+Points sampleTriangles(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles, int num_points,
+                       std::uint64_t seed) {
+  check(num_points >= 1, "num_points", num_points, ">= 1");
+  std::vector<double> area_up_to;
+  std::vector<Eigen::Vector3i> used;
+  double area = 0.0;
+  const auto vertex = [&](int i) -> Eigen::Vector3d { return vertices.col(i).cast<double>(); };
+  for (const Eigen::Vector3i& triangle : triangles) {
+    for (int k = 0; k < 3; ++k)
+      check(triangle[k] >= 0 && triangle[k] < vertices.cols(), "triangle vertex", triangle[k], "an index of a vertex");
+    const Eigen::Vector3d a = vertex(triangle[0]);
+    const double share = 0.5 * (vertex(triangle[1]) - a).cross(vertex(triangle[2]) - a).norm();
+    if (!std::isfinite(share) || share == 0.0) continue;
+    area += share;
+    used.push_back(triangle);
+    area_up_to.push_back(area);
+  }
+  check(area > 0.0, "total area of the triangles", area, "> 0");
+
+  Points points(3, num_points);
+  RandomStream random(seed);
+  std::size_t t = 0;
+  for (int i = 0; i < num_points; ++i) {
+    const double target = (i + random.uniform()) * area / num_points;
+    while (t + 1 < used.size() && area_up_to[t] <= target) ++t;
+    const double root = std::sqrt(random.uniform()), along = random.uniform();
+    const Eigen::Vector3d point = (1.0 - root) * vertex(used[t][0]) + root * (1.0 - along) * vertex(used[t][1]) +
+                                  root * along * vertex(used[t][2]);
+    points.col(i) = point.cast<float>();
+  }
+  return points;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,45 @@
+#include "core/geometry/principal_axes.h"
+
+#include <Eigen/Eigenvalues>
+#include <stdexcept>
+
+namespace pcl_symmetry {
+
+PrincipalAxes principalAxes(const PointsRef& points) {
+  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
+  PrincipalAxes axes;
+  axes.center = centerOfMass(points);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d d = points.col(i).cast<double>() - axes.center;
+    covariance += d * d.transpose();
+  }
+  covariance /= static_cast<double>(points.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  axes.axes = solver.eigenvectors().rowwise().reverse();
+  axes.variances = solver.eigenvalues().reverse().cwiseMax(0.0);
+  if (axes.axes.determinant() < 0.0) axes.axes.col(2) *= -1.0;
+  return axes;
+}
+
+std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes) {
+  std::vector<ReflectionPlane> planes;
+  for (int i = 0; i < 3; ++i) planes.emplace_back(axes.axes.col(i), axes.axes.col(i).dot(axes.center));
+  return planes;
+}
+
+Eigen::Isometry3d sheetPose(const PointsRef& points) {
+  constexpr float kFlat = 1e-6f;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const Eigen::Vector3f low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
+  if (high.z() - low.z() <= kFlat * (high - low).head<2>().norm()) {
+    pose.translation().z() = 0.5 * (static_cast<double>(low.z()) + high.z());
+    return pose;
+  }
+  const PrincipalAxes axes = principalAxes(points);
+  pose.linear() = axes.axes;
+  pose.translation() = axes.center;
+  return pose;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,55 @@
+#include "pcl_symmetry/core/geometry/reflection_plane.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+
+namespace pcl_symmetry {
+
+ReflectionPlane::ReflectionPlane(const Eigen::Vector3d& normal, double offset) {
+  const double length = normal.stableNorm();
+  check(std::isfinite(length) && length > 0.0, "normal", normal.transpose(), "finite and not zero");
+  check(std::isfinite(offset), "offset", offset, "finite");
+  normal_ = normal / length;
+  offset_ = offset / length;
+}
+
+ReflectionPlane ReflectionPlane::fromCoefficients(const Eigen::Vector4d& coefficients) {
+  return ReflectionPlane(coefficients.head<3>(), -coefficients[3]);
+}
+
+ReflectionPlane ReflectionPlane::between(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
+  const Eigen::Vector3d normal = y - x;
+  return ReflectionPlane(normal, normal.dot(0.5 * (x + y)));
+}
+
+Eigen::Affine3d ReflectionPlane::reflection() const {
+  Eigen::Affine3d reflection = Eigen::Affine3d::Identity();
+  reflection.linear() -= 2.0 * normal_ * normal_.transpose();
+  reflection.translation() = 2.0 * offset_ * normal_;
+  return reflection;
+}
+
+ReflectionPlane ReflectionPlane::canonical() const {
+  const auto& n = normal_;
+  const bool flip = n.z() < 0.0 || (n.z() == 0.0 && (n.y() < 0.0 || (n.y() == 0.0 && n.x() < 0.0)));
+  ReflectionPlane plane = *this;
+  if (flip) {
+    plane.normal_ = -normal_;
+    plane.offset_ = -offset_;
+  }
+  return plane;
+}
+
+ReflectionPlane ReflectionPlane::transformed(const Eigen::Isometry3d& motion) const {
+  const Eigen::Vector3d normal = motion.linear() * normal_;
+  return ReflectionPlane(normal, offset_ + normal.dot(motion.translation()));
+}
+
+double ReflectionPlane::angleTo(const ReflectionPlane& other) const {
+  const double sine = normal_.cross(other.normal_).norm();
+  return std::atan2(sine, std::abs(normal_.dot(other.normal_)));
+}
+
+}  // namespace pcl_symmetry

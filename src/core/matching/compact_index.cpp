@@ -1,0 +1,91 @@
+#include "core/matching/compact_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr std::size_t kForms = 2048;  // of a block of the scan
+
+}  // namespace
+
+void CompactIndexOptions::validate() const {
+  check(num_leading >= 1, "num_leading", num_leading, ">= 1");
+  check(num_candidates >= 1, "num_candidates", num_candidates, ">= 1");
+  checkNumThreads(num_threads);
+}
+
+CompactIndex::CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options)
+    : compact_(std::move(compact)), forms_per_shape_(forms_per_shape), options_(options) {
+  options.validate();
+  check(forms_per_shape >= 1, "forms_per_shape", forms_per_shape, ">= 1");
+  check(compact_.cols() % forms_per_shape == 0, "number of compact forms", compact_.cols(),
+        "a multiple of those of a shape");
+  const Eigen::Index num_leading = std::min<Eigen::Index>(compact_.rows(), options.num_leading);
+  leading_.resize(num_leading + 1, compact_.cols());
+  leading_.topRows(num_leading) = compact_.topRows(num_leading);
+  leading_.row(num_leading) = -0.5f * compact_.topRows(num_leading).colwise().squaredNorm();
+}
+
+Eigen::Index CompactIndex::numShapes() const {
+  return compact_.cols() / forms_per_shape_;
+}
+
+/// The forms whose leading components are nearest to those of any rotation, in the order of the index.
+std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std::size_t count) const {
+  std::vector<int> forms(static_cast<std::size_t>(compact_.cols()));
+  std::iota(forms.begin(), forms.end(), 0);
+  if (count >= forms.size()) return forms;
+  const Eigen::Index num_leading = leading_.rows() - 1;
+  Eigen::MatrixXf queries(num_leading + 1, rotations.cols());
+  queries.topRows(num_leading) = rotations.topRows(num_leading);
+  queries.row(num_leading).setOnes();
+  const Eigen::VectorXf sq_norms = 0.5f * rotations.topRows(num_leading).colwise().squaredNorm().transpose();
+  std::vector<float> nearness(forms.size());  // -1/2 squared distance
+  parallelRanges(forms.size(), kForms, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Eigen::Index>(begin), size = static_cast<Eigen::Index>(end - begin);
+    Eigen::MatrixXf products = queries.transpose() * leading_.middleCols(first, size);
+    products.colwise() -= sq_norms;
+    Eigen::Map<Eigen::RowVectorXf>(nearness.data() + begin, size) = products.colwise().maxCoeff();
+  });
+  std::nth_element(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(count), forms.end(), [&](int a, int b) {
+    const float near_a = nearness[static_cast<std::size_t>(a)], near_b = nearness[static_cast<std::size_t>(b)];
+    return near_a != near_b ? near_a > near_b : a < b;
+  });
+  forms.resize(count);
+  std::sort(forms.begin(), forms.end());
+  return forms;
+}
+
+std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& rotations, int num_nearest) const {
+  check(num_nearest >= 0, "num_nearest", num_nearest, ">= 0");
+  std::vector<std::pair<int, float>> found;
+  if (compact_.cols() == 0) return found;
+  check(rotations.rows() == compact_.rows(), "size of a compact form", rotations.rows(), "that of the index");
+  const std::vector<int> forms = candidates(
+      rotations, static_cast<std::size_t>(std::max(options_.num_candidates, 2 * num_nearest * forms_per_shape_)));
+  Eigen::MatrixXf near(compact_.rows(), static_cast<Eigen::Index>(forms.size()));
+  for (std::size_t i = 0; i < forms.size(); ++i) near.col(static_cast<Eigen::Index>(i)) = compact_.col(forms[i]);
+  const Eigen::RowVectorXf cosines = (rotations.transpose() * near).colwise().maxCoeff();
+  // The nearest form of each shape, then the nearest shapes.
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    const int shape = forms[i] / forms_per_shape_;
+    const float sq_distance = 2.0f - 2.0f * cosines[static_cast<Eigen::Index>(i)];
+    const float distance = std::sqrt(std::max(0.0f, sq_distance));
+    if (found.empty() || found.back().first != shape)
+      found.emplace_back(shape, distance);
+    else
+      found.back().second = std::min(found.back().second, distance);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  found.resize(std::min(found.size(), static_cast<std::size_t>(num_nearest)));
+  return found;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,186 @@
+#include "core/matching/signature_projection.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+#include "core/descriptors/shape_signature.h"
+#include "core/geometry/axis_rotations.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr int kSpare = 16;               // dimensions that are searched besides
+constexpr float kLeastVariance = 1e-5f;  // of the greatest
+constexpr Eigen::Index kRows = 512;      // of a block of a product
+
+/// Index of a^T b.
+int quotient(int a, int b) {
+  const auto& rotations = axisRotations();
+  const Eigen::Matrix3i product =
+      rotations[static_cast<std::size_t>(a)].transpose() * rotations[static_cast<std::size_t>(b)];
+  return static_cast<int>(std::find(rotations.begin(), rotations.end(), product) - rotations.begin());
+}
+
+/// The product, by blocks of rows.
+Eigen::MatrixXf product(const Eigen::MatrixXf& a, const Eigen::Ref<const Eigen::MatrixXf>& b, int num_threads) {
+  Eigen::MatrixXf result(a.rows(), b.cols());
+  parallelRanges(static_cast<std::size_t>(a.rows()), kRows, num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
+    result.middleRows(first, count).noalias() = a.middleRows(first, count) * b;
+  });
+  return result;
+}
+
+/// Inner products of all shapes in all rotations about their common mean; shape i in rotation g has index g N + i.
+Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, SignatureRotation rotate, int num_threads) {
+  const Eigen::Index n = signatures.cols();
+  std::vector<Eigen::MatrixXf> with_rotated(kNumAxisRotations);
+  parallelBlocks(kNumAxisRotations, num_threads, [&](std::size_t r) {
+    Eigen::MatrixXf rotated(signatures.rows(), n);
+    for (Eigen::Index i = 0; i < n; ++i) rotate(signatures.col(i).data(), static_cast<int>(r), rotated.col(i).data());
+    with_rotated[r].noalias() = signatures.transpose() * rotated;
+  });
+  Eigen::MatrixXf products(kNumAxisRotations * n, kNumAxisRotations * n);
+  for (int g = 0; g < kNumAxisRotations; ++g)
+    for (int h = 0; h < kNumAxisRotations; ++h)
+      products.block(g * n, h * n, n, n) = with_rotated[static_cast<std::size_t>(quotient(g, h))];
+  const Eigen::VectorXf means = products.rowwise().mean();
+  products.colwise() -= means;
+  products.rowwise() -= means.transpose();
+  products.array() += means.mean();
+  return products;
+}
+
+struct Components {
+  Eigen::MatrixXf vectors;    // orthonormal columns
+  Eigen::VectorXf variances;  // of the shapes along them, falling
+};
+
+/// The greatest eigenvalues of a symmetric matrix by subspace iteration.
+Components principalComponents(const Eigen::MatrixXf& products, const ProjectionOptions& options) {
+  const Eigen::Index size = products.rows();
+  const Eigen::Index searched = std::min<Eigen::Index>(size, options.num_dimensions + kSpare);
+  RandomStream random(options.seed);
+  const auto orthonormal = [&](const Eigen::MatrixXf& spanning) -> Eigen::MatrixXf {
+    return Eigen::HouseholderQR<Eigen::MatrixXf>(spanning).householderQ() * Eigen::MatrixXf::Identity(size, searched);
+  };
+  Eigen::MatrixXf space =
+      Eigen::MatrixXf::NullaryExpr(size, searched, [&] { return static_cast<float>(random.uniform() - 0.5); });
+  for (int i = 0; i < options.num_iterations; ++i) space = product(products, orthonormal(space), options.num_threads);
+  space = orthonormal(space);
+  const Eigen::MatrixXf within = space.transpose() * product(products, space, options.num_threads);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(within);
+  const Eigen::VectorXf falling = solver.eigenvalues().reverse();
+  check(falling[0] > 0.0f, "variance of the shapes", falling[0], "> 0");
+  Eigen::Index kept = 0;
+  while (kept < std::min<Eigen::Index>(searched, options.num_dimensions) && falling[kept] > kLeastVariance * falling[0])
+    ++kept;
+  return {space * solver.eigenvectors().rowwise().reverse().leftCols(kept), falling.head(kept)};
+}
+
+}  // namespace
+
+void ProjectionOptions::validate() const {
+  check(num_dimensions >= 1, "num_dimensions", num_dimensions, ">= 1");
+  check(whitening >= 0.0 && whitening <= 1.0, "whitening", whitening, "in [0, 1]");
+  check(num_iterations >= 1, "num_iterations", num_iterations, ">= 1");
+  checkNumThreads(num_threads);
+}
+
+SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options,
+                                             SignatureRotation rotate) {
+  options.validate();
+  check(rotate != rotateSignature || signatures.rows() == kSignatureSize, "size of a signature", signatures.rows(),
+        "kSignatureSize");
+  check(signatures.cols() >= 1, "number of shapes", signatures.cols(), ">= 1");
+  const Eigen::Index n = signatures.cols();
+  const Components components = principalComponents(innerProducts(signatures, rotate, options.num_threads), options);
+  const Eigen::Index k = components.variances.size();
+  // Of values of unit norm, the scale of the weights does not matter.
+  const Eigen::ArrayXf deviations = components.variances.array().sqrt();
+  const Eigen::ArrayXf weights = deviations.pow(-static_cast<float>(options.whitening));
+
+  SignatureProjection result;
+  result.mean_ = Eigen::VectorXf::Zero(signatures.rows());
+  result.basis_ = Eigen::MatrixXf::Zero(signatures.rows(), k);
+  const Eigen::VectorXf mean = signatures.rowwise().mean();
+  Eigen::VectorXf rotated_mean(signatures.rows());
+  for (int r = 0; r < kNumAxisRotations; ++r) {
+    rotate(mean.data(), r, rotated_mean.data());
+    result.mean_ += rotated_mean / kNumAxisRotations;
+    const Eigen::MatrixXf part = product(signatures, components.vectors.middleRows(r * n, n), options.num_threads);
+    parallelBlocks(static_cast<std::size_t>(k), options.num_threads, [&](std::size_t c) {
+      const auto column = static_cast<Eigen::Index>(c);
+      Eigen::VectorXf rotated(signatures.rows());
+      rotate(part.col(column).data(), r, rotated.data());
+      result.basis_.col(column) += rotated;
+    });
+  }
+  // Components sum to zero over the shapes, so that the mean needs not be taken off here.
+  result.basis_ *= (weights / deviations).matrix().asDiagonal();
+
+  // A rotation of a component is the same sum over other shapes. Components that turn into each other have the same
+  // variance, so that weights do not matter here.
+  result.turns_.resize(kNumAxisRotations);
+  parallelBlocks(kNumAxisRotations, options.num_threads, [&](std::size_t r) {
+    Eigen::MatrixXf moved(components.vectors.rows(), k);
+    for (int g = 0; g < kNumAxisRotations; ++g)
+      moved.middleRows(g * n, n) = components.vectors.middleRows(quotient(static_cast<int>(r), g) * n, n);
+    result.turns_[r].noalias() = components.vectors.transpose() * moved;
+  });
+  return result;
+}
+
+Eigen::MatrixXf SignatureProjection::project(const Eigen::Ref<const Eigen::MatrixXf>& signatures) const {
+  check(signatures.rows() == mean_.size(), "size of a signature", signatures.rows(), "that of the projection");
+  Eigen::MatrixXf compact = basis_.transpose() * (signatures.colwise() - mean_);
+  for (Eigen::Index i = 0; i < compact.cols(); ++i) compact.col(i).stableNormalize();
+  return compact;
+}
+
+Eigen::MatrixXf SignatureProjection::rotations(const Eigen::Ref<const Eigen::MatrixXf>& compact) const {
+  check(compact.rows() == basis_.cols(), "size of a compact form", compact.rows(), "that of the projection");
+  Eigen::MatrixXf result(numDimensions(), kNumAxisRotations * compact.cols());
+  for (Eigen::Index i = 0; i < compact.cols(); ++i)
+    for (int r = 0; r < kNumAxisRotations; ++r)
+      result.col(kNumAxisRotations * i + r) = (turns_[static_cast<std::size_t>(r)] * compact.col(i)).stableNormalized();
+  return result;
+}
+
+std::vector<float> SignatureProjection::toValues() const {
+  std::vector<float> values(mean_.data(), mean_.data() + mean_.size());
+  values.insert(values.end(), basis_.data(), basis_.data() + basis_.size());
+  for (const Eigen::MatrixXf& turn : turns_) values.insert(values.end(), turn.data(), turn.data() + turn.size());
+  return values;
+}
+
+SignatureProjection SignatureProjection::fromValues(const std::vector<float>& values) {
+  // S + S K + 24 K K values: the only K >= 0 that fits, if any does.
+  const double s = kSignatureSize, excess = static_cast<double>(values.size()) - s;
+  const auto k = static_cast<Eigen::Index>(std::lround(
+      (std::sqrt(s * s + 4.0 * kNumAxisRotations * std::max(0.0, excess)) - s) / (2.0 * kNumAxisRotations)));
+  const auto size = static_cast<std::size_t>(kSignatureSize + kSignatureSize * k + kNumAxisRotations * k * k);
+  check(k >= 1 && values.size() == size, "number of values", values.size(), "that of a projection");
+  SignatureProjection result;
+  const float* next = values.data();
+  result.mean_ = Eigen::Map<const Eigen::VectorXf>(next, kSignatureSize);
+  next += kSignatureSize;
+  result.basis_ = Eigen::Map<const Eigen::MatrixXf>(next, kSignatureSize, k);
+  next += kSignatureSize * k;
+  for (int r = 0; r < kNumAxisRotations; ++r, next += k * k)
+    result.turns_.emplace_back(Eigen::Map<const Eigen::MatrixXf>(next, k, k));
+  return result;
+}
+
+float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::Ref<const Eigen::MatrixXf>& compact) {
+  const float cosine = (rotations.transpose() * compact).maxCoeff();
+  return std::sqrt(std::max(0.0f, 2.0f - 2.0f * cosine));
+}
+
+}  // namespace pcl_symmetry

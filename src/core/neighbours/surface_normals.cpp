@@ -1,0 +1,91 @@
+#include "core/neighbours/surface_normals.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr std::size_t kBlockSize = 512;
+
+/// The plane through the neighbours of a point.
+struct TangentPlane {
+  Eigen::Vector3f normal;
+  Eigen::Vector3f offset_sum;  ///< of the neighbours from the point
+  float roughness;             ///< root mean square distance of the neighbours
+};
+
+TangentPlane fitTangentPlane(const Points& points, const Eigen::Vector3f& point, const int* neighbours, int count) {
+  TangentPlane plane;
+  plane.offset_sum.setZero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  for (int k = 0; k < count; ++k) {
+    const Eigen::Vector3f d = points.col(neighbours[k]) - point;
+    plane.offset_sum += d;
+    squares += d * d.transpose();
+  }
+  const Eigen::Matrix3f covariance =
+      squares - plane.offset_sum * plane.offset_sum.transpose() / static_cast<float>(count);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3f normal = solver.eigenvectors().col(0);
+  const bool usable = normal.allFinite() && std::abs(normal.squaredNorm() - 1.0f) < 0.1f;
+  plane.normal = usable ? normal : Eigen::Vector3f(Eigen::Vector3f::UnitZ());
+  const float sq_residual = usable ? normal.dot(covariance * normal) : covariance.trace();
+  plane.roughness = std::sqrt(std::max(0.0f, sq_residual) / static_cast<float>(std::max(1, count - 3)));
+  return plane;
+}
+
+int countWithin(Eigen::Index size, int num_neighbours) {
+  return static_cast<int>(std::min<Eigen::Index>(size, num_neighbours + 1));  // with the point itself
+}
+
+}  // namespace
+
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
+                            int num_threads) {
+  constexpr double kBorderOffset = 0.38;  // of r_k, of the neighbours' mean: 0.25 is chance, 0.42 half a disc
+  const auto size = static_cast<std::size_t>(points.cols());
+  const int count = countWithin(points.cols(), num_neighbours);
+  const std::vector<float> zeros(size, 0.0f);
+  LocalGeometry geometry{Points(3, points.cols()), zeros, std::vector<char>(size), {}, zeros};
+  geometry.nearest.resize(size);
+  parallelRanges(size, kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> indices;
+    std::vector<float> sq_distances;
+    search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
+    for (std::size_t i = begin; i < end; ++i) {
+      const int* neighbours = indices.data() + (i - begin) * count;
+      geometry.nearest[i].fill(static_cast<int>(i));
+      for (int k = 0, next = 0; k < count && next < kNumWitnesses; ++k)
+        if (neighbours[k] != static_cast<int>(i)) geometry.nearest[i][next++] = neighbours[k];
+      const TangentPlane plane = fitTangentPlane(points, points.col(i), neighbours, count);
+      geometry.normals.col(i) = plane.normal;
+      geometry.roughness[i] = plane.roughness;
+      const double sq_radius = sq_distances[(i - begin) * count + count - 1];
+      const double offset = plane.offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
+      geometry.at_border[i] = offset > kBorderOffset * std::sqrt(sq_radius) ? 1 : 0;
+      geometry.spacing[i] = static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
+    }
+  });
+  return geometry;
+}
+
+std::vector<float> localRoughness(const Points& points, const ClosestPointSearch& search, const Points& places,
+                                  int num_neighbours) {
+  const int count = countWithin(points.cols(), num_neighbours);
+  std::vector<int> indices;
+  std::vector<float> sq_distances;
+  search.search(places, count, indices, sq_distances);
+  std::vector<float> roughness(static_cast<std::size_t>(places.cols()));
+  for (Eigen::Index i = 0; i < places.cols(); ++i)
+    roughness[i] = fitTangentPlane(points, places.col(i), indices.data() + i * count, count).roughness;
+  return roughness;
+}
+
+}  // namespace pcl_symmetry

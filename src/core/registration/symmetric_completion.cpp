@@ -1,0 +1,38 @@
+#include "pcl_symmetry/core/registration/symmetric_completion.h"
+
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/neighbours/surface_normals.h"
+
+namespace pcl_symmetry {
+
+void CompletionOptions::validate() const {
+  check(overlap > 0.0, "overlap", overlap, "> 0");
+  check(margin >= 0.0, "margin", margin, ">= 0");
+  checkNumThreads(num_threads);
+}
+
+std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane& plane,
+                                  const CompletionOptions& options, const Visibility* visibility) {
+  options.validate();
+  std::vector<int> completing;
+  if (points.cols() == 0) return completing;
+  const auto search = makeFlannSearch(points);
+  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, options.num_threads);
+  Points reflected(3, points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    reflected.col(i) = plane.reflect(points.col(i).cast<double>()).cast<float>();
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  search->search(reflected, 1, closest, sq_distances);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const double spacing = geometry.spacing[closest[i]];
+    if (!(std::sqrt(sq_distances[i]) > options.overlap * spacing)) continue;
+    if (visibility && visibility->depthBehind(reflected.col(i).cast<double>()) < -options.margin * spacing) continue;
+    completing.push_back(static_cast<int>(i));
+  }
+  return completing;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,109 @@
+#include "pcl_symmetry/core/rotation/rotation_group.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr double kSameRotation = 1e-6;  // of matrices: elements of one group differ by 0.2 and more for n <= 60
+
+bool holds(const std::vector<Eigen::Matrix3d>& rotations, const Eigen::Matrix3d& rotation) {
+  return std::any_of(rotations.begin(), rotations.end(),
+                     [&](const Eigen::Matrix3d& other) { return (other - rotation).norm() < kSameRotation; });
+}
+
+std::vector<Eigen::Matrix3d> closureOf(const std::vector<Eigen::Matrix3d>& generators) {
+  std::vector<Eigen::Matrix3d> elements{Eigen::Matrix3d::Identity()};
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    for (const Eigen::Matrix3d& generator : generators) {
+      const Eigen::Matrix3d product = generator * elements[i];
+      if (!holds(elements, product)) elements.push_back(product);
+    }
+  }
+  return elements;
+}
+
+}  // namespace
+
+Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction) {
+  int largest = 0;
+  direction.cwiseAbs().maxCoeff(&largest);
+  return direction[largest] < 0.0 ? -direction : direction;
+}
+
+std::vector<Eigen::Matrix3d> RotationGroup::generators() const {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
+  const Eigen::Matrix3d cyclic = rotationAbout(z, 2.0 * M_PI / fold);
+  const Eigen::Matrix3d diagonal = rotationAbout(Eigen::Vector3d::Ones().normalized(), 2.0 * M_PI / 3.0);
+  const double golden_ratio = 0.5 * (1.0 + std::sqrt(5.0));
+  switch (kind) {
+    case RotationGroupKind::Cyclic:
+      return fold == 1 ? std::vector<Eigen::Matrix3d>{} : std::vector{cyclic};
+    case RotationGroupKind::Dihedral:
+      return fold == 1 ? std::vector{rotationAbout(x, M_PI)} : std::vector{cyclic, rotationAbout(x, M_PI)};
+    case RotationGroupKind::Tetrahedral:
+      return {rotationAbout(z, M_PI), diagonal};
+    case RotationGroupKind::Octahedral:
+      return {rotationAbout(z, 0.5 * M_PI), diagonal};
+    case RotationGroupKind::Icosahedral:
+      return {rotationAbout(Eigen::Vector3d(0.0, 1.0, golden_ratio).normalized(), 0.4 * M_PI), diagonal};
+    default:
+      check(false, "kind", nameOf(kind, fold), "a finite group");
+      return {};
+  }
+}
+
+std::vector<Eigen::Matrix3d> RotationGroup::elements() const {
+  check(fold >= 1, "fold", fold, ">= 1");
+  return closureOf(generators());
+}
+
+std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements) {
+  constexpr double kParallel = 1.0 - 1e-9;
+  std::vector<RotationAxis> axes;
+  for (const Eigen::Matrix3d& element : elements) {
+    const Eigen::AngleAxisd turn(element);
+    if (std::abs(turn.angle()) < kSameRotation) continue;
+    const auto known = std::find_if(axes.begin(), axes.end(), [&](const RotationAxis& axis) {
+      return std::abs(axis.direction.dot(turn.axis())) > kParallel;
+    });
+    if (known == axes.end())
+      axes.push_back({signedDirection(turn.axis()), 2});
+    else
+      ++known->order;
+  }
+  return axes;
+}
+
+std::string nameOf(RotationGroupKind kind, int fold) {
+  switch (kind) {
+    case RotationGroupKind::Cyclic:
+      return "C" + std::to_string(fold);
+    case RotationGroupKind::Dihedral:
+      return "D" + std::to_string(fold);
+    case RotationGroupKind::Tetrahedral:
+      return "T";
+    case RotationGroupKind::Octahedral:
+      return "O";
+    case RotationGroupKind::Icosahedral:
+      return "I";
+    case RotationGroupKind::Revolution:
+      return "Cinf";
+    case RotationGroupKind::Cylindrical:
+      return "Dinf";
+    case RotationGroupKind::Spherical:
+      return "SO3";
+  }
+  return "";
+}
+
+}  // namespace pcl_symmetry

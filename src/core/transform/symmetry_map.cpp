@@ -1,0 +1,11 @@
+#include "pcl_symmetry/core/transform/symmetry_map.h"
+
+#include <algorithm>
+
+namespace pcl_symmetry {
+
+std::size_t SymmetryMap::strongest() const {
+  return values.empty() ? 0 : std::max_element(values.begin(), values.end()) - values.begin();
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,68 @@
+#include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/geometry/directions.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr double kSame = 1.0 - 1e-9;  // cosine of directions that are one
+
+Eigen::Vector3d climb(const std::vector<ViewPlane>& planes, Eigen::Vector3d v) {
+  constexpr int kMaxSteps = 100;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const ViewPlane& plane : planes) sum += std::copysign(plane.weight, v.dot(plane.normal)) * plane.normal;
+    const Eigen::Vector3d next = sum.normalized();
+    if (next.dot(v) > 1.0 - 1e-15) break;
+    v = next;
+  }
+  return v;
+}
+
+}  // namespace
+
+double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3d& direction) {
+  double score = 0.0;
+  for (const ViewPlane& plane : planes) score += plane.weight * std::abs(direction.dot(plane.normal));
+  return score;
+}
+
+std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes, int num_directions) {
+  std::vector<RankedView> views;
+  const bool some = std::any_of(planes.begin(), planes.end(), [](const ViewPlane& p) { return p.weight > 0.0; });
+  if (!some) return views;
+  for (const Eigen::Vector3d& start : evenDirections(num_directions)) {
+    const Eigen::Vector3d v = climb(planes, start);
+    const bool known =
+        std::any_of(views.begin(), views.end(), [&](const RankedView& view) { return view.direction.dot(v) > kSame; });
+    if (known) continue;
+    const double score = viewpointScore(planes, v);
+    views.push_back({v, score});
+    views.push_back({-v, score});
+  }
+  std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  return views;
+}
+
+RankedView worstView(const std::vector<ViewPlane>& planes) {
+  check(!planes.empty(), "number of planes", planes.size(), ">= 1");
+  RankedView worst{planes[0].normal.unitOrthogonal(), 0.0};
+  worst.score = viewpointScore(planes, worst.direction);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    for (std::size_t j = i + 1; j < planes.size(); ++j) {
+      const Eigen::Vector3d along = planes[i].normal.cross(planes[j].normal);
+      if (along.norm() < 1e-6) continue;
+      const double score = viewpointScore(planes, along.normalized());
+      if (score < worst.score) worst = {along.normalized(), score};
+    }
+  }
+  return worst;
+}
+
+}  // namespace pcl_symmetry

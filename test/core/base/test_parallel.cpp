@@ -1,0 +1,119 @@
+#include "core/base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "core/base/random.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+
+TEST(Parallel, EveryBlockRunsOnce) {
+  for (const int num_threads : {0, 1, 2, 8}) {
+    std::vector<std::atomic<int>> runs(1000);
+    parallelBlocks(runs.size(), num_threads, [&](std::size_t b) { ++runs[b]; });
+    for (const auto& run : runs) ASSERT_EQ(run, 1) << num_threads << " threads";
+  }
+}
+
+TEST(Parallel, NothingToDoIsDone) {
+  parallelBlocks(0, 4, [](std::size_t) { FAIL(); });
+  parallelRanges(0, 10, 4, [](std::size_t, std::size_t) { FAIL(); });
+}
+
+TEST(Parallel, RangesAreFixedPiecesWhateverTheThreads) {
+  for (const int num_threads : {1, 2, 8}) {
+    std::vector<std::size_t> ends(5, 0);
+    parallelRanges(43, 10, num_threads, [&](std::size_t begin, std::size_t end) {
+      ASSERT_EQ(begin % 10, 0u);
+      ends[begin / 10] = end;
+    });
+    EXPECT_EQ(ends, (std::vector<std::size_t>{10, 20, 30, 40, 43}));
+  }
+}
+
+TEST(Parallel, ExceptionsReachTheCaller) {
+  for (const int num_threads : {1, 2, 8}) {
+    try {
+      parallelBlocks(100, num_threads, [](std::size_t b) {
+        if (b == 37) throw std::invalid_argument("block 37");
+      });
+      FAIL() << num_threads << " threads";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_STREQ(error.what(), "block 37");
+    }
+  }
+}
+
+TEST(Parallel, ResolvesTheNumberOfThreads) {
+  EXPECT_GE(resolveNumThreads(0), 1);
+  EXPECT_EQ(resolveNumThreads(3), 3);
+}
+
+TEST(RandomStream, IsSplitMix64) {
+  // Published test vector of SplitMix64, seed 1234567: the stream's state is mixed from seed and stream, so the
+  // generator itself is reached by comparing with its definition.
+  std::uint64_t state = 1234567;
+  const auto next = [&] {
+    std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+    return z ^ (z >> 31);
+  };
+  ASSERT_EQ(next(), 6457827717110365317ull);
+  state = 1234567;
+  state = next() + 0xD1342543DE82EF95ull;
+  next();
+  RandomStream random(1234567);
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(random(), next());
+}
+
+TEST(RandomStream, UniformIsUniform) {
+  // Mean and variance of 1e5 uniform numbers have standard errors sqrt(1/12/n) = 9.1e-4 and sqrt(1/180/n) = 2.4e-4.
+  constexpr int kNum = 100'000;
+  for (std::uint64_t stream = 0; stream < 4; ++stream) {
+    RandomStream random(1, stream);
+    double sum = 0.0, sq_sum = 0.0;
+    for (int i = 0; i < kNum; ++i) {
+      const double u = random.uniform();
+      ASSERT_GE(u, 0.0);
+      ASSERT_LT(u, 1.0);
+      sum += u - 0.5;
+      sq_sum += (u - 0.5) * (u - 0.5);
+    }
+    EXPECT_NEAR(sum / kNum, 0.0, 4 * 9.1e-4);
+    EXPECT_NEAR(sq_sum / kNum, 1.0 / 12.0, 4 * 2.4e-4);
+  }
+}
+
+TEST(RandomStream, StreamsAreUnrelated) {
+  // The correlation of n pairs of independent numbers has a standard error of 1 / sqrt(n).
+  constexpr int kNum = 100'000;
+  for (const auto& [seed, stream] : {std::pair{1, 1}, std::pair{1, 2}, std::pair{2, 0}}) {
+    RandomStream a(1, 0), b(seed, stream);
+    double product = 0.0;
+    for (int i = 0; i < kNum; ++i) product += (a.uniform() - 0.5) * (b.uniform() - 0.5);
+    EXPECT_NEAR(12.0 * product / kNum, 0.0, 4.0 / std::sqrt(kNum)) << seed << ", " << stream;
+  }
+}
+
+TEST(RandomStream, BelowStaysBelowAndReachesAll) {
+  RandomStream random(3);
+  std::array<int, 7> counts{};
+  for (int i = 0; i < 7000; ++i) {
+    const auto value = random.below(7);
+    ASSERT_LT(value, 7u);
+    ++counts[value];
+  }
+  // Binomial: 1000 with a standard deviation of sqrt(7000 / 7 * 6 / 7) = 29.3.
+  for (const int count : counts) EXPECT_NEAR(count, 1000, 5 * 29.3);
+}
+
+}  // namespace

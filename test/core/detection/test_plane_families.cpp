@@ -1,0 +1,185 @@
+/// Bodies of revolution and spheres, told from polygons and from bodies with a handle.
+#include "core/detection/plane_families.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+const AxisLine kLine(Eigen::Vector3d(0.1, -0.05, 0.0), Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
+
+/// Nothing is a symmetry but what \p is_symmetry says; refinement leaves planes alone.
+FamilyTest testOf(const std::function<bool(const ReflectionPlane&)>& is_symmetry) {
+  const auto share = [is_symmetry](const ReflectionPlane& plane) { return is_symmetry(plane) ? 1.0 : 0.6; };
+  return {share, share, [](const ReflectionPlane& plane) { return plane; }, 0.92, 0.03, 0.03};
+}
+
+ReflectionPlane through(const AxisLine& line, double angle) {
+  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
+  const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
+  return ReflectionPlane(n, n.dot(line.origin()));
+}
+
+TEST(FindAxes, FindsTheLineOfAllPlanes) {
+  const auto test = testOf([](const ReflectionPlane& plane) { return contains(plane, kLine, 0.01); });
+  const auto axes = findAxes({through(kLine, 0.3), through(kLine, 1.1), through(kLine, 2.0)}, test);
+  ASSERT_EQ(axes.size(), 1u);
+  EXPECT_NEAR(std::abs(axes[0].line.direction().dot(kLine.direction())), 1.0, 1e-12);
+  EXPECT_LT(kLine.distance(axes[0].line.origin()), 1e-12);
+  EXPECT_EQ(axes[0].share, 1.0);
+  EXPECT_GE(axes[0].planes.size(), 8u);
+  for (const ReflectionPlane& plane : axes[0].planes) EXPECT_TRUE(contains(plane, kLine, 1e-9));
+}
+
+TEST(FindAxes, RefinesALineOfRoughPlanes) {
+  auto test = testOf([](const ReflectionPlane& plane) { return contains(plane, kLine, 0.03); });
+  test.refine = [](const ReflectionPlane& plane) {  // to the plane through the line that is nearest
+    const Eigen::Vector3d n = (plane.normal() - plane.normal().dot(kLine.direction()) * kLine.direction()).normalized();
+    return ReflectionPlane(n, n.dot(kLine.origin()));
+  };
+  const auto off = [](const ReflectionPlane& plane, double by) {
+    return ReflectionPlane(plane.normal() + by * kLine.direction(), plane.offset() + 0.5 * by);
+  };
+  const auto axes = findAxes({off(through(kLine, 0.3), 0.015), off(through(kLine, 1.6), -0.015)}, test);
+  ASSERT_EQ(axes.size(), 1u);
+  EXPECT_NEAR(std::abs(axes[0].line.direction().dot(kLine.direction())), 1.0, 1e-12);
+  EXPECT_LT(kLine.distance(axes[0].line.origin()), 1e-9);
+}
+
+TEST(FindAxes, APolygonHasNone) {
+  for (const int n : {2, 3, 4, 6, 12, 24}) {
+    std::vector<ReflectionPlane> planes;
+    for (int k = 0; k < n; ++k) planes.push_back(through(kLine, kPi * k / n));
+    // A prism forgives half a degree.
+    const auto test = testOf([&](const ReflectionPlane& plane) {
+      return std::any_of(planes.begin(), planes.end(),
+                         [&](const ReflectionPlane& own) { return own.angleTo(plane) < 0.5 * kDegree; });
+    });
+    EXPECT_TRUE(findAxes(planes, test).empty()) << n;
+    EXPECT_FALSE(findCenter(planes, test)) << n;
+  }
+}
+
+TEST(FindAxes, NeedsTwoPlanes) {
+  const auto test = testOf([](const ReflectionPlane&) { return true; });
+  EXPECT_TRUE(findAxes({}, test).empty());
+  EXPECT_TRUE(findAxes({through(kLine, 0.3)}, test).empty());
+  EXPECT_TRUE(findAxes({through(kLine, 0.3), through(kLine, 0.3)}, test).empty()) << "twice the same";
+  EXPECT_FALSE(findCenter({through(kLine, 0.3), through(kLine, 1.1)}, test));
+}
+
+TEST(FindCenter, FindsThePointOfAllPlanes) {
+  const Eigen::Vector3d point(0.2, -0.1, 0.3);
+  const auto test = testOf([&](const ReflectionPlane& plane) { return std::abs(plane.signedDistance(point)) < 0.01; });
+  RandomStream random(1);
+  std::vector<ReflectionPlane> planes;
+  for (int k = 0; k < 5; ++k) {
+    const Eigen::Vector3d n = randomDirection(random);
+    planes.emplace_back(n, n.dot(point));
+  }
+  const auto center = findCenter(planes, test);
+  ASSERT_TRUE(center);
+  EXPECT_LT((center->point - point).norm(), 1e-9);
+  EXPECT_EQ(center->share, 1.0);
+}
+
+TEST(FindCenter, ThreePlanesOfABoxHaveNone) {
+  const std::vector<ReflectionPlane> planes = box(1, Sampling::Random, 1).planes;
+  const auto test = testOf([&](const ReflectionPlane& plane) {
+    return std::any_of(planes.begin(), planes.end(),
+                       [&](const ReflectionPlane& own) { return own.angleTo(plane) < 2.0 * kDegree; });
+  });
+  EXPECT_FALSE(findCenter(planes, test));
+  EXPECT_TRUE(findAxes(planes, test).empty());
+}
+
+TEST(Contains, IsThreeDegreesAndATolerance) {
+  const AxisLine z(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
+  const auto tilted = [](double degrees, double offset) {
+    return ReflectionPlane({std::cos(degrees * kDegree), 0.0, std::sin(degrees * kDegree)}, offset);
+  };
+  EXPECT_TRUE(contains(tilted(2.9, 0.019), z, 0.02));
+  EXPECT_FALSE(contains(tilted(3.1, 0.0), z, 0.02));
+  EXPECT_FALSE(contains(tilted(0.0, 0.021), z, 0.02));
+}
+
+/// Wall and floor of a cup about z, open at the top, with or without a handle towards x.
+Shape cup(bool handle, int num_points, std::uint64_t seed) {
+  constexpr double kRadius = 0.5, kHeight = 1.0, kRing = 0.25, kTube = 0.06;
+  const double wall = 2.0 * kPi * kRadius * kHeight, floor = kPi * kRadius * kRadius,
+               grip = handle ? kPi * kRing * 2.0 * kPi * kTube : 0.0;
+  RandomStream random(seed);
+  Shape shape{Eigen::Matrix3Xd(3, num_points), {}};
+  for (int i = 0; i < num_points; ++i) {
+    const double u = random.uniform() * (wall + floor + grip), angle = 2.0 * kPi * random.uniform();
+    auto p = shape.points.col(i);
+    if (u < wall) {
+      p = Eigen::Vector3d(kRadius * std::cos(angle), kRadius * std::sin(angle), kHeight * random.uniform());
+    } else if (u < wall + floor) {
+      const double r = kRadius * std::sqrt(random.uniform());
+      p = Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), 0.0);
+    } else {
+      const double along = kPi * (random.uniform() - 0.5), r = kRing + kTube * std::cos(angle);
+      p = Eigen::Vector3d(kRadius + r * std::cos(along), kTube * std::sin(angle), 0.5 * kHeight + r * std::sin(along));
+    }
+  }
+  if (handle) shape.planes.emplace_back(Eigen::Vector3d::UnitY(), 0.0);
+  return shape;
+}
+
+TEST(Families, ACylinderOfManySidesIsOneAndAPrismIsNone) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const Eigen::Isometry3d pose = randomPose(seed);
+    const Detection twelve = detectPlanes(moved(prism(12, 10'000, Sampling::Random, seed), pose).cloud());
+    EXPECT_TRUE(twelve.axes.empty());
+    EXPECT_TRUE(twelve.centers.empty());
+    EXPECT_EQ(twelve.planes.size(), 13u);
+    const Detection many = detectPlanes(moved(prism(64, 10'000, Sampling::Random, seed), pose).cloud());
+    ASSERT_EQ(many.axes.size(), 1u);
+    EXPECT_TRUE(many.centers.empty());
+    EXPECT_GT(std::abs(many.axes[0].direction.dot(pose.linear().col(2))), std::cos(0.5 * kDegree));
+    ASSERT_EQ(many.planes.size(), 1u) << "the plane across the axis";
+    EXPECT_GT(std::abs(many.planes[0].normal().dot(pose.linear().col(2))), std::cos(0.5 * kDegree));
+  }
+}
+
+TEST(Families, AHandleLeavesACupItsOnePlane) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const Eigen::Isometry3d pose = randomPose(10 + seed);
+    const Shape with = moved(cup(true, 8000, seed), pose);
+    const Detection one = detectPlanes(with.cloud());
+    EXPECT_TRUE(one.axes.empty()) << seed;
+    ASSERT_EQ(one.planes.size(), 1u) << seed;
+    EXPECT_EQ(one.planes[0].kind, PlaneKind::Symmetry);
+    const PlaneError error = planeError(one.planes[0], with.planes[0], pose.translation());
+    EXPECT_LT(error.angle, 0.5 * kDegree) << seed;
+    EXPECT_LT(error.offset, 0.01) << seed;
+
+    const Detection all = detectPlanes(moved(cup(false, 8000, seed), pose).cloud());
+    ASSERT_EQ(all.axes.size(), 1u) << seed;
+    EXPECT_TRUE(all.planes.empty()) << seed << ": it is open at one end";
+    EXPECT_GT(std::abs(all.axes[0].direction.dot(pose.linear().col(2))), std::cos(0.5 * kDegree)) << seed;
+    EXPECT_GT(all.axes[0].confidence, 0.5) << seed;
+    EXPECT_GT(all.axes[0].support, 0.9) << seed;
+  }
+}
+
+TEST(Families, PlanesComeSinglyWhereFamiliesAreOff) {
+  DetectionOptions options;
+  options.families = false;
+  const Detection detection = detectPlanes(cylinder(5000, 1).cloud(), options);
+  EXPECT_TRUE(detection.axes.empty());
+  EXPECT_GE(detection.planes.size(), 3u);
+  const Detection round = detectPlanes(sphere(5000, 1).cloud(), options);
+  EXPECT_TRUE(round.centers.empty());
+  EXPECT_GE(round.planes.size(), 3u);
+}
+
+}  // namespace

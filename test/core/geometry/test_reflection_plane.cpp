@@ -1,0 +1,159 @@
+#include "pcl_symmetry/core/geometry/reflection_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+constexpr double kRounding = 1e-14;  // a few dozen operations of 1.1e-16 each, on numbers up to ten
+
+Eigen::Vector3d randomPoint(RandomStream& random) {
+  return {3.0 * symmetric(random), 3.0 * symmetric(random), 3.0 * symmetric(random)};
+}
+
+ReflectionPlane randomPlane(RandomStream& random) {
+  return ReflectionPlane(randomDirection(random), 2.0 * symmetric(random));
+}
+
+TEST(ReflectionPlane, ReflectingTwiceIsTheIdentity) {
+  RandomStream random(1);
+  for (int i = 0; i < 100; ++i) {
+    const ReflectionPlane plane = randomPlane(random);
+    const Eigen::Vector3d x = randomPoint(random);
+    EXPECT_LT((plane.reflect(plane.reflect(x)) - x).norm(), 10.0 * kRounding);
+    EXPECT_NEAR(plane.signedDistance(plane.reflect(x)), -plane.signedDistance(x), 10.0 * kRounding);
+  }
+}
+
+TEST(ReflectionPlane, ReflectsAsWritten) {
+  // x - 2 (n.x - r) n for n = (0, 0, 1), r = 2 turns (1, 2, 5) into (1, 2, -1).
+  EXPECT_EQ(ReflectionPlane(Eigen::Vector3d::UnitZ(), 2.0).reflect({1.0, 2.0, 5.0}), Eigen::Vector3d(1.0, 2.0, -1.0));
+  EXPECT_EQ(ReflectionPlane().reflect({1.0, 2.0, 5.0}), Eigen::Vector3d(1.0, 2.0, -5.0));
+}
+
+TEST(ReflectionPlane, PointsOfThePlaneStay) {
+  RandomStream random(2);
+  for (int i = 0; i < 100; ++i) {
+    const ReflectionPlane plane = randomPlane(random);
+    Eigen::Vector3d x = randomPoint(random);
+    x -= plane.signedDistance(x) * plane.normal();
+    EXPECT_LT((plane.reflect(x) - x).norm(), kRounding);
+  }
+}
+
+TEST(ReflectionPlane, NormalisesNormalAndOffsetTogether) {
+  const ReflectionPlane plane(Eigen::Vector3d(0.0, 3.0, 4.0), 10.0);
+  EXPECT_TRUE(plane.normal().isApprox(Eigen::Vector3d(0.0, 0.6, 0.8), kRounding));
+  EXPECT_NEAR(plane.offset(), 2.0, kRounding);
+}
+
+TEST(ReflectionPlane, NormalsOfAnyLengthAreTaken) {
+  for (const double length : {1e-300, 1e-160, 1e160, 1e300}) {
+    const ReflectionPlane plane(length * Eigen::Vector3d(1.0, 2.0, 2.0), 0.0);
+    EXPECT_TRUE(plane.normal().isApprox(Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0, kRounding)) << length;
+  }
+}
+
+TEST(ReflectionPlane, AffineMapIsTheReflection) {
+  RandomStream random(3);
+  for (int i = 0; i < 100; ++i) {
+    const ReflectionPlane plane = randomPlane(random);
+    const Eigen::Vector3d x = randomPoint(random);
+    EXPECT_LT((plane.reflection() * x - plane.reflect(x)).norm(), 10.0 * kRounding);
+    EXPECT_NEAR(plane.reflection().linear().determinant(), -1.0, kRounding);
+  }
+}
+
+TEST(ReflectionPlane, CanonicalFormIsOneOfTwo) {
+  RandomStream random(4);
+  for (int i = 0; i < 100; ++i) {
+    const ReflectionPlane plane = randomPlane(random);
+    const ReflectionPlane a = plane.canonical();
+    const ReflectionPlane b = ReflectionPlane(-plane.normal(), -plane.offset()).canonical();
+    EXPECT_GE(a.normal().z(), 0.0);
+    EXPECT_LT((a.normal() - b.normal()).norm(), kRounding);  // the normal was normalised once more
+    EXPECT_NEAR(a.offset(), b.offset(), kRounding);
+    const Eigen::Vector3d x = randomPoint(random);
+    EXPECT_LT((a.reflect(x) - plane.reflect(x)).norm(), 10.0 * kRounding);
+  }
+}
+
+TEST(ReflectionPlane, CanonicalFormOnTheEquator) {
+  using Eigen::Vector3d;
+  const auto canonical = [](const Vector3d& n) { return ReflectionPlane(n, 0.5).canonical(); };
+  EXPECT_EQ(canonical({0.0, -1.0, 0.0}).normal(), Vector3d(0.0, 1.0, 0.0));
+  EXPECT_EQ(canonical({0.0, -1.0, 0.0}).offset(), -0.5);
+  EXPECT_EQ(canonical({-1.0, 0.0, 0.0}).normal(), Vector3d(1.0, 0.0, 0.0));
+  EXPECT_EQ(canonical({1.0, 0.0, 0.0}).offset(), 0.5);
+  EXPECT_EQ(canonical({0.6, -0.8, 0.0}).normal(), Vector3d(-0.6, 0.8, 0.0));
+  EXPECT_EQ(canonical({0.6, 0.0, -0.8}).normal(), Vector3d(-0.6, 0.0, 0.8));
+}
+
+TEST(ReflectionPlane, CoefficientsRoundTrip) {
+  RandomStream random(5);
+  for (int i = 0; i < 100; ++i) {
+    const ReflectionPlane plane = randomPlane(random);
+    const ReflectionPlane back = ReflectionPlane::fromCoefficients(7.0 * plane.coefficients());
+    EXPECT_LT((back.normal() - plane.normal()).norm(), kRounding);
+    EXPECT_NEAR(back.offset(), plane.offset(), kRounding);
+    const Eigen::Vector3d x = randomPoint(random);
+    EXPECT_NEAR(plane.coefficients().dot(x.homogeneous()), plane.signedDistance(x), kRounding);
+  }
+}
+
+TEST(ReflectionPlane, BetweenReflectsOnePointOntoTheOther) {
+  RandomStream random(6);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d x = randomPoint(random), y = randomPoint(random);
+    const ReflectionPlane plane = ReflectionPlane::between(x, y);
+    EXPECT_LT((plane.reflect(x) - y).norm(), 10.0 * kRounding);
+    EXPECT_LT((plane.reflect(y) - x).norm(), 10.0 * kRounding);
+  }
+  EXPECT_THROW(ReflectionPlane::between(Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones()), std::invalid_argument);
+}
+
+TEST(ReflectionPlane, MovesWithItsPoints) {
+  RandomStream random(7);
+  for (int i = 0; i < 100; ++i) {
+    const ReflectionPlane plane = randomPlane(random);
+    const Eigen::Isometry3d motion = randomPose(i);
+    const Eigen::Vector3d x = randomPoint(random);
+    const ReflectionPlane image = plane.transformed(motion);
+    EXPECT_LT((image.reflect(motion * x) - motion * plane.reflect(x)).norm(), 10.0 * kRounding);
+  }
+}
+
+TEST(ReflectionPlane, AngleIsThatOfLines) {
+  const ReflectionPlane plane(Eigen::Vector3d::UnitX(), 0.0);
+  for (const double angle : {0.0, 1e-9, 1e-4, 0.3, 1.0, 0.5 * kPi}) {
+    const Eigen::Vector3d turned(std::cos(angle), std::sin(angle), 0.0);
+    EXPECT_NEAR(plane.angleTo(ReflectionPlane(turned, 3.0)), angle, 1e-15) << angle;
+    EXPECT_NEAR(plane.angleTo(ReflectionPlane(-turned, 3.0)), angle, 1e-15) << angle;
+  }
+  EXPECT_NEAR(plane.angleTo(ReflectionPlane({-0.5, std::sqrt(0.75), 0.0}, 0.0)), kPi / 3.0, 1e-15);
+}
+
+TEST(ReflectionPlane, RefusesWhatIsNoPlane) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(ReflectionPlane(Eigen::Vector3d::Zero(), 0.0), std::invalid_argument);
+  EXPECT_THROW(ReflectionPlane(Eigen::Vector3d(kNaN, 0.0, 1.0), 0.0), std::invalid_argument);
+  EXPECT_THROW(ReflectionPlane(Eigen::Vector3d(kInfinity, 0.0, 1.0), 0.0), std::invalid_argument);
+  EXPECT_THROW(ReflectionPlane(Eigen::Vector3d::UnitX(), kNaN), std::invalid_argument);
+  EXPECT_THROW(ReflectionPlane(Eigen::Vector3d::UnitX(), kInfinity), std::invalid_argument);
+  EXPECT_THROW(ReflectionPlane::fromCoefficients({0.0, 0.0, 0.0, 1.0}), std::invalid_argument);
+  try {
+    ReflectionPlane(Eigen::Vector3d::UnitX(), kInfinity);
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "offset = inf, must be finite");
+  }
+}
+
+}  // namespace

@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/random.h"
+#include "core/matching/compact_index.h"
+#include "core/matching/signature_projection.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// Unit vectors whose components fall as those of compact signatures do.
+Eigen::MatrixXf syntheticForms(int dimensions, int count, std::uint64_t seed) {
+  RandomStream random(seed);
+  Eigen::MatrixXf forms = Eigen::MatrixXf::NullaryExpr(dimensions, count, [&] {
+    return static_cast<float>(random.uniform() + random.uniform() + random.uniform() - 1.5);
+  });
+  for (int d = 0; d < dimensions; ++d) forms.row(d) *= static_cast<float>(std::pow(1.0 + d, -0.5));
+  forms.colwise().normalize();
+  return forms;
+}
+
+}  // namespace
+
+TEST(CompactIndex, FindsWhatAComparisonOfAllFinds) {
+  const Eigen::MatrixXf forms = syntheticForms(32, 600, 1), queries = syntheticForms(32, 5, 2);
+  CompactIndexOptions options;
+  options.num_candidates = 600;
+  const CompactIndex index(forms, 2, options);
+  EXPECT_EQ(index.numShapes(), 300);
+  const auto nearest = index.nearest(queries, 10);
+  ASSERT_EQ(nearest.size(), 10u);
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    const auto own = forms.middleCols(2 * nearest[i].first, 2);
+    EXPECT_NEAR(nearest[i].second, signatureDistance(queries, own), 1e-4);
+    EXPECT_TRUE(i == 0 || nearest[i].second >= nearest[i - 1].second);
+  }
+  int nearer = 0;
+  for (int shape = 0; shape < 300; ++shape)
+    nearer += signatureDistance(queries, forms.middleCols(2 * shape, 2)) < nearest.back().second - 1e-4f ? 1 : 0;
+  EXPECT_EQ(nearer, 9);
+}
+
+TEST(CompactIndex, FindsTheNearestOfManyByLeadingComponents) {
+  const Eigen::MatrixXf forms = syntheticForms(64, 20'000, 1), noise = syntheticForms(64, 50, 3);
+  const CompactIndex index(forms, 2);
+  int found = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::MatrixXf query = (forms.col(300 * i) + 0.5f * noise.col(i)).normalized();
+    const auto nearest = index.nearest(query, 1);
+    ASSERT_EQ(nearest.size(), 1u);
+    found += nearest[0].first == 150 * i ? 1 : 0;
+  }
+  EXPECT_GE(found, 48);
+}
+
+TEST(CompactIndex, CopesWithLittleAndRefusesNonsense) {
+  EXPECT_TRUE(CompactIndex().nearest(Eigen::MatrixXf::Ones(4, 1), 3).empty());
+  const CompactIndex one(syntheticForms(4, 1, 1), 1);
+  EXPECT_EQ(one.nearest(syntheticForms(4, 1, 1), 5).size(), 1u);
+  EXPECT_TRUE(one.nearest(syntheticForms(4, 1, 1), 0).empty());
+  EXPECT_THROW(one.nearest(syntheticForms(5, 1, 1), 1), std::invalid_argument);
+  EXPECT_THROW(one.nearest(syntheticForms(4, 1, 1), -1), std::invalid_argument);
+  EXPECT_THROW(CompactIndex(syntheticForms(4, 3, 1), 2), std::invalid_argument);
+}
+
+}  // namespace pcl_symmetry

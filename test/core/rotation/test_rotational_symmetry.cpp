@@ -1,0 +1,265 @@
+/// The group of rotations of a shape, in any pose, size and sampling.
+#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "shapes/turning_shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+double angleOf(const Eigen::Matrix3d& rotation) {
+  return Eigen::AngleAxisd(rotation).angle();
+}
+
+/// How far the closest of the motions found is from a rotation.
+double angleToNearest(const std::vector<Eigen::Isometry3d>& found, const Eigen::Matrix3d& rotation) {
+  double least = kPi;
+  for (const Eigen::Isometry3d& motion : found)
+    least = std::min(least, angleOf(motion.linear().transpose() * rotation));
+  return least;
+}
+
+/// Products and inverses of the motions, with the identity, are among them.
+void expectGroup(const std::vector<Eigen::Isometry3d>& motions, double size) {
+  std::vector<Eigen::Isometry3d> all = motions;
+  all.push_back(Eigen::Isometry3d::Identity());
+  for (const Eigen::Isometry3d& a : all) {
+    EXPECT_NEAR(a.linear().determinant(), 1.0, 1e-9);
+    EXPECT_LT((a.linear() * a.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+    for (const Eigen::Isometry3d& b : all) {
+      const Eigen::Isometry3d product = a * b.inverse();
+      const bool is_known = std::any_of(all.begin(), all.end(), [&](const Eigen::Isometry3d& c) {
+        return (c.linear() - product.linear()).norm() < 1e-9 &&
+               (c.translation() - product.translation()).norm() < 1e-6 * size;
+      });
+      EXPECT_TRUE(is_known);
+    }
+  }
+}
+
+TEST(RotationGroup, HasItsElementsAndNoOthers) {
+  using Kind = RotationGroupKind;
+  const std::vector<std::pair<RotationGroup, std::size_t>> groups{
+      {{Kind::Cyclic, 1}, 1},       {{Kind::Cyclic, 2}, 2},      {{Kind::Cyclic, 7}, 7},
+      {{Kind::Dihedral, 1}, 2},     {{Kind::Dihedral, 2}, 4},    {{Kind::Dihedral, 5}, 10},
+      {{Kind::Tetrahedral, 3}, 12}, {{Kind::Octahedral, 4}, 24}, {{Kind::Icosahedral, 5}, 60}};
+  for (const auto& [group, size] : groups) {
+    SCOPED_TRACE(nameOf(group.kind, group.fold));
+    std::vector<Eigen::Isometry3d> motions;
+    for (const Eigen::Matrix3d& element : group.elements()) motions.emplace_back(element);
+    ASSERT_EQ(motions.size(), size);
+    EXPECT_TRUE(motions[0].linear().isIdentity());
+    expectGroup({motions.begin() + 1, motions.end()}, 1.0);
+  }
+  EXPECT_THROW((RotationGroup{Kind::Revolution, 0}.elements()), std::invalid_argument);
+  EXPECT_THROW((RotationGroup{Kind::Cyclic, 0}.elements()), std::invalid_argument);
+}
+
+TEST(RotationGroup, HasTheAxesOfItsSolid) {
+  const auto count = [](RotationGroupKind kind, int fold, int order) {
+    const std::vector<RotationAxis> axes = axesOf(RotationGroup{kind, fold}.elements());
+    return std::count_if(axes.begin(), axes.end(), [&](const RotationAxis& axis) { return axis.order == order; });
+  };
+  EXPECT_EQ(count(RotationGroupKind::Tetrahedral, 3, 3), 4);
+  EXPECT_EQ(count(RotationGroupKind::Tetrahedral, 3, 2), 3);
+  EXPECT_EQ(count(RotationGroupKind::Octahedral, 4, 4), 3);
+  EXPECT_EQ(count(RotationGroupKind::Octahedral, 4, 3), 4);
+  EXPECT_EQ(count(RotationGroupKind::Octahedral, 4, 2), 6);
+  EXPECT_EQ(count(RotationGroupKind::Icosahedral, 5, 5), 6);
+  EXPECT_EQ(count(RotationGroupKind::Icosahedral, 5, 3), 10);
+  EXPECT_EQ(count(RotationGroupKind::Icosahedral, 5, 2), 15);
+  EXPECT_EQ(count(RotationGroupKind::Dihedral, 6, 6), 1);
+  EXPECT_EQ(count(RotationGroupKind::Dihedral, 6, 2), 6);
+}
+
+class KnownGroup : public testing::TestWithParam<TurningShape> {
+protected:
+  static constexpr double kAngleError = 0.5 * kDegree;
+
+  /// The group by name, each of its rotations, and the line of a continuous one.
+  static void expectFound(const TurningShape& shape, const Eigen::Isometry3d& pose, double scale, int num_points,
+                          std::uint64_t seed, double noise = 0.0) {
+#ifdef __SANITIZE_ADDRESS__
+    num_points = std::min(num_points, 2000);  // sanitizers take twenty times as long
+#endif
+    SCOPED_TRACE(std::to_string(num_points) + " points, seed " + std::to_string(seed));
+    ObjectSymmetryOptions options;
+    options.seed = seed;
+    const Shape sampled = scaled(moved(shape.sampled(num_points, seed, noise), pose), scale);
+    const ObjectSymmetries found = objectSymmetries(sampled.cloud(), options);
+    ASSERT_EQ(found.name(), shape.group);
+    EXPECT_GE(found.confidence, 0.5);
+    const bool cylinder = found.kind == RotationGroupKind::Cylindrical;
+    EXPECT_EQ(found.discrete.size(), cylinder ? 1u : shape.rotations.size());
+    for (const Eigen::Matrix3d& rotation : shape.rotations) {
+      const Eigen::Matrix3d placed = pose.linear() * rotation * pose.linear().transpose();
+      EXPECT_LT(angleToNearest(found.discrete, placed), kAngleError);
+    }
+    expectGroup(found.discrete, scale);
+    const Eigen::Vector3d axis = pose.linear() * shape.axis, origin = scale * pose.translation();
+    for (const ContinuousSymmetry& symmetry : found.continuous) {
+      EXPECT_NEAR(symmetry.axis.norm(), 1.0, 1e-9);
+      if (found.kind == RotationGroupKind::Spherical) {
+        EXPECT_LT((symmetry.offset - origin).norm(), 0.01 * scale);
+        continue;
+      }
+      EXPECT_LT(symmetry.axis.cross(axis).norm(), std::sin(kAngleError));
+      EXPECT_LT((symmetry.offset - origin).cross(axis).norm(), 0.01 * scale);
+    }
+    for (const Eigen::Isometry3d& motion : found.discrete) {
+      EXPECT_LT((motion * origin - origin).norm(), 0.02 * scale) << "every axis passes through the origin of the shape";
+      const Eigen::Vector3d turned_about = Eigen::AngleAxisd(motion.linear()).axis();
+      if (cylinder) {
+        EXPECT_LT(std::abs(turned_about.dot(axis)), std::sin(kAngleError));
+      }
+    }
+  }
+};
+
+TEST_P(KnownGroup, IsFoundInAnyPoseAndSize) {
+  expectFound(GetParam(), randomPose(1), 1.0, 10'000, 1);
+  expectFound(GetParam(), randomPose(2), 1e3, 2000, 2);
+  expectFound(GetParam(), randomPose(3), 1e-3, 4000, 3);
+}
+
+TEST_P(KnownGroup, IsFoundAsTheShapeStands) {
+  expectFound(GetParam(), Eigen::Isometry3d::Identity(), 1.0, 5000, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, KnownGroup, testing::ValuesIn(turningShapes()), [](const auto& instance) {
+  std::string name = instance.param.name;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+});
+
+class NoisyGroup : public KnownGroup {};
+
+TEST_P(NoisyGroup, IsFoundUnderNoiseOfHalfAPerCent) {
+  expectFound(GetParam(), randomPose(5), 1.0, 8000, 5, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, NoisyGroup,
+                         testing::Values(boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2),
+                                         prismShape(6, 0.8), cylinderShape(), cupShape(true), propellerShape(3, true)));
+
+/// How large a part of a box a knob on it is, and whether the box keeps its symmetry.
+TEST(ObjectSymmetries, SmallFeaturesBreakThemFromTheStatedShareOn) {
+  const auto group = [](double side, double max_feature) {
+    TurningShape shape = boxShape("box with a knob", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2);
+    shape.addBox({side, side, 0.5 * side}, Eigen::Isometry3d(Eigen::Translation3d(0.5, 0.2, 0.45 + 0.5 * side)));
+    ObjectSymmetryOptions options;
+    options.max_feature = max_feature;
+    return objectSymmetries(shape.sampled(10'000, 1).cloud(), options).name();
+  };
+  const auto share = [](double side) { return 8.0 * side * side / (8.0 * (0.7 + 0.45 + 0.315) + 8.0 * side * side); };
+  ASSERT_LT(share(0.08), 0.005);
+  ASSERT_GT(share(0.18), 0.02);
+  EXPECT_EQ(group(0.08, 0.01), "D2");
+  EXPECT_EQ(group(0.18, 0.01), "C1");
+  EXPECT_EQ(group(0.08, 0.0), "C1");
+}
+
+TEST(ObjectSymmetries, DoNotNeedEvenSampling) {
+  for (const TurningShape& shape :
+       {boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2), cylinderShape(), propellerShape(3, true)}) {
+    SCOPED_TRACE(shape.name);
+    const Points all = moved(shape.sampled(20'000, 1), randomPose(4)).cloud();
+    RandomStream random(6);
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < all.cols(); ++i)
+      if (all(0, i) > randomPose(4).translation().x() || random.uniform() < 0.4) kept.push_back(i);
+    EXPECT_EQ(objectSymmetries(all(Eigen::all, kept)).name(), shape.group);
+  }
+}
+
+TEST(ObjectSymmetries, CopiesOfPointsChangeNothing) {
+  const Points cloud = boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2).sampled(2000, 1).cloud();
+  EXPECT_EQ(objectSymmetries(cloud.replicate(1, 5)).name(), "D2");
+}
+
+TEST(ObjectSymmetries, OfAFlatSheetTurnItOver) {
+  const auto sheet = [](double width, double height) {
+    TurningShape shape = turningShape("sheet", RotationGroupKind::Dihedral, 2);
+    shape.addFace({{-width, -height, 0.0}, {width, -height, 0.0}, {width, height, 0.0}, {-width, height, 0.0}});
+    return objectSymmetries(moved(shape.sampled(3000, 1), randomPose(2)).cloud());
+  };
+  EXPECT_EQ(sheet(1.0, 0.6).name(), "D2");
+  EXPECT_EQ(sheet(1.0, 1.0).name(), "D4");
+}
+
+TEST(ObjectSymmetries, AreTheSameForAnyNumberOfThreads) {
+  for (const TurningShape& shape : {prismShape(3, 0.8), cylinderShape()}) {
+    const Points cloud = moved(shape.sampled(1500, 1), randomPose(1)).cloud();
+    std::vector<ObjectSymmetries> found;
+    for (const int threads : {1, 5}) {
+      ObjectSymmetryOptions options;  // coarse: sanitizers make it slow
+      options.num_cells = 32;
+      options.num_directions = 1000;
+      options.num_threads = threads;
+      found.push_back(objectSymmetries(cloud, options));
+    }
+    for (const ObjectSymmetries& other : found) {
+      EXPECT_EQ(other.name(), found[0].name());
+      EXPECT_EQ(other.confidence, found[0].confidence);
+      ASSERT_EQ(other.discrete.size(), found[0].discrete.size());
+      for (std::size_t i = 0; i < other.discrete.size(); ++i)
+        EXPECT_EQ(other.discrete[i].matrix(), found[0].discrete[i].matrix());
+      ASSERT_EQ(other.continuous.size(), found[0].continuous.size());
+      for (std::size_t i = 0; i < other.continuous.size(); ++i) {
+        EXPECT_EQ(other.continuous[i].axis, found[0].continuous[i].axis);
+        EXPECT_EQ(other.continuous[i].offset, found[0].continuous[i].offset);
+      }
+    }
+  }
+}
+
+TEST(ObjectSymmetries, RefuseWhatShowsNoSurface) {
+  EXPECT_THROW(objectSymmetries(Points(3, 0)), std::invalid_argument);
+  EXPECT_THROW(objectSymmetries(Points::Ones(3, 1)), std::invalid_argument);
+  EXPECT_THROW(objectSymmetries(Points::Ones(3, 500)), std::invalid_argument);
+  EXPECT_THROW(objectSymmetries(Points::Random(3, 19)), std::invalid_argument);
+  const Points line = Eigen::Vector3f(1.0f, -2.0f, 0.5f) * Eigen::RowVectorXf::LinSpaced(500, 0.0f, 1.0f);
+  EXPECT_THROW(objectSymmetries(line), std::invalid_argument);
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    Points points = Points::Random(3, 100);
+    points(1, 50) = bad;
+    EXPECT_THROW(objectSymmetries(points), std::invalid_argument);
+  }
+}
+
+TEST(ObjectSymmetries, StandExtremeUnits) {
+  const TurningShape box = boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2);
+  for (const double scale : {1e-12, 1e12})
+    EXPECT_EQ(objectSymmetries(scaled(box.sampled(2000, 1), scale).cloud()).name(), "D2") << scale;
+}
+
+TEST(ObjectSymmetries, OptionsNameFieldValueAndRule) {
+  const auto message = [](const auto& change) -> std::string {
+    ObjectSymmetryOptions options;
+    change(options);
+    try {
+      options.validate();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using Options = ObjectSymmetryOptions;
+  EXPECT_EQ(message([](Options&) {}), "");
+  EXPECT_EQ(message([](Options& o) { o.max_feature = 2.0; }), "max_feature = 2, must be in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.max_fold = 1; }), "max_fold = 1, must be >= 2");
+  EXPECT_EQ(message([](Options& o) { o.num_directions = 10; }), "num_directions = 10, must be >= 100");
+  EXPECT_EQ(message([](Options& o) { o.max_points = 5; }), "max_points = 5, must be >= 100");
+  EXPECT_EQ(message([](Options& o) { o.num_cells = 4; }), "num_cells = 4, must be in [8, 512]");
+  EXPECT_EQ(message([](Options& o) { o.min_confidence = -1.0; }), "min_confidence = -1, must be in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.num_threads = -1; }), "num_threads = -1, must be >= 0");
+}
+
+}  // namespace

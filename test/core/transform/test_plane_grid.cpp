@@ -1,0 +1,229 @@
+#include "pcl_symmetry/core/transform/plane_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+using Bin = PlaneGrid::Bin;
+
+const Eigen::Vector3d kCenter(1.0, -2.0, 0.5);
+constexpr double kRadius = 1.7;
+
+PlaneGrid grid(int num_theta, int num_phi, int num_radius) {
+  return PlaneGrid(num_theta, num_phi, num_radius, kCenter, kRadius);
+}
+
+std::vector<PlaneGrid> someGrids() {
+  return {grid(1, 2, 1), grid(3, 4, 5), grid(16, 16, 16), grid(7, 10, 9), grid(32, 128, 6), grid(12, 2, 3)};
+}
+
+bool operator==(const Bin& a, const Bin& b) {
+  return a.theta == b.theta && a.phi == b.phi && a.radius == b.radius;
+}
+
+TEST(PlaneGrid, IndexBinAndPlaneRoundTripForEveryBin) {
+  for (const PlaneGrid& g : someGrids()) {
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      const Bin bin = g.bin(i);
+      ASSERT_EQ(g.index(bin), i);
+      const auto found = g.find(g.plane(bin));
+      ASSERT_TRUE(found);
+      ASSERT_TRUE(*found == bin) << "bin " << i << " of " << g.size();
+    }
+  }
+}
+
+TEST(PlaneGrid, PlaneOfABinHasItsAnglesAndOffset) {
+  const PlaneGrid g = grid(5, 8, 7);
+  const ReflectionPlane plane = g.plane({1, 3, 5});
+  const double theta = 1.5 * (0.5 * kPi / 5), phi = 3.5 * (2.0 * kPi / 8);
+  const Eigen::Vector3d n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+  EXPECT_LT((plane.normal() - n).norm(), 1e-15);
+  EXPECT_NEAR(plane.signedDistance(kCenter), -(5.5 * (2.0 * kRadius / 7) - kRadius), 1e-14);
+}
+
+TEST(PlaneGrid, FindsTheBinOfEitherForm) {
+  const PlaneGrid g = grid(16, 16, 16);
+  RandomStream random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector3d n = randomDirection(random);
+    const double offset = n.dot(kCenter) + kRadius * symmetric(random);
+    const auto a = g.find(ReflectionPlane(n, offset)), b = g.find(ReflectionPlane(-n, -offset));
+    ASSERT_TRUE(a && b);
+    EXPECT_TRUE(*a == *b);
+  }
+}
+
+TEST(PlaneGrid, FindsTheBinWhoseRangesHoldThePlane) {
+  const PlaneGrid g = grid(9, 14, 11);
+  RandomStream random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const double theta = 0.5 * kPi * random.uniform(), phi = 2.0 * kPi * random.uniform();
+    const double r = kRadius * symmetric(random);
+    const Eigen::Vector3d n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+    const auto bin = g.find(ReflectionPlane(n, n.dot(kCenter) + r));
+    ASSERT_TRUE(bin);
+    EXPECT_EQ(bin->theta, static_cast<int>(theta / (0.5 * kPi / 9)));
+    EXPECT_EQ(bin->phi, static_cast<int>(phi / (2.0 * kPi / 14)));
+    EXPECT_EQ(bin->radius, static_cast<int>((r + kRadius) / (2.0 * kRadius / 11)));
+  }
+}
+
+TEST(PlaneGrid, HasNoBinBeyondItsRadius) {
+  const PlaneGrid g = grid(8, 8, 8);
+  const Eigen::Vector3d n = Eigen::Vector3d(1.0, 2.0, 3.0).normalized();
+  EXPECT_TRUE(g.find(ReflectionPlane(n, n.dot(kCenter) + 0.999 * kRadius)));
+  EXPECT_FALSE(g.find(ReflectionPlane(n, n.dot(kCenter) + 1.001 * kRadius)));
+  EXPECT_FALSE(g.find(ReflectionPlane(n, n.dot(kCenter) - 1.001 * kRadius)));
+}
+
+TEST(PlaneGrid, PolesAndSeamsBelongToABin) {
+  const PlaneGrid g = grid(8, 8, 8);
+  for (const Eigen::Vector3d& n :
+       {Eigen::Vector3d(0.0, 0.0, 1.0), Eigen::Vector3d(0.0, 0.0, -1.0), Eigen::Vector3d(1.0, 0.0, 0.0),
+        Eigen::Vector3d(-1.0, 0.0, 0.0), Eigen::Vector3d(0.0, -1.0, 0.0), Eigen::Vector3d(1.0, -1e-17, 0.0)}) {
+    for (const double r : {-kRadius, 0.0, kRadius}) {
+      // At r = +-radius, rounding may put the plane outside by a part in 1e16.
+      const auto bin = g.find(ReflectionPlane(n, n.dot(kCenter) + r * (1.0 - 1e-15)));
+      ASSERT_TRUE(bin) << n.transpose() << ", " << r;
+      EXPECT_LT(g.index(*bin), g.size());
+      EXPECT_LE(g.plane(*bin).angleTo(ReflectionPlane(n, 0.0)), 0.5 * std::hypot(g.thetaStep(), g.phiStep()));
+    }
+  }
+}
+
+/// A step moves the plane by one bin at most: the angle by the diagonal of a bin, the offset by one step of r.
+TEST(PlaneGrid, EveryStepLandsNextDoor) {
+  for (const PlaneGrid& g : {grid(6, 8, 5), grid(16, 16, 16), grid(5, 24, 4)}) {
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      const Bin bin = g.bin(i);
+      const ReflectionPlane from = g.plane(bin);
+      for (int dt = -1; dt <= 1; ++dt) {
+        for (int dp = -1; dp <= 1; ++dp) {
+          for (int dk = -1; dk <= 1; ++dk) {
+            const auto to = g.step(bin, dt, dp, dk);
+            const bool beyond = bin.radius + dk < 0 || bin.radius + dk >= g.numRadius();
+            ASSERT_EQ(to.has_value(), !beyond);
+            if (beyond) continue;
+            const PlaneError error = planeError(from, g.plane(*to), kCenter);
+            // A step in phi turns the normal by no more than phiStep * sin(theta).
+            const double sine = std::sin(std::min(0.5 * kPi, g.theta(bin.theta) + g.thetaStep()));
+            const double turn = std::abs(dt) * g.thetaStep() + std::abs(dp) * g.phiStep() * sine;
+            ASSERT_LE(error.angle, turn + 1e-12) << "theta " << bin.theta << ", dt " << dt << ", dp " << dp;
+            // Where dp = 0 the turn is exactly that of theta, across pole and equator too.
+            if (dp == 0) {
+              ASSERT_NEAR(error.angle, std::abs(dt) * g.thetaStep(), 1e-12);
+            }
+            ASSERT_NEAR(error.offset, std::abs(dk) * g.radiusStep(), 1e-12);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(PlaneGrid, StepsLeadAcrossTheSeamsAsDerived) {
+  const PlaneGrid g = grid(6, 8, 5);
+  EXPECT_TRUE(*g.step({2, 7, 1}, 0, 1, 0) == (Bin{2, 0, 1}));  // phi wraps at equal r
+  EXPECT_TRUE(*g.step({2, 0, 1}, 0, -1, 0) == (Bin{2, 7, 1}));
+  EXPECT_TRUE(*g.step({0, 1, 1}, -1, 0, 0) == (Bin{0, 5, 1}));  // past the pole: (-theta, phi + pi, r)
+  EXPECT_TRUE(*g.step({5, 1, 1}, 1, 0, 0) == (Bin{5, 5, 3}));   // past the equator: (pi - theta, phi + pi, -r)
+  EXPECT_TRUE(*g.step({5, 6, 0}, 1, 1, 0) == (Bin{5, 3, 4}));
+}
+
+TEST(PlaneGrid, StepsBackReturn) {
+  const PlaneGrid g = grid(6, 8, 5);
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    const Bin bin = g.bin(i);
+    const auto past_pole = g.step({0, bin.phi, bin.radius}, -1, 0, 0);
+    EXPECT_TRUE(*g.step(*past_pole, -1, 0, 0) == (Bin{0, bin.phi, bin.radius}));
+    const auto past_equator = g.step({5, bin.phi, bin.radius}, 1, 0, 0);
+    EXPECT_TRUE(*g.step(*past_equator, 1, 0, 0) == (Bin{5, bin.phi, bin.radius}));
+  }
+}
+
+/// Bins in phi that cover one step of theta in a row.
+int expectedReach(const PlaneGrid& g, int t) {
+  return std::min(g.numPhi() / 2, static_cast<int>(std::ceil(g.thetaStep() / (g.phiStep() * std::sin(g.theta(t))))));
+}
+
+TEST(PlaneGrid, TwentySixNeighboursWhereBinsAreNoSlivers) {
+  const PlaneGrid g = grid(16, 16, 16);  // phi steps are four theta steps wide: no slivers where sin(theta) > 1/4
+  int num_checked = 0;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    const Bin bin = g.bin(i);
+    const int above = std::max(0, bin.theta - 1);
+    if (bin.radius == 0 || bin.radius + 1 == g.numRadius() || expectedReach(g, above) != 1) continue;
+    ++num_checked;
+    const auto neighbours = g.neighbours(bin);
+    ASSERT_EQ(neighbours.size(), 26u);
+    ASSERT_TRUE(std::is_sorted(neighbours.begin(), neighbours.end()));
+    for (const std::size_t n : neighbours) {
+      const Bin other = g.bin(n);
+      if (expectedReach(g, std::max(0, other.theta - 1)) != 1) continue;
+      const auto back = g.neighbours(other);
+      ASSERT_TRUE(std::binary_search(back.begin(), back.end(), i)) << i << " and " << n;
+    }
+  }
+  EXPECT_EQ(num_checked, 12 * 16 * 14);  // rows 4 ... 15: sin of the row above, 3.5 * 5.625 degrees, is 0.337
+}
+
+TEST(PlaneGrid, NeighboursCoverAStepOfThetaAllAround) {
+  // Near the pole too: every bin of the same r whose normal lies within a step of theta along a circle of latitude.
+  const PlaneGrid g = grid(32, 128, 3);
+  for (int t = 0; t < g.numTheta(); ++t) {
+    const Bin bin{t, 5, 1};
+    const auto neighbours = g.neighbours(bin);
+    EXPECT_FALSE(std::binary_search(neighbours.begin(), neighbours.end(), g.index(bin)));
+    for (int p = 0; p < g.numPhi(); ++p) {
+      const int steps = std::min(std::abs(p - 5), g.numPhi() - std::abs(p - 5));
+      if (p == 5 || steps * g.phiStep() * std::sin(g.theta(t)) > g.thetaStep()) continue;
+      EXPECT_TRUE(std::binary_search(neighbours.begin(), neighbours.end(), g.index({t, p, 1}))) << t << ", " << p;
+    }
+  }
+}
+
+TEST(PlaneGrid, VisitsItsNeighboursAndStopsWhenTold) {
+  const PlaneGrid g = grid(8, 8, 8);
+  for (const Bin& bin : {Bin{0, 0, 0}, Bin{7, 3, 7}, Bin{4, 7, 3}}) {
+    std::vector<std::size_t> visited;
+    EXPECT_TRUE(g.visitNeighbours(bin, [&](std::size_t i) {
+      visited.push_back(i);
+      return true;
+    }));
+    std::sort(visited.begin(), visited.end());
+    visited.erase(std::unique(visited.begin(), visited.end()), visited.end());
+    EXPECT_EQ(visited, g.neighbours(bin));
+    int num_visited = 0;
+    EXPECT_FALSE(g.visitNeighbours(bin, [&](std::size_t) { return ++num_visited < 3; }));
+    EXPECT_EQ(num_visited, 3);
+  }
+}
+
+TEST(PlaneGrid, RefusesBadSizes) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(PlaneGrid(0, 8, 8, kCenter, 1.0), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 0, 8, kCenter, 1.0), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 7, 8, kCenter, 1.0), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 8, -1, kCenter, 1.0), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(5000, 8, 8, kCenter, 1.0), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 8, 8, kCenter, 0.0), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 8, 8, kCenter, -1.0), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 8, 8, kCenter, kNaN), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 8, 8, {0.0, kNaN, 0.0}, 1.0), std::invalid_argument);
+  try {
+    PlaneGrid(8, 7, 8, kCenter, 1.0);
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "num_phi = 7, must be even and in [2, 4096]");
+  }
+}
+
+}  // namespace

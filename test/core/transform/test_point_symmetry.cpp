@@ -1,0 +1,97 @@
+#include "pcl_symmetry/core/transform/symmetry_map.h"
+
+#include <gtest/gtest.h>
+
+#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/transform_2d/line_transform.h"
+#include "shapes/contours.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using namespace test;
+
+/// What pointSymmetry is by its definition: all directions, one point.
+double greatest(const SymmetryMap& map, const Eigen::Vector3d& x) {
+  const PlaneGrid& grid = map.grid;
+  double best = 0.0;
+  for (int t = 0; t < grid.numTheta(); ++t) {
+    for (int p = 0; p < grid.numPhi(); ++p) {
+      const double at = (grid.normal(t, p).dot(x - grid.center()) + grid.radius()) / grid.radiusStep() - 0.5;
+      const int k = static_cast<int>(std::floor(at));
+      const auto value = [&](int bin) {
+        return bin < 0 || bin >= grid.numRadius() ? 0.0 : static_cast<double>(map[grid.index({t, p, bin})]);
+      };
+      const bool between = k >= 0 && k + 1 < grid.numRadius();
+      const double middle = between ? (9.0 * (value(k) + value(k + 1)) - value(k - 1) - value(k + 2)) / 16.0 : 0.0;
+      const double share = 2.0 * (at - k);
+      best = std::max(best, share < 1.0 ? value(k) + share * (middle - value(k))
+                                        : middle + (share - 1.0) * (value(k + 1) - middle));
+    }
+  }
+  return best;
+}
+
+SymmetryMap boxMap(Points& cloud) {
+  cloud = moved(box(4'000, Sampling::Random, 3), randomPose(9)).cloud();
+  const GaussianEdt edt(cloud);
+  return sampledTransform(edt, PlaneGrid(24, 48, 32, edt.center(), edt.radius()));
+}
+
+TEST(PointSymmetry, IsTheGreatestValueOfAPlaneThroughThePoint) {
+  Points cloud;
+  const SymmetryMap map = boxMap(cloud);
+  RandomStream random(1);
+  Points probes(3, 3'000);
+  for (Eigen::Index i = 0; i < probes.cols(); ++i)
+    probes.col(i) =
+        (map.grid.center() + 1.2 * map.grid.radius() * random.uniform() * randomDirection(random)).cast<float>();
+  const std::vector<float> values = pointSymmetry(map, probes);
+  for (Eigen::Index i = 0; i < probes.cols(); i += 13)
+    EXPECT_NEAR(values[i], greatest(map, probes.col(i).cast<double>()), 2e-4) << i;
+}
+
+TEST(PointSymmetry, IsGreatestOnThePlanesOfABox) {
+  const Shape shape = box(6'000, Sampling::Mirrored, 3);
+  const GaussianEdt edt(shape.cloud());
+  const SymmetryMap map = sampledTransform(edt, PlaneGrid(32, 128, 64, edt.center(), edt.radius()));
+  Points probes(3, 3);
+  probes.col(0) = Eigen::Vector3f(0.0f, 0.0f, 0.0f);    // on three
+  probes.col(1) = Eigen::Vector3f(0.0f, 0.4f, 0.25f);   // on one
+  probes.col(2) = Eigen::Vector3f(0.75f, 0.5f, 0.35f);  // on none
+  const std::vector<float> values = pointSymmetry(map, probes);
+  EXPECT_GT(values[0], 0.8f);
+  EXPECT_GT(values[1], 0.7f);
+  EXPECT_LT(values[2], 0.8f * values[1]);
+}
+
+TEST(PointSymmetry, EqualBitsForAnyNumberOfThreads) {
+  Points cloud;
+  const SymmetryMap map = boxMap(cloud);
+  const std::vector<float> one = pointSymmetry(map, cloud, 1);
+  EXPECT_EQ(one, pointSymmetry(map, cloud, 2));
+  EXPECT_EQ(one, pointSymmetry(map, cloud, 8));
+  EXPECT_EQ(pointSymmetry(SymmetryMap(), cloud), std::vector<float>(cloud.cols(), 0.0f));
+}
+
+TEST(PointSymmetry, InThePlaneTheCenterOfACircleIsTheDarkestPoint) {
+  const GaussianEdt2D edt(regularPolygon(2400));
+  const LineMap map = lineTransform(edt, LineGrid(96, 96, edt.center(), edt.radius()), edt.center());
+  Points2D probes(2, 2);
+  probes << 0.0f, 0.5f, 0.0f, 0.6f;
+  const std::vector<float> values = pointSymmetry(map, probes);
+  // Every point lies on a line through the center, and all of these are symmetries.
+  EXPECT_GT(values[0], 0.95f);
+  EXPECT_GT(values[1], 0.9f);
+
+  const GaussianEdt2D rectangle_edt(rectangle(1.6, 0.9));
+  const LineMap rectangle_map = lineTransform(
+      rectangle_edt, LineGrid(96, 96, rectangle_edt.center(), rectangle_edt.radius()), rectangle_edt.center());
+  const std::vector<float> of_rectangle = pointSymmetry(rectangle_map, probes);
+  // Its two lines lie half a bin from the directions of the map.
+  EXPECT_GT(of_rectangle[0], 0.85f);
+  EXPECT_LT(of_rectangle[1], 0.6f);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry

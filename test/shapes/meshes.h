@@ -1,0 +1,79 @@
+/// Meshes whose parts are known.
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "core/base/random.h"
+#include "pcl_symmetry/core/geometry/point_set.h"
+
+namespace pcl_symmetry::test {
+
+struct Mesh {
+  Points vertices = Points(3, 0);
+  std::vector<std::vector<int>> polygons;
+
+  int add(const Eigen::Vector3f& vertex) {
+    vertices.conservativeResize(Eigen::NoChange, vertices.cols() + 1);
+    for (int k = 0; k < 3; ++k) vertices(k, vertices.cols() - 1) = vertex[k];
+    return static_cast<int>(vertices.cols()) - 1;
+  }
+  Eigen::Vector3f center(std::size_t polygon) const {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const int v : polygons[polygon]) sum += vertices.col(v);
+    return sum / static_cast<float>(polygons[polygon].size());
+  }
+};
+
+/// The surface of a set of unit cubes, in quads, outward.
+/// \param filled whether the cube with this lowest corner belongs to the body, asked within [0, size)^3.
+template <typename Filled>
+Mesh voxelMesh(int size, const Filled& filled) {
+  const auto inside = [&](const Eigen::Vector3i& c) {
+    return (c.array() >= 0).all() && (c.array() < size).all() && filled(c.x(), c.y(), c.z());
+  };
+  Mesh mesh;
+  std::map<std::array<int, 3>, int> known;
+  const auto vertex = [&](const Eigen::Vector3i& p) {
+    const auto [entry, is_new] = known.insert({{p.x(), p.y(), p.z()}, static_cast<int>(mesh.vertices.cols())});
+    if (is_new) mesh.add(p.cast<float>());
+    return entry->second;
+  };
+  for (int x = 0; x < size; ++x)
+    for (int y = 0; y < size; ++y)
+      for (int z = 0; z < size; ++z) {
+        const Eigen::Vector3i cube(x, y, z);
+        if (!inside(cube)) continue;
+        for (int axis = 0; axis < 3; ++axis)
+          for (const int sign : {-1, 1}) {
+            if (inside(cube + sign * Eigen::Vector3i::Unit(axis))) continue;
+            const Eigen::Vector3i u = Eigen::Vector3i::Unit((axis + 1) % 3), v = Eigen::Vector3i::Unit((axis + 2) % 3);
+            const Eigen::Vector3i corner = sign > 0 ? Eigen::Vector3i(cube + Eigen::Vector3i::Unit(axis)) : cube;
+            std::vector<int> quad{vertex(corner), vertex(corner + u), vertex(corner + u + v), vertex(corner + v)};
+            if (sign < 0) std::swap(quad[1], quad[3]);
+            mesh.polygons.push_back(quad);
+          }
+      }
+  return mesh;
+}
+
+/// Two cubes of 8 x 8 x 8 joined by a bar of 2 x 2 x 6 along x.
+inline Mesh dumbbell() {
+  return voxelMesh(22, [](int x, int y, int z) {
+    if (y >= 8 || z >= 8) return false;
+    return x < 8 || x >= 14 || (y >= 3 && y < 5 && z >= 3 && z < 5);
+  });
+}
+
+/// Every polygon with corners of its own.
+inline Mesh soupOf(const Mesh& mesh) {
+  Mesh soup;
+  for (const auto& polygon : mesh.polygons) {
+    soup.polygons.emplace_back();
+    for (const int v : polygon) soup.polygons.back().push_back(soup.add(mesh.vertices.col(v)));
+  }
+  return soup;
+}
+
+}  // namespace pcl_symmetry::test

@@ -1,0 +1,146 @@
+/// Scans whose truth is known: what a pinhole camera sees of boxes.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "pcl_symmetry/core/scan/visibility.h"
+#include "shapes/shapes.h"
+
+namespace pcl_symmetry::test {
+
+/// A box with faces across the axes.
+struct Block {
+  Eigen::Vector3d center, half;
+
+  /// Distance along a ray to where it enters the box, in lengths of \p direction; infinite where it does not.
+  double hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+    const Eigen::Array3d a = (center - half - origin).array() / direction.array();
+    const Eigen::Array3d b = (center + half - origin).array() / direction.array();
+    const double enters = a.min(b).maxCoeff(), leaves = a.max(b).minCoeff();
+    return enters <= leaves && enters > 0.0 ? enters : std::numeric_limits<double>::infinity();
+  }
+};
+
+/// Blocks and the planes of symmetry of all of them together.
+struct BlockObject {
+  std::vector<Block> blocks;
+  std::vector<ReflectionPlane> planes;
+};
+
+inline BlockObject blockBox(const Eigen::Vector3d& half = {1.0, 0.7, 0.45}) {
+  return {{{Eigen::Vector3d::Zero(), half}},
+          {{Eigen::Vector3d::UnitX(), 0.0}, {Eigen::Vector3d::UnitY(), 0.0}, {Eigen::Vector3d::UnitZ(), 0.0}}};
+}
+
+/// An L with arms of two lengths: only the plane between its two faces.
+inline BlockObject blockL() {
+  return {{{{0.0, 0.0, 0.0}, {1.0, 0.25, 0.45}}, {{-0.7, 0.85, 0.0}, {0.3, 0.6, 0.45}}},
+          {{Eigen::Vector3d::UnitZ(), 0.0}}};
+}
+
+/// Seat, back and four legs: left and right are alike.
+inline BlockObject blockChair() {
+  BlockObject chair{{{{0.0, 0.0, 0.0}, {0.5, 0.5, 0.06}}, {{0.0, 0.44, 0.55}, {0.5, 0.06, 0.5}}},
+                    {{Eigen::Vector3d::UnitX(), 0.0}}};
+  for (int leg = 0; leg < 4; ++leg)
+    chair.blocks.push_back({{leg & 1 ? 0.43 : -0.43, leg & 2 ? 0.43 : -0.43, -0.45}, {0.07, 0.07, 0.4}});
+  return chair;
+}
+
+/// Points spread evenly over all that can be seen of an object from anywhere.
+inline Points surfaceOf(const BlockObject& object, int num_points, std::uint64_t seed = 1) {
+  RandomStream random(seed);
+  double total = 0.0;
+  std::vector<double> ends;  // of the areas of the faces across x, y, z of all blocks, added up
+  for (const Block& block : object.blocks)
+    for (int axis = 0; axis < 3; ++axis) ends.push_back(total += block.half.prod() / block.half[axis]);
+  Points points(3, num_points);
+  for (int i = 0; i < num_points;) {
+    const auto face = std::upper_bound(ends.begin(), ends.end(), random.uniform() * total) - ends.begin();
+    const Block& on = object.blocks[static_cast<std::size_t>(face / 3)];
+    Eigen::Vector3d unit(symmetric(random), symmetric(random), symmetric(random));
+    unit[face % 3] = random.below(2) ? 1.0 : -1.0;
+    const Eigen::Vector3d point = on.center + on.half.cwiseProduct(unit);
+    const bool inside = std::any_of(object.blocks.begin(), object.blocks.end(), [&](const Block& block) {
+      return ((point - block.center).cwiseAbs().array() < block.half.array()).all();
+    });
+    if (!inside) points.col(i++) = point.cast<float>();
+  }
+  return points;
+}
+
+/// A picture of points, row by row, NaN where the ray met nothing; the camera stands at the viewpoint.
+struct Scan {
+  int width, height;
+  Points pixels;  ///< 3 x (width * height), object frame
+  Eigen::Vector3d viewpoint;
+  Eigen::Isometry3d T_camera_object;  ///< x to the right, y down, z forward
+  double focal;                       ///< pixels
+  std::vector<ReflectionPlane> planes;
+
+  /// The points that were measured.
+  Points cloud() const {
+    Points points(3, pixels.cols());
+    Eigen::Index size = 0;
+    for (Eigen::Index i = 0; i < pixels.cols(); ++i)
+      if (pixels.col(i).allFinite()) points.col(size++) = pixels.col(i);
+    points.conservativeResize(3, size);
+    return points;
+  }
+
+  /// What the camera saw, from its own projection.
+  Visibility visibility() const {
+    Eigen::Matrix3d camera;
+    camera << focal, 0.0, 0.5 * (width - 1), 0.0, focal, 0.5 * (height - 1), 0.0, 0.0, 1.0;
+    const Visibility::Projection projection = camera * T_camera_object.matrix().topRows<3>();
+    std::vector<float> depths(static_cast<std::size_t>(width) * height, Visibility::kBackground);
+    for (Eigen::Index i = 0; i < pixels.cols(); ++i)
+      if (pixels.col(i).allFinite())
+        depths[i] = static_cast<float>((T_camera_object * pixels.col(i).cast<double>()).z());
+    return Visibility(projection, width, height, std::move(depths));
+  }
+};
+
+/// \param viewpoint outside of every block; the camera looks at the origin with a random roll.
+inline Scan scan(const BlockObject& object, const Eigen::Vector3d& viewpoint, double roll = 0.3, int width = 160,
+                 int height = 120) {
+  Scan result{width, height, Points(3, width * height), viewpoint, Eigen::Isometry3d::Identity(), 0.0, object.planes};
+  const Eigen::Vector3d forward = -viewpoint.normalized(), right = forward.unitOrthogonal();
+  Eigen::Matrix3d R_object_camera;
+  R_object_camera << right, forward.cross(right), forward;
+  R_object_camera = R_object_camera * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  double reach = 0.0;  // of the object as seen from the origin
+  for (const Block& block : object.blocks) reach = std::max(reach, (block.center.cwiseAbs() + block.half).norm());
+  const double distance = viewpoint.norm();
+  result.focal = 0.48 * height * std::sqrt(distance * distance - reach * reach) / reach;
+  result.T_camera_object.linear() = R_object_camera.transpose();
+  result.T_camera_object.translation() = -R_object_camera.transpose() * viewpoint;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const Eigen::Vector3d ray((u - 0.5 * (width - 1)) / result.focal, (v - 0.5 * (height - 1)) / result.focal, 1.0);
+      const Eigen::Vector3d direction = R_object_camera * ray;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Block& block : object.blocks) nearest = std::min(nearest, block.hit(viewpoint, direction));
+      const Eigen::Vector3d point = viewpoint + nearest * direction;
+      result.pixels.col(v * width + u) =
+          std::isfinite(nearest) ? Eigen::Vector3f(point.cast<float>())
+                                 : Eigen::Vector3f(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+    }
+  }
+  return result;
+}
+
+/// The part of a convex surface that faces a viewpoint. \param normals outward, of the points.
+inline Points facing(const Points& points, const Points& normals, const Eigen::Vector3d& viewpoint) {
+  Points seen(3, points.cols());
+  Eigen::Index size = 0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (normals.col(i).dot(viewpoint.cast<float>() - points.col(i)) > 0.0f) seen.col(size++) = points.col(i);
+  seen.conservativeResize(3, size);
+  return seen;
+}
+
+}  // namespace pcl_symmetry::test
