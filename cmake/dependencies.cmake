@@ -1,11 +1,24 @@
-# What the project links. PCL 1.13 exports no imported targets, so its variables are wrapped in one here; flann.pc drags
-# in MPI and HDF5, so FLANN comes from the target that PCL's own finder defines.
+# What the libraries link. The tools find what they need besides in apps/CMakeLists.txt.
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 find_package(Boost REQUIRED)  # headers: Boost.Graph
 find_package(OpenMP REQUIRED COMPONENTS CXX)
-find_package(PCL 1.12 QUIET REQUIRED COMPONENTS common io search kdtree features filters registration segmentation visualization)
+
+# PCL 1.13 exports no imported targets, so its variables are wrapped in a function here. flann.pc drags in MPI and HDF5,
+# so FLANN comes from the target that PCL's finder defines or, without PCL, from FLANN's own configuration.
+if(PCL_SYMMETRY_BUILD_PCL)
+  set(pcl_components common search kdtree registration)
+  if(PCL_SYMMETRY_BUILD_APPS OR PCL_SYMMETRY_BUILD_TESTS)
+    list(APPEND pcl_components io octree features filters segmentation)
+  endif()
+  if(PCL_SYMMETRY_BUILD_APPS)
+    list(APPEND pcl_components visualization)
+  endif()
+  find_package(PCL 1.12 QUIET REQUIRED COMPONENTS ${pcl_components})
+endif()
 if(NOT TARGET FLANN::FLANN)
-  find_package(FLANN REQUIRED)
+  find_package(flann REQUIRED CONFIG)
+  add_library(FLANN::FLANN INTERFACE IMPORTED)
+  set_property(TARGET FLANN::FLANN PROPERTY INTERFACE_LINK_LIBRARIES flann::flann_cpp)
 endif()
 
 # Include directories and libraries of the named PCL components; installed targets get them from the imported targets.

@@ -4,26 +4,26 @@ set -uo pipefail
 
 usage() {
   cat <<'END'
-usage: bash test/run.sh [-h] [--no-sanitize] [--filter REGEX]
+usage: bash test/run.sh [-h] [--all] [--filter REGEX]
 
-Installs missing packages, builds libraries, tools and tests into build/ and runs the tests; then builds the libraries
-and their tests with the address and undefined-behaviour sanitizers into build-sanitize/ and runs those. The last line
-says "N passed, N failed, N skipped"; a step that fails before its tests counts as one failure. Exit status 0 if tests
-ran and none failed.
+Installs missing packages, builds libraries, tools and tests into build/ and runs the tests. With --all, builds
+everything twice more, with the address and undefined-behaviour sanitizers into build-sanitize/ and with the thread
+sanitizer into build-thread/, and runs the tests of libraries and tools there too. The last line says "N passed, N
+failed, N skipped"; a step that fails before its tests counts as one failure. Exit status 0 if tests ran and none failed.
 
-  --no-sanitize   leave out the second build
+  --all           with sanitizers
   --filter REGEX  only tests whose name matches
 
-example: bash test/run.sh --no-sanitize --filter consumer
+example: bash test/run.sh --filter consumer
 END
 }
 
-sanitize=true
+sanitize=false
 filter=.
 while (($# > 0)); do
   case "$1" in
     -h | --help) usage; exit 0 ;;
-    --no-sanitize) sanitize=false ;;
+    --all) sanitize=true ;;
     --filter)
       if [[ -z ${2-} ]]; then echo "run.sh: --filter needs a regular expression" >&2; exit 2; fi
       filter=$2
@@ -96,6 +96,8 @@ say "Installing packages"
 step bash cmake/install_dependencies.sh
 build_and_test release build
 if $sanitize; then
-  build_and_test sanitize build-sanitize --label-regex '^(core|pcl)$'
+  for preset in sanitize thread; do
+    build_and_test "$preset" "build-$preset" --label-regex '^(core|pcl|apps)$'
+  done
 fi
 finish

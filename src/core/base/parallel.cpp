@@ -1,14 +1,51 @@
 #include "core/base/parallel.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <exception>
+#include <mutex>
+#if defined(__SANITIZE_THREAD__)
+#include <atomic>
+#include <thread>
+#include <vector>
+#else
+#include <omp.h>
+#endif
 
 namespace pcl_symmetry {
 
+namespace {
+
+#if defined(__SANITIZE_THREAD__)
+// The thread sanitizer does not see how OpenMP's runtime synchronises, and would report every loop.
+int numCores() {
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+void runOnThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t b; (b = next++) < num_blocks;) block(b);
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < num_threads; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+}
+#else
+int numCores() {
+  return std::max(1, omp_get_num_procs());
+}
+
+void runOnThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(num_threads)
+  for (std::size_t b = 0; b < num_blocks; ++b) block(b);
+}
+#endif
+
+}  // namespace
+
 int resolveNumThreads(int num_threads) {
-  return num_threads > 0 ? num_threads : std::max(1, omp_get_num_procs());
+  return num_threads > 0 ? num_threads : numCores();
 }
 
 void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function<void(std::size_t)>& block) {
@@ -18,15 +55,15 @@ void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function
     return;
   }
   std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (std::size_t b = 0; b < num_blocks; ++b) {
+  std::mutex failure_mutex;
+  runOnThreads(threads, num_blocks, [&](std::size_t b) {
     try {
       block(b);
     } catch (...) {
-#pragma omp critical
+      const std::lock_guard<std::mutex> lock(failure_mutex);
       if (!failure) failure = std::current_exception();
     }
-  }
+  });
   if (failure) std::rethrow_exception(failure);
 }
 
