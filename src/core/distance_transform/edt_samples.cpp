@@ -64,7 +64,8 @@ std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
   return blocks;
 }
 
-/// The cell of a block at which the sum of f along the curve passes \p target. \param before sum before the block.
+/// The cell of a block at which the sum of f along the curve passes \p target.
+/// \param before sum before the block.
 Eigen::Vector3f cellAt(const GaussianEdt& edt, const Block& block, double before, double target) {
   static const auto kCurve = mortonCurve<kBlockBits>();
   const int n = edt.numCells();

@@ -62,7 +62,8 @@ void sharpenRow(const float* f, std::ptrdiff_t num_cells, std::ptrdiff_t slice_s
   }
 }
 
-/// Keeps the first point in each slot of 1/64 cell. \param points in cells.
+/// Keeps the first point in each slot of 1/64 cell.
+/// \param points in cells.
 Points thin(const Points& points, int num_cells) {
   const int side = kSlotsPerCell * num_cells;
   std::vector<bool> taken(static_cast<std::size_t>(side) * side * side);

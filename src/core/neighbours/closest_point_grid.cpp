@@ -23,7 +23,8 @@ public:
         nearest_(static_cast<std::size_t>(n_) * n_ * n_, -1),
         sq_distances_(nearest_.size(), std::numeric_limits<float>::infinity()) {}
 
-  /// Offers each point to the cell that contains it. \param last greatest coordinate inside the cube, in cells.
+  /// Offers each point to the cell that contains it.
+  /// \param last greatest coordinate inside the cube, in cells.
   void enterPoints(float last) {
     for (Eigen::Index i = 0; i < points_.cols(); ++i) {
       const Eigen::Array3i cell = ((points_.col(i) - origin_) / cell_size_).array().max(0.0f).min(last).cast<int>();

@@ -10,8 +10,10 @@ namespace pcl_symmetry {
 ///
 /// A point is layered if the next point in the picture is much farther away or much nearer, and the roughness of the
 /// surface does not explain it. A scan has one layer except at its silhouettes (0.1 of the points, up to 0.2 with
-/// noise); an object that is known from all sides has two or more. \param points 3 x N, finite. \param viewpoint in the
-/// frame of the points. \return a value in [0, 1]; 0 for fewer than two points.
+/// noise); an object that is known from all sides has two or more.
+/// \param points 3 x N, finite.
+/// \param viewpoint in the frame of the points.
+/// \return a value in [0, 1]; 0 for fewer than two points.
 double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 }  // namespace pcl_symmetry

@@ -213,7 +213,8 @@ private:
     kernels_.correlate(values_.data(), lines_.first, lines_.last, sums_.data());
   }
 
-  /// Places a line at (a, b) in the plane across the normal, and cuts it to the ball. \param used false: an empty line.
+  /// Places a line at (a, b) in the plane across the normal, and cuts it to the ball.
+  /// \param used false: an empty line.
   void placeLine(int lane, double a, double b, bool used) {
     const Eigen::Vector3d start = lattice_.table_middle + a * u_ + b * v_ + t0_ * n_;
     for (int axis = 0; axis < 3; ++axis) lines_.start[axis][lane] = LookupTable::toFixed(start[axis]);

@@ -31,18 +31,20 @@ struct SampledTransformOptions {
 ///
 /// Departure from the paper, which draws both points of a pair (Section 4.3): looking the second point up needs no
 /// weights, has no singularity at coincident points, gives values at bin centers, and is about a hundred times faster
-/// at equal error. The images of one point in all planes of a direction lie on a straight line through the grid. \param
-/// edt the function f. \param grid the planes, in the frame of the EDT. \param free_space for a scan one value per cell
-/// of the EDT, x fastest: 1 - f where the scanner looked through, else 0. Empty: a whole object. \return D at the bin
-/// centers. With free space (1 + c) D / (D + F + c), c = 0.15, where F is the same mean over the free space: reflected
-/// points that the scanner would have seen speak against a plane. \throws std::invalid_argument for bad options or free
-/// space of another size.
+/// at equal error. The images of one point in all planes of a direction lie on a straight line through the grid.
+/// \param edt the function f.
+/// \param grid the planes, in the frame of the EDT.
+/// \param free_space for a scan one value per cell of the EDT, x fastest: 1 - f where the scanner looked through, else
+/// 0. Empty: a whole object.
+/// \return D at the bin centers. With free space (1 + c) D / (D + F + c), c = 0.15, where F is the same mean over the
+/// free space: reflected points that the scanner would have seen speak against a plane.
+/// \throws std::invalid_argument for bad options or free space of another size.
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options = {},
                              const std::vector<float>& free_space = {});
 
 /// Options of convolutionTransform().
 struct ConvolutionTransformOptions {
-  double spacing = 0.9;  ///< of the resampled lattice, in sigmas, in (0, 1]; 0.5 halves the error at six times the work
+  double spacing = 0.9;  ///< of the resampled lattice, in sigmas, in (0, 1]; 0.5 halves the error and is slower
   int num_threads = 0;   ///< >= 0; 0 = one per core; the map does not depend on it
   Simd simd = Simd::Auto;  ///< the map does not depend on it
 
@@ -57,8 +59,11 @@ struct ConvolutionTransformOptions {
 /// work. A Gaussian shell of width sigma holds less than 1 % of its spectrum beyond the Nyquist frequency of that
 /// lattice. PRST differs from the full sum by 0.1 % root mean square at 64 cells a side (0.17 % for boxes, whose faces
 /// can lie along the lattice) and by up to 0.3 % at 32 cells. Lines are correlated directly, because with about 36
-/// values they are too short for a Fourier transform to pay. \param edt the function f. \param grid the planes, in the
-/// frame of the EDT. \return D at the bin centers. \throws std::invalid_argument for bad options.
+/// values they are too short for a Fourier transform to pay.
+/// \param edt the function f.
+/// \param grid the planes, in the frame of the EDT.
+/// \return D at the bin centers.
+/// \throws std::invalid_argument for bad options.
 SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                  const ConvolutionTransformOptions& options = {});
 
@@ -80,8 +85,11 @@ struct VotingTransformOptions {
 /// Departure from the paper: that weight has infinite variance as d -> 0, so pairs closer than near_distance do not
 /// vote. Their share of the integral is drawn the other way round: x by f, then a plane uniformly in (theta, phi, r) at
 /// less than near_distance / 2 from x, with weight f(x'). The same change of variables makes this weight bounded. The
-/// sum of both is unbiased. \param edt the function f. \param grid the planes, in the frame of the EDT. \return
-/// averages of D over the bins. \throws std::invalid_argument for bad options.
+/// sum of both is unbiased.
+/// \param edt the function f.
+/// \param grid the planes, in the frame of the EDT.
+/// \return averages of D over the bins.
+/// \throws std::invalid_argument for bad options.
 SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options = {});
 
 /// The estimator, and the options of each.

@@ -74,7 +74,8 @@ public:
   /// The bins around a bin: one step in theta and r, and as many steps in phi as cover the angle of one step in theta.
   ///
   /// At the equator these are the 26 neighbours of the paper. Departure near the pole: bins are slivers in phi there,
-  /// and one peak would be a maximum in many of them. \return ascending indices, without that of the bin itself.
+  /// and one peak would be a maximum in many of them.
+  /// \return ascending indices, without that of the bin itself.
   std::vector<std::size_t> neighbours(const Bin& bin) const;
 
   /// Calls visit(index) for the bins of neighbours(), some of them twice, until a call returns false.
