@@ -133,7 +133,8 @@ inline Scan scan(const BlockObject& object, const Eigen::Vector3d& viewpoint, do
   return result;
 }
 
-/// The part of a convex surface that faces a viewpoint. \param normals outward, of the points.
+/// The part of a convex surface that faces a viewpoint.
+/// \param normals outward, of the points.
 inline Points facing(const Points& points, const Points& normals, const Eigen::Vector3d& viewpoint) {
   Points seen(3, points.cols());
   Eigen::Index size = 0;

@@ -2,7 +2,6 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
-#include "core/distance_transform/free_space.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"
@@ -102,8 +101,7 @@ SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
     edt_ = std::make_shared<GaussianEdt>(selected.points, edt_options_);
     const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
     const std::optional<Visibility> seen = seenSpace(*input_, selected.points, viewpoint_);
-    return planarTransform(*edt_, grid, centerOfMass(selected.points), transform_,
-                           seen ? freeSpace(*edt_, *seen, edt_options_.num_threads) : std::vector<float>());
+    return planarTransform(*edt_, grid, centerOfMass(selected.points), transform_, seen ? &*seen : nullptr);
   });
 }
 

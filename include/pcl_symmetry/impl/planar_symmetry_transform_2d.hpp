@@ -2,7 +2,6 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
-#include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/impl/bad_argument.hpp"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/planar_symmetry_transform_2d.h"
@@ -51,9 +50,9 @@ LineMap PlanarSymmetryTransform2D<PointT>::compute() {
     constexpr std::uint64_t kSeed = 1;
     const Points points = selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, kSeed).points;
     if (points.cols() == 0) throw std::invalid_argument("input cloud: holds no finite point, must hold two");
-    T_input_sheet_ = sheetPose(points);
-    sheet_points_ =
-        (T_input_sheet_.inverse() * points.template cast<double>()).template topRows<2>().template cast<float>();
+    const Sheet sheet = flattened(points);
+    T_input_sheet_ = sheet.T_input_sheet;
+    sheet_points_ = sheet.points;
     edt_ = std::make_shared<GaussianEdt2D>(sheet_points_, edt_options_);
     const LineGrid grid(edt_options_.num_cells, edt_options_.num_cells, edt_->center(), edt_->radius());
     LineMap map = lineTransform(*edt_, grid, sheet_points_.template cast<double>().rowwise().mean(), num_threads_);

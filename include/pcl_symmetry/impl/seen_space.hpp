@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "core/scan/single_view.h"
+#include "pcl_symmetry/core/scan/visibility.h"
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/viewpoint.h"
 
@@ -39,7 +39,7 @@ std::optional<Visibility> seenSpace(const pcl::PointCloud<PointT>& cloud, const 
     if (auto seen = seenByOrganizedCloud(pixels, static_cast<int>(cloud.width), static_cast<int>(cloud.height)))
       return seen;
   }
-  return recognizeViewpoint(points, cloud.sensor_origin_.template head<3>().template cast<double>());
+  return spaceSeenFrom(points, cloud.sensor_origin_.template head<3>().template cast<double>());
 }
 
 }  // namespace pcl_symmetry

@@ -8,25 +8,37 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
+#include "core/distance_transform/gaussian_width.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kSigmaInCells = 2.0;
-constexpr double kMarginInSigmas = 2.0;  // f < 2 % outside the grid
-constexpr double kReachInSigmas = 2.6;   // f < 1.2e-3 beyond, less than 3e-4 of its integral
+// points; chosen: larger clouds are dense enough for any grid, and probing them takes long
+constexpr Eigen::Index kNumDense = 200'000;
+// points for each cell of a slice; chosen: fewer than that cost less than thinning
+constexpr std::size_t kDensePerCell = 8;
+// slots along a cell; chosen: thinning adds up to sqrt(3) / 4 cells to a distance; half adds twice as much, twice keeps
+// eight times as many points
+constexpr int kSlotsPerCell = 4;
+constexpr int kVectorWidth = 8;  // derived: floats in an AVX2 register
 
-/// Lowers the squared distances of a slice's cells to those from one point, over a square that covers its reach; all
-/// lengths in cells.
+/// A float clamped to [low, high], as an integer; rounded towards zero.
+int clampedInt(float value, int low, int high) {
+  return static_cast<int>(std::clamp(value, static_cast<float>(low), static_cast<float>(high)));
+}
+
+/// Lowers the squared distances of a slice's cells to those from one point, over a square that covers its reach. All
+/// lengths are in cells.
 PCL_SYMMETRY_MULTIVERSION
-void lowerSlice(float* sq_distances, int num_cells, float x, float y, float sq_dz, float reach, int width) {
+void lowerSlice(float* sq_distances, int num_cells, const Eigen::Vector3f& point, float z, float reach, int width) {
+  const float x = point.x(), y = point.y(), dz = z - point.z(), sq_dz = dz * dz;
   const float sq_radius = reach * reach - sq_dz;
   if (sq_radius <= 0.0f) return;
   const float radius = std::sqrt(sq_radius);
-  const int y_begin = std::max(0, static_cast<int>(std::ceil(y - radius)));
-  const int y_end = std::min(num_cells, static_cast<int>(std::floor(y + radius)) + 1);
-  const int x_begin = std::clamp(static_cast<int>(std::ceil(x - reach)), 0, num_cells - width);
+  const int y_begin = clampedInt(std::ceil(y - radius), 0, num_cells);
+  const int y_end = clampedInt(std::floor(y + radius) + 1.0f, 0, num_cells);
+  const int x_begin = clampedInt(std::ceil(x - reach), 0, num_cells - width);
   const float dx = static_cast<float>(x_begin) - x;
   for (int row = y_begin; row < y_end; ++row) {
     const float dy = static_cast<float>(row) - y;
@@ -40,7 +52,7 @@ void lowerSlice(float* sq_distances, int num_cells, float x, float y, float sq_d
   }
 }
 
-/// One row of GaussianEdt::sharpened, without its ends.
+/// One row of GaussianEdt::sharpened(), without its ends.
 PCL_SYMMETRY_MULTIVERSION
 void sharpenRow(const float* f, std::ptrdiff_t num_cells, std::ptrdiff_t slice_size, float weight, float* sharpened) {
   for (std::ptrdiff_t x = 1; x + 1 < num_cells; ++x) {
@@ -50,37 +62,16 @@ void sharpenRow(const float* f, std::ptrdiff_t num_cells, std::ptrdiff_t slice_s
   }
 }
 
-/// Typical distance between neighbouring samples of a surface, 1 / sqrt(density): twice the mean distance to the
-/// nearest other point, over a fixed number of probes; 0 for clouds too large to be sparse.
-double sampleSpacing(const PointsRef& points) {
-  constexpr Eigen::Index kNumProbes = 32, kNumDense = 200'000;
-  const Eigen::Index size = points.cols();
-  if (size < 2 || size > kNumDense) return 0.0;
-  const Eigen::Index num_probes = std::min(kNumProbes, size);
-  std::vector<double> nearest;
-  for (Eigen::Index k = 0; k < num_probes; ++k) {
-    const Eigen::Vector3f probe = points.col(k * size / num_probes);
-    float sq_nearest = std::numeric_limits<float>::max();
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const float sq_distance = (points.col(i) - probe).squaredNorm();
-      if (sq_distance > 0.0f && sq_distance < sq_nearest) sq_nearest = sq_distance;
-    }
-    if (sq_nearest < std::numeric_limits<float>::max()) nearest.push_back(std::sqrt(static_cast<double>(sq_nearest)));
-  }
-  if (nearest.empty()) return 0.0;
-  std::nth_element(nearest.begin(), nearest.begin() + nearest.size() / 2, nearest.end());
-  return 2.0 * nearest[nearest.size() / 2];
-}
-
-/// One point per 1/64 cell, the first of each; positions in cells.
+/// Keeps the first point in each slot of 1/64 cell.
+/// \param points in cells.
 Points thin(const Points& points, int num_cells) {
-  const int side = 4 * num_cells;
+  const int side = kSlotsPerCell * num_cells;
   std::vector<bool> taken(static_cast<std::size_t>(side) * side * side);
   Points kept(3, points.cols());
   Eigen::Index num_kept = 0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const auto at = [&](int axis) {
-      return static_cast<std::size_t>(std::clamp(static_cast<int>(4.0f * (points(axis, i) + 0.5f)), 0, side - 1));
+      return static_cast<std::size_t>(clampedInt(kSlotsPerCell * (points(axis, i) + 0.5f), 0, side - 1));
     };
     const std::size_t slot = (at(2) * side + at(1)) * side + at(0);
     if (taken[slot]) continue;
@@ -90,6 +81,34 @@ Points thin(const Points& points, int num_cells) {
   kept.conservativeResize(3, num_kept);
   return kept;
 }
+
+/// Points sorted by the slice of cells that contains them, so that a slice is compared with the points near it only.
+class PointsBySlice {
+public:
+  /// \param points in cells.
+  PointsBySlice(const Points& points, int num_cells)
+      : points_(points), num_cells_(num_cells), begin_(num_cells + 3, 0), order_(points.cols()) {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) ++begin_[slot(points(2, i)) + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    auto next = begin_;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) order_[next[slot(points(2, i))]++] = i;
+  }
+
+  /// Calls visit(point) for all points in the slices that contain z_low to z_high, and perhaps others.
+  template <typename Visit>
+  void visit(float z_low, float z_high, const Visit& visit) const {
+    for (Eigen::Index o = begin_[slot(z_low)]; o < begin_[slot(z_high) + 1]; ++o) visit(points_.col(order_[o]));
+  }
+
+private:
+  /// 0 and num_cells + 1 hold the points below and above the grid.
+  int slot(float z) const { return clampedInt(std::floor(z), -1, num_cells_) + 1; }
+
+  const Points& points_;
+  int num_cells_;
+  std::vector<Eigen::Index> begin_;  // of each slot in order_
+  std::vector<Eigen::Index> order_;
+};
 
 }  // namespace
 
@@ -115,57 +134,47 @@ GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& opti
   }
   if (!(radius_ > std::numeric_limits<float>::epsilon() * center_.norm()))
     throw std::invalid_argument("points: all at one place, must have an extent");
-
-  const double half = 0.5 * num_cells_;
-  if (options.sigma > 0.0) {
-    sigma_ = options.sigma;
-    cell_size_ = (radius_ + kMarginInSigmas * sigma_) / half;
-  } else {
-    cell_size_ = radius_ / std::max(half - kMarginInSigmas * kSigmaInCells, 0.5 * half);
-    sigma_ = kSigmaInCells * cell_size_;
-    const double spacing = std::min(sampleSpacing(points), 0.25 * radius_);
-    if (spacing > sigma_) {
-      sigma_ = spacing;
-      cell_size_ = (radius_ + kMarginInSigmas * sigma_) / half;
-    }
-  }
-  origin_ = center_ - Eigen::Vector3d::Constant((half - 0.5) * cell_size_);
-  computeDistances(points, options.num_threads);
+  chooseWidth(points, options.sigma);
+  origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
+  computeValues(points, options.num_threads);
   interpolation_ = sharpened(1.0 / 12.0, options.num_threads);
 }
 
-void GaussianEdt::computeDistances(const PointsRef& points, int num_threads) {
+void GaussianEdt::chooseWidth(const PointsRef& points, double sigma) {
+  const double half = 0.5 * num_cells_;
+  const auto take = [&](double width) {
+    sigma_ = width;
+    cell_size_ = (radius_ + kMarginInSigmas * sigma_) / half;
+  };
+  if (sigma > 0.0) return take(sigma);
+  cell_size_ = radius_ / std::max(half - kMarginInSigmas * kSigmaInCells, 0.5 * half);
+  sigma_ = kSigmaInCells * cell_size_;
+  const double spacing = points.cols() > kNumDense ? 0.0 : std::min(sampleSpacing(points), kMostSpacing * radius_);
+  if (spacing > sigma_) take(spacing);
+}
+
+void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
   const int n = num_cells_;
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;
   Points cells = normalizePoints(points, origin_, cell_size_);
-  if (static_cast<std::size_t>(cells.cols()) > 8 * slice_size) cells = thin(cells, n);
-
-  // Points in the order of their slice, so that a block of slices meets only its own.
-  const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_);
-  const auto slice = [&](Eigen::Index i) { return std::clamp(static_cast<int>(std::floor(cells(2, i))), -1, n) + 1; };
-  std::vector<Eigen::Index> begin(n + 3, 0), order(cells.cols());
-  for (Eigen::Index i = 0; i < cells.cols(); ++i) ++begin[slice(i) + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  auto next = begin;
-  for (Eigen::Index i = 0; i < cells.cols(); ++i) order[next[slice(i)]++] = i;
-
-  // Whole vectors: a square run of cells costs less than a round one with loose ends.
-  const int width = std::min(n, (static_cast<int>(2.0f * reach) + 1 + 7) / 8 * 8);
-  values_.assign(slice_size * n, reach * reach);
+  if (static_cast<std::size_t>(cells.cols()) > kDensePerCell * slice_size) cells = thin(cells, n);
+  const PointsBySlice sorted(cells, n);
+  const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_), sq_reach = reach * reach;
+  // Whole vectors: a square of cells takes less time than a disk with loose ends.
+  const int diameter = static_cast<int>(2.0f * reach) + 1;
+  const int width = std::min(n, (diameter + kVectorWidth - 1) / kVectorWidth * kVectorWidth);
+  // Section 4.1: f = exp(-dist^2 / sigma^2).
   const double scale = -1.0 / std::pow(sigma_ / cell_size_, 2);
+  values_.assign(slice_size * n, sq_reach);
   std::vector<double> sums(n, 0.0), sq_sums(n, 0.0);
-  parallelBlocks(n, num_threads, [&](std::size_t z) {
-    float* const values = values_.data() + z * slice_size;
-    const int first = std::clamp(static_cast<int>(std::floor(z - reach)), -1, n) + 1;
-    const int last = std::clamp(static_cast<int>(std::floor(z + reach)), -1, n) + 1;
-    for (Eigen::Index o = begin[first]; o < begin[last + 1]; ++o) {
-      const Eigen::Vector3f point = cells.col(order[o]);
-      const float dz = static_cast<float>(z) - point.z();
-      lowerSlice(values, n, point.x(), point.y(), dz * dz, reach, width);
-    }
+  parallelBlocks(n, num_threads, [&](std::size_t slice) {
+    float* const values = values_.data() + slice * slice_size;
+    const float z = static_cast<float>(slice);
+    sorted.visit(z - reach, z + reach,
+                 [&](const Eigen::Vector3f& point) { lowerSlice(values, n, point, z, reach, width); });
     double sum = 0.0, sq_sum = 0.0;
     for (std::size_t i = 0; i < slice_size; ++i) {
-      if (values[i] >= reach * reach) {
+      if (values[i] >= sq_reach) {
         values[i] = 0.0f;
         continue;
       }
@@ -174,8 +183,8 @@ void GaussianEdt::computeDistances(const PointsRef& points, int num_threads) {
       sum += value;
       sq_sum += value * value;
     }
-    sums[z] = sum;
-    sq_sums[z] = sq_sum;
+    sums[slice] = sum;
+    sq_sums[slice] = sq_sum;
   });
   sum_ = std::accumulate(sums.begin(), sums.end(), 0.0);
   sq_norm_ = std::accumulate(sq_sums.begin(), sq_sums.end(), 0.0);

@@ -6,33 +6,40 @@
 
 namespace pcl_symmetry {
 
-/// f as bytes for the hot loops: positions are fixed-point numbers of cells, a look-up is three shifts and a load.
+/// Functions on the cells of an EDT as bytes, for the hot loops: a look-up is three shifts and a load.
 ///
-/// The table is padded to a power of two along each side, with at least one empty cell all around, so that a clipped
-/// line needs no further test. Values are multiplied by kOne; f is given sharpened for the blur of the look-ups. Two
+/// Positions are fixed-point numbers of cells. The table is padded to a power of two along each side and has at least
+/// one empty cell all around, so that a clipped line needs no further test. Values are multiplied by kOne. Two
 /// functions share a table, byte by byte, so that one load gets both.
 class LookupTable {
 public:
-  static constexpr int kFractionBits = 16;
-  static constexpr double kOne = 200.0;  ///< sharpening lifts f a little above 1
+  static constexpr int kFractionBits = 16;  ///< derived: 32 bits hold up to 2^15 cells with 1 / 65536 of a cell
+  /// Byte of f = 1. derived: with a sigma of two cells, sharpening lifts f to 1.11 at most (an isolated point); 255 / 200
+  /// leaves room.
+  static constexpr double kOne = 200.0;
+  static constexpr int kMaxFunctions = 2;   ///< derived: f and the free space of a scan
 
-  static constexpr int kMaxFunctions = 2;
-
-  /// \param functions one or two: values of the cells of an EDT, num_cells along each side, in [0, 255 / kOne].
+  /// \param functions one or two functions, each num_cells^3 values in [0, 255 / kOne], x fastest; f is to be sharpened
+  /// for the blur of the look-ups.
+  /// \param num_cells cells along each side.
+  /// \param num_threads 0 = one per core.
   LookupTable(const std::vector<std::vector<float>>& functions, int num_cells, int num_threads);
 
+  /// \return n of the 2^n cells along each side of the table.
   int bits() const { return bits_; }
   int numFunctions() const { return num_functions_; }
   const std::uint8_t* data() const { return table_.data(); }
 
-  /// Table coordinates (cells, of a corner) of a point at \p p cells from the EDT's first cell center.
+  /// \param p position in cells from the center of the EDT's cell (0, 0, 0).
+  /// \return position in cells from the corner of the table.
   Eigen::Vector3d toTable(const Eigen::Vector3d& p) const { return p.array() + padding_ + 0.5; }
 
-  /// Index of the cell that holds a point given in fixed-point table coordinates.
+  /// \return index of the cell that contains a point, given in fixed-point table coordinates.
   static std::uint32_t index(std::int32_t x, std::int32_t y, std::int32_t z, int bits) {
     return (static_cast<std::uint32_t>(z >> kFractionBits) << (2 * bits)) +
            (static_cast<std::uint32_t>(y >> kFractionBits) << bits) + static_cast<std::uint32_t>(x >> kFractionBits);
   }
+  /// \return a number of cells in fixed point.
   static std::int32_t toFixed(double cells) { return static_cast<std::int32_t>(cells * (1 << kFractionBits)); }
 
 private:

@@ -16,7 +16,12 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kLanes = 16;  // parallel lines that are resampled and correlated together
+constexpr int kLanes = 16;  // lines resampled and correlated together; derived: 16-bit integers in an AVX2 register
+// directions; chosen: half sets up arrays more often, twice leaves threads idle at the end
+constexpr std::size_t kDirectionsPerBlock = 16;
+// Steps of the R2 sequence, which fills the unit square evenly. derived: 1 / g and 1 / g^2 with the plastic number
+// g = 1.3247..., the root of g^3 = g + 1.
+constexpr double kPhaseSteps[2] = {0.7548776662466927, 0.5698402909980532};
 
 /// Sixteen parallel lines of equally spaced points: point l of lane j is start[axis][j] + l * step[axis], in
 /// fixed-point table coordinates, inside the table for l in [begin[j], end[j]).
@@ -108,9 +113,128 @@ __attribute__((target("avx2"))) void correlateAvx2(const std::int16_t* values, i
 
 #endif
 
-bool wideKernels(Simd simd) {
-  return simd != Simd::Scalar && simdSupported(Simd::Avx2);
+/// The inner loops for one instruction set. All give the same bytes.
+struct Kernels {
+  Resample resample;
+  Correlate correlate;
+};
+
+Kernels kernelsFor(Simd simd) {
+#if defined(__x86_64__)
+  if (simd != Simd::Scalar && simdSupported(Simd::Avx2)) return {resampleAvx2, correlateAvx2};
+#endif
+  return {resampleScalar, correlateScalar};
 }
+
+/// The lattice that the EDT is resampled on, and the bins of r, common to all directions. Lengths are in cells;
+/// positions are relative to the middle of the EDT's cube, beyond whose inscribed ball f is taken as 0.
+struct Lattice {
+  Lattice(const GaussianEdt& edt, const PlaneGrid& grid, const LookupTable& table, double spacing_in_sigmas) {
+    const double middle = 0.5 * (edt.numCells() - 1);
+    clip = middle - 0.5;
+    center = ((grid.center() - edt.origin()) / edt.cellSize()).array() - middle;
+    table_middle = table.toTable(Eigen::Vector3d::Constant(middle));
+    grid_offset = grid.offset(0) / edt.cellSize();
+    radius_step = grid.radiusStep() / edt.cellSize();
+    spacing = spacing_in_sigmas * edt.sigma() / edt.cellSize();
+    refine = static_cast<int>(std::ceil(2.0 * radius_step / spacing));
+    along = 2.0 * radius_step / refine;
+    num_across = 2 * static_cast<int>(std::ceil(clip / spacing)) + 1;
+    num_along = static_cast<int>(std::ceil((2.0 * clip + radius_step) / along)) + 2;
+    num_radius = grid.numRadius();
+    scale = along * spacing * spacing / (edt.sqNorm() * LookupTable::kOne * LookupTable::kOne);
+  }
+
+  double clip;                   ///< radius of the ball beyond which f is taken as 0
+  Eigen::Vector3d center;        ///< of the grid of planes
+  Eigen::Vector3d table_middle;  ///< table coordinates of the middle
+  double grid_offset;            ///< of the first bin from the center of the grid
+  double radius_step;
+  double spacing;  ///< between parallel lines
+  /// Points at t0 + l * along have the planes between them at t0 + (a + b) * along / 2: every refine-th one is a bin.
+  int refine;
+  double along;    ///< between the points of a line
+  int num_across;  ///< lines along each side of the lattice
+  int num_along;   ///< points of a line
+  int num_radius;
+  double scale;  ///< from sums of products of bytes to D
+};
+
+/// D for all planes of one direction: the volume is resampled along the normal, and each line is correlated with its
+/// reversal (Section 4.2).
+class DirectionConvolution {
+public:
+  DirectionConvolution(const Lattice& lattice, const LookupTable& table, const Kernels& kernels)
+      : lattice_(lattice),
+        table_(table),
+        kernels_(kernels),
+        values_(static_cast<std::size_t>(lattice.num_along) * kLanes),
+        sums_(2 * lattice.num_along) {}
+
+  /// \param index of the direction in the grid.
+  /// \param[out] d num_radius values of D.
+  void run(const Eigen::Vector3d& normal, std::size_t index, float* d) {
+    n_ = normal;
+    u_ = n_.unitOrthogonal();
+    v_ = n_.cross(u_);
+    const double first_offset = n_.dot(lattice_.center) + lattice_.grid_offset;
+    const double num_skipped = std::floor((-lattice_.clip - first_offset) / lattice_.radius_step);
+    t0_ = first_offset + num_skipped * lattice_.radius_step;
+    for (int axis = 0; axis < 3; ++axis) lines_.step[axis] = LookupTable::toFixed(lattice_.along * n_[axis]);
+    std::fill(sums_.begin(), sums_.end(), 0);
+    // Each direction has its own phase of the lattice, so that what aliasing is left does not add up over directions.
+    const double phase_u = std::fmod(kPhaseSteps[0] * static_cast<double>(index), 1.0) - 0.5;
+    const double phase_v = std::fmod(kPhaseSteps[1] * static_cast<double>(index), 1.0) - 0.5;
+    for (int i = 0; i < lattice_.num_across; ++i)
+      for (int j = 0; j < lattice_.num_across; j += kLanes)
+        addBundle((i - lattice_.num_across / 2 + phase_u) * lattice_.spacing, j, phase_v);
+    for (int k = 0; k < lattice_.num_radius; ++k) {
+      const double s = (k - num_skipped) * lattice_.refine;
+      d[k] = s >= 0.0 && s < static_cast<double>(sums_.size())
+                 ? static_cast<float>(lattice_.scale * static_cast<double>(sums_[static_cast<std::size_t>(s)]))
+                 : 0.0f;
+    }
+  }
+
+private:
+  /// Adds the lines at \p a along u and \p first, first + 1, ... steps along v.
+  void addBundle(double a, int first, double phase_v) {
+    lines_.first = lattice_.num_along;
+    lines_.last = 0;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      placeLine(lane, a, (first + lane - lattice_.num_across / 2 + phase_v) * lattice_.spacing,
+                first + lane < lattice_.num_across);
+      if (lines_.begin[lane] >= lines_.end[lane]) continue;
+      lines_.first = std::min(lines_.first, lines_.begin[lane]);
+      lines_.last = std::max(lines_.last, lines_.end[lane]);
+    }
+    if (lines_.first >= lines_.last) return;
+    kernels_.resample(lines_, table_.data(), table_.bits(), values_.data());
+    kernels_.correlate(values_.data(), lines_.first, lines_.last, sums_.data());
+  }
+
+  /// Places a line at (a, b) in the plane across the normal, and cuts it to the ball.
+  /// \param used false: an empty line.
+  void placeLine(int lane, double a, double b, bool used) {
+    const Eigen::Vector3d start = lattice_.table_middle + a * u_ + b * v_ + t0_ * n_;
+    for (int axis = 0; axis < 3; ++axis) lines_.start[axis][lane] = LookupTable::toFixed(start[axis]);
+    const double sq_chord = lattice_.clip * lattice_.clip - a * a - b * b;
+    const double chord = std::sqrt(std::max(0.0, sq_chord));
+    const bool hit = sq_chord > 0.0 && used;
+    const double begin = std::ceil((-chord - t0_) / lattice_.along), end = std::floor((chord - t0_) / lattice_.along);
+    lines_.begin[lane] = hit ? std::max(0, static_cast<int>(begin)) : 0;
+    lines_.end[lane] = hit ? std::min(lattice_.num_along, static_cast<int>(end) + 1) : 0;
+  }
+
+  const Lattice& lattice_;
+  const LookupTable& table_;
+  Kernels kernels_;
+  std::vector<std::int16_t> values_;
+  std::vector<std::int64_t> sums_;
+  LineBundle lines_;
+  Eigen::Vector3d n_, u_, v_;
+  double t0_ = 0.0;  ///< offset of the first points of all lines
+};
 
 }  // namespace
 
@@ -123,86 +247,21 @@ void ConvolutionTransformOptions::validate() const {
 SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                  const ConvolutionTransformOptions& options) {
   options.validate();
+  // 1/24: the look-up of the nearest cell is one box.
   const LookupTable table({edt.sharpened(1.0 / 24.0, options.num_threads)}, edt.numCells(), options.num_threads);
-  Resample resample = resampleScalar;
-  Correlate correlate = correlateScalar;
-#if defined(__x86_64__)
-  if (wideKernels(options.simd)) {
-    resample = resampleAvx2;
-    correlate = correlateAvx2;
-  }
-#endif
-
-  // In cells, relative to the middle of the EDT's cube, beyond whose inscribed ball f is taken as 0.
-  const double middle = 0.5 * (edt.numCells() - 1);
-  const double clip = middle - 0.5;
-  const Eigen::Vector3d center = ((grid.center() - edt.origin()) / edt.cellSize()).array() - middle;
-  const Eigen::Vector3d table_middle = table.toTable(Eigen::Vector3d::Constant(middle));
-  const double radius_step = grid.radiusStep() / edt.cellSize();
-  const double spacing = options.spacing * edt.sigma() / edt.cellSize();
-  // Points at t0 + l * along have the planes between them at t0 + (a + b) * along / 2: every `refine`-th is a bin.
-  const int refine = static_cast<int>(std::ceil(2.0 * radius_step / spacing));
-  const double along = 2.0 * radius_step / refine;
-  const int num_across = 2 * static_cast<int>(std::ceil(clip / spacing)) + 1;
-  const int num_along = static_cast<int>(std::ceil((2.0 * clip + radius_step) / along)) + 2;
-  const double scale = along * spacing * spacing / (edt.sqNorm() * LookupTable::kOne * LookupTable::kOne);
-
+  const Lattice lattice(edt, grid, table, options.spacing);
   SymmetryMap map;
   map.grid = grid;
   map.method = TransformMethod::Convolution;
   map.sigma = edt.sigma();
   map.center_of_mass = grid.center();
   map.values.resize(grid.size());
-  constexpr std::size_t kDirectionsPerBlock = 16;
-  parallelRanges(
-      grid.numDirections(), kDirectionsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::int16_t> values(static_cast<std::size_t>(num_along) * kLanes);
-        std::vector<std::int64_t> sums(2 * num_along);
-        LineBundle lines;
-        for (std::size_t direction = begin; direction < end; ++direction) {
-          const Eigen::Vector3d n =
-              grid.normal(static_cast<int>(direction / grid.numPhi()), static_cast<int>(direction % grid.numPhi()));
-          const Eigen::Vector3d u = n.unitOrthogonal(), v = n.cross(u);
-          // Each direction has its own phase of the lattice: what aliasing is left does not add up over directions.
-          const double phase_u = std::fmod(0.7548776662466927 * static_cast<double>(direction), 1.0) - 0.5;
-          const double phase_v = std::fmod(0.5698402909980532 * static_cast<double>(direction), 1.0) - 0.5;
-          const double first_offset = n.dot(center) + grid.offset(0) / edt.cellSize();
-          const double num_skipped = std::floor((-clip - first_offset) / radius_step);
-          const double t0 = first_offset + num_skipped * radius_step;
-          for (int axis = 0; axis < 3; ++axis) lines.step[axis] = LookupTable::toFixed(along * n[axis]);
-          std::fill(sums.begin(), sums.end(), 0);
-          for (int i = 0; i < num_across; ++i) {
-            const double a = (i - num_across / 2 + phase_u) * spacing;
-            for (int j = 0; j < num_across; j += kLanes) {
-              lines.first = num_along;
-              lines.last = 0;
-              for (int lane = 0; lane < kLanes; ++lane) {
-                const double b = (j + lane - num_across / 2 + phase_v) * spacing;
-                const Eigen::Vector3d start = table_middle + a * u + b * v + t0 * n;
-                for (int axis = 0; axis < 3; ++axis) lines.start[axis][lane] = LookupTable::toFixed(start[axis]);
-                const double sq_chord = clip * clip - a * a - b * b;
-                const double chord = std::sqrt(std::max(0.0, sq_chord));
-                const bool hit = sq_chord > 0.0 && j + lane < num_across;
-                lines.begin[lane] = hit ? std::max(0, static_cast<int>(std::ceil((-chord - t0) / along))) : 0;
-                lines.end[lane] = hit ? std::min(num_along, static_cast<int>(std::floor((chord - t0) / along)) + 1) : 0;
-                if (lines.begin[lane] >= lines.end[lane]) continue;
-                lines.first = std::min(lines.first, lines.begin[lane]);
-                lines.last = std::max(lines.last, lines.end[lane]);
-              }
-              if (lines.first >= lines.last) continue;
-              resample(lines, table.data(), table.bits(), values.data());
-              correlate(values.data(), lines.first, lines.last, sums.data());
-            }
-          }
-          float* const out = map.values.data() + direction * grid.numRadius();
-          for (int k = 0; k < grid.numRadius(); ++k) {
-            const double s = (k - num_skipped) * refine;
-            out[k] = s >= 0.0 && s < static_cast<double>(sums.size())
-                         ? static_cast<float>(scale * static_cast<double>(sums[static_cast<std::size_t>(s)]))
-                         : 0.0f;
-          }
-        }
-      });
+  const auto run = [&](std::size_t begin, std::size_t end) {
+    DirectionConvolution convolution(lattice, table, kernelsFor(options.simd));
+    for (std::size_t direction = begin; direction < end; ++direction)
+      convolution.run(grid.normal(direction), direction, map.values.data() + direction * grid.numRadius());
+  };
+  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads, run);
   return map;
 }
 

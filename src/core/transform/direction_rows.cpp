@@ -10,14 +10,26 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // points that go through the directions together
+// points that go through the directions together; chosen: they stay in the first cache, half of them repeat the rows
+// more often, twice as many leave it
+constexpr std::size_t kBlock = 1024;
+// directions between two looks at the smallest value so far; chosen: each look costs as much as one direction
+constexpr std::size_t kStopEvery = 32;
 
-/// best[i] = max(best[i], value of the row at n . x_i), linear between its entries.
-/// \param row at 0 and beyond \p last 0. \param shift,scale place in the row = n . x * scale + shift.
+/// Coordinates of points, each in an array of its own.
+struct PointBlock {
+  const float *x, *y, *z;
+  int size;
+};
+
+/// best[i] = max(best[i], value of the row at point i), linear between its entries.
 PCL_SYMMETRY_MULTIVERSION
-void raise(const float* x, const float* y, const float* z, int size, const float* normal, float shift, float scale,
-           const float* row, float last, float* best) {
-  const float nx = normal[0] * scale, ny = normal[1] * scale, nz = normal[2] * scale;
+void raise(const PointBlock& points, const DirectionRows::Row& direction, const DirectionRows::Place& place,
+           float* best) {
+  const float shift = place.shift, scale = place.scale, last = place.last;
+  const float nx = direction.normal[0] * scale, ny = direction.normal[1] * scale, nz = direction.normal[2] * scale;
+  const float *const x = points.x, *const y = points.y, *const z = points.z, *const row = direction.values.data();
+  const int size = points.size;
   for (int i = 0; i < size; ++i) {
     const float at = std::min(std::max(nx * x[i] + ny * y[i] + nz * z[i] + shift, 0.0f), last);
     const int k = static_cast<int>(at);
@@ -26,9 +38,9 @@ void raise(const float* x, const float* y, const float* z, int size, const float
   }
 }
 
-/// D along one direction at the bins, and half-way between by the cubic through four: a peak between two bins, such as
-/// that of a plane through the center of the grid, would be cut off otherwise.
-/// \return 2 num_radius + 4 values: two of 0, bin 0, half-way, bin 1 ..., the last bin, and three of 0.
+/// D along one direction at the bins, and half-way between them by the cubic through four. Without these a peak between
+/// two bins, such as that of a plane through the center of the grid, would be cut off.
+/// \return 2 num_radius + 4 values: two of 0, bin 0, half-way, bin 1, ..., the last bin, and three of 0.
 std::vector<float> refinedRow(const float* values, int num_radius) {
   const auto at = [&](int k) { return k < 0 || k >= num_radius ? 0.0f : values[k]; };
   std::vector<float> row(2 * num_radius + 4, 0.0f);
@@ -40,36 +52,29 @@ std::vector<float> refinedRow(const float* values, int num_radius) {
 
 }  // namespace
 
-DirectionRows::DirectionRows(const std::vector<float>& values, std::size_t num_directions, int num_radius,
-                             double radius, const std::function<Eigen::Vector3f(std::size_t)>& normal)
-    : shift(static_cast<float>(num_radius + 1)),
-      scale(static_cast<float>(num_radius / radius)),
-      last(static_cast<float>(2 * num_radius + 2)) {
-  for (std::size_t d = 0; d < num_directions; ++d) rows.push_back(refinedRow(&values[d * num_radius], num_radius));
-  std::vector<float> maxima;
-  for (const auto& row : rows) maxima.push_back(*std::max_element(row.begin(), row.end()));
-  std::vector<std::size_t> order(num_directions);
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return maxima[a] > maxima[b]; });
-  std::vector<std::vector<float>> sorted;
-  for (const std::size_t d : order) {
-    normals.push_back(normal(d));
-    greatest.push_back(maxima[d]);
-    sorted.push_back(std::move(rows[d]));
+DirectionRows::DirectionRows(const std::vector<float>& values, const std::vector<Eigen::Vector3f>& normals,
+                             int num_radius, double radius)
+    : place_{static_cast<float>(num_radius + 1), static_cast<float>(num_radius / radius),
+             static_cast<float>(2 * num_radius + 2)} {
+  for (std::size_t d = 0; d < normals.size(); ++d) {
+    std::vector<float> row = refinedRow(&values[d * num_radius], num_radius);
+    const float greatest = *std::max_element(row.begin(), row.end());
+    rows_.push_back({normals[d], greatest, std::move(row)});
   }
-  rows = std::move(sorted);
+  std::stable_sort(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) { return a.greatest > b.greatest; });
 }
 
-/// \param points 3 x N relative to the center of the grid.
-std::vector<float> greatestThrough(const DirectionRows& directions, const Points& points, int num_threads) {
+std::vector<float> DirectionRows::greatestThrough(const Points& points, int num_threads) const {
   std::vector<float> best(points.cols(), 0.0f);
   parallelRanges(points.cols(), kBlock, num_threads, [&](std::size_t begin, std::size_t end) {
     const int size = static_cast<int>(end - begin);
     const Eigen::MatrixX3f block = points.middleCols(begin, size).transpose();
-    for (std::size_t d = 0; d < directions.rows.size(); ++d) {
-      if (d % 32 == 0 && directions.greatest[d] <= *std::min_element(best.begin() + begin, best.begin() + end)) break;
-      raise(block.col(0).data(), block.col(1).data(), block.col(2).data(), size, directions.normals[d].data(),
-            directions.shift, directions.scale, directions.rows[d].data(), directions.last, best.data() + begin);
+    const PointBlock coordinates{block.col(0).data(), block.col(1).data(), block.col(2).data(), size};
+    for (std::size_t d = 0; d < rows_.size(); ++d) {
+      // The directions left can no longer raise anything.
+      if (d % kStopEvery == 0 && rows_[d].greatest <= *std::min_element(best.begin() + begin, best.begin() + end))
+        break;
+      raise(coordinates, rows_[d], place_, best.data() + begin);
     }
   });
   return best;

@@ -1,28 +1,42 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
 
 namespace pcl_symmetry {
 
-/// Directions with their values, the largest first: those that can no longer raise anything are left out at the end.
-struct DirectionRows {
-  float shift, scale, last;  // as raise() wants them
-  std::vector<Eigen::Vector3f> normals;
-  std::vector<float> greatest;
-  std::vector<std::vector<float>> rows;
+/// The values of a map along r for each of its directions, strongest direction first: the map back from planes or lines
+/// to points (Figures 1 and 2).
+class DirectionRows {
+public:
+  /// \param values rows of num_radius values of D, one for each direction.
+  /// \param normals unit vectors, one for each direction.
+  /// \param num_radius bins of r.
+  /// \param radius of the grid, input units: r is in [-radius, radius].
+  DirectionRows(const std::vector<float>& values, const std::vector<Eigen::Vector3f>& normals, int num_radius,
+                double radius);
 
-  /// \param values num_directions rows of num_radius values of D. \param radius of the grid, input units.
-  /// \param normal of each direction, by its index in the values.
-  DirectionRows(const std::vector<float>& values, std::size_t num_directions, int num_radius, double radius,
-                const std::function<Eigen::Vector3f(std::size_t)>& normal);
+  /// \param points 3 x N, relative to the center of the grid, input units.
+  /// \param num_threads 0 = one per core; the values do not depend on it.
+  /// \return the greatest value of any direction through each point, at least 0.
+  std::vector<float> greatestThrough(const Points& points, int num_threads) const;
+
+  /// A direction and its values, two bins of 0 before the first and beyond the last.
+  struct Row {
+    Eigen::Vector3f normal;
+    float greatest;
+    std::vector<float> values;
+  };
+  /// Place of a point in a row: n.x * scale + shift, clamped to [0, last].
+  struct Place {
+    float shift, scale, last;
+  };
+
+private:
+  Place place_;
+  std::vector<Row> rows_;
 };
-
-/// The greatest value of any plane through each point.
-/// \param points 3 x N relative to the center of the grid. \return one value per point.
-std::vector<float> greatestThrough(const DirectionRows& directions, const Points& points, int num_threads);
 
 }  // namespace pcl_symmetry

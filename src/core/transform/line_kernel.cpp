@@ -15,14 +15,14 @@
 namespace pcl_symmetry {
 
 PCL_SYMMETRY_MULTIVERSION
-void setUpLines(const float* points, float middle, const float* n, float offset, float step, int num_planes,
-                float sq_clip, float to_table, float one, Lines& lines) {
-  const float nx = n[0], ny = n[1], nz = n[2];
-  const float inverse_step = 1.0f / step;
+void setUpLines(const float* points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines) {
+  const float nx = planes.normal[0], ny = planes.normal[1], nz = planes.normal[2];
+  const float offset = planes.offset, inverse_step = 1.0f / planes.step, last = static_cast<float>(planes.count);
+  const float middle = cube.middle, sq_clip = cube.sq_clip, to_table = cube.to_table;
+  const float one = static_cast<float>(1 << LookupTable::kFractionBits);
   std::int32_t *const lx = lines.x, *const ly = lines.y, *const lz = lines.z;
   std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
   const int size = lines.size;
-  const float last = static_cast<float>(num_planes);
   for (int i = 0; i < size; ++i) {
     const float x = points[3 * i] - middle, y = points[3 * i + 1] - middle, z = points[3 * i + 2] - middle;
     const float along = nx * x + ny * y + nz * z;
@@ -58,7 +58,7 @@ void accumulateScalar(const Lines& lines, const std::uint8_t* table, int bits, s
 template <int kFunctions>
 __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const std::uint8_t* table, int bits,
                                                     std::int32_t* const* sums) {
-  constexpr int kLanes = 8;
+  constexpr int kLanes = 8;  // derived: 32-bit integers in a register
   const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   const __m256i byte = _mm256_set1_epi32(0xFF);
   const __m256i zero = _mm256_setzero_si256();
@@ -99,7 +99,7 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
 template <int kFunctions>
 __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, const std::uint8_t* table, int bits,
                                                          std::int32_t* const* sums) {
-  constexpr int kLanes = 16;
+  constexpr int kLanes = kLineLanes;  // derived: 32-bit integers in a register
   const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   const __m512i byte = _mm512_set1_epi32(0xFF);
   const __m512i zero = _mm512_setzero_si512();

@@ -6,33 +6,48 @@
 
 namespace pcl_symmetry {
 
-/// The widest vector of any kernel; result arrays are padded by twice as many.
+/// Lanes of the widest kernel; arrays of results are padded by twice as many. derived: 32-bit integers in an AVX-512
+/// register.
 constexpr int kLineLanes = 16;
 
-/// Straight lines through a LookupTable, one for each sample: point k of line i is start_i + k * step, in fixed-point
-/// table coordinates, inside the table for k in [k_begin_i, k_end_i).
-struct Lines {
-  std::int32_t* x;
-  std::int32_t* y;
-  std::int32_t* z;
-  std::int32_t* k_begin;
-  std::int32_t* k_end;
-  int size;
-  std::int32_t step[3];
+/// Equally spaced planes of one normal: n.x = offset + k * step for k in [0, count).
+struct ParallelPlanes {
+  float normal[3];
+  float offset;  ///< cells from the middle of the EDT's cube
+  float step;    ///< cells
+  int count;
 };
 
-/// Fills the lines of the reflections of \p points in the planes of one normal.
-/// \param points 3 x size, cells from the first cell center. \param middle the middle of the cube in the same units.
-/// \param n unit normal. \param offset of the first plane from the middle. \param step between planes.
-/// \param sq_clip squared radius of the ball about the middle beyond which f is taken as 0.
-/// \param to_table table coordinate of the middle. \param one fixed-point unit.
-void setUpLines(const float* points, float middle, const float* n, float offset, float step, int num_planes,
-                float sq_clip, float to_table, float one, Lines& lines);
+/// The EDT's cube of cells and its place in a LookupTable.
+struct CubeInTable {
+  float middle;    ///< coordinate of its middle, in cells from the first cell center
+  float sq_clip;   ///< squared radius of the ball about the middle beyond which f is taken as 0, in cells
+  float to_table;  ///< table coordinate of the middle, in cells
+};
 
-/// sums[g][k] += sum over lines of function g of the table at point k. Integers: every kernel gives the same bytes.
+/// Straight lines through a LookupTable, one for each sample: point k of line i is start_i + k * step, in fixed-point
+/// table coordinates, inside the ball for k in [k_begin_i, k_end_i).
+struct Lines {
+  std::int32_t* x;        ///< start of each line
+  std::int32_t* y;        ///< start of each line
+  std::int32_t* z;        ///< start of each line
+  std::int32_t* k_begin;  ///< of each line
+  std::int32_t* k_end;    ///< of each line
+  int size;               ///< number of lines
+  std::int32_t step[3];   ///< of all lines
+};
+
+/// Fills the lines that the images of points run along when the points are reflected in parallel planes.
+/// \param points 3 x lines.size, in cells from the first cell center.
+/// \param[out] lines size is given; all but step are filled.
+void setUpLines(const float* points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines);
+
+/// sums[g][k] += sum over lines of function g of the table at point k. The sums are integers, so that every kernel
+/// gives the same bytes.
 using LineKernel = void (*)(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums);
 
-/// \param num_functions of the table. \return the kernel asked for, or the fastest that this processor runs.
+/// \param num_functions functions in the table, 1 or 2.
+/// \return the kernel asked for; with Simd::Auto the fastest that this processor supports.
 LineKernel lineKernel(Simd simd, int num_functions);
 
 }  // namespace pcl_symmetry

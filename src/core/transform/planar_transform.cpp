@@ -1,7 +1,33 @@
-#include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
 
+#include "core/distance_transform/free_space.h"
+#include "core/transform/sampled_transform.h"
+
 namespace pcl_symmetry {
+
+namespace {
+
+SymmetryMap mapWithoutSight(const GaussianEdt& edt, const PlaneGrid& grid, const PlanarTransformOptions& options) {
+  switch (options.method) {
+    case TransformMethod::Convolution:
+      return convolutionTransform(edt, grid, options.convolution);
+    case TransformMethod::Voting:
+      return votingTransform(edt, grid, options.voting);
+    case TransformMethod::Sampled:
+      break;
+  }
+  return sampledTransform(edt, grid, options.sampled);
+}
+
+}  // namespace
+
+bool simdSupported(Simd simd) {
+#if defined(__x86_64__)
+  if (simd == Simd::Avx2) return __builtin_cpu_supports("avx2");
+  if (simd == Simd::Avx512) return __builtin_cpu_supports("avx512f");
+#endif
+  return simd == Simd::Auto || simd == Simd::Scalar;
+}
 
 void PlanarTransformOptions::validate() const {
   sampled.validate();
@@ -10,21 +36,16 @@ void PlanarTransformOptions::validate() const {
 }
 
 SymmetryMap planarTransform(const GaussianEdt& edt, const PlaneGrid& grid, const Eigen::Vector3d& center_of_mass,
-                            const PlanarTransformOptions& options, const std::vector<float>& free_space) {
+                            const PlanarTransformOptions& options, const Visibility* visibility) {
+  std::vector<float> free_space;
+  if (visibility) free_space = freeSpace(edt, *visibility, options.sampled.num_threads);
   SymmetryMap map;
-  switch (options.method) {
-    case TransformMethod::Sampled:
-      map = sampledTransform(edt, grid, options.sampled, free_space);
-      break;
-    case TransformMethod::Convolution:
-      map = convolutionTransform(edt, grid, options.convolution);
-      break;
-    case TransformMethod::Voting:
-      map = votingTransform(edt, grid, options.voting);
-      break;
+  if (visibility && options.method == TransformMethod::Sampled) {
+    map = sampledTransform(edt, grid, options.sampled, free_space);
+  } else {
+    map = mapWithoutSight(edt, grid, options);
+    if (visibility) weighSeen(map, freeOverlap(edt, grid, free_space, options.sampled));
   }
-  if (!free_space.empty() && options.method != TransformMethod::Sampled)
-    weighSeen(map, freeOverlap(edt, grid, free_space, options.sampled));
   map.center_of_mass = center_of_mass;
   return map;
 }

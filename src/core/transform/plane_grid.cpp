@@ -5,11 +5,8 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "pcl_symmetry/core/transform/symmetry_map.h"
 
 namespace pcl_symmetry {
-
-namespace {}
 
 PlaneGrid::PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Vector3d& center, double radius)
     : num_theta_(num_theta), num_phi_(num_phi), num_radius_(num_radius), center_(center), radius_(radius) {
@@ -43,6 +40,10 @@ PlaneGrid::Bin PlaneGrid::bin(std::size_t index) const {
 Eigen::Vector3d PlaneGrid::normal(int t, int p) const {
   const double sine = std::sin(theta(t));
   return {sine * std::cos(phi(p)), sine * std::sin(phi(p)), std::cos(theta(t))};
+}
+
+Eigen::Vector3d PlaneGrid::normal(std::size_t direction) const {
+  return normal(static_cast<int>(direction / num_phi_), static_cast<int>(direction % num_phi_));
 }
 
 ReflectionPlane PlaneGrid::plane(const Bin& bin) const {

@@ -1,83 +1,114 @@
 #include "core/transform/sampled_transform.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/base/random.h"
-#include "core/base/simd.h"
 #include "core/distance_transform/edt_samples.h"
 #include "core/distance_transform/free_space.h"
 #include "core/distance_transform/lookup_table.h"
 #include "core/transform/line_kernel.h"
-#include "pcl_symmetry/core/scan/visibility.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// (S / |f|^2) mean g(gamma x_i) at every bin for each function g.
-/// \param table of the functions.
+// directions; chosen: 64 x 64 directions make 128 blocks. Half sets up arrays more often, twice leaves threads idle.
+constexpr std::size_t kDirectionsPerBlock = 32;
+// samples set up at a time; chosen: their lines stay in the first cache (20 kB), and sums of bytes fit in 32 bits
+constexpr int kChunk = 1024;
+
+/// Bins of a grid in cells of the EDT, relative to the middle of the EDT's cube.
+struct GridInCells {
+  GridInCells(const GaussianEdt& edt, const PlaneGrid& bins, const LookupTable& table) : grid(bins) {
+    const double middle = 0.5 * (edt.numCells() - 1);
+    center = ((grid.center() - edt.origin()) / edt.cellSize()).cast<float>() - Eigen::Vector3f::Constant(middle);
+    radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());
+    first_offset = static_cast<float>(grid.offset(0) / edt.cellSize());
+    cube.middle = static_cast<float>(middle);
+    cube.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
+    cube.to_table = table.toTable(Eigen::Vector3d::Constant(middle)).cast<float>()[0];
+  }
+
+  /// The planes at the bin centers of one direction.
+  ParallelPlanes planes(std::size_t direction) const {
+    const Eigen::Vector3f n = grid.normal(direction).cast<float>();
+    return {{n.x(), n.y(), n.z()}, n.dot(center) + first_offset, radius_step, grid.numRadius()};
+  }
+
+  const PlaneGrid& grid;
+  Eigen::Vector3f center;
+  float radius_step;
+  float first_offset;  ///< of the first bin center from the center of the grid
+  CubeInTable cube;
+};
+
+/// Sums of the table's functions over reflected samples, for all planes of one direction.
+class DirectionSums {
+public:
+  DirectionSums(const Eigen::Matrix3Xf& points, const LookupTable& table, LineKernel accumulate, int num_radius)
+      : points_(points),
+        table_(table),
+        accumulate_(accumulate),
+        chunk_sums_(table.numFunctions(), std::vector<std::int32_t>(num_radius + 2 * kLineLanes)),
+        storage_(5 * kChunk),
+        totals_(table.numFunctions(), std::vector<double>(num_radius)) {
+    for (auto& sums : chunk_sums_) sums_of_.push_back(sums.data());
+    std::int32_t* const data = storage_.data();
+    lines_ = {data, data + kChunk, data + 2 * kChunk, data + 3 * kChunk, data + 4 * kChunk, 0, {}};
+  }
+
+  /// \return for each function of the table one sum per plane.
+  const std::vector<std::vector<double>>& over(const ParallelPlanes& planes, const CubeInTable& cube) {
+    const float one = static_cast<float>(1 << LookupTable::kFractionBits);
+    // The image of a point moves by twice the step between planes.
+    for (int axis = 0; axis < 3; ++axis)
+      lines_.step[axis] = static_cast<std::int32_t>(std::lround(2.0f * planes.step * planes.normal[axis] * one));
+    for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
+    const int num_samples = static_cast<int>(points_.cols());
+    for (int first = 0; first < num_samples; first += kChunk) {
+      lines_.size = std::min(kChunk, num_samples - first);
+      setUpLines(points_.data() + 3 * first, planes, cube, lines_);
+      for (auto& sums : chunk_sums_) std::fill(sums.begin(), sums.end(), 0);
+      accumulate_(lines_, table_.data(), table_.bits(), sums_of_.data());
+      for (std::size_t g = 0; g < totals_.size(); ++g)
+        for (int k = 0; k < planes.count; ++k) totals_[g][k] += chunk_sums_[g][k];
+    }
+    return totals_;
+  }
+
+private:
+  const Eigen::Matrix3Xf& points_;
+  const LookupTable& table_;
+  LineKernel accumulate_;
+  std::vector<std::vector<std::int32_t>> chunk_sums_;
+  std::vector<std::int32_t*> sums_of_;
+  std::vector<std::int32_t> storage_;
+  Lines lines_;
+  std::vector<std::vector<double>> totals_;
+};
+
+/// D(gamma) = (S / |f|^2) mean g(gamma x_i) at every bin, for each function g of the table.
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
                                             const SampledTransformOptions& options, const LookupTable& table) {
   options.validate();
   const Eigen::Matrix3Xf points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
   const LineKernel accumulate = lineKernel(options.simd, table.numFunctions());
-
-  // Everything below is in cells, relative to the middle of the EDT's cube.
-  const double middle = 0.5 * (edt.numCells() - 1);
-  const Eigen::Vector3f center =
-      ((grid.center() - edt.origin()) / edt.cellSize()).cast<float>() - Eigen::Vector3f::Constant(middle);
-  const float radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());
-  const float first_offset = static_cast<float>(grid.offset(0) / edt.cellSize());
-  const float sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
-  const Eigen::Vector3f to_table = table.toTable(Eigen::Vector3d::Constant(middle)).cast<float>();
-  const float one = static_cast<float>(1 << LookupTable::kFractionBits);
-
-  std::vector<std::vector<float>> means(table.numFunctions(), std::vector<float>(grid.size()));
+  const GridInCells bins(edt, grid, table);
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const int num_radius = grid.numRadius();
-  constexpr std::size_t kDirectionsPerBlock = 32;
-  constexpr int kChunk = 1024;  // samples that are set up at a time
-  parallelRanges(
-      grid.numDirections(), kDirectionsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::vector<std::int32_t>> sums(means.size(),
-                                                    std::vector<std::int32_t>(num_radius + 2 * kLineLanes));
-        std::vector<std::int32_t*> sum_of;
-        for (auto& sum : sums) sum_of.push_back(sum.data());
-        std::vector<std::int32_t> lines(5 * kChunk);
-        Lines batch{lines.data(),
-                    lines.data() + kChunk,
-                    lines.data() + 2 * kChunk,
-                    lines.data() + 3 * kChunk,
-                    lines.data() + 4 * kChunk,
-                    0,
-                    {}};
-        std::vector<std::vector<double>> totals(means.size(), std::vector<double>(num_radius));
-        for (std::size_t direction = begin; direction < end; ++direction) {
-          const Eigen::Vector3f n =
-              grid.normal(static_cast<int>(direction / grid.numPhi()), static_cast<int>(direction % grid.numPhi()))
-                  .cast<float>();
-          const float offset = n.dot(center) + first_offset;  // of the first plane from the middle of the cube
-          for (int axis = 0; axis < 3; ++axis)
-            batch.step[axis] = static_cast<std::int32_t>(std::lround(2.0f * radius_step * n[axis] * one));
-          for (auto& total : totals) std::fill(total.begin(), total.end(), 0.0);
-          for (int first = 0; first < options.num_samples; first += kChunk) {
-            batch.size = std::min(kChunk, options.num_samples - first);
-            setUpLines(points.data() + 3 * first, static_cast<float>(middle), n.data(), offset, radius_step, num_radius,
-                       sq_clip, to_table[0], one, batch);
-            for (auto& sum : sums) std::fill(sum.begin(), sum.end(), 0);
-            accumulate(batch, table.data(), table.bits(), sum_of.data());
-            for (std::size_t g = 0; g < sums.size(); ++g)
-              for (int k = 0; k < num_radius; ++k) totals[g][k] += sums[g][k];
-          }
-          for (std::size_t g = 0; g < means.size(); ++g)
-            for (int k = 0; k < num_radius; ++k)
-              means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
-        }
-      });
+  std::vector<std::vector<float>> means(table.numFunctions(), std::vector<float>(grid.size()));
+  const auto run = [&](std::size_t begin, std::size_t end) {
+    DirectionSums sums(points, table, accumulate, num_radius);
+    for (std::size_t direction = begin; direction < end; ++direction) {
+      const auto& totals = sums.over(bins.planes(direction), bins.cube);
+      for (std::size_t g = 0; g < means.size(); ++g)
+        for (int k = 0; k < num_radius; ++k)
+          means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
+    }
+  };
+  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads, run);
   return means;
 }
 
@@ -88,14 +119,6 @@ std::vector<float> checkedFreeSpace(const GaussianEdt& edt, const std::vector<fl
 
 }  // namespace
 
-bool simdSupported(Simd simd) {
-#if defined(__x86_64__)
-  if (simd == Simd::Avx2) return __builtin_cpu_supports("avx2");
-  if (simd == Simd::Avx512) return __builtin_cpu_supports("avx512f");
-#endif
-  return simd == Simd::Auto || simd == Simd::Scalar;
-}
-
 void SampledTransformOptions::validate() const {
   check(num_samples >= 1 && num_samples <= 10'000'000, "num_samples", num_samples, "in [1, 10000000]");
   checkNumThreads(num_threads);
@@ -104,7 +127,7 @@ void SampledTransformOptions::validate() const {
 
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options,
                              const std::vector<float>& free_space) {
-  // Jitter within the cell and look-up of the nearest cell: two boxes.
+  // 1/12: a sample's uniform place in its cell and the look-up of the nearest cell are two boxes.
   std::vector<std::vector<float>> functions{edt.sharpened(1.0 / 12.0, options.num_threads)};
   if (!free_space.empty()) functions.push_back(checkedFreeSpace(edt, free_space));
   const LookupTable table(functions, edt.numCells(), options.num_threads);

@@ -13,57 +13,143 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Draws points of the EDT with probability f: cells in constant time by Walker's alias method, then a uniform place in
-/// the cell, whose blur f is sharpened against; input frame.
-class PointSampler {
+// partial maps, added up in their order; chosen: fewer leave threads idle, more cost memory: 1 MB each at 64^3 bins
+constexpr std::size_t kNumBlocks = 8;
+// Bounds the weight of pairs along z. chosen: one pair in 10^12 is closer to the pole, where its vote would be
+// infinite.
+constexpr double kLeastSine = 1e-6;
+
+/// Draws indices with given probabilities in constant time, by Walker's alias method.
+class AliasTable {
 public:
-  PointSampler(const GaussianEdt& edt, int num_threads) : edt_(edt) {
-    std::vector<double> share;
-    const std::vector<float> f = edt.sharpened(1.0 / 24.0, num_threads);
-    for (std::size_t i = 0; i < f.size(); ++i) {
-      if (f[i] <= 0.0f) continue;
-      cells_.push_back(edt.cellCenter(i).cast<float>());
-      share.push_back(f[i]);
-    }
-    sum_ = std::accumulate(share.begin(), share.end(), 0.0);
-    const double mean = sum_ / static_cast<double>(share.size());
+  AliasTable() = default;
+
+  /// \param shares > 0, proportional to the probabilities.
+  explicit AliasTable(std::vector<double> shares) : threshold_(shares.size(), 1.0f), alias_(shares.size()) {
+    sum_ = std::accumulate(shares.begin(), shares.end(), 0.0);
+    const double mean = sum_ / static_cast<double>(shares.size());
     std::vector<std::uint32_t> small, large;
-    for (std::uint32_t i = 0; i < share.size(); ++i) {
-      share[i] /= mean;
-      (share[i] < 1.0 ? small : large).push_back(i);
+    for (std::uint32_t i = 0; i < shares.size(); ++i) {
+      alias_[i] = i;
+      shares[i] /= mean;
+      (shares[i] < 1.0 ? small : large).push_back(i);
     }
-    alias_.resize(share.size());
-    threshold_.assign(share.size(), 1.0f);
-    for (std::uint32_t i = 0; i < share.size(); ++i) alias_[i] = i;
     while (!small.empty() && !large.empty()) {
       const std::uint32_t s = small.back(), l = large.back();
       small.pop_back();
-      threshold_[s] = static_cast<float>(share[s]);
+      threshold_[s] = static_cast<float>(shares[s]);
       alias_[s] = l;
-      share[l] -= 1.0 - share[s];
-      if (share[l] < 1.0) {
+      shares[l] -= 1.0 - shares[s];
+      if (shares[l] < 1.0) {
         large.pop_back();
         small.push_back(l);
       }
     }
   }
 
-  Eigen::Vector3d draw(RandomStream& random) const {
-    const auto slot = random.below(cells_.size());
-    const auto cell = random.uniform() < threshold_[slot] ? slot : alias_[slot];
-    const Eigen::Vector3d jitter(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
-    return cells_[cell].cast<double>() + edt_.cellSize() * jitter;
+  std::size_t draw(RandomStream& random) const {
+    const auto slot = random.below(alias_.size());
+    return random.uniform() < threshold_[slot] ? slot : alias_[slot];
   }
 
-  double sum() const { return sum_; }
+  double sum() const { return sum_; }  ///< of the shares
 
 private:
-  const GaussianEdt& edt_;
   double sum_ = 0.0;
-  std::vector<Eigen::Vector3f> cells_;
   std::vector<float> threshold_;
   std::vector<std::uint32_t> alias_;
 };
+
+/// Draws points of the EDT with probability f: a cell, then a uniform place in it, whose blur f is sharpened against.
+class PointSampler {
+public:
+  PointSampler(const GaussianEdt& edt, int num_threads) : edt_(edt) {
+    std::vector<double> shares;
+    const std::vector<float> f = edt.sharpened(1.0 / 24.0, num_threads);
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      if (f[i] <= 0.0f) continue;
+      cells_.push_back(edt.cellCenter(i).cast<float>());
+      shares.push_back(f[i]);
+    }
+    table_ = AliasTable(std::move(shares));
+  }
+
+  /// \return a point in the input frame.
+  Eigen::Vector3d draw(RandomStream& random) const {
+    const std::size_t cell = table_.draw(random);
+    const double z = random.uniform() - 0.5, y = random.uniform() - 0.5, x = random.uniform() - 0.5;
+    return cells_[cell].cast<double>() + edt_.cellSize() * Eigen::Vector3d(x, y, z);
+  }
+
+  double sum() const { return table_.sum(); }  ///< S, the sum of f over the cells
+
+private:
+  const GaussianEdt& edt_;
+  std::vector<Eigen::Vector3f> cells_;
+  AliasTable table_;
+};
+
+/// The votes of Section 4.3, and those for planes between near points.
+class Votes {
+public:
+  Votes(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options)
+      : edt_(edt), grid_(grid), sampler_(edt, options.num_threads), near_(options.near_distance * edt.cellSize()) {
+    num_near_ = near_ > 0.0 ? static_cast<std::int64_t>(options.near_share * options.num_pairs) : 0;
+    num_far_ = options.num_pairs - num_near_;
+    const double cell = edt.cellSize(), cell_volume = cell * cell * cell, sum = sampler_.sum();
+    const double bin_measure = grid.thetaStep() * grid.phiStep() * grid.radiusStep();
+    // S^2 h^3 / (N V |f|^2), the factor of sum 1 / (2 d^2 sin theta): the estimator of Section 4.3 for f that are not
+    // normalised, on cells of volume h^3 and bins of measure V = dtheta dphi dr.
+    if (num_far_ > 0) far_weight_ = sum * sum * cell_volume / (num_far_ * bin_measure * edt.sqNorm());
+    // S V_near / (N V |f|^2), the factor of sum f(x').
+    if (num_near_ > 0) near_weight_ = sum * (0.5 * kPi * 2.0 * kPi * near_) / (num_near_ * bin_measure * edt.sqNorm());
+  }
+
+  std::int64_t numFar() const { return num_far_; }
+  std::int64_t numNear() const { return num_near_; }
+
+  /// Draws a pair (x, x') with probability f(x) f(x') and votes for the plane between its points.
+  ///
+  /// The weight is w_samp w_change-of-variables = 1 / (f(x) f(x')) * 1 / (2 d^2 sin theta) with d = |x - x'|; times the
+  /// product f(x) f(x') that the transform integrates it is 1 / (2 d^2 sin theta).
+  void voteFar(RandomStream& random, std::vector<float>& values) const {
+    const Eigen::Vector3d x = sampler_.draw(random), y = sampler_.draw(random);
+    const double sq_distance = (y - x).squaredNorm();
+    if (sq_distance <= near_ * near_ || sq_distance == 0.0) return;
+    const ReflectionPlane plane = ReflectionPlane::between(x, y);
+    const auto bin = grid_.find(plane);
+    if (!bin) return;
+    const double sine = std::max(kLeastSine, std::hypot(plane.normal().x(), plane.normal().y()));
+    values[grid_.index(*bin)] += static_cast<float>(far_weight_ / (2.0 * sq_distance * sine));
+  }
+
+  /// Draws x with probability f(x) and a plane that is uniform in (theta, phi, r) at less than near / 2 from x; votes
+  /// for the plane with f(x') of the reflected point x'.
+  void voteNear(RandomStream& random, std::vector<float>& values) const {
+    const Eigen::Vector3d x = sampler_.draw(random);
+    const double theta = 0.5 * kPi * random.uniform(), phi = 2.0 * kPi * random.uniform();
+    const Eigen::Vector3d n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+    const double distance = near_ * (2.0 * random.uniform() - 1.0);
+    const auto bin = grid_.find(ReflectionPlane(n, n.dot(x) + 0.5 * distance));
+    if (bin) values[grid_.index(*bin)] += static_cast<float>(near_weight_ * edt_(x + distance * n));
+  }
+
+private:
+  const GaussianEdt& edt_;
+  const PlaneGrid& grid_;
+  PointSampler sampler_;
+  double near_;  // pairs closer than this are drawn plane first, input units
+  std::int64_t num_near_ = 0, num_far_ = 0;
+  double far_weight_ = 0.0, near_weight_ = 0.0;
+};
+
+/// Number of a block's pairs if \p total pairs are shared among all blocks.
+std::int64_t shareOf(std::size_t block, std::int64_t total) {
+  const auto upTo = [&](std::size_t b) {
+    return total * static_cast<std::int64_t>(b) / static_cast<std::int64_t>(kNumBlocks);
+  };
+  return upTo(block + 1) - upTo(block);
+}
 
 }  // namespace
 
@@ -76,52 +162,15 @@ void VotingTransformOptions::validate() const {
 
 SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options) {
   options.validate();
-  const PointSampler sampler(edt, options.num_threads);
-  const double cell = edt.cellSize();
-  const double near_distance = options.near_distance * cell;
-  const bool split = near_distance > 0.0;
-  const std::int64_t num_near = split ? static_cast<std::int64_t>(options.near_share * options.num_pairs) : 0;
-  const std::int64_t num_far = options.num_pairs - num_near;
-  const double bin_measure = grid.thetaStep() * grid.phiStep() * grid.radiusStep();
-  const double cell_volume = cell * cell * cell;
-  // Far pairs: S^2 h^3 / (N V |f|^2) sum 1 / (2 d^2 sin theta); the near ones: S V_near / (N V |f|^2) sum f(x').
-  const double far_weight =
-      num_far > 0 ? sampler.sum() * sampler.sum() * cell_volume / (num_far * bin_measure * edt.sqNorm()) : 0.0;
-  const double near_weight =
-      num_near > 0 ? sampler.sum() * (0.5 * kPi * 2.0 * kPi * near_distance) / (num_near * bin_measure * edt.sqNorm())
-                   : 0.0;
-
-  // A fixed number of partial maps, added up in their order.
-  constexpr std::size_t kNumBlocks = 8;
+  const Votes votes(edt, grid, options);
   std::vector<std::vector<float>> partial(kNumBlocks);
-  const auto share = [](std::int64_t total, std::size_t block) {
-    return total * static_cast<std::int64_t>(block + 1) / static_cast<std::int64_t>(kNumBlocks) -
-           total * static_cast<std::int64_t>(block) / static_cast<std::int64_t>(kNumBlocks);
-  };
   parallelBlocks(kNumBlocks, options.num_threads, [&](std::size_t block) {
-    auto& values = partial[block];
+    std::vector<float>& values = partial[block];
     values.assign(grid.size(), 0.0f);
     RandomStream random(options.seed, block);
-    for (std::int64_t i = share(num_far, block); i > 0; --i) {
-      const Eigen::Vector3d x = sampler.draw(random), y = sampler.draw(random);
-      const double sq_distance = (y - x).squaredNorm();
-      if (sq_distance <= near_distance * near_distance || sq_distance == 0.0) continue;
-      const ReflectionPlane plane = ReflectionPlane::between(x, y);
-      const auto bin = grid.find(plane);
-      if (!bin) continue;
-      const double sine = std::max(1e-6, std::hypot(plane.normal().x(), plane.normal().y()));
-      values[grid.index(*bin)] += static_cast<float>(far_weight / (2.0 * sq_distance * sine));
-    }
-    for (std::int64_t i = share(num_near, block); i > 0; --i) {
-      const Eigen::Vector3d x = sampler.draw(random);
-      const double theta = 0.5 * kPi * random.uniform(), phi = 2.0 * kPi * random.uniform();
-      const Eigen::Vector3d n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
-      const double distance = near_distance * (2.0 * random.uniform() - 1.0);
-      const auto bin = grid.find(ReflectionPlane(n, n.dot(x) + 0.5 * distance));
-      if (bin) values[grid.index(*bin)] += static_cast<float>(near_weight * edt(x + distance * n));
-    }
+    for (std::int64_t i = shareOf(block, votes.numFar()); i > 0; --i) votes.voteFar(random, values);
+    for (std::int64_t i = shareOf(block, votes.numNear()); i > 0; --i) votes.voteNear(random, values);
   });
-
   SymmetryMap map;
   map.grid = grid;
   map.method = TransformMethod::Voting;

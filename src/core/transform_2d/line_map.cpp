@@ -8,8 +8,6 @@
 
 namespace pcl_symmetry {
 
-namespace {}
-
 LineGrid::LineGrid(int num_theta, int num_radius, const Eigen::Vector2d& center, double radius)
     : num_theta_(num_theta), num_radius_(num_radius), center_(center), radius_(radius) {
   check(num_theta >= 1 && num_theta <= 4096, "num_theta", num_theta, "in [1, 4096]");

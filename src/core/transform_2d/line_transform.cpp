@@ -10,12 +10,12 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// A cell where f > 0, in cells from the middle of the grid.
+/// A cell with f > 0. Its position is in cells from the middle of the grid.
 struct WeightedCell {
   float x, y, f;
 };
 
-/// f as the full sum needs it: the cells that count, and the look-up of their reflections.
+/// The full sum over cells: D = sum f(x) f(gamma x) / |f|^2.
 class FullSum {
 public:
   explicit FullSum(const GaussianEdt2D& edt)
@@ -36,7 +36,8 @@ public:
     }
   }
 
-  /// D of lines with this normal at offsets first, first + step, ... from the middle, in cells.
+  /// Computes D of the lines with a normal at offsets first, first + step, ... from the middle, in cells.
+  /// \param[out] sums num_lines values of D.
   void accumulate(const Eigen::Vector2d& normal, double first, double step, int num_lines, double* sums) const {
     const auto nx = static_cast<float>(normal.x()), ny = static_cast<float>(normal.y());
     const auto start = static_cast<float>(first), stride = static_cast<float>(step);
@@ -52,14 +53,15 @@ public:
   }
 
 private:
-  /// Weights of the four values around t in [0, 1] between the middle ones, by Catmull and Rom: they leave less than a
-  /// thousandth of f wrong, where bilinear interpolation makes D greater along rows of cells than between them.
+  /// Weights of four values at -1, 0, 1 and 2 for a place t in [0, 1] (Catmull and Rom). They are wrong by less than a
+  /// thousandth of f. Bilinear interpolation would make D greater along rows of cells than between them.
   static std::array<float, 4> cubicWeights(float t) {
     return {0.5f * t * (-1.0f + t * (2.0f - t)), 0.5f * (2.0f + t * t * (-5.0f + 3.0f * t)),
             0.5f * t * (1.0f + t * (4.0f - 3.0f * t)), 0.5f * t * t * (t - 1.0f)};
   }
 
-  /// f between the cells, in cells from the first; 0 in the outermost.
+  /// f between the cells; 0 in the outermost cells.
+  /// \param x,y cells from the first cell center.
   float at(float x, float y) const {
     const float last = static_cast<float>(n_);
     if (!(x >= 0.0f && y >= 0.0f && x < last && y < last)) return 0.0f;
@@ -78,7 +80,7 @@ private:
   int n_;
   float middle_;
   const std::vector<float>& values_;
-  std::vector<char> occupied_;  // cells whose square has f > 0 among the sixteen values that it is interpolated from
+  std::vector<char> occupied_;  // 1 for squares between cells that are interpolated from any f > 0
   double scale_;
   std::vector<WeightedCell> cells_;
 };
@@ -106,7 +108,7 @@ bool isLocalMaximum(const LineMap& map, const LineGrid::Bin& bin) {
   return true;
 }
 
-/// Sum of the second differences; lines beyond the ends of r have no symmetry.
+/// Sum of the second differences (Section 4.4). D is taken as 0 beyond the ends of r.
 double laplacian(const LineMap& map, const LineGrid::Bin& bin) {
   const auto value = [&](int dt, int dk) {
     const auto at = map.grid.step(bin, dt, dk);
@@ -115,7 +117,13 @@ double laplacian(const LineMap& map, const LineGrid::Bin& bin) {
   return value(-1, 0) + value(1, 0) + value(0, -1) + value(0, 1) - 4.0 * value(0, 0);
 }
 
-/// Climbs D by a compass search about the middle of the shape, from steps of half a bin to a 500th of one.
+// bins, steps of the search for a maximum of D; chosen: half a bin reaches all that belongs to a maximum of the map, a
+// 500th of one is 0.003 degrees at 128 bins
+constexpr double kFirstStep = 0.5, kLastStep = 0.002;
+constexpr int kMaxMoves =
+    8;  // with one step size; chosen: twice as many change nothing, half may stop short of the top
+
+/// Climbs to the maximum of D by a compass search over theta and r about the center of the grid.
 LineMaximum climb(const FullSum& sum, const GaussianEdt2D& edt, const LineGrid& grid, const ReflectionLine& start) {
   const Eigen::Vector2d about = grid.center();
   const auto lineAt = [&](double theta, double r) {
@@ -123,8 +131,7 @@ LineMaximum climb(const FullSum& sum, const GaussianEdt2D& edt, const LineGrid& 
   };
   double theta = start.theta(), r = -start.signedDistance(about);
   double value = symmetryAt(sum, edt, start);
-  for (double share = 0.5; share > 0.002; share *= 0.5) {
-    constexpr int kMaxMoves = 8;
+  for (double share = kFirstStep; share > kLastStep; share *= 0.5) {
     for (int move = 0; move < kMaxMoves; ++move) {
       double best_theta = theta, best_r = r;
       for (const auto& [dt, dr] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {

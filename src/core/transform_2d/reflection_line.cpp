@@ -8,8 +8,6 @@
 
 namespace pcl_symmetry {
 
-namespace {}
-
 ReflectionLine::ReflectionLine(double theta, double offset)
     : theta_(theta), offset_(offset), normal_(std::cos(theta), std::sin(theta)) {
   check(std::isfinite(theta), "theta", theta, "finite");

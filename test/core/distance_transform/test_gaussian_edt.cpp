@@ -140,6 +140,16 @@ TEST(GaussianEdt, PointsOutsideTheBallAreNoHarm) {
   EXPECT_THROW(GaussianEdt(points, options), std::invalid_argument);  // none left near the ball
 }
 
+TEST(GaussianEdt, PointsFarOutsideTheBallAreNoHarm) {
+  // Their coordinates in cells exceed every integer.
+  Points points(3, 4);
+  points << 0.1f, 0.1f, 3e12f, -1e30f, 0.2f, -3e12f, 0.2f, 0.0f, 0.3f, 0.3f, 0.3f, 1e30f;
+  GaussianEdtOptions options = cells(16);
+  options.radius = 0.5;
+  options.sigma = 0.1;
+  EXPECT_EQ(GaussianEdt(points, options).values(), GaussianEdt(points.leftCols(1), options).values());
+}
+
 TEST(GaussianEdt, ScalesWithThePoints) {
   // Powers of two are scaled without rounding: the same bytes.
   const Points points = asymmetricBlob(400, 6).cloud();

@@ -1,15 +1,10 @@
-/// Free, seen and unknown space, and what it makes of the transform.
-#include "core/distance_transform/free_space.h"
-#include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/transform/planar_transform.h"
 #include "shapes/scans.h"
 
 namespace {
@@ -122,6 +117,19 @@ TEST(Visibility, OnePointIsOnePixel) {
   EXPECT_TRUE(Visibility::fromPoints(Points::Constant(3, 100, 1.0f), Eigen::Vector3d::Zero()));
 }
 
+TEST(Visibility, WithoutPointsThereIsNone) {
+  EXPECT_FALSE(Visibility::fromPoints(Points(3, 0), Eigen::Vector3d::Ones()));
+  EXPECT_FALSE(spaceSeenFrom(Points(3, 0), Eigen::Vector3d::Ones()));
+}
+
+TEST(Visibility, KnowsItsViewpoint) {
+  const auto seen = Visibility::fromPoints(sphereScan(), kViewpoint);
+  ASSERT_TRUE(seen);
+  EXPECT_LT((seen->viewpoint() - kViewpoint).norm(), 1e-12);
+  const Eigen::Vector3d center(0.3, -2.0, 7.0);
+  EXPECT_LT((seen->normalized(center, 3.5).viewpoint() - (kViewpoint - center) / 3.5).norm(), 1e-12);
+}
+
 TEST(Visibility, ScaleOfTheUnitsDoesNotMatter) {
   const Points points = sphereScan();
   const auto one = Visibility::fromPoints(points, kViewpoint);
@@ -162,123 +170,6 @@ TEST(Visibility, HiddenShareTellsAScanFromAWhole) {
   const double hidden = Visibility::fromPoints(whole, kViewpoint)->hiddenShare(whole, 0.1);
   EXPECT_GT(hidden, 0.3);
   EXPECT_LT(hidden, 0.6);
-}
-
-TEST(FreeSpace, IsFreeInFrontAndBesideAndNothingBehind) {
-  const Points points = sphereScan();
-  const auto seen = Visibility::fromPoints(points, kViewpoint);
-  ASSERT_TRUE(seen);
-  const GaussianEdt edt(points);
-  const std::vector<float> free = freeSpace(edt, *seen);
-  ASSERT_EQ(free.size(), edt.values().size());
-  const Eigen::Vector3d forward = -kViewpoint.normalized();
-  int num_front = 0, num_behind = 0, num_lost = 0, num_wrong = 0;
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    ASSERT_GE(free[i], 0.0f);
-    ASSERT_LE(free[i], 1.0f - edt.values()[i]) << "on the surface nothing is free";
-    const Eigen::Vector3d x = edt.cellCenter(i);
-    // The picture is exact to a pixel: cells that lie farther than that from the surface and the silhouette are clear.
-    const double across = (x - x.dot(forward) * forward).norm(), before = -x.dot(forward);
-    if (before > 0.3 && x.norm() > 1.1) {
-      ++num_front;
-      num_lost += free[i] != 1.0f - edt.values()[i] ? 1 : 0;
-    } else if (across < 0.8 && (x.norm() < 0.9 || before < 0.0)) {
-      ++num_behind;
-      num_wrong += free[i] != 0.0f ? 1 : 0;
-    }
-  }
-  EXPECT_GT(num_front, 1000);
-  EXPECT_GT(num_behind, 1000);
-  EXPECT_EQ(num_lost, 0) << "of " << num_front << " cells in front";
-  EXPECT_EQ(num_wrong, 0) << "of " << num_behind << " cells within the sphere and in its shadow";
-  for (const int num_threads : {1, 2, 8}) EXPECT_EQ(freeSpace(edt, *seen, num_threads), free) << num_threads;
-}
-
-TEST(SeenSymmetry, HasTheLimitsThatItShould) {
-  EXPECT_EQ(seenSymmetry(1.0, 0.0), 1.0);
-  EXPECT_EQ(seenSymmetry(0.0, 0.0), 0.0) << "what nobody could see has no merit";
-  EXPECT_EQ(seenSymmetry(0.0, 1.0), 0.0);
-  for (double d = 0.0; d < 1.0; d += 0.1) {
-    for (double f = 0.0; f < 1.0; f += 0.1) {
-      EXPECT_GE(seenSymmetry(d, f), 0.0);
-      EXPECT_LE(seenSymmetry(d, f), 1.0);
-      EXPECT_GT(seenSymmetry(d + 0.1, f), seenSymmetry(d, f));
-      if (d > 0.0) {
-        EXPECT_LT(seenSymmetry(d, f + 0.1), seenSymmetry(d, f));
-      }
-    }
-  }
-}
-
-class TransformWithFreeSpace : public testing::Test {
-protected:
-  const Scan scan_ = scan(blockBox(), {2.5, -3.0, 2.0});
-  const Points points_ = scan_.cloud();
-  const GaussianEdt edt_{points_};
-  const PlaneGrid grid_{16, 32, 32, edt_.center(), edt_.radius()};
-  const std::vector<float> free_ = freeSpace(edt_, scan_.visibility());
-};
-
-TEST_F(TransformWithFreeSpace, IsSeenSymmetryOfTheTwoMeans) {
-  SampledTransformOptions options;
-  options.num_samples = 300;
-  const SymmetryMap both = sampledTransform(edt_, grid_, options, free_);
-  const SymmetryMap d = sampledTransform(edt_, grid_, options);
-  const std::vector<float> f = freeOverlap(edt_, grid_, free_, options);
-  ASSERT_EQ(both.values.size(), grid_.size());
-  ASSERT_EQ(f.size(), grid_.size());
-  SymmetryMap weighed = d;
-  weighSeen(weighed, f);
-  EXPECT_EQ(weighed.values, both.values);
-  std::size_t num_weighed = 0;
-  for (std::size_t i = 0; i < grid_.size(); ++i) {
-    EXPECT_GE(f[i], 0.0f);
-    EXPECT_EQ(both.values[i], static_cast<float>(seenSymmetry(d.values[i], f[i])));
-    num_weighed += f[i] > 0.01f ? 1 : 0;
-  }
-  EXPECT_GT(num_weighed, grid_.size() / 10) << "free space is met by many planes";
-}
-
-TEST_F(TransformWithFreeSpace, SameBytesForAnyNumberOfThreads) {
-  SampledTransformOptions options;
-  options.num_threads = 1;
-  const SymmetryMap one = sampledTransform(edt_, grid_, options, free_);
-  for (const int num_threads : {2, 8}) {
-    options.num_threads = num_threads;
-    EXPECT_EQ(sampledTransform(edt_, grid_, options, free_).values, one.values) << num_threads;
-  }
-  for (const Simd simd : {Simd::Scalar, Simd::Avx2, Simd::Avx512}) {
-    if (!simdSupported(simd)) continue;
-    options.simd = simd;
-    EXPECT_EQ(sampledTransform(edt_, grid_, options, free_).values, one.values) << static_cast<int>(simd);
-  }
-}
-
-TEST_F(TransformWithFreeSpace, EveryMethodGivesTheSameMap) {
-  PlanarTransformOptions options;
-  options.sampled.num_samples = 5000;
-  options.voting.num_pairs = 5'000'000;
-  const auto map = [&](TransformMethod method) {
-    options.method = method;
-    return planarTransform(edt_, grid_, centerOfMass(points_), options, free_);
-  };
-  const SymmetryMap sampled = map(TransformMethod::Sampled);
-  const auto rms = [&](const SymmetryMap& other) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < grid_.size(); ++i) sum += std::pow(other.values[i] - sampled.values[i], 2);
-    return std::sqrt(sum / static_cast<double>(grid_.size()));
-  };
-  const double convolution = rms(map(TransformMethod::Convolution)), voting = rms(map(TransformMethod::Voting));
-  std::printf("against sampling: convolution %.4f, voting %.4f\n", convolution, voting);
-  // 0.0053 and 0.0199 were measured: the noise of 5000 samples, and bins in place of their centers.
-  EXPECT_LT(convolution, 0.01);
-  EXPECT_LT(voting, 0.04);
-}
-
-TEST_F(TransformWithFreeSpace, RefusesFreeSpaceOfAnotherGrid) {
-  const std::vector<float> wrong(100, 0.0f);
-  EXPECT_THROW(sampledTransform(edt_, grid_, {}, wrong), std::invalid_argument);
-  EXPECT_THROW(freeOverlap(edt_, grid_, wrong), std::invalid_argument);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/geometry/principal_axes.h"
 #include "shapes/contours.h"
 
 namespace pcl_symmetry {
@@ -55,42 +54,6 @@ double hausdorff(const Points2D& a, const Points2D& b) {
   from(a, b);
   from(b, a);
   return std::sqrt(sq_largest);
-}
-
-TEST(ReflectionLine, ReflectingTwiceIsTheIdentity) {
-  RandomStream random(5);
-  for (int i = 0; i < 100; ++i) {
-    const ReflectionLine line(10.0 * symmetric(random), symmetric(random));
-    const Eigen::Vector2d x(symmetric(random), symmetric(random));
-    EXPECT_LT((line.reflect(line.reflect(x)) - x).norm(), 1e-14);
-    EXPECT_NEAR(line.signedDistance(line.reflect(x)), -line.signedDistance(x), 1e-14);
-    const ReflectionLine canonical = line.canonical();
-    EXPECT_GE(canonical.theta(), 0.0);
-    EXPECT_LT(canonical.theta(), kPi);
-    EXPECT_LT((canonical.reflect(x) - line.reflect(x)).norm(), 1e-14);
-  }
-  EXPECT_LT(ReflectionLine(-1e-17, 1.0).canonical().theta(), kPi);
-  EXPECT_THROW(ReflectionLine(std::numeric_limits<double>::quiet_NaN(), 0.0), std::invalid_argument);
-}
-
-TEST(LineGrid, FindsTheBinOfEveryBinCenterAndItsOtherForm) {
-  const LineGrid grid(12, 10, {0.3, -0.2}, 1.5);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const ReflectionLine line = grid.line(grid.bin(i));
-    EXPECT_EQ(grid.index(*grid.find(line)), i);
-    EXPECT_EQ(grid.index(*grid.find(ReflectionLine(line.theta() + kPi, -line.offset()))), i);
-  }
-  EXPECT_FALSE(grid.find(ReflectionLine(0.0, 2.0)));
-}
-
-TEST(LineGrid, SeamLeadsToTheSameLinesTurned) {
-  const LineGrid grid(12, 10, {0.0, 0.0}, 1.5);
-  const auto to = grid.step({0, 3}, -1, 0);
-  ASSERT_TRUE(to);
-  EXPECT_EQ(to->theta, 11);
-  EXPECT_EQ(to->radius, 6);
-  EXPECT_NEAR(grid.line({0, 3}).angleTo(grid.line(*to)), grid.thetaStep(), 1e-12);
-  EXPECT_FALSE(grid.step({4, 9}, 0, 1));
 }
 
 TEST(LineTransform, AgreesWithTheSumOverExactDistances) {
@@ -271,38 +234,23 @@ TEST(Stability, ABumpMovesTheMapByItsShareOfTheContour) {
   }
 }
 
-TEST(GaussianEdt2D, RefusesWhatItCannotUse) {
-  EXPECT_THROW(GaussianEdt2D(Points2D(2, 0)), std::invalid_argument);
-  EXPECT_THROW(GaussianEdt2D(Points2D::Constant(2, 9, 0.3f)), std::invalid_argument);
-  Points2D broken = Points2D::Random(2, 5);
-  broken(1, 3) = std::numeric_limits<float>::infinity();
-  EXPECT_THROW(GaussianEdt2D{broken}, std::invalid_argument);
-  GaussianEdt2DOptions options;
-  options.num_cells = 4;
-  EXPECT_THROW(options.validate(), std::invalid_argument);
-}
+TEST(PointSymmetry2D, TheCenterOfACircleIsTheDarkestPoint) {
+  const GaussianEdt2D edt(regularPolygon(2400));
+  const LineMap map = lineTransform(edt, LineGrid(96, 96, edt.center(), edt.radius()), edt.center());
+  Points2D probes(2, 2);
+  probes << 0.0f, 0.5f, 0.0f, 0.6f;
+  const std::vector<float> values = pointSymmetry(map, probes);
+  // Every point lies on a line through the center, and all of these are symmetries.
+  EXPECT_GT(values[0], 0.95f);
+  EXPECT_GT(values[1], 0.9f);
 
-TEST(GaussianEdt2D, IsTheGaussianOfTheDistance) {
-  const Points2D contour = starfish(0.0, 1, 300);
-  const GaussianEdt2D edt = edtOf(contour);
-  for (int i = 0; i < edt.numCells() * edt.numCells(); i += 11) {
-    const Eigen::Vector2d x = edt.origin() + edt.cellSize() * Eigen::Vector2d(i % edt.numCells(), i / edt.numCells());
-    const double sq_distance = (contour.cast<double>().colwise() - x).colwise().squaredNorm().minCoeff();
-    const double f = std::exp(-sq_distance / (edt.sigma() * edt.sigma()));
-    EXPECT_NEAR(edt.values()[i], f > 1.2e-3 ? f : 0.0, 1.2e-3);
-  }
-}
-
-TEST(SheetPose, KeepsTheAxesOfAFlatCloudAndFindsOthers) {
-  Points flat = Points::Random(3, 50);
-  flat.row(2).setConstant(4.0f);
-  const Eigen::Isometry3d kept = sheetPose(flat);
-  EXPECT_TRUE(kept.linear().isIdentity());
-  EXPECT_EQ(kept.translation(), Eigen::Vector3d(0, 0, 4));
-  const Eigen::Isometry3d pose = randomPose(3);
-  const Points tilted = (pose * flat.cast<double>()).cast<float>();
-  const Eigen::Matrix3Xd back = sheetPose(tilted).inverse() * tilted.cast<double>();
-  EXPECT_LT(back.row(2).cwiseAbs().maxCoeff(), 1e-5);
+  const GaussianEdt2D rectangle_edt(rectangle(1.6, 0.9));
+  const LineMap rectangle_map = lineTransform(
+      rectangle_edt, LineGrid(96, 96, rectangle_edt.center(), rectangle_edt.radius()), rectangle_edt.center());
+  const std::vector<float> of_rectangle = pointSymmetry(rectangle_map, probes);
+  // Its two lines lie half a bin from the directions of the map.
+  EXPECT_GT(of_rectangle[0], 0.85f);
+  EXPECT_LT(of_rectangle[1], 0.6f);
 }
 
 }  // namespace

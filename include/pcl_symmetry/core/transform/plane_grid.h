@@ -9,11 +9,11 @@
 
 namespace pcl_symmetry {
 
-/// The discrete space of planes (Section 4.2): theta in [0, pi/2], phi in [0, 2 pi), r in [-radius, radius] about a
-/// center, cut into equal bins; bin (t, p, k) has its center at ((t + 1/2) dtheta, (p + 1/2) dphi, (k + 1/2) dr -
-/// radius).
+/// The discrete space of planes (Section 4.2): theta in [0, pi/2], phi in [0, 2 pi) and r in [-radius, radius] about a
+/// center, each cut into equal bins. Bin (t, p, k) has its center at theta = (t + 1/2) dtheta, phi = (p + 1/2) dphi,
+/// r = (k + 1/2) dr - radius.
 ///
-/// Seams: phi wraps; past the pole (theta < 0) lies (-theta, phi + pi, r); past the equator (theta > pi/2) lies
+/// Seams: phi wraps around. Past the pole (theta < 0) lies (-theta, phi + pi, r); past the equator (theta > pi/2) lies
 /// (pi - theta, phi + pi, -r).
 class PlaneGrid {
 public:
@@ -25,9 +25,11 @@ public:
 
   PlaneGrid() = default;
 
-  /// \param num_theta,num_phi,num_radius bins, each >= 1, num_phi even.
-  /// \param center,radius in input units; radius > 0 and finite.
-  /// \throws std::invalid_argument naming the field.
+  /// \param num_theta,num_radius number of bins, each in [1, 4096].
+  /// \param num_phi number of bins, even, in [2, 4096].
+  /// \param center finite, input frame; r is measured from it.
+  /// \param radius finite and > 0, input units.
+  /// \throws std::invalid_argument naming field, value and rule.
   PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Vector3d& center, double radius);
 
   int numTheta() const { return num_theta_; }
@@ -42,35 +44,41 @@ public:
   double phiStep() const;     ///< radians
   double radiusStep() const;  ///< input units
 
-  /// Bins of one direction lie side by side: index = (theta * num_phi + phi) * num_radius + radius.
+  /// \return (theta * num_phi + phi) * num_radius + radius: bins of one direction lie side by side.
   std::size_t index(const Bin& bin) const {
     return (static_cast<std::size_t>(bin.theta) * num_phi_ + bin.phi) * num_radius_ + bin.radius;
   }
+  /// \return the bin of an index; the inverse of index().
   Bin bin(std::size_t index) const;
 
-  double theta(int t) const { return (t + 0.5) * thetaStep(); }
-  double phi(int p) const { return (p + 0.5) * phiStep(); }
-  /// Offset of the bin center from the grid's center, input units.
+  double theta(int t) const { return (t + 0.5) * thetaStep(); }  ///< at the bin center, radians
+  double phi(int p) const { return (p + 0.5) * phiStep(); }      ///< at the bin center, radians
+  /// \return r at the bin center: signed distance of the plane from the grid's center, input units.
   double offset(int k) const { return (k + 0.5) * radiusStep() - radius_; }
 
-  /// Unit normal at the center of direction bin (t, p).
+  /// \return unit normal at the center of direction bin (t, p).
   Eigen::Vector3d normal(int t, int p) const;
+  /// \param direction t * num_phi + p, in [0, numDirections()).
+  Eigen::Vector3d normal(std::size_t direction) const;
 
-  /// The plane at the bin center, in the input frame.
+  /// \return the plane at the bin center, input frame.
   ReflectionPlane plane(const Bin& bin) const;
 
-  /// The bin that holds the plane; none where the plane passes the center at more than radius().
+  /// \return the bin that contains the plane; none if the plane is farther than radius() from the center.
   std::optional<Bin> find(const ReflectionPlane& plane) const;
 
-  /// The bin at (t + dt, p + dp, k + dk) with dt in {-1, 0, 1}, led across the seams; none beyond the ends of r.
+  /// \param dt,dp,dk steps, dt in {-1, 0, 1}.
+  /// \return the bin at (t + dt, p + dp, k + dk), across the seams; none beyond the ends of r.
   std::optional<Bin> step(const Bin& bin, int dt, int dp, int dk) const;
 
-  /// Indices of the bins around this one, without itself, ascending: one step in theta and r, and in phi as many as it
-  /// takes to cover an angle of one step in theta. (At the equator that is the paper's 26 neighbours. Near the pole
-  /// bins are slivers in phi, and one peak would be a maximum of many of them.)
+  /// The bins around a bin: one step in theta and r, and as many steps in phi as cover the angle of one step in theta.
+  ///
+  /// At the equator these are the 26 neighbours of the paper. Departure near the pole: bins are slivers in phi there,
+  /// and one peak would be a maximum in many of them.
+  /// \return ascending indices, without that of the bin itself.
   std::vector<std::size_t> neighbours(const Bin& bin) const;
 
-  /// Calls visit(index) for the same bins, some of them twice, until one call returns false.
+  /// Calls visit(index) for the bins of neighbours(), some of them twice, until a call returns false.
   /// \return whether all calls returned true.
   template <typename Visit>
   bool visitNeighbours(const Bin& bin, const Visit& visit) const {
@@ -89,7 +97,7 @@ public:
   }
 
 private:
-  /// Bins in phi that cover one step of theta in this row.
+  /// Number of bins in phi that cover one step of theta in this row.
   int phiReach(int t) const { return phi_reach_[t]; }
 
   int num_theta_ = 0;

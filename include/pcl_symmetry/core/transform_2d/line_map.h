@@ -9,10 +9,10 @@
 
 namespace pcl_symmetry {
 
-/// The discrete space of lines (Section 4.2): theta in [0, pi), r in [-radius, radius] about a center, cut into equal
-/// bins; bin (t, k) has its center at ((t + 1/2) dtheta, (k + 1/2) dr - radius).
+/// The discrete space of lines (Section 4.2): theta in [0, pi) and r in [-radius, radius] about a center, each cut into
+/// equal bins. Bin (t, k) has its center at theta = (t + 1/2) dtheta, r = (k + 1/2) dr - radius.
 ///
-/// One seam: past theta = pi lies (theta - pi, -r).
+/// Seam: past theta = pi lies (theta - pi, -r).
 class LineGrid {
 public:
   struct Bin {
@@ -22,8 +22,10 @@ public:
 
   LineGrid() = default;
 
-  /// \param num_theta,num_radius bins, each in [1, 4096]. \param center,radius in input units; radius > 0 and finite.
-  /// \throws std::invalid_argument naming the field.
+  /// \param num_theta,num_radius number of bins, each in [1, 4096].
+  /// \param center finite, input frame; r is measured from it.
+  /// \param radius finite and > 0, input units.
+  /// \throws std::invalid_argument naming field, value and rule.
   LineGrid(int num_theta, int num_radius, const Eigen::Vector2d& center, double radius);
 
   int numTheta() const { return num_theta_; }
@@ -35,21 +37,23 @@ public:
   double thetaStep() const;   ///< radians
   double radiusStep() const;  ///< input units
 
-  /// Bins of one direction lie side by side: index = theta * num_radius + radius.
+  /// \return theta * num_radius + radius: bins of one direction lie side by side.
   std::size_t index(const Bin& bin) const { return static_cast<std::size_t>(bin.theta) * num_radius_ + bin.radius; }
+  /// \return the bin of an index; the inverse of index().
   Bin bin(std::size_t index) const;
 
-  double theta(int t) const { return (t + 0.5) * thetaStep(); }
-  /// Offset of the bin center from the grid's center, input units.
+  double theta(int t) const { return (t + 0.5) * thetaStep(); }  ///< at the bin center, radians
+  /// \return r at the bin center: signed distance of the line from the grid's center, input units.
   double offset(int k) const { return (k + 0.5) * radiusStep() - radius_; }
 
-  /// The line at the bin center, in the input frame.
+  /// \return the line at the bin center, input frame.
   ReflectionLine line(const Bin& bin) const;
 
-  /// The bin that holds the line; none where the line passes the center at more than radius().
+  /// \return the bin that contains the line; none if the line is farther than radius() from the center.
   std::optional<Bin> find(const ReflectionLine& line) const;
 
-  /// The bin at (t + dt, k + dk) with dt in {-1, 0, 1}, led across the seam; none beyond the ends of r.
+  /// \param dt,dk steps, dt in {-1, 0, 1}.
+  /// \return the bin at (t + dt, k + dk), across the seam; none beyond the ends of r.
   std::optional<Bin> step(const Bin& bin, int dt, int dk) const;
 
 private:
@@ -59,18 +63,19 @@ private:
   double radius_ = 0.0;
 };
 
-/// The transform of a planar shape: D(f, gamma) = f . gamma(f) / |f|^2 for every bin of lines.
+/// The transform of a planar shape: D(f, gamma) = f . gamma(f) / |f|^2 (Equation 2) for every bin of lines.
 struct LineMap {
   LineGrid grid;
-  std::vector<float> values;  ///< grid.size() values of D, about [0, 1]; 1 = perfect symmetry
-  double sigma = 0.0;         ///< width of the distance transform that the map was made with, input units
-  /// Mean of the points, input frame: the point from which the paper measures r in its threshold 1 - r / R.
+  std::vector<float> values;  ///< grid.size() values of D, about [0, 1]; 1 for a perfect symmetry
+  double sigma = 0.0;         ///< width of the distance transform that the map was made from, input units
+  /// Mean of the points, input frame. The threshold 1 - r / R of Section 4.4 measures r from it.
   Eigen::Vector2d center_of_mass = Eigen::Vector2d::Zero();
 
+  /// \return D at a bin.
   float operator[](std::size_t index) const { return values[index]; }
   bool empty() const { return values.empty(); }
 
-  /// Bin of the largest value; 0 for an empty map.
+  /// \return index of the bin with the greatest value; 0 for an empty map.
   std::size_t strongest() const;
 };
 

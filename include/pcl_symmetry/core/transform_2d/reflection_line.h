@@ -5,32 +5,33 @@
 namespace pcl_symmetry {
 
 /// A line of reflection in the plane, { x : n.x = r } with unit normal n = (cos theta, sin theta) and signed offset r:
-/// the two-dimensional case of ReflectionPlane (Section 4.2).
+/// the planar case of ReflectionPlane (Section 4.2).
 ///
-/// (theta, r) and (theta + pi, -r) are the same line: compare canonical forms, or use angleTo().
+/// Invariant: |n| = 1. (theta, r) and (theta + pi, -r) are the same line: compare canonical forms, or use angleTo().
 class ReflectionLine {
 public:
   /// The line x = 0.
   ReflectionLine() = default;
 
-  /// \param theta radians. \param offset such that n.x = offset on the line, in the units of x.
-  /// \throws std::invalid_argument where a value is not finite.
+  /// \param theta angle of the normal from the x axis, radians.
+  /// \param offset n.x for points x of the line, input units.
+  /// \throws std::invalid_argument for a value that is not finite.
   ReflectionLine(double theta, double offset);
 
   double theta() const { return theta_; }
   double offset() const { return offset_; }
   const Eigen::Vector2d& normal() const { return normal_; }
 
-  /// \return n.x - r.
+  /// \return n.x - r, input units.
   double signedDistance(const Eigen::Vector2d& x) const { return normal_.dot(x) - offset_; }
 
-  /// \return x - 2 (n.x - r) n.
+  /// \return the reflected point, x - 2 (n.x - r) n.
   Eigen::Vector2d reflect(const Eigen::Vector2d& x) const { return x - 2.0 * signedDistance(x) * normal_; }
 
-  /// The same line with theta in [0, pi).
+  /// \return the same line with theta in [0, pi).
   ReflectionLine canonical() const;
 
-  /// Angle between the two lines, in [0, pi/2] radians.
+  /// \return angle between the two lines, in [0, pi/2] radians.
   double angleTo(const ReflectionLine& other) const;
 
 private:

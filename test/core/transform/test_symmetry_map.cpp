@@ -3,15 +3,34 @@
 #include <gtest/gtest.h>
 
 #include "pcl_symmetry/core/transform/planar_transform.h"
-#include "pcl_symmetry/core/transform_2d/line_transform.h"
-#include "shapes/contours.h"
+#include "shapes/shapes.h"
 
 namespace pcl_symmetry {
 namespace {
 
 using namespace test;
 
-/// What pointSymmetry is by its definition: all directions, one point.
+TEST(SymmetryMap, StrongestIsTheFirstOfTheGreatest) {
+  SymmetryMap map;
+  EXPECT_TRUE(map.empty());
+  EXPECT_EQ(map.strongest(), 0u);
+  map.grid = PlaneGrid(1, 2, 2, Eigen::Vector3d::Zero(), 1.0);
+  map.values = {0.1f, 0.7f, -0.2f, 0.7f};
+  EXPECT_FALSE(map.empty());
+  EXPECT_EQ(map.strongest(), 1u);
+  EXPECT_EQ(map[2], -0.2f);
+}
+
+TEST(SymmetryMap, PrstIsThatOfEquation1) {
+  SymmetryMap map;
+  map.values = {1.0f, 0.0f, -1.0f, -1.01f};  // the last one: an estimate below -1
+  EXPECT_DOUBLE_EQ(map.prst(0), 1.0);
+  EXPECT_DOUBLE_EQ(map.prst(1), std::sqrt(0.5));
+  EXPECT_DOUBLE_EQ(map.prst(2), 0.0);
+  EXPECT_DOUBLE_EQ(map.prst(3), 0.0);
+}
+
+/// The definition of pointSymmetry(): all directions, one point.
 double greatest(const SymmetryMap& map, const Eigen::Vector3d& x) {
   const PlaneGrid& grid = map.grid;
   double best = 0.0;
@@ -72,25 +91,6 @@ TEST(PointSymmetry, EqualBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one, pointSymmetry(map, cloud, 2));
   EXPECT_EQ(one, pointSymmetry(map, cloud, 8));
   EXPECT_EQ(pointSymmetry(SymmetryMap(), cloud), std::vector<float>(cloud.cols(), 0.0f));
-}
-
-TEST(PointSymmetry, InThePlaneTheCenterOfACircleIsTheDarkestPoint) {
-  const GaussianEdt2D edt(regularPolygon(2400));
-  const LineMap map = lineTransform(edt, LineGrid(96, 96, edt.center(), edt.radius()), edt.center());
-  Points2D probes(2, 2);
-  probes << 0.0f, 0.5f, 0.0f, 0.6f;
-  const std::vector<float> values = pointSymmetry(map, probes);
-  // Every point lies on a line through the center, and all of these are symmetries.
-  EXPECT_GT(values[0], 0.95f);
-  EXPECT_GT(values[1], 0.9f);
-
-  const GaussianEdt2D rectangle_edt(rectangle(1.6, 0.9));
-  const LineMap rectangle_map = lineTransform(
-      rectangle_edt, LineGrid(96, 96, rectangle_edt.center(), rectangle_edt.radius()), rectangle_edt.center());
-  const std::vector<float> of_rectangle = pointSymmetry(rectangle_map, probes);
-  // Its two lines lie half a bin from the directions of the map.
-  EXPECT_GT(of_rectangle[0], 0.85f);
-  EXPECT_LT(of_rectangle[1], 0.6f);
 }
 
 }  // namespace
