@@ -11,9 +11,9 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: distinct points of a cloud that has parts. Ten points cut into parts leave one or two in each, fewer than
-/// the three that span a plane; forty or more may well be a coarse cloud of an object with parts. Faces of a mesh are
-/// surface, however few there are.
+/// chosen: fewest distinct points of a cloud that can have parts. Ten points cut into parts leave one or two in each,
+/// fewer than the three that span a plane; forty or more may well be a coarse cloud of an object with parts. Faces of a
+/// mesh are surface, however few there are.
 constexpr std::size_t kFewestPoints = 20;
 
 bool showsASurface(const SurfaceGraph& graph) {

@@ -11,8 +11,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: rays per connected piece. Half as many turn a ragged piece the wrong way more often; twice as many double
-/// the time.
+/// chosen: rays per connected piece at most. Half as many turn a ragged piece the wrong way more often; twice as many
+/// double the time.
 constexpr int kNumRays = 2000;
 /// chosen: where rays begin, in square roots of the area of their element. The triangles of neighbouring points of a
 /// cloud overlap: rays that begin at half this distance hit them; rays that begin at twice this distance pass through

@@ -36,8 +36,8 @@ TEST(SurfacePatches, SmallPiecesJoinTheClosestPatch) {
 }
 
 TEST(SurfacePatches, BordersPreferConcaveEdges) {
-  // Four quads in a row, folded upwards behind the first. The outward side of an open strip is chance: the edge that
-  // the detour counts is the concave one, or none.
+  // Four quads in a row, folded upwards behind the first. Which side of an open strip is outward is chance: the fold is
+  // made concave below.
   test::Mesh mesh;
   for (int x = 0; x <= 4; ++x)
     for (const float y : {0.0f, 1.0f})

@@ -13,7 +13,7 @@ namespace {
 /// shapes with parts that have no counterpart; with 1 sampling alone would break the agreement.
 constexpr double kGlobalShare = 0.95;
 /// chosen: share of a region on the smaller side of a plane that it lies across. At half, a region that the patches
-/// carry a little over the plane counts as lying across it; at twice, so does only one that the plane halves.
+/// carry a little over the plane counts as lying across it; at twice, only a region that the plane nearly halves does.
 constexpr double kLeastAcross = 0.2;
 
 /// Patches and regions on both sides of a plane.
@@ -41,9 +41,9 @@ private:
 
 /// Groups of patches that result from copying one side of a plane to the other.
 struct MirroredGroups {
-  std::vector<int>
-      group;             ///< of each patch: the number of its region, or number of patches + that of the copied region
-  double changed = 0.0;  ///< share of the surface whose group is not that of its region
+  /// Of each patch: the number of its region, or the number of patches + the number of the region that is copied to it.
+  std::vector<int> group;
+  double changed = 0.0;  ///< share of the surface whose region changes
 };
 
 MirroredGroups copySide(bool copy_above, const Regions& regions, const PartEvidence& evidence, const Sides& sides,
@@ -76,7 +76,7 @@ Regions regionsOf(const std::vector<int>& group, const PartEvidence& evidence) {
   return regions;
 }
 
-/// The segment at the reflection of each of some elements.
+/// The segment at the reflection of each listed element.
 std::vector<int> labelsAtReflections(const SurfaceGraph& graph, const std::vector<int>& labels,
                                      const std::vector<int>& elements, const ReflectionPlane& plane) {
   Points reflected(3, static_cast<Eigen::Index>(elements.size()));

@@ -6,8 +6,11 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kThinnest = 1e-3;   // chosen: radii; bounds the logarithm of the thickness, far below that of any part
-constexpr double kLeastArea = 1e-9;  // chosen: share of the surface; keeps patches without area out of 0 / 0
+/// chosen: radii; a bound of the logarithm of the thickness. Twice of it would still be thinner than any part that
+/// patches resolve; at half, a single patch without depth weighs more in its region.
+constexpr double kThinnest = 1e-3;
+/// chosen: share of the surface; keeps regions without area out of 0 / 0. Half and twice differ for such regions only.
+constexpr double kLeastArea = 1e-9;
 /// chosen: bounds of the relative sight. The first keeps it finite where a region does not see itself; the second lets
 /// no ratio of two small shares outweigh the other cues. The weights were fitted with these bounds.
 constexpr double kLeastInnerSight = 0.05, kMostRelativeSight = 1.5;
