@@ -1,5 +1,6 @@
 #include "core/base/graph_cut.h"
 
+#include <algorithm>
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 
@@ -11,6 +12,7 @@ namespace {
 
 using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;
 
+/// One direction of an edge, as Boost.Graph wants it.
 struct Arc {
   double capacity = 0.0, residual = 0.0;
   Traits::edge_descriptor reverse = {};
@@ -24,6 +26,7 @@ struct Node {
 
 using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, Node, Arc>;
 
+/// Adds an edge as two arcs that know each other.
 void connect(Graph& graph, std::size_t from, std::size_t to, double forth, double back) {
   const auto arc = boost::add_edge(from, to, graph).first, reverse = boost::add_edge(to, from, graph).first;
   graph[arc].capacity = forth;
@@ -36,7 +39,7 @@ void connect(Graph& graph, std::size_t from, std::size_t to, double forth, doubl
 
 std::vector<bool> GraphCut::solve() const {
   const std::size_t size = to_source.size();
-  check(to_sink.size() == size, "number of costs to the sink", to_sink.size(), "that of costs to the source");
+  check(to_sink.size() == size, "number of costs to the sink", to_sink.size(), "the number of costs to the source");
   Graph graph(size + 2);
   const std::size_t source = size, sink = size + 1;
   for (std::size_t i = 0; i < size; ++i) {
@@ -46,7 +49,7 @@ std::vector<bool> GraphCut::solve() const {
   }
   for (const Edge& edge : edges) {
     check(edge.from >= 0 && edge.to >= 0 && std::max(edge.from, edge.to) < static_cast<int>(size), "node of an edge",
-          std::max(edge.from, edge.to), "a node");
+          std::max(edge.from, edge.to), "in [0, number of nodes)");
     check(edge.capacity >= 0.0, "capacity", edge.capacity, ">= 0");
     connect(graph, edge.from, edge.to, edge.capacity, edge.capacity);
   }

@@ -4,20 +4,20 @@
 
 namespace pcl_symmetry {
 
-/// A minimum cut between a source and a sink (Boykov and Kolmogorov 2004).
+/// A minimum cut of a network of N nodes between a source and a sink (Boykov and Kolmogorov 2004).
 struct GraphCut {
   struct Edge {
-    int from, to;
-    double capacity;  ///< >= 0, both ways
+    int from, to;     ///< nodes, in [0, N)
+    double capacity;  ///< cost of separating the two nodes, >= 0, the same in both directions
   };
 
-  /// What it costs a node to be cut from the source, or from the sink; >= 0.
-  std::vector<double> to_source, to_sink;
+  std::vector<double> to_source;  ///< N, cost of separating a node from the source, >= 0
+  std::vector<double> to_sink;    ///< N, cost of separating a node from the sink, >= 0
   std::vector<Edge> edges;
 
-  /// \return per node whether it stays with the source.
-  /// \throws std::invalid_argument for another number of costs to the source than to the sink, an edge to a node that
-  /// does not exist, or a negative capacity.
+  /// \return for each node whether it stays with the source in the cut with the least total cost.
+  /// \throws std::invalid_argument if to_source and to_sink differ in size, an edge has a node out of range, or a cost
+  /// is negative.
   std::vector<bool> solve() const;
 };
 

@@ -10,7 +10,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The first center by weight, each next one by weight times squared distance from those before.
+/// Draws the first center with a chance in proportion to weight, each next one to weight times squared distance from
+/// the closest center so far.
 Eigen::MatrixXf spreadCenters(const Eigen::MatrixXf& features, const std::vector<float>& weights, int num_clusters,
                               RandomStream& random) {
   const Eigen::Index size = features.cols();
@@ -21,7 +22,7 @@ Eigen::MatrixXf spreadCenters(const Eigen::MatrixXf& features, const std::vector
     double rest = random.uniform() * chance.sum();
     Eigen::Index chosen = 0;
     while (chosen + 1 < size && (rest -= chance[chosen]) >= 0.0) ++chosen;
-    while (chance[chosen] <= 0.0) --chosen;  // rounding left the walk at a place without a chance
+    while (chance[chosen] <= 0.0) --chosen;  // rounding can end the walk at a feature without a chance
     centers.conservativeResize(Eigen::NoChange, centers.cols() + 1);
     centers.rightCols(1) = features.col(chosen);
     sq_distance = sq_distance.cwiseMin((features.colwise() - features.col(chosen)).colwise().squaredNorm().transpose());
@@ -30,7 +31,8 @@ Eigen::MatrixXf spreadCenters(const Eigen::MatrixXf& features, const std::vector
   return centers;
 }
 
-/// Assigns every feature to the closest center. \return whether a label changed.
+/// Assigns every feature to its closest center.
+/// \return whether a label changed.
 bool assign(const Eigen::MatrixXf& features, const std::vector<float>& weights, Clusters& clusters) {
   bool changed = false;
   clusters.sq_error = 0.0;
@@ -44,7 +46,7 @@ bool assign(const Eigen::MatrixXf& features, const std::vector<float>& weights, 
   return changed;
 }
 
-/// Moves each center to the mean of its features; one that has none stays.
+/// Moves each center to the weighted mean of its features; a center without features stays.
 void moveCenters(const Eigen::MatrixXf& features, const std::vector<float>& weights, Clusters& clusters) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(features.rows(), clusters.centers.cols());
   Eigen::VectorXd totals = Eigen::VectorXd::Zero(clusters.centers.cols());
@@ -69,7 +71,7 @@ Clusters kMeans(const Eigen::MatrixXf& features, const std::vector<float>& weigh
   options.validate();
   check(features.cols() >= 1, "number of features", features.cols(), ">= 1");
   check(weights.size() == static_cast<std::size_t>(features.cols()), "number of weights", weights.size(),
-        "that of the features");
+        "the number of features");
   check(std::any_of(weights.begin(), weights.end(), [](float w) { return w > 0.0f; }), "sum of the weights", 0, "> 0");
   Clusters best;
   for (int attempt = 0; attempt < options.num_tries; ++attempt) {

@@ -1,162 +1,119 @@
 #include "core/segmentation/symmetry_splitting.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+#include <utility>
 
-#include "core/base/k_means.h"
-#include "core/base/parallel.h"
-#include "core/geometry/mesh_sampling.h"
-#include "core/neighbours/surface_normals.h"
-#include "core/segmentation/border_cut.h"
-#include "pcl_symmetry/core/detection/local_maxima.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
-#include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "core/segmentation/evidence/symmetry_features.h"
+#include "core/segmentation/segment_tree.h"
+#include "core/segmentation/two_means_split.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kNumSamples = 4000;  // of the surface of a part
-constexpr int kNumRefined = 400;   // of them reflected by Iterative Symmetric Points
-constexpr int kNumNormalNeighbours = 8;
-constexpr double kSameAngle = 0.1, kSameOffset = 0.06;  // radians, radii: maxima that share one basin
-constexpr float kMapped = 0.5f;                         // f from which on an element counts as mapped onto the surface
-
-bool isNear(const ReflectionPlane& a, const ReflectionPlane& b, const Eigen::Vector3d& center, double radius) {
-  const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
-  return a.angleTo(b) < kSameAngle &&
-         std::abs(a.signedDistance(center) - sign * b.signedDistance(center)) < kSameOffset * radius;
-}
-
-/// Strongest maxima of the map, one of each basin, refined on the samples.
-std::vector<ReflectionPlane> refinedMaxima(const Points& samples, const GaussianEdt& edt,
-                                           const SplittingOptions& options, std::uint64_t seed, int num_threads) {
-  constexpr int kNumTheta = 32, kNumPhi = 128, kNumRadius = 64, kNumMapSamples = 64;
-  const PlaneGrid grid(kNumTheta, kNumPhi, kNumRadius, edt.center(), edt.radius());
-  PlanarTransformOptions transform;
-  transform.sampled.num_samples = kNumMapSamples;
-  transform.sampled.seed = seed;
-  transform.sampled.num_threads = num_threads;
-  LocalMaximaOptions significant;
-  significant.strength = options.strength;
-  significant.num_threads = num_threads;
-  const SymmetryMap map = planarTransform(edt, grid, centerOfMass(samples), transform);
-  std::vector<ReflectionPlane> starts;
-  const auto isNew = [&](const ReflectionPlane& plane, const std::vector<ReflectionPlane>& known) {
-    return std::none_of(known.begin(), known.end(),
-                        [&](const ReflectionPlane& k) { return isNear(plane, k, edt.center(), edt.radius()); });
-  };
-  for (const LocalMaximum& maximum : findLocalMaxima(map, significant)) {
-    if (static_cast<int>(starts.size()) == options.max_planes) break;
-    if (isNew(maximum.plane, starts)) starts.push_back(maximum.plane);
-  }
-
-  const auto search = makeFlannSearch(samples);
-  const LocalGeometry geometry = localGeometry(samples, *search, kNumNormalNeighbours, num_threads);
-  IspSurface surface{samples, geometry.normals, *search};
-  std::vector<int> reflected;
-  const Eigen::Index stride = std::max<Eigen::Index>(1, samples.cols() / kNumRefined);
-  for (Eigen::Index i = 0; i < samples.cols(); i += stride) reflected.push_back(static_cast<int>(i));
-  IspOptions isp;
-  isp.sigma = edt.sigma();
-  isp.final_sigma = 0.5 * edt.sigma();
-  std::vector<ReflectionPlane> refined(starts.size());
-  parallelBlocks(starts.size(), num_threads, [&](std::size_t i) {
-    const ReflectionPlane plane = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;
-    refined[i] = isNear(plane, starts[i], edt.center(), 2.0 * edt.radius()) ? plane : starts[i];
+/// The splitting rule of Section 5.3. "Segmentation is terminated ... when the only planes of local maxima reflect
+/// either more than 90 % or less than 10 % of the surface onto itself": a plane between the two keeps it going.
+bool hasDistinctSymmetries(const std::vector<PartPlane>& planes, const SplittingOptions& options) {
+  return std::any_of(planes.begin(), planes.end(), [&](const PartPlane& plane) {
+    return plane.share >= options.min_share && plane.share <= options.max_share;
   });
-  std::vector<ReflectionPlane> planes;
-  for (const ReflectionPlane& plane : refined)
-    if (isNew(plane, planes)) planes.push_back(plane.canonical());
-  return planes;
 }
 
-/// The two pieces with the largest areas; -1 where there are not so many.
-std::pair<int, int> largestPieces(const SurfaceGraph& graph, const std::vector<int>& pieces) {
-  std::vector<double> areas(1 + *std::max_element(pieces.begin(), pieces.end()), 0.0);
-  for (int i = 0; i < graph.size(); ++i)
-    if (pieces[i] >= 0) areas[pieces[i]] += graph.areas[i];
-  int first = -1, second = -1;
-  for (int p = 0; p < static_cast<int>(areas.size()); ++p) {
-    if (first < 0 || areas[p] > areas[first]) {
-      second = first;
-      first = p;
-    } else if (second < 0 || areas[p] > areas[second]) {
-      second = p;
-    }
+/// A tree of parts that grows by splits of its leaves.
+class SplittingTree {
+public:
+  SplittingTree(const SurfaceGraph& graph, const SegmentationOptions& options) : graph_(graph), options_(options) {
+    std::vector<int> all(static_cast<std::size_t>(graph.size()));
+    std::iota(all.begin(), all.end(), 0);
+    add(-1, 0, std::move(all));
   }
-  return {first, second};
-}
+
+  /// \return the largest leaf that may be split; -1 for none.
+  int largestOpen() const {
+    int largest = -1;
+    for (int i = 0; i < static_cast<int>(nodes_.size()); ++i)
+      if (isOpen(i) && areas_[i] > (largest < 0 ? 0.0 : areas_[largest])) largest = i;
+    return largest;
+  }
+
+  /// Splits a leaf, or closes it if it has no distinct symmetries.
+  /// \return whether it was split.
+  bool split(int leaf) {
+    is_open_[leaf] = false;
+    const std::uint64_t seed = options_.seed + leaf;
+    const SymmetryFeatures features =
+        symmetryFeatures(graph_, elements_[leaf], options_.splitting, seed, options_.num_threads);
+    nodes_[leaf].planes = features.planes;
+    if (!hasDistinctSymmetries(features.planes, options_.splitting)) return false;
+    auto sides = splitByTwoMeans(graph_, elements_[leaf], features, options_.splitting, seed);
+    if (!sides) return false;
+    const int depth = nodes_[leaf].depth + 1;
+    const int first = add(leaf, depth, std::move(sides->first)), second = add(leaf, depth, std::move(sides->second));
+    nodes_[leaf].children[0] = first;
+    nodes_[leaf].children[1] = second;
+    return true;
+  }
+
+  /// \return the share of the work that is done, if every open leaf is split down to the depth.
+  double progress() const {
+    const int depth = options_.splitting.depth;
+    double open = 0.0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (isOpen(static_cast<int>(i))) open += areas_[i] * std::max(1, depth - nodes_[i].depth);
+    return std::clamp(1.0 - open / (graph_.area() * std::max(1, depth)), 0.0, 1.0);
+  }
+
+  /// \return the leaves as segments.
+  Segmentation segments() const {
+    Segmentation result;
+    result.labels.assign(static_cast<std::size_t>(graph_.size()), 0);
+    result.tree = nodes_;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (nodes_[i].children[0] >= 0) continue;
+      result.tree[i].segment = result.num_segments++;
+      for (const int element : elements_[i]) result.labels[element] = result.tree[i].segment;
+    }
+    return numberedByArea(graph_, std::move(result));
+  }
+
+private:
+  int add(int parent, int depth, std::vector<int> elements) {
+    SegmentNode node;
+    node.parent = parent;
+    node.depth = depth;
+    nodes_.push_back(node);
+    double area = 0.0;
+    for (const int element : elements) area += graph_.areas[element];
+    areas_.push_back(area);
+    is_open_.push_back(area > 0.0);
+    elements_.push_back(std::move(elements));
+    return static_cast<int>(nodes_.size()) - 1;
+  }
+
+  /// A given number of parts overrules the depth.
+  bool isOpen(int node) const {
+    return is_open_[node] && (options_.num_parts > 0 || nodes_[node].depth < options_.splitting.depth);
+  }
+
+  const SurfaceGraph& graph_;
+  const SegmentationOptions& options_;
+  std::vector<SegmentNode> nodes_;
+  std::vector<std::vector<int>> elements_;  ///< of each node
+  std::vector<double> areas_;               ///< of each node, input units squared
+  std::vector<bool> is_open_;               ///< leaves that nobody has tried to split
+};
 
 }  // namespace
 
-Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& elements, int num_points, std::uint64_t seed) {
-  std::vector<char> inside(static_cast<std::size_t>(graph.size()), 0);
-  for (const int element : elements) inside[element] = 1;
-  std::vector<Eigen::Vector3i> triangles;
-  for (std::size_t t = 0; t < graph.triangles.size(); ++t)
-    if (inside[graph.element_of_triangle[t]]) triangles.push_back(graph.triangles[t]);
-  return sampleTriangles(graph.corners, triangles, num_points, seed);
-}
-
-SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
-                                  const SplittingOptions& options, std::uint64_t seed, int num_threads) {
-  const Points samples = sampleElements(graph, elements, kNumSamples, seed);
-  GaussianEdtOptions edt_options;
-  edt_options.num_threads = num_threads;
-  const GaussianEdt edt(samples, edt_options);
-  SymmetryFeatures features;
-  for (const ReflectionPlane& plane : refinedMaxima(samples, edt, options, seed, num_threads))
-    features.planes.push_back({plane, 0.0});
-  features.support.resize(static_cast<Eigen::Index>(features.planes.size()),
-                          static_cast<Eigen::Index>(elements.size()));
-  double area = 0.0;
-  for (const int element : elements) area += graph.areas[element];
-  parallelBlocks(features.planes.size(), num_threads, [&](std::size_t k) {
-    PartPlane& plane = features.planes[k];
-    double mapped = 0.0;
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      const Eigen::Vector3d center = graph.centers.col(elements[i]).cast<double>();
-      const auto f = static_cast<float>(std::clamp(edt(plane.plane.reflect(center)), 0.0, 1.0));
-      features.support(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = f;
-      if (f > kMapped) mapped += graph.areas[elements[i]];
-    }
-    plane.share = area > 0.0 ? mapped / area : 0.0;
-  });
-  return features;
-}
-
-std::optional<std::pair<std::vector<int>, std::vector<int>>> splitBySymmetry(const SurfaceGraph& graph,
-                                                                             const std::vector<int>& elements,
-                                                                             const SymmetryFeatures& features,
-                                                                             const SplittingOptions& options,
-                                                                             std::uint64_t seed) {
-  std::vector<float> areas;
-  for (const int element : elements) areas.push_back(graph.areas[element]);
-  KMeansOptions two_means;
-  two_means.seed = seed;
-  const Clusters clusters = kMeans(features.support, areas, two_means);
-  if (clusters.centers.cols() < 2) return std::nullopt;
-
-  // Elements of other parts: -1. The second side begins as the second largest piece, the first as all others.
-  std::vector<int> side(static_cast<std::size_t>(graph.size()), -1);
-  for (std::size_t i = 0; i < elements.size(); ++i) side[elements[i]] = clusters.labels[i];
-  const std::vector<int> pieces = connectedPieces(graph, side);
-  const auto [first, second] = largestPieces(graph, pieces);
-  if (second < 0) return std::nullopt;
-  std::vector<int> open;
-  for (const int element : elements) {
-    side[element] = pieces[element] == second ? 1 : 0;
-    if (pieces[element] != first && pieces[element] != second) open.push_back(element);
+Segmentation segmentBySplitting(const SurfaceGraph& graph, const SegmentationOptions& options) {
+  SplittingTree tree(graph, options);
+  int num_parts = 1;
+  for (int leaf; (leaf = tree.largestOpen()) >= 0 && (options.num_parts == 0 || num_parts < options.num_parts);) {
+    if (tree.split(leaf)) ++num_parts;
+    if (options.progress) options.progress(tree.progress());
   }
-  const BoundingBall ball = boundingBall(sampleElements(graph, elements, kNumSamples, seed));
-  cutBorder(graph, side, open, options.cut_band * ball.radius, options.concavity_weight);
-  std::pair<std::vector<int>, std::vector<int>> sides;
-  for (const int element : elements) (side[element] == 0 ? sides.first : sides.second).push_back(element);
-  if (sides.first.empty() || sides.second.empty()) return std::nullopt;
-  return sides;
+  return tree.segments();
 }
 
 }  // namespace pcl_symmetry

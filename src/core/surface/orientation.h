@@ -6,10 +6,12 @@
 
 namespace pcl_symmetry {
 
-/// Turns the normals of a surface outward: alike along the surface, and each connected piece such that rays along its
-/// normals leave the shape more often than rays against them.
-/// \param agreement of each edge: > 0 where the normals at both ends point to the same side, < 0 where they do not; the
-/// larger its magnitude, the surer.
-void orientNormals(SurfaceGraph& graph, const std::vector<float>& agreement);
+/// Outward normals: neighbours agree, and rays along the normals of a connected piece leave the shape more often than
+/// rays against them.
+/// \param graph with normals of any sign and with the index of its edges.
+/// \param agreement one per edge: > 0 if the normals at both ends point to the same side, < 0 if they do not; a larger
+/// magnitude is more certain.
+/// \return 3 x N, each normal of the graph or its opposite.
+Points outwardNormals(const SurfaceGraph& graph, const std::vector<float>& agreement);
 
 }  // namespace pcl_symmetry

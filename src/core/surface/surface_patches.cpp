@@ -12,7 +12,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Elements of the largest connected pieces, at most so many pieces.
+/// Elements of the num_pieces largest connected pieces.
 std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_pieces) {
   const std::vector<int> piece = connectedPieces(graph, std::vector<int>(static_cast<std::size_t>(graph.size()), 0));
   std::vector<double> areas(1 + static_cast<std::size_t>(*std::max_element(piece.begin(), piece.end())), 0.0);
@@ -29,11 +29,11 @@ std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_piec
   return elements;
 }
 
-/// Elements that no patch has reached get that of the closest one that has a patch.
-void fillFromClosest(const SurfaceGraph& graph, std::vector<int>& patch) {
+/// Elements without a patch get the patch of the closest element that has one.
+std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch) {
   std::vector<int> reached, missed;
   for (int i = 0; i < graph.size(); ++i) (patch[i] >= 0 ? reached : missed).push_back(i);
-  if (missed.empty()) return;
+  if (missed.empty()) return patch;
   const auto centersOf = [&](const std::vector<int>& elements) {
     Points centers(3, static_cast<Eigen::Index>(elements.size()));
     for (std::size_t k = 0; k < elements.size(); ++k)
@@ -44,45 +44,75 @@ void fillFromClosest(const SurfaceGraph& graph, std::vector<int>& patch) {
   std::vector<float> sq_distances;
   makeFlannSearch(centersOf(reached))->search(centersOf(missed), 1, closest, sq_distances);
   for (std::size_t k = 0; k < missed.size(); ++k) patch[missed[k]] = patch[reached[closest[k]]];
+  return patch;
 }
 
-}  // namespace
+/// Patches that grow around seeds; each element belongs to the seed with the shortest way along the surface.
+class GrowingPatches {
+public:
+  GrowingPatches(const SurfaceGraph& graph, float concave_detour)
+      : graph_(graph),
+        concave_detour_(concave_detour),
+        distance_(static_cast<std::size_t>(graph.size()), std::numeric_limits<float>::infinity()),
+        patch_(distance_.size(), -1) {}
 
-std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour) {
-  std::vector<float> distance(static_cast<std::size_t>(graph.size()), std::numeric_limits<float>::infinity());
-  std::vector<int> patch(distance.size(), -1);
-  using Entry = std::pair<float, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-  std::priority_queue<Entry> farthest;  // with distances that may have become shorter since
-  for (const int element : elementsOfLargestPieces(graph, num_patches))
-    if (graph.areas[element] > 0.0f) farthest.emplace(distance[element], element);
-  for (int next = 0; !farthest.empty();) {
-    const auto [d, seed] = farthest.top();
-    farthest.pop();
-    if (d > distance[seed]) {
-      farthest.emplace(distance[seed], seed);
-      continue;
-    }
-    if (std::isfinite(d) && next >= num_patches) break;
-    distance[seed] = 0.0f;
-    patch[seed] = next++;
+  /// \return length of the way from the closest seed; infinite if no patch has reached the element.
+  float distance(int element) const { return distance_[element]; }
+
+  /// \return the patch of each element; -1 for none.
+  const std::vector<int>& patches() const { return patch_; }
+
+  /// Adds a patch, which takes the elements that are closer to its seed than to earlier ones.
+  void addSeed(int seed) {
+    distance_[seed] = 0.0f;
+    patch_[seed] = num_patches_++;
+    using Entry = std::pair<float, int>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
     front.emplace(0.0f, seed);
     while (!front.empty()) {
       const auto [so_far, element] = front.top();
       front.pop();
-      if (so_far > distance[element]) continue;
-      graph.visitNeighbours(element, [&, from = element, reached = so_far](int to, const SurfaceGraph::Edge& edge) {
-        const float step = (graph.centers.col(to) - graph.centers.col(from)).norm();
-        const float there = reached + step * (1.0f + concave_detour * std::max(0.0f, edge.concavity));
-        if (there >= distance[to]) return;
-        distance[to] = there;
-        patch[to] = patch[from];
+      if (so_far > distance_[element]) continue;
+      graph_.visitNeighbours(element, [&, from = element, reached = so_far](int to, const SurfaceGraph::Edge& edge) {
+        const float step = (graph_.centers.col(to) - graph_.centers.col(from)).norm();
+        const float there = reached + step * (1.0f + concave_detour_ * std::max(0.0f, edge.concavity));
+        if (there >= distance_[to]) return;
+        distance_[to] = there;
+        patch_[to] = patch_[from];
         front.emplace(there, to);
       });
     }
   }
-  fillFromClosest(graph, patch);
-  return patch;
+
+  int size() const { return num_patches_; }
+
+private:
+  const SurfaceGraph& graph_;
+  const float concave_detour_;
+  std::vector<float> distance_;
+  std::vector<int> patch_;
+  int num_patches_ = 0;
+};
+
+}  // namespace
+
+std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour) {
+  GrowingPatches patches(graph, concave_detour);
+  // The next seed is the element farthest from all seeds. Distances in the queue may be longer than they are now.
+  std::priority_queue<std::pair<float, int>> farthest;
+  for (const int element : elementsOfLargestPieces(graph, num_patches))
+    if (graph.areas[element] > 0.0f) farthest.emplace(patches.distance(element), element);
+  while (!farthest.empty()) {
+    const auto [distance, element] = farthest.top();
+    farthest.pop();
+    if (distance > patches.distance(element)) {
+      farthest.emplace(patches.distance(element), element);
+      continue;
+    }
+    if (std::isfinite(distance) && patches.size() >= num_patches) break;
+    patches.addSeed(element);
+  }
+  return filledFromClosest(graph, patches.patches());
 }
 
 }  // namespace pcl_symmetry

@@ -8,11 +8,13 @@
 #include <stdexcept>
 
 #include "shapes/meshes.h"
+#include "shapes/neighbours.h"
 
 namespace pcl_symmetry {
 namespace {
 
 using test::Mesh;
+using test::neighboursOf;
 
 SegmentationOptions splittingTo(int depth) {
   SegmentationOptions options;
@@ -48,6 +50,12 @@ void expectTreeOf(const Segmentation& segmentation) {
   EXPECT_EQ(static_cast<int>(leaves.size()), segmentation.num_segments);
 }
 
+void expectNumberedByFallingArea(const SurfaceGraph& graph, const Segmentation& segmentation) {
+  std::vector<double> areas(static_cast<std::size_t>(segmentation.num_segments), 0.0);
+  for (int i = 0; i < graph.size(); ++i) areas[segmentation.labels[i]] += graph.areas[i];
+  EXPECT_TRUE(std::is_sorted(areas.rbegin(), areas.rend()));
+}
+
 TEST(Splitting, TakesTheHandleOffABox) {
   const Mesh mesh = mug();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
@@ -64,23 +72,24 @@ TEST(Splitting, DepthAndPartsBoundTheNumberOfSegments) {
   const Mesh mesh = mug();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
   EXPECT_EQ(segmentSurface(graph, splittingTo(0)).num_segments, 1);
-  const Segmentation deep = segmentSurface(graph, splittingTo(3));
+  const Segmentation deep = segmentSurface(graph, splittingTo(2));
   EXPECT_GT(deep.num_segments, 2);
-  EXPECT_LE(deep.num_segments, 8);
+  EXPECT_LE(deep.num_segments, 4);
   expectTreeOf(deep);
-  SegmentationOptions five = splittingTo(1);
-  five.num_parts = 5;
-  EXPECT_EQ(segmentSurface(graph, five).num_segments, 5) << "parts overrule the depth";
+  expectNumberedByFallingArea(graph, deep);
+  SegmentationOptions three = splittingTo(1);
+  three.num_parts = 3;
+  EXPECT_EQ(segmentSurface(graph, three).num_segments, 3) << "parts overrule the depth";
 }
 
-TEST(Splitting, SegmentsAreNumberedByFallingArea) {
+TEST(Splitting, EndsIfNoPlaneMapsAShareBetweenTheTwo) {
   const Mesh mesh = mug();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
-  const Segmentation segmentation = segmentSurface(graph, splittingTo(3));
-  std::vector<double> areas(static_cast<std::size_t>(segmentation.num_segments), 0.0);
-  for (int i = 0; i < graph.size(); ++i) areas[segmentation.labels[i]] += graph.areas[i];
-  EXPECT_TRUE(std::is_sorted(areas.rbegin(), areas.rend()));
-  EXPECT_GT(areas.back(), 0.0);
+  SegmentationOptions options = splittingTo(3);
+  options.splitting.min_share = options.splitting.max_share = 0.5;
+  const Segmentation segmentation = segmentSurface(graph, options);
+  EXPECT_EQ(segmentation.num_segments, 1) << "no plane maps exactly half of it";
+  EXPECT_FALSE(segmentation.tree[0].planes.empty());
 }
 
 TEST(Splitting, SameForAnyNumberOfThreads) {
@@ -102,7 +111,7 @@ int segmentAt(const SurfaceGraph& graph, const Segmentation& segmentation, const
 
 const Eigen::Vector3f kLeftCube(4, 4, 8), kRightCube(18, 4, 8), kBar(11, 4, 5);
 
-TEST(Merging, FindsThePartsOfADumbbellByItself) {
+TEST(Merging, FindsThePartsOfADumbbellAndTheirImages) {
   const Mesh mesh = test::dumbbell();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
   const Segmentation segmentation = segmentSurface(graph);
@@ -119,18 +128,13 @@ TEST(Merging, FindsThePartsOfADumbbellByItself) {
     if (x > 8.1f && x < 13.9f) num_wrong += segmentation.labels[i] == left || segmentation.labels[i] == right;
   }
   EXPECT_LT(num_wrong, 0.02 * graph.size());
-}
 
-TEST(Merging, PairsImagesInThePlanesOfTheWhole) {
-  const Mesh mesh = test::dumbbell();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
-  const Segmentation segmentation = segmentSurface(graph);
-  const int left = segmentAt(graph, segmentation, kLeftCube), right = segmentAt(graph, segmentation, kRightCube);
+  // Segments have images in the planes of the whole: two across x and y, one of which exchanges the cubes.
   const int bar = segmentAt(graph, segmentation, kBar);
   bool across_x = false, across_y = false;
   std::size_t next = 0;
   for (const PartPlane& plane : segmentation.tree[0].planes) {
-    if (plane.share < 0.75) continue;
+    if (plane.share < kMappedShare) continue;
     ASSERT_LT(next, segmentation.images.size());
     const std::vector<int>& image = segmentation.images[next++];
     EXPECT_EQ(image[bar], bar);
@@ -149,7 +153,7 @@ TEST(Merging, PairsImagesInThePlanesOfTheWhole) {
 }
 
 TEST(Merging, LabelsAgreeAcrossAPlaneOfSymmetry) {
-  // A body with two legs, of which one has a groove that the other lacks: nearly symmetric.
+  // A nearly symmetric body on two legs: one leg has a groove.
   const Mesh mesh = test::voxelMesh(16, [](int x, int y, int z) {
     if (y >= 4) return false;
     if (z >= 10) return true;
@@ -161,7 +165,7 @@ TEST(Merging, LabelsAgreeAcrossAPlaneOfSymmetry) {
   std::size_t next = 0;
   bool found = false;
   for (const PartPlane& plane : segmentation.tree[0].planes) {
-    if (plane.share < 0.75) continue;
+    if (plane.share < kMappedShare) continue;
     const std::vector<int>& image = segmentation.images[next++];
     if (std::abs(plane.plane.normal().x()) < 0.99) continue;
     found = true;
@@ -187,15 +191,14 @@ TEST(Merging, GivesAsManyPartsAsAskedFor) {
   }
 }
 
-TEST(Merging, EveryKindOfEvidenceSeparatesTheCubes) {
+TEST(Merging, ConcavityWithoutTheBodySeparatesTheCubes) {
   const Mesh mesh = test::dumbbell();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
-  for (const MergingEvidence evidence : {MergingEvidence::SymmetryAndConcavity, MergingEvidence::All}) {
-    SegmentationOptions options;
-    options.merging.evidence = evidence;
-    const Segmentation segmentation = segmentSurface(graph, options);
-    EXPECT_NE(segmentAt(graph, segmentation, kLeftCube), segmentAt(graph, segmentation, kRightCube));
-  }
+  SegmentationOptions options;
+  options.merging.evidence = MergingEvidence::SymmetryAndConcavity;
+  const Segmentation segmentation = segmentSurface(graph, options);
+  expectNumberedByFallingArea(graph, segmentation);
+  EXPECT_NE(segmentAt(graph, segmentation, kLeftCube), segmentAt(graph, segmentation, kRightCube));
 }
 
 TEST(Merging, SoupIsCutAsTheMeshIs) {
@@ -205,7 +208,7 @@ TEST(Merging, SoupIsCutAsTheMeshIs) {
 }
 
 TEST(Merging, PiecesThatNothingJoinsAreSegmentsAndCrumbsJoinTheClosest) {
-  // Two cubes apart, and a single quad beside the right one.
+  // Two cubes apart, and a small triangle beside the right one.
   Mesh mesh = test::voxelMesh(22, [](int x, int y, int z) { return y < 8 && z < 8 && (x < 8 || x >= 14); });
   const int a = mesh.add({22.5f, 4, 4}), b = mesh.add({22.5f, 4.5f, 4}), c = mesh.add({22.5f, 4, 4.5f});
   mesh.polygons.push_back({a, b, c});
@@ -264,6 +267,47 @@ TEST(Merging, SameForAnyNumberOfThreads) {
   const std::vector<int> labels = segmentSurface(graph, options).labels;
   options.num_threads = 3;
   EXPECT_EQ(segmentSurface(graph, options).labels, labels);
+}
+
+/// Points spread over the faces of a dumbbell.
+Points dumbbellPoints(int size) {
+  const Mesh mesh = test::dumbbell();
+  Points points(3, size);
+  for (int i = 0; i < size; ++i) points.col(i) = mesh.center(mesh.polygons.size() * i / size);
+  return points;
+}
+
+TEST(SurfaceSegmentation, FewDistinctPointsAreOneSegment) {
+  Points twice(3, 38);
+  twice << dumbbellPoints(19), dumbbellPoints(19);
+  for (const SegmentationMethod method : {SegmentationMethod::Merging, SegmentationMethod::Splitting}) {
+    for (const Points& points : {dumbbellPoints(10), twice}) {
+      SegmentationOptions options;
+      options.method = method;
+      for (const int num_parts : {0, 5}) {
+        options.num_parts = num_parts;
+        const Segmentation segmentation = segmentSurface(cloudGraph(points, neighboursOf(points, 6)), options);
+        EXPECT_EQ(segmentation.num_segments, 1);
+        EXPECT_EQ(segmentation.labels, std::vector<int>(static_cast<std::size_t>(points.cols()), 0));
+        expectTreeOf(segmentation);
+        EXPECT_TRUE(segmentation.images.empty());
+      }
+    }
+  }
+}
+
+TEST(SurfaceSegmentation, TwentyPointsAndSmallMeshesMayHaveParts) {
+  SegmentationOptions two;
+  two.num_parts = 2;
+  const Points points = dumbbellPoints(20);
+  EXPECT_EQ(segmentSurface(cloudGraph(points, neighboursOf(points, 6)), two).num_segments, 2);
+  Mesh cube;
+  for (int corner = 0; corner < 8; ++corner)
+    cube.add(Eigen::Vector3f(static_cast<float>(corner & 1), static_cast<float>(corner >> 1 & 1),
+                             static_cast<float>(corner >> 2)));
+  cube.polygons = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  EXPECT_EQ(segmentSurface(meshGraph(cube.vertices, cube.polygons), two).num_segments, 2);
 }
 
 TEST(SurfaceSegmentation, RefusesBadOptions) {

@@ -7,14 +7,15 @@
 #include <limits>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "shapes/meshes.h"
+#include "shapes/neighbours.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry {
 namespace {
 
 using test::Mesh;
+using test::neighboursOf;
 
 Mesh cube() {
   return test::voxelMesh(4, [](int, int, int) { return true; });
@@ -23,18 +24,6 @@ Mesh cube() {
 /// The mesh of a step: a cube of 4 x 4 x 4 without its upper quarter.
 Mesh step() {
   return test::voxelMesh(4, [](int x, int, int z) { return x < 2 || z < 2; });
-}
-
-std::vector<std::vector<int>> neighboursOf(const Points& points, int count) {
-  std::vector<int> indices;
-  std::vector<float> sq_distances;
-  makeFlannSearch(points)->search(points, count + 1, indices, sq_distances);
-  std::vector<std::vector<int>> neighbours(points.cols());
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    for (int k = 0; k <= count; ++k)
-      if (indices[i * (count + 1) + k] != i) neighbours[i].push_back(indices[i * (count + 1) + k]);
-  for (auto& own : neighbours) own.resize(count);
-  return neighbours;
 }
 
 TEST(SurfaceGraph, EveryFaceOfACubeHasFourNeighboursAndItsArea) {
@@ -122,7 +111,7 @@ TEST(SurfaceGraph, PiecesAreConnectedAndOfOneLabel) {
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
   std::vector<int> labels(static_cast<std::size_t>(graph.size()), 0);
   EXPECT_EQ(connectedPieces(graph, labels), labels);
-  // Top and bottom alone: two pieces of one label.
+  // Top and bottom have label 0 and do not touch; the other faces have no label.
   for (int i = 0; i < graph.size(); ++i) labels[i] = std::abs(graph.normals(2, i)) > 0.5f ? 0 : -1;
   const std::vector<int> pieces = connectedPieces(graph, labels);
   EXPECT_EQ(*std::max_element(pieces.begin(), pieces.end()), 1);

@@ -1,8 +1,8 @@
-#include "core/geometry/directions.h"
 #include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/directions.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry {

@@ -7,32 +7,36 @@
 
 namespace pcl_symmetry {
 
-/// A surface as elements with neighbours: the faces of a mesh or the points of a cloud.
+/// A surface as N elements with neighbours (Section 5.3): the faces of a mesh or the points of a cloud.
 struct SurfaceGraph {
-  /// A stretch of border between two elements.
+  /// Two neighbouring elements and the border that they share.
   struct Edge {
-    int from, to;
+    int from, to;     ///< elements, in [0, N)
     float length;     ///< of the border, input units
-    float concavity;  ///< angle between the normals, radians, > 0 where the surface is concave, < 0 where it is convex
+    float concavity;  ///< angle between the two normals, in [-pi, pi] radians; > 0 where the surface is concave
   };
 
-  Points centers;            ///< 3 x N
-  Points normals;            ///< 3 x N, unit, outward; zero where an element has none
-  std::vector<float> areas;  ///< N, input units squared
+  Points centers;            ///< 3 x N, input frame
+  Points normals;            ///< 3 x N, unit, outward; zero for an element without a normal
+  std::vector<float> areas;  ///< N, input units squared, >= 0
   std::vector<Edge> edges;
-  std::vector<int> first_edge;  ///< N + 1, into edge_of
+  std::vector<int> first_edge;  ///< N + 1 indices into edge_of: where the edges of each element begin
   std::vector<int> edge_of;     ///< indices into edges, element by element
 
-  /// The surface for rays and samples: triangles of the elements; small ones about the points of a cloud.
-  Points corners;
-  std::vector<Eigen::Vector3i> triangles;
-  std::vector<int> element_of_triangle;
-  bool is_cloud = false;  ///< elements are points
+  Points corners;                          ///< 3 x C, vertices of the triangles
+  std::vector<Eigen::Vector3i> triangles;  ///< faces in triangles, or one small triangle for each point of a cloud
+  std::vector<int> element_of_triangle;    ///< one per triangle, in [0, N)
+  bool is_cloud = false;                   ///< whether the elements are points
 
+  /// \return N.
   int size() const { return static_cast<int>(areas.size()); }
+
+  /// \return the total area, input units squared.
   double area() const;
 
   /// Calls visit(neighbour, edge) for each neighbour of an element.
+  /// \param element in [0, N).
+  /// \param visit takes (int, const Edge&).
   template <typename Visit>
   void visitNeighbours(int element, const Visit& visit) const {
     for (int i = first_edge[element]; i < first_edge[element + 1]; ++i) {
@@ -42,20 +46,27 @@ struct SurfaceGraph {
   }
 };
 
-/// Faces joined where they share an edge. Corners at the same place are one, so that a polygon soup is connected; edges
-/// of more than two faces join each with the next; faces without area have neighbours too.
-/// \param vertices 3 x V. \param polygons indices into the vertices, three or more each; those with a vertex that is
-/// not finite are elements without neighbours. \throws std::invalid_argument where an index is out of range or no
-/// polygon has an area.
+/// The graph of a mesh: faces are neighbours if they share an edge.
+///
+/// Vertices at the same place are joined, so that a polygon soup is connected. If more than two faces share an edge,
+/// each is joined with the next one. Faces without area have neighbours, too. \param vertices 3 x V, input frame.
+/// \param polygons three or more indices into the vertices each. A polygon with a vertex that is not finite becomes an
+/// element without neighbours.
+/// \return one element per polygon, in input order.
+/// \throws std::invalid_argument if an index is out of range or no polygon has an area.
 SurfaceGraph meshGraph(const PointsRef& vertices, const std::vector<std::vector<int>>& polygons);
 
-/// Points joined with their neighbours.
-/// \param points 3 x N, finite, not all equal. \param neighbours of each point the closest others, nearest first, the
-/// same number for all. \throws std::invalid_argument for points without extent.
+/// The graph of a cloud: two points are neighbours if one of them is among the nearest of the other.
+/// \param points 3 x N, finite, input frame.
+/// \param neighbours for each point the indices of its nearest other points, nearest first; the same number for all.
+/// \return one element per point, in input order; the area is estimated from the distance of the last neighbour.
+/// \throws std::invalid_argument if all points are equal.
 SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours);
 
-/// Numbers from 0 for the connected pieces of equal label, in the order of their first elements.
-/// \param labels one per element; elements with a label < 0 belong to no piece and get -1.
+/// Connected pieces of equal label.
+/// \param graph N elements.
+/// \param labels N values; an element with a label < 0 belongs to no piece.
+/// \return the number of its piece for each element, counted from 0 in the order of the first elements; -1 for none.
 std::vector<int> connectedPieces(const SurfaceGraph& graph, const std::vector<int>& labels);
 
 }  // namespace pcl_symmetry

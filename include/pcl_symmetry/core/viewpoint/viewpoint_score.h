@@ -5,31 +5,38 @@
 
 namespace pcl_symmetry {
 
-/// A plane of symmetry as views see it.
+/// A plane of symmetry as the viewpoint score sees it: u and M(u) of Section 5.4.
 struct ViewPlane {
-  Eigen::Vector3d normal;  ///< unit
-  double weight;           ///< M, how much of a symmetry it is, >= 0
+  Eigen::Vector3d normal;  ///< u, unit
+  double weight;           ///< M(u), the symmetry score of the plane, >= 0
 };
 
+/// A view direction and its score.
 struct RankedView {
-  Eigen::Vector3d direction;  ///< unit, from the object to the camera
-  double score;               ///< S
+  Eigen::Vector3d direction;  ///< v, unit, from the object to the camera
+  double score;               ///< S(v), >= 0
 };
 
-/// S(v) = sum M |v . n| (Section 5.4): large where v looks across the planes, so that little of what is seen is
-/// repeated. \param direction unit.
+/// The viewpoint score S(v) = sum over u in W of |v . u| M(u) (Section 5.4). It is large if v looks along the normals
+/// of the planes, so that little of what is seen is repeated. \param planes W. \param direction v, unit. \return S(v)
+/// in [0, sum of the weights].
 double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3d& direction);
 
 /// The local maxima of S, best first, each with its opposite.
 ///
-/// Where no v . n changes sign, S(v) = v . sum +-M n: it is greatest at the direction of that sum. From each of the
-/// even directions the step to the sum is repeated until the signs stay; no step goes down, so that the maxima are
-/// exact. \param planes at least one with weight > 0; else all directions are equal, and none is returned.
+/// A departure from the paper's exhaustive search, because it is exact: where no v . u changes its sign,
+/// S(v) = v . sum of +-M(u) u is largest in the direction of that sum. From each of many even directions the step to
+/// the direction of the sum is repeated until no sign changes; no step lowers S. \param planes W. \param num_directions
+/// starts of the search, >= 1. chosen: half as many may miss a maximum of a small cell between many planes; twice as
+/// many double the time. \return none if no plane has a weight > 0: then all directions are equal. \throws
+/// std::invalid_argument if num_directions < 1 and a plane has a weight > 0.
 std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes, int num_directions = 4096);
 
-/// The direction of least S. On a piece of the sphere where no v . n changes sign, S is least at a corner: the search
-/// is over the directions along two planes at a time, and exact. Of one plane, or parallel ones, all directions along
-/// it are equal, and one of them is returned. \param planes at least one.
+/// The direction with the least S.
+///
+/// Where no v . u changes its sign, S is least at a corner of the cell: a direction along two planes. The search over
+/// all pairs of planes is exact. If all planes are parallel, all directions along them are equal and one of them is
+/// returned. \param planes W, at least one. \throws std::invalid_argument if there is no plane.
 RankedView worstView(const std::vector<ViewPlane>& planes);
 
 }  // namespace pcl_symmetry

@@ -1,53 +1,30 @@
-#include "core/segmentation/region_merging.h"
+#include "core/segmentation/merging/regions.h"
 
-#include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kThinnest = 1e-3;  // radii
-
-/// Log odds that two regions are one part, per unit of each cue.
-///
-/// For each kind of evidence a logistic regression on merges of regions of the Princeton Segmentation Benchmark (ids 1
-/// modulo 4), each weighed by the product of the two areas to the power 0.65 to 0.75. What it predicts is the share of
-/// the pairs of faces, one in each region, that people put into one segment: merging up to even odds is what the Rand
-/// index asks for.
-struct Weight {
-  Cue cue;
-  double symmetry, concavity, all;
-};
-constexpr Weight kWeights[] = {
-    {kAlways, -0.051, 1.14, -2.185},
-    {kContact, 0.666, 0.8, 1.153},
-    {kSmallArea, -0.193, 0.012, -0.847},
-    {kLargeArea, -0.51, -0.729, -0.257},
-    {kSupportDifference, -7.032, -5.918, -3.755},
-    {kImages, 0.944, 0.327, 0.662},
-    {kEdgeConcavity, 0.0, -5.539, -6.209},
-    {kPatchConcavity, 0.0, -1.192, -1.25},
-    {kInnerConcavity, 0.0, 2.73, 1.599},
-    {kThicknessRatio, 0.0, 0.0, -1.045},
-    {kConstriction, 0.0, 0.0, 1.553},
-    {kSight, 0.0, 0.0, 0.148},
-    {kRelativeSight, 0.0, 0.0, 3.469},
-    {kSightOfSmall, 0.0, 0.0, 0.744},
-};
-
-Cues weightsOf(MergingEvidence kind) {
-  Cues weights{};
-  for (const Weight& w : kWeights)
-    weights[w.cue] = kind == MergingEvidence::Symmetry               ? w.symmetry
-                     : kind == MergingEvidence::SymmetryAndConcavity ? w.concavity
-                                                                     : w.all;
-  return weights;
-}
+/// chosen: radii; a bound of the logarithm of the thickness. Twice of it would still be thinner than any part that
+/// patches resolve; at half, a single patch without depth weighs more in its region.
+constexpr double kThinnest = 1e-3;
+/// chosen: share of the surface; keeps regions without area out of 0 / 0. Half and twice differ for such regions only.
+constexpr double kLeastArea = 1e-9;
+/// chosen: bounds of the relative sight. The first keeps it finite where a region does not see itself; the second lets
+/// no ratio of two small shares outweigh the other cues. The weights were fitted with these bounds.
+constexpr double kLeastInnerSight = 0.05, kMostRelativeSight = 1.5;
 
 double ratio(double a, double b) {
   return b > 0.0 ? a / b : 0.0;
+}
+
+/// Log of the thickness at each patch. A patch behind which no ray met another side is open: as thick as the thickest.
+std::vector<double> logThickness(const std::vector<double>& thickness) {
+  const double thickest = *std::max_element(thickness.begin(), thickness.end());
+  std::vector<double> log_thickness;
+  for (const double t : thickness) log_thickness.push_back(std::log(std::max(kThinnest, t > 0.0 ? t : thickest)));
+  return log_thickness;
 }
 
 }  // namespace
@@ -60,19 +37,15 @@ void Regions::Border::add(const Border& other) {
 }
 
 Regions::Regions(const PartEvidence& evidence)
-    : exists_(evidence.areas.size(), 1),
-      region_(evidence.areas.size()),
-      areas_(evidence.areas),
-      log_thickness_(evidence.areas.size()),
-      perimeters_(evidence.areas.size(), 0.0),
-      inside_(evidence.areas.size()),
-      neighbours_(evidence.areas.size()) {
+    : exists_(evidence.patches.areas.size(), 1),
+      region_(evidence.patches.areas.size()),
+      areas_(evidence.patches.areas),
+      log_thickness_(evidence.patches.areas.size()),
+      perimeters_(evidence.patches.areas.size(), 0.0),
+      inside_(evidence.patches.areas.size()),
+      neighbours_(evidence.patches.areas.size()) {
   const int size = evidence.size();
-  // Where rays find no other side the body is open: as thick as it is anywhere.
-  const double thickest = *std::max_element(evidence.thickness.begin(), evidence.thickness.end());
-  std::vector<double> log_thickness;
-  for (const double t : evidence.thickness)
-    log_thickness.push_back(std::log(std::max(kThinnest, t > 0.0 ? t : thickest)));
+  const std::vector<double> log_thickness = logThickness(evidence.thickness);
   Eigen::VectorXf areas(size);
   for (int i = 0; i < size; ++i) {
     region_[i] = i;
@@ -97,7 +70,7 @@ Regions::Regions(const PartEvidence& evidence)
 
 Cues Regions::cues(int a, int b) const {
   const Border& between = borders_.at(std::minmax(a, b));
-  const double area_a = std::max(1e-9, areas_[a]), area_b = std::max(1e-9, areas_[b]);
+  const double area_a = std::max(kLeastArea, areas_[a]), area_b = std::max(kLeastArea, areas_[b]);
   Cues cues{};
   cues[kAlways] = 1.0;
   cues[kContact] = std::min(1.0, ratio(between.length, std::min(perimeters_[a], perimeters_[b])));
@@ -117,12 +90,16 @@ Cues Regions::cues(int a, int b) const {
   const double thickness_a = log_thickness_[a] / area_a, thickness_b = log_thickness_[b] / area_b;
   cues[kThicknessRatio] = std::abs(thickness_a - thickness_b);
   cues[kConstriction] = std::min(thickness_a, thickness_b) - ratio(between.log_thickness, between.length);
-  constexpr double kLeastSight = 0.05, kMostRelative = 1.5;
   const double within = std::sqrt(sight_(a, a) * sight_(b, b)) / (area_a * area_b);
   cues[kSight] = sight_(a, b) / (area_a * area_b);
-  cues[kRelativeSight] = std::min(kMostRelative, cues[kSight] / std::max(kLeastSight, within));
+  cues[kRelativeSight] = std::min(kMostRelativeSight, cues[kSight] / std::max(kLeastInnerSight, within));
   cues[kSightOfSmall] = cues[kSight] * cues[kSmallArea];
   return cues;
+}
+
+int Regions::imageOf(int region, std::size_t plane) const {
+  Eigen::Index image = 0;
+  return images_[plane].col(region).maxCoeff(&image) > 0.0f ? static_cast<int>(image) : -1;
 }
 
 void Regions::merge(int a, int b) {
@@ -146,6 +123,11 @@ void Regions::merge(int a, int b) {
   for (Eigen::MatrixXf& image : images_) join(image);
   std::replace(region_.begin(), region_.end(), b, a);
   exists_[b] = 0;
+  joinNeighbours(a, b);
+}
+
+/// Borders of \p b become borders of \p a.
+void Regions::joinNeighbours(int a, int b) {
   const auto forget = [](std::vector<int>& list, int region) {
     list.erase(std::remove(list.begin(), list.end(), region), list.end());
   };
@@ -161,50 +143,6 @@ void Regions::merge(int a, int b) {
     borders_.erase(std::minmax(b, c));
   }
   neighbours_[b].clear();
-}
-
-int Regions::imageOf(int region, std::size_t plane) const {
-  Eigen::Index image = 0;
-  return images_[plane].col(region).maxCoeff(&image) > 0.0f ? static_cast<int>(image) : -1;
-}
-
-MergeSequence mergeRegions(Regions regions, MergingEvidence kind) {
-  const Cues weights = weightsOf(kind);
-  using Pair = std::pair<int, int>;
-  std::set<std::pair<double, Pair>> queue;  // the likeliest last
-  std::map<Pair, double> odds;
-  const auto forget = [&](const Pair& pair) {
-    const auto known = odds.find(pair);
-    if (known == odds.end()) return;
-    queue.erase({known->second, pair});
-    odds.erase(known);
-  };
-  const auto consider = [&](int a, int b) {
-    const Pair pair = std::minmax(a, b);
-    forget(pair);
-    const Cues cues = regions.cues(a, b);
-    double sum = 0.0;
-    for (int k = 0; k < kNumCues; ++k) sum += weights[k] * cues[k];
-    odds[pair] = sum;
-    queue.insert({sum, pair});
-  };
-  for (int a = 0; a < regions.size(); ++a)
-    for (const int b : regions.neighbours(a))
-      if (a < b) consider(a, b);
-
-  MergeSequence sequence;
-  bool likely = true;
-  while (!queue.empty()) {
-    const auto [log_odds, pair] = *queue.rbegin();
-    likely = likely && log_odds > 0.0;
-    if (likely) ++sequence.num_likely;
-    const auto [a, b] = pair;
-    for (const int c : regions.neighbours(b)) forget(std::minmax(b, c));
-    regions.merge(a, b);
-    sequence.merges.push_back({a, b});
-    for (const int c : regions.neighbours(a)) consider(a, c);
-  }
-  return sequence;
 }
 
 }  // namespace pcl_symmetry

@@ -1,4 +1,4 @@
-#include "core/segmentation/border_cut.h"
+#include "core/surface/border_cut.h"
 
 #include <algorithm>
 #include <array>
@@ -38,29 +38,32 @@ std::vector<float> distanceFromBorder(const SurfaceGraph& graph, const std::vect
   return distance;
 }
 
-}  // namespace
-
-void cutBorder(const SurfaceGraph& graph, std::vector<int>& side, const std::vector<int>& open, double band,
-               double concavity_weight) {
-  const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(band));
+/// Elements that may change sides: the open ones and those in the band, without the farthest element of each side.
+std::vector<int> movableElements(const std::vector<int>& side, const std::vector<float>& distance,
+                                 const std::vector<int>& open) {
+  const int size = static_cast<int>(side.size());
   std::vector<char> is_open(side.size(), 0);
   for (const int element : open) is_open[element] = 1;
-  // What is open or within the band is a node, but for the farthest element of each side, which stays.
   std::array<int, 2> farthest{-1, -1};
-  for (int i = 0; i < graph.size(); ++i) {
+  for (int i = 0; i < size; ++i) {
     if (side[i] < 0 || is_open[i]) continue;
     int& far = farthest[side[i]];
     if (far < 0 || distance[i] > distance[far]) far = i;
   }
-  std::vector<int> node(side.size(), -1), elements;
-  for (int i = 0; i < graph.size(); ++i) {
-    if (side[i] < 0 || i == farthest[side[i]] || (std::isinf(distance[i]) && !is_open[i])) continue;
-    node[i] = static_cast<int>(elements.size());
-    elements.push_back(i);
-  }
+  std::vector<int> movable;
+  for (int i = 0; i < size; ++i)
+    if (side[i] >= 0 && i != farthest[side[i]] && (is_open[i] || !std::isinf(distance[i]))) movable.push_back(i);
+  return movable;
+}
+
+/// The network of the cut: movable elements are nodes, side 0 is the source and side 1 the sink.
+GraphCut networkOf(const SurfaceGraph& graph, const std::vector<int>& side, const std::vector<int>& movable,
+                   double concavity_weight) {
+  std::vector<int> node(side.size(), -1);
+  for (std::size_t i = 0; i < movable.size(); ++i) node[movable[i]] = static_cast<int>(i);
   GraphCut cut;
-  cut.to_source.assign(elements.size(), 0.0);
-  cut.to_sink.assign(elements.size(), 0.0);
+  cut.to_source.assign(movable.size(), 0.0);
+  cut.to_sink.assign(movable.size(), 0.0);
   for (const SurfaceGraph::Edge& edge : graph.edges) {
     const int from = node[edge.from], to = node[edge.to];
     if (side[edge.from] < 0 || side[edge.to] < 0 || (from < 0 && to < 0)) continue;
@@ -72,8 +75,18 @@ void cutBorder(const SurfaceGraph& graph, std::vector<int>& side, const std::vec
       (side[fixed] == 0 ? cut.to_source : cut.to_sink)[std::max(from, to)] += capacity;
     }
   }
-  const std::vector<bool> with_first = cut.solve();
-  for (std::size_t i = 0; i < elements.size(); ++i) side[elements[i]] = with_first[i] ? 0 : 1;
+  return cut;
+}
+
+}  // namespace
+
+std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, const std::vector<int>& open,
+                           const BorderCutOptions& options) {
+  const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(options.band));
+  const std::vector<int> movable = movableElements(side, distance, open);
+  const std::vector<bool> with_first = networkOf(graph, side, movable, options.concavity_weight).solve();
+  for (std::size_t i = 0; i < movable.size(); ++i) side[movable[i]] = with_first[i] ? 0 : 1;
+  return side;
 }
 
 }  // namespace pcl_symmetry
