@@ -12,7 +12,7 @@ Checks README.md, CONTRIBUTING.md and the pages of apps/ and test/, or the given
                   A line "..." on the page stands for any lines. A command that fails is an error.
   sh blocks       are not run: scripts, presets and tools that they name exist, and have every option used.
   other blocks    after <!-- same as: FILE --> the text of a block is found in FILE, line by line.
-  links           relative links and pictures lead to files that exist.
+  links           relative links and pictures, and paths of the repository in code marks, lead to what exists.
 
 Commands run in FOLDER, page by page, in order. It holds cow.off, bull.off, elephant.off and hand.off (Debian package
 libcgal-demo), the shapes of make_shapes, contour.awk and prism.awk, and the scans in $PCL_SYMMETRY_SCANS
@@ -207,7 +207,7 @@ check_options() {
     if grep -qE -- "(^|[[:space:]|(])$option([[:space:]|)]|\$)" <<<"$help"; then
       passed
     else
-      failed "$label: $tool has no option $option"
+      failed "$label: no option $option: $tool $*"
     fi
   done
 }
@@ -243,6 +243,19 @@ check_links() {
   done < <(grep -oE '\]\([^) ]+\)' "$page" | sed 's/^](//; s/)$//')
 }
 
+# Files and folders of this repository that a page names in code marks. Where the next column of a table has a name in code
+# marks, the file has that name.
+check_paths() {
+  local page=$1 path
+  while IFS= read -r path; do
+    if [[ -e $path ]]; then passed; else failed "$page: no file $path"; fi
+  done < <(grep -oE '`(apps|cmake|include|src|test)/[a-zA-Z0-9_./-]+`' "$page" | tr -d '`')
+  local name
+  while IFS='`' read -r _ path _ name _; do
+    if grep -qsw -- "${name##*::}" "$path"; then passed; else failed "$page: no $name in $path"; fi
+  done < <(grep -E '`(include|src)/[a-z0-9_./-]+\.(h|cpp)` \| `[A-Za-z:_]+`' "$page" || true)
+}
+
 check_page() {
   local page=$1 fence block line language label needs
   local blocks=$folder/${page//\//_}.blocks work=$folder/${page//\//_}.work
@@ -250,6 +263,7 @@ check_page() {
   mkdir -p "$blocks"
   blocks_of "$page" "$blocks"
   check_links "$page"
+  check_paths "$page"
   for fence in "$blocks"/*.fence; do
     [[ -f $fence ]] || continue
     block=${fence%.fence}
