@@ -1,5 +1,5 @@
 #include <pcl/io/pcd_io.h>
-#include <pcl_symmetry/symmetry_maxima_refinement.h>
+#include <pcl_symmetry/symmetry_detection.h>
 #include <iostream>
 
 int main(int, char** argv) {
