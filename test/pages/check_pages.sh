@@ -204,7 +204,7 @@ check_options() {
   esac
   for option in "$@"; do
     [[ $option =~ ^--?[a-z][a-z_-]*$ ]] || continue
-    if grep -qE -- "(^|[[:space:]|(])$option([[:space:]|)]|\$)" <<<"$help"; then
+    if grep -qE -- "(^|[^a-z-])$option([^a-z_-]|\$)" <<<"$help"; then
       passed
     else
       failed "$label: no option $option: $tool $*"
