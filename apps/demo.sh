@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 to the symmetry planes of a scan, or of a file of one's own.
+# From a fresh Debian 12 to the symmetry planes of a scan, or of your own file.
 set -euo pipefail
 
 usage() {
   cat <<'END'
 usage: bash apps/demo.sh [-h] [FILE]
 
-Without a file: fetches a cow, scans it from one side, and finds its plane of symmetry in the scan; then the planes of the
-bull of the paper's Figure 8 and of its parts. With a file (.pcd, .ply, .obj, .stl or .off): finds the planes of that.
+Without a file: fetches the mesh of a cow, scans it from one side and finds its plane of symmetry in the scan; then finds the
+planes of the bull of the paper's Figure 8 and of its parts. With a file (.pcd, .ply, .obj, .stl or .off): finds the planes
+of that file.
 
-Prints the planes; pictures (PNG) and reports (JSON) go to build/demo. Packages that are missing are installed, tools are
-built where needed; run again, it starts with the planes.
+Prints the planes; writes pictures (PNG) and reports (JSON) to build/demo. Installs missing packages and builds the tools; a
+second run skips both.
 
 example: bash apps/demo.sh my_scan.pcd
 END
@@ -40,7 +41,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 demo=build/demo
 mkdir -p "$demo"
 
-# find_planes INPUT NAME [FLAG ...]: a table here, NAME_planes.json and NAME_planes.png in the demo folder.
+# find_planes INPUT NAME [FLAG ...]: prints a table and writes NAME_planes.json and NAME_planes.png to the demo folder.
 find_planes() {
   say "Symmetry planes of $1"
   local input=$1 name=$2

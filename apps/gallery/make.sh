@@ -1,110 +1,187 @@
 #!/usr/bin/env bash
-# Makes the pictures of apps/gallery/README.md.
+# Makes the pictures of all pages.
 set -euo pipefail
 
 usage() {
   cat <<'END'
-usage: bash apps/gallery/make.sh [-h] [FOLDER]
+usage: bash apps/gallery/make.sh [-h] [--psb MESHES CLASSES] [--estimators] [--only REGEX] [FOLDER]
 
-Builds the tools, fetches or makes the models (Debian package libcgal-demo, shapes of our own) and writes the pictures of the gallery to FOLDER
-(build/gallery). Prints each command. Needs no screen.
+Builds the tools, fetches or makes the models (Debian package libcgal-demo, own shapes) and writes the pictures of
+the pages to FOLDER/gallery and FOLDER/pictures (build/pictures). FOLDER = apps replaces the pictures of the pages.
+Prints each command. Needs no screen.
 
-example: bash apps/gallery/make.sh /tmp/pictures
+  --psb MESHES CLASSES  also the charts of the Princeton Shape Benchmark: its OFF files in one folder, and its
+                        classification; takes hours
+  --estimators          also the chart of the estimators' error against time: builds the benchmarks
+  --only REGEX          only pictures whose name matches, such as figure_15
+
+example: bash apps/gallery/make.sh --only cow
 END
 }
 
-case "${1-}" in
-  -h | --help) usage; exit 0 ;;
-  -*) usage >&2; exit 2 ;;
-esac
+psb="" classes="" estimators=false only=.
+while (($# > 0)); do
+  case "$1" in
+    -h | --help) usage; exit 0 ;;
+    --psb)
+      (($# >= 3)) || { usage >&2; exit 2; }
+      psb=$(realpath "$2") classes=$(realpath "$3")
+      shift 2 ;;
+    --estimators) estimators=true ;;
+    --only)
+      (($# >= 2)) || { usage >&2; exit 2; }
+      only=$2
+      shift ;;
+    -*) usage >&2; exit 2 ;;
+    *) break ;;
+  esac
+  shift
+done
 (($# <= 1)) || { usage >&2; exit 2; }
-pictures=$(realpath -m "${1-build/gallery}")
+folder=$(realpath -m "${1-build/pictures}")
+gallery=$folder/gallery pictures=$folder/pictures
 
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 cmake --preset release --log-level=WARNING >/dev/null
-cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_scan pcl_symmetry_segment \
-  pcl_symmetry_viewer pcl_symmetry_viewpoint draw_medial_axis draw_scan_centers make_shapes
-export PATH=$PWD/build/apps:$PATH
+cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_planes \
+  pcl_symmetry_scan pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint pcl_symmetry_evaluate \
+  draw_alignment draw_medial_axis draw_scan_centers make_shapes
+if $estimators; then
+  cmake --preset benchmark --log-level=WARNING >/dev/null
+  cmake --build build-benchmark --parallel "$(nproc)" --target benchmark_accuracy
+fi
+export PATH=$PWD/build/apps:$PWD/build-benchmark/test/benchmark:$PATH
 
-models=$PWD/build/gallery/models
-mkdir -p "$pictures" "$models"
-bash apps/fetch_meshes.sh "$models" bull cow elephant hand
+models=$PWD/build/pictures_models
+mkdir -p "$gallery" "$pictures" "$models"
+bash apps/fetch_meshes.sh "$models" bull camel cow elephant hand
 make_shapes "$models"
 contours=$PWD/apps/gallery/contour.awk
 cd "$models"
 
+# contour NAME SHAPE: points of a planar shape as NAME.pcd.
 contour() {
   awk -v shape="$2" -f "$contours" >"$1.pcd"
 }
 
-show() {
-  echo "$*"
-  "$@" >"$pictures/last.txt" 2>&1 || { cat "$pictures/last.txt" >&2; exit 1; }
-}
-
-contour mug "mug 0.45"
-contour cup "mug 0"
-contour flower "flower 5"
-contour flower_4 "flower 4"
-contour flower_3 "flower 3"
-show pcl_symmetry_lines cup.pcd mug.pcd flower.pcd flower_4.pcd flower_3.pcd -size 150 -png "$pictures/figure_1_contours.png"
-show pcl_symmetry_map bull.off -size 200 -slices "$pictures/figure_1_bull.png"
-show pcl_symmetry_map cow.off -size 200 -slices "$pictures/figure_1_cow.png"
-
-for n in 3 4 5 6 8 48; do contour "polygon_$n" "polygon $n"; done
-for h in 1.0 0.9 0.8 0.7 0.6 0.5; do contour "rectangle_$h" "rectangle 1 $h"; done
-for noise in 0.00 0.01 0.02 0.04 0.06 0.08; do contour "starfish_$noise" "starfish $noise"; done
-show pcl_symmetry_lines polygon_{3,4,5,6,8,48}.pcd rectangle_{1.0,0.9,0.8,0.7,0.6,0.5}.pcd \
-  starfish_0.0{0,1,2,4,6,8}.pcd -columns 6 -size 100 -png "$pictures/figure_2.png"
-
-contour rectangle "rectangle 1 0.5"
-contour bump "rectangle 1 0.5 0.1"
-show pcl_symmetry_lines rectangle.pcd bump.pcd -size 220 -png "$pictures/figure_3.png"
-show draw_medial_axis "$pictures/figure_3_medial_axis.png" 220 rectangle.pcd bump.pcd
-
-figure_7() {
-  show pcl_symmetry_viewer cow.off -up 0,1,0 -width 480 -height 360 -keys "$2" -screenshot "$pictures/figure_7_step_$1.png"
-}
-figure_7 1 i
-figure_7 2 i,i
-figure_7 5 i,i,i,i,i
-show pcl_symmetry_viewer cow.off -up 0,1,0 -width 480 -height 360 -keys g -screenshot "$pictures/figure_7_support.png"
-
-figure_8() {
-  show pcl_symmetry_viewer bull.off -up 0,1,0 -width 480 -height 360 -keys "$2" -screenshot "$pictures/figure_8_$1.png"
-}
-figure_8 1 v
-figure_8 2 n
-figure_8 4 n,n,n
-figure_8 7 n,n,n,n,n,n
-
-for model in cow elephant; do
-  show pcl_symmetry_viewer "$model.off" -up 0,1,0 -width 480 -height 360 -keys g,s,a -screenshot "$pictures/figure_10_$model.png"
-done
-
-show draw_scan_centers "$pictures/figure_11.png" car.ply
-
-figure_15() {
-  local name=$1
+# draw PICTURE COMMAND...: prints and runs a command that draws the picture; its output only if it fails.
+draw() {
+  local picture=$1
   shift
-  show pcl_symmetry_segment "$@" -size 240 -png "$pictures/figure_15_$name.png"
+  [[ $picture =~ $only ]] || return 0
+  echo "$*"
+  "$@" >"$models/last.txt" 2>&1 || { cat "$models/last.txt" >&2; exit 1; }
 }
-figure_15 bull_2 bull.off -up 0,1,0 -method splitting -depth 1
-figure_15 bull_4 bull.off -up 0,1,0 -method splitting -depth 2
-figure_15 bull_8 bull.off -up 0,1,0 -method splitting -depth 3
-figure_15 bull bull.off -up 0,1,0
-figure_15 hand_4 hand.off -up 0,1,0 -method splitting -depth 2
-figure_15 hand hand.off -up 0,1,0
-figure_15 teapot teapot.ply
-figure_15 octopus octopus.ply
-show pcl_symmetry_scan elephant.off elephant_scan.pcd
-figure_15 scan elephant_scan.pcd -up 0,1,0 -evidence concavity
 
-for model in bull cow elephant hand; do
-  show pcl_symmetry_viewpoint "$model.off" -up 0,1,0 -size 150 -png "$pictures/figure_16_$model.png"
-done
-for model in teapot mug chair car airplane carton; do
-  show pcl_symmetry_viewpoint "$model.ply" -size 150 -png "$pictures/figure_16_$model.png"
-done
-rm -f "$pictures/last.txt"
-echo "Pictures: $pictures"
+draw_scans_and_parts() {
+  pcl_symmetry_scan cow.off cow_scan.pcd -quiet
+  draw cow_scan_plane pcl_symmetry_planes cow_scan.pcd -png "$pictures/cow_scan_plane.png"
+  draw bull_parts pcl_symmetry_planes bull.off -approximate -max_planes 6 -png "$pictures/bull_parts.png"
+  draw frames draw_alignment "$pictures/frames.png"
+}
+
+draw_figure_1() {
+  contour mug "mug 0.45"
+  contour cup "mug 0"
+  contour flower "flower 5"
+  contour flower_4 "flower 4"
+  contour flower_3 "flower 3"
+  draw figure_1_contours pcl_symmetry_lines cup.pcd mug.pcd flower.pcd flower_4.pcd flower_3.pcd -size 150 \
+    -png "$gallery/figure_1_contours.png"
+  local model
+  for model in bull cow; do
+    draw "figure_1_$model" pcl_symmetry_map "$model.off" -size 200 -slices "$gallery/figure_1_$model.png"
+  done
+}
+
+draw_figure_2() {
+  local n h noise
+  for n in 3 4 5 6 8 48; do contour "polygon_$n" "polygon $n"; done
+  for h in 1.0 0.9 0.8 0.7 0.6 0.5; do contour "rectangle_$h" "rectangle 1 $h"; done
+  for noise in 0.00 0.01 0.02 0.04 0.06 0.08; do contour "starfish_$noise" "starfish $noise"; done
+  draw figure_2 pcl_symmetry_lines polygon_{3,4,5,6,8,48}.pcd rectangle_{1.0,0.9,0.8,0.7,0.6,0.5}.pcd \
+    starfish_0.0{0,1,2,4,6,8}.pcd -columns 6 -size 100 -png "$gallery/figure_2.png"
+}
+
+draw_figure_3() {
+  contour rectangle "rectangle 1 0.5"
+  contour bump "rectangle 1 0.5 0.1"
+  draw figure_3 pcl_symmetry_lines rectangle.pcd bump.pcd -size 220 -png "$gallery/figure_3.png"
+  draw figure_3_medial_axis draw_medial_axis "$gallery/figure_3_medial_axis.png" 220 rectangle.pcd bump.pcd
+}
+
+# draw_view PICTURE MODEL KEYS: the window of the viewer after some keys.
+draw_view() {
+  draw "$1" pcl_symmetry_viewer "$2.off" -up 0,1,0 -width 480 -height 360 -keys "$3" -screenshot "$gallery/$1.png"
+}
+
+draw_figures_7_8_and_10() {
+  draw_view figure_7_step_1 cow i
+  draw_view figure_7_step_2 cow i,i
+  draw_view figure_7_step_5 cow i,i,i,i,i
+  draw_view figure_7_support cow g
+  draw_view figure_8_1 bull v
+  draw_view figure_8_2 bull n
+  draw_view figure_8_4 bull n,n,n
+  draw_view figure_8_7 bull n,n,n,n,n,n
+  draw_view figure_10_cow cow g,s,a
+  draw_view figure_10_elephant elephant g,s,a
+}
+
+# draw_parts PICTURE ARGUMENTS...
+draw_parts() {
+  local picture=$1
+  shift
+  draw "$picture" pcl_symmetry_segment "$@" -size 240 -png "$gallery/$picture.png"
+}
+
+draw_figure_15() {
+  draw_parts figure_15_bull_2 bull.off -up 0,1,0 -method splitting -depth 1
+  draw_parts figure_15_bull_4 bull.off -up 0,1,0 -method splitting -depth 2
+  draw_parts figure_15_bull_8 bull.off -up 0,1,0 -method splitting -depth 3
+  draw_parts figure_15_bull bull.off -up 0,1,0
+  draw_parts figure_15_hand_4 hand.off -up 0,1,0 -method splitting -depth 2
+  draw_parts figure_15_hand hand.off -up 0,1,0
+  draw_parts figure_15_teapot teapot.ply
+  draw_parts figure_15_octopus octopus.ply
+  pcl_symmetry_scan elephant.off elephant_scan.pcd -quiet
+  draw_parts figure_15_scan elephant_scan.pcd -up 0,1,0 -evidence concavity
+}
+
+draw_figure_16() {
+  local model
+  for model in bull cow elephant hand; do
+    draw "figure_16_$model" pcl_symmetry_viewpoint "$model.off" -up 0,1,0 -size 150 -png "$gallery/figure_16_$model.png"
+  done
+  for model in teapot mug chair car airplane carton; do
+    draw "figure_16_$model" pcl_symmetry_viewpoint "$model.ply" -size 150 -png "$gallery/figure_16_$model.png"
+  done
+}
+
+# Rates against points, noise, cuts and views; Figures 12, 13 and 14.
+draw_benchmark_charts() {
+  local sweep
+  for sweep in points views missing; do
+    draw "planes_by_$sweep" pcl_symmetry_evaluate planes "$psb" -every 8 -max 100 -sweep "$sweep" \
+      -png "$pictures/planes_by_$sweep.png"
+  done
+  draw planes_by_noise pcl_symmetry_evaluate planes "$psb" -every 8 -max 100 -sweep noise \
+    -noise 0,0.002,0.005,0.01,0.02,0.03,0.05 -png "$pictures/planes_by_noise.png"
+  draw misalignment pcl_symmetry_evaluate alignment "$psb" -png "$pictures/misalignment.png"
+  draw figure_13 pcl_symmetry_evaluate retrieval "$psb" -cla "$classes" -png "$gallery/figure_13.png"
+}
+
+draw_scans_and_parts
+draw_figure_1
+draw_figure_2
+draw_figure_3
+draw_figures_7_8_and_10
+draw figure_11 draw_scan_centers "$gallery/figure_11.png" car.ply
+draw_figure_15
+draw_figure_16
+if $estimators; then
+  draw error_against_time benchmark_accuracy -data "$models" -png "$pictures/error_against_time.png"
+fi
+if [[ -n $psb ]]; then draw_benchmark_charts; fi
+rm -f "$models/last.txt"
+echo "Pictures: $gallery $pictures"
