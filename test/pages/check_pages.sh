@@ -6,7 +6,7 @@ usage() {
   cat <<'END'
 usage: bash test/pages/check_pages.sh [-h] [--no-models] TOOLS FOLDER [PAGE...]
 
-Checks README.md, CONTRIBUTING.md and the pages of apps/ and test/, or the given pages:
+Checks README.md, CONTRIBUTING.md and the pages of apps, include, src and test, or the given pages:
   console blocks  each "$ command" is run with the programs of the folder TOOLS; what it prints, on both streams, and
                   what the page shows agree: text word by word, numbers to two significant digits, times left out.
                   A line "..." on the page stands for any lines. A command that fails is an error.
@@ -36,8 +36,10 @@ tools=$(realpath "$1")
 folder=$(realpath -m "$2")
 shift 2
 pages=("$@")
-((${#pages[@]} > 0)) || pages=(README.md CONTRIBUTING.md apps/README.md apps/gallery/README.md test/benchmark/README.md)
 cd "$repository"
+if ((${#pages[@]} == 0)); then
+  mapfile -t pages < <(find README.md CONTRIBUTING.md apps include src test -name '*.md' ! -name mistakes.md | sort)
+fi
 scans=${PCL_SYMMETRY_SCANS-../shared/data/scans}
 export PATH=$tools:$PATH
 num_checks=0 num_failed=0 num_skipped=0
