@@ -1,4 +1,4 @@
-/// Synthetic contours whose lines of symmetry are known.
+/// Synthetic contours with known lines of symmetry.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace pcl_symmetry::test {
 
-/// Points at equal distances along the closed polygon of these corners, \p num_points of them.
+/// num_points points at equal distances along a closed polygon.
 inline Points2D polygon(const std::vector<Eigen::Vector2d>& corners, int num_points) {
   const std::size_t size = corners.size();
   double length = 0.0;

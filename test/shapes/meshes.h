@@ -1,4 +1,4 @@
-/// Meshes whose parts are known.
+/// Meshes with known parts.
 #pragma once
 
 #include <array>
@@ -66,7 +66,7 @@ inline Mesh dumbbell() {
   });
 }
 
-/// Every polygon with corners of its own.
+/// The same mesh without shared corners.
 inline Mesh soupOf(const Mesh& mesh) {
   Mesh soup;
   for (const auto& polygon : mesh.polygons) {

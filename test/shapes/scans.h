@@ -1,4 +1,4 @@
-/// Scans whose truth is known: what a pinhole camera sees of boxes.
+/// Scans with known planes of symmetry: pictures of boxes by a pinhole camera.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/geometry/viewing_frame.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 #include "shapes/shapes.h"
 
@@ -24,7 +25,7 @@ struct Block {
   }
 };
 
-/// Blocks and the planes of symmetry of all of them together.
+/// A body of blocks and its planes of symmetry.
 struct BlockObject {
   std::vector<Block> blocks;
   std::vector<ReflectionPlane> planes;
@@ -50,7 +51,7 @@ inline BlockObject blockChair() {
   return chair;
 }
 
-/// Points spread evenly over all that can be seen of an object from anywhere.
+/// Points spread evenly over the outer surface of an object.
 inline Points surfaceOf(const BlockObject& object, int num_points, std::uint64_t seed = 1) {
   RandomStream random(seed);
   double total = 0.0;
@@ -108,9 +109,7 @@ struct Scan {
 inline Scan scan(const BlockObject& object, const Eigen::Vector3d& viewpoint, double roll = 0.3, int width = 160,
                  int height = 120) {
   Scan result{width, height, Points(3, width * height), viewpoint, Eigen::Isometry3d::Identity(), 0.0, object.planes};
-  const Eigen::Vector3d forward = -viewpoint.normalized(), right = forward.unitOrthogonal();
-  Eigen::Matrix3d R_object_camera;
-  R_object_camera << right, forward.cross(right), forward;
+  Eigen::Matrix3d R_object_camera = viewingFrame(-viewpoint.normalized()).transpose();
   R_object_camera = R_object_camera * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   double reach = 0.0;  // of the object as seen from the origin
   for (const Block& block : object.blocks) reach = std::max(reach, (block.center.cwiseAbs() + block.half).norm());

@@ -1,4 +1,4 @@
-/// Synthetic shapes whose planes of symmetry are known, sampled at random or with the symmetry itself.
+/// Synthetic shapes with known planes of symmetry.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,13 +20,13 @@ using pcl_symmetry::kPi;
 
 struct Shape {
   Eigen::Matrix3Xd points;
-  std::vector<ReflectionPlane> planes;  ///< all of its planes of symmetry; none listed for continuous families
+  std::vector<ReflectionPlane> planes;  ///< all planes of symmetry; those of continuous families are not listed
 
-  /// As a scanner would give it.
+  /// The points as floats, as in a file.
   Points cloud() const { return points.cast<float>(); }
 };
 
-/// Random: each sample is drawn on its own. Mirrored: the samples of one fundamental domain are repeated by the group,
+/// Random: each sample is independent of the others. Mirrored: the group repeats the samples of one fundamental domain,
 /// so that the planes are symmetries of the point set itself, up to the rounding of its coordinates.
 enum class Sampling { Random, Mirrored };
 
@@ -224,10 +224,10 @@ inline double diagonal(const Points& points) {
   return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
 }
 
-/// How far one plane is from another about a point: angle of the normals, and distance of the point's two images / 2.
+/// Difference between two planes.
 struct PlaneError {
-  double angle;
-  double offset;
+  double angle;   ///< between the normals as lines, radians
+  double offset;  ///< between the signed distances of a point from the two planes
 };
 
 inline PlaneError planeError(const ReflectionPlane& a, const ReflectionPlane& b, const Eigen::Vector3d& about) {

@@ -1,4 +1,4 @@
-/// Synthetic shapes whose group of rotations is known, sampled evenly by area.
+/// Synthetic shapes with a known group of rotations, sampled evenly by area.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,12 +12,12 @@
 
 namespace pcl_symmetry::test {
 
-/// A body of triangles about the origin, and the rotations that map it onto itself.
+/// A body of triangles about the origin, with the rotations that map it onto itself.
 struct TurningShape {
   std::string name;
-  std::string group;                       ///< as nameOf() has it
+  std::string group;                       ///< name of the group, as from nameOf()
   std::vector<Eigen::Matrix3d> rotations;  ///< all but the identity; empty for continuous groups
-  Eigen::Vector3d axis{0.0, 0.0, 1.0};     ///< of revolution
+  Eigen::Vector3d axis{0.0, 0.0, 1.0};     ///< axis of revolution
   std::vector<Eigen::Vector3d> vertices = {};
   std::vector<Eigen::Vector3i> triangles = {};
 
@@ -95,7 +95,7 @@ inline TurningShape coneShape() {
   return shape;
 }
 
-/// Walls of no thickness, open at the top, with a handle.
+/// A cup with walls of no thickness, open at the top.
 inline TurningShape cupShape(bool handle) {
   TurningShape shape = handle ? turningShape("cup with a handle", RotationGroupKind::Cyclic, 1)
                               : turningShape("cup", RotationGroupKind::Revolution);
@@ -159,8 +159,8 @@ inline TurningShape ballShape() {
   return shape;
 }
 
-/// Blades at 35 degrees to the plane that they turn in. They alone are mapped onto themselves by half turns about their
-/// own lengths; a hub to one side prevents that.
+/// Blades at 35 degrees to the plane in which they turn. Half turns about the lengths of the blades map them onto
+/// themselves; a hub on one side removes these symmetries.
 inline TurningShape propellerShape(int num_blades, bool hub) {
   TurningShape shape = turningShape(std::to_string(num_blades) + (hub ? " blades on a hub" : " blades"),
                                     hub ? RotationGroupKind::Cyclic : RotationGroupKind::Dihedral, num_blades);

@@ -14,7 +14,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// points; chosen: larger clouds are dense enough for any grid, and probing them takes long
+// points; chosen: larger clouds are dense enough for usual grids, and probing them takes long
 constexpr Eigen::Index kNumDense = 200'000;
 // points for each cell of a slice; chosen: fewer than that cost less than thinning
 constexpr std::size_t kDensePerCell = 8;
@@ -106,7 +106,7 @@ private:
 
   const Points& points_;
   int num_cells_;
-  std::vector<Eigen::Index> begin_;  // of each slot in order_
+  std::vector<Eigen::Index> begin_;  // first index of each slot in order_
   std::vector<Eigen::Index> order_;
 };
 

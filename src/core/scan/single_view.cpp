@@ -15,7 +15,7 @@ namespace {
 // radii; chosen: more than the depth within a pixel of a slanting surface. Half counts such points as hidden, twice
 // misses thicker objects.
 constexpr double kHiddenMargin = 0.1;
-// share of the points; chosen between 0.1, the rim of a sphere, and the 0.3 and more of whole objects
+// share of the points; chosen: between 0.1 for scans (the rim of a sphere) and 0.3 or more for whole objects
 constexpr double kMostHidden = 0.18;
 // share of the points; fitted: on 100 models of the training half of the Princeton Shape Benchmark. It accepts 200 of
 // 200 scans of 10 000 and of 1000 points, 99 % of them with noise of 0.5 % of the diagonal, and 6 % of whole clouds.

@@ -22,15 +22,16 @@ const double kLeastCosine = std::cos(75.0 * kPi / 180.0);
 // chosen: a surface that faces the viewer has half the average density, which leaves exp(-2), one pixel in seven, empty
 // and can be closed. Half as many leave holes in surfaces, twice as many blur the silhouette.
 constexpr double kPointsPerPixel = 4.0;
-// pixels; chosen: bounds a picture to 4 MB. Half of it blurs clouds of more than a million points, twice needs 16 MB.
+// pixels; chosen: bounds a picture to 4 MB. Half as many blur clouds of more than a million points, twice as many need
+// 16 MB.
 constexpr int kLargestSide = 1024;
-// of the squared longest side; chosen: gives the pixels of a line of points an area. Any tiny value will do.
+// share of the squared longest side; chosen: points along a line get pixels with an area. Any tiny value will do.
 constexpr double kLeastArea = 1e-6;
-// chosen: the size settles in two or three rounds. Fewer leave it off by more than 5 %, more change nothing.
+// chosen: fewer may leave the size off by more than its accuracy, more take time
 constexpr int kPixelSizeRounds = 4;
-// of the size; chosen: half takes a round more, twice leaves the points in a pixel off by 20 %
+// share of the size; chosen: it leaves the points in a pixel off by 10 %, twice as much by 20 %, half takes more rounds
 constexpr double kPixelSizeAccuracy = 0.05;
-// of eight; chosen: fewer widen the silhouette, more leave holes open
+// neighbours of eight; chosen: fewer widen the silhouette, more leave holes open
 constexpr int kClosingNeighbours = 5;
 // chosen: each pass narrows holes by a pixel on each side. Fewer leave holes, more fill true notches.
 constexpr int kClosingPasses = 3;

@@ -39,7 +39,7 @@ void raise(const PointBlock& points, const DirectionRows::Row& direction, const 
 }
 
 /// D along one direction at the bins, and half-way between them by the cubic through four. Without these a peak between
-/// two bins, such as that of a plane through the center of the grid, would be cut off.
+/// two bins would be cut off, for example the one at the center of the grid.
 /// \return 2 num_radius + 4 values: two of 0, bin 0, half-way, bin 1, ..., the last bin, and three of 0.
 std::vector<float> refinedRow(const float* values, int num_radius) {
   const auto at = [&](int k) { return k < 0 || k >= num_radius ? 0.0f : values[k]; };

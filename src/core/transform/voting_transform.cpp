@@ -15,7 +15,7 @@ namespace {
 
 // partial maps, added up in their order; chosen: fewer leave threads idle, more cost memory: 1 MB each at 64^3 bins
 constexpr std::size_t kNumBlocks = 8;
-// Bounds the weight of pairs along z. chosen: one pair in 10^12 is closer to the pole, where its vote would be
+// Bounds the weight of pairs along z. chosen: about one pair in 10^12 is closer to the pole, where its vote would be
 // infinite.
 constexpr double kLeastSine = 1e-6;
 

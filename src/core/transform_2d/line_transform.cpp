@@ -120,8 +120,8 @@ double laplacian(const LineMap& map, const LineGrid::Bin& bin) {
 // bins, steps of the search for a maximum of D; chosen: half a bin reaches all that belongs to a maximum of the map, a
 // 500th of one is 0.003 degrees at 128 bins
 constexpr double kFirstStep = 0.5, kLastStep = 0.002;
-constexpr int kMaxMoves =
-    8;  // with one step size; chosen: twice as many change nothing, half may stop short of the top
+// moves with one step size; chosen: fewer may stop short of the maximum, more take longer on flat ridges
+constexpr int kMaxMoves = 8;
 
 /// Climbs to the maximum of D by a compass search over theta and r about the center of the grid.
 LineMaximum climb(const FullSum& sum, const GaussianEdt2D& edt, const LineGrid& grid, const ReflectionLine& start) {

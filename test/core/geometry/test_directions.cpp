@@ -53,7 +53,9 @@ TEST(EvenDirections, LieAboutTheOriginAndApartFromEachOther) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < directions.size(); ++i) {
       EXPECT_NEAR(directions[i].norm(), 1.0, 1e-15);
-      if (i > 0) EXPECT_LT(directions[i].z(), directions[i - 1].z());
+      if (i > 0) {
+        EXPECT_LT(directions[i].z(), directions[i - 1].z());
+      }
       sum += directions[i];
       // A square lattice of this density has its points sqrt(4 pi / count) apart; the spiral keeps three quarters.
       for (std::size_t j = 0; j < i; ++j)
