@@ -23,8 +23,8 @@ constexpr float kRoughReach = 3.0f;
 // Roughness in spacings at which normals mean nothing, and below which by 0.1 they count in full. chosen: between the
 // roughness of clean surfaces and that of volumes (0.42); smaller values ignore the normals of slightly noisy surfaces.
 constexpr float kRoughShare = 0.25f, kTrustWidth = 0.1f;
-// Radians between normals that agree. chosen: about the turn of the normal over one spacing of a coarse sphere; at
-// half, curved surfaces lose support; at twice, faces of a blunt edge support each other.
+// Radians between normals that agree. chosen: at half, curved surfaces with few samples lose support; at twice, the
+// faces of a blunt edge support each other.
 constexpr float kNormalAngle = 0.5f;
 // Squared deviation that counts as no support. derived: exp(-9) = 1.2e-4.
 constexpr float kMost = 9.0f;

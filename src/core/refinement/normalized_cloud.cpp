@@ -14,9 +14,8 @@ namespace {
 // Spacings. chosen: half of it leaves reflected samples between the samples without weight, so that planes stop early;
 // twice lets the ends of a long shape pull at the plane of its middle.
 constexpr double kFinalSigmaInSpacings = 3.0;
-// Spacings. measured: points that fill a volume evenly have 0.42; a surface without noise has less than 0.1. chosen
-// between them: lower values judge noisy surfaces by density, which blurs small asymmetries; above 0.42 nothing is a
-// volume and noise beyond the spacing leaves no symmetry.
+// Spacings. chosen: below the 0.42 of points that fill a volume evenly. Lower values judge noisy surfaces by density,
+// which blurs small asymmetries; above 0.42 nothing is a volume, and noise beyond the spacing leaves no symmetry.
 constexpr double kVolumeRoughness = 0.36;
 constexpr double kLeastSpacing = 1e-6;   // radii. derived: the rounding of coordinates about 1; avoids a division by 0
 constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supports of surfaces; avoids a division by 0
