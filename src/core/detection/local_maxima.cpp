@@ -10,6 +10,7 @@ namespace pcl_symmetry {
 
 namespace {
 
+/// Whether no neighbour is higher; of equal neighbours, the one with the lowest index is the maximum.
 bool isLocalMaximum(const SymmetryMap& map, std::size_t index) {
   const float value = map[index];
   return map.grid.visitNeighbours(map.grid.bin(index), [&](std::size_t neighbour) {
@@ -17,7 +18,7 @@ bool isLocalMaximum(const SymmetryMap& map, std::size_t index) {
   });
 }
 
-/// Sum of the second differences; planes beyond the ends of r have no symmetry.
+/// Sum of the second differences. Planes beyond the ends of r have D = 0.
 double laplacian(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
   const auto value = [&](int dt, int dp, int dk) {
     const auto at = map.grid.step(bin, dt, dp, dk);
@@ -55,7 +56,7 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
         const float value = map[index];
         const double share = 1.0 - std::abs(grid.offset(k) - center_offset) / grid.radius();
         if (value <= 0.0f || value < strength * share) continue;
-        // Most bins fail at a neighbour that is quickly reached.
+        // Most bins fail at one of the neighbours that need no step across a seam.
         if (k > 0 && map[index - 1] > value) continue;
         if (k + 1 < grid.numRadius() && map[index + 1] > value) continue;
         if (p > 0 && map[index - next_phi] > value) continue;

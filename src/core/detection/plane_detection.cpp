@@ -2,15 +2,45 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/stopwatch.h"
-#include "core/detection/refinement.h"
+#include "core/detection/candidates.h"
+#include "core/detection/plane_families.h"
+#include "core/detection/plane_judge.h"
+#include "core/detection/plane_ranking.h"
+#include "core/detection/staged_refinement.h"
 #include "core/distance_transform/free_space.h"
+#include "core/neighbours/answerable_points.h"
 #include "core/neighbours/distinct_points.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
 
 namespace pcl_symmetry {
+
+namespace {
+
+Detection unanswered(std::string reason) {
+  Detection detection;
+  detection.reason = std::move(reason);
+  return detection;
+}
+
+void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(planes));
+}
+
+/// Gives each copy of a point the support of the point.
+void spreadSupport(std::vector<SymmetryPlane>& planes, const DistinctPoints& distinct) {
+  for (SymmetryPlane& plane : planes) {
+    std::vector<float> support(distinct.index_of.size());
+    for (std::size_t i = 0; i < support.size(); ++i) support[i] = plane.point_support[distinct.index_of[i]];
+    plane.point_support = std::move(support);
+  }
+}
+
+}  // namespace
 
 void DetectionOptions::validate() const {
   edt.validate();
@@ -37,6 +67,7 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search,
                        const Visibility* visibility) {
   options.validate();
+  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
   Stopwatch watch;
   const GaussianEdt edt(points, options.edt);
   const double edt_ms = watch.lap();
@@ -62,43 +93,45 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
                        const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility) {
   options.validate();
-  Stopwatch watch;
+  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
   Detection detection;
+  Stopwatch watch;
   const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
+
   const DistinctPoints distinct(points);
   const bool repeated = distinct.points.cols() < points.cols();
   if (repeated) search = nullptr;  // it knows the copies
-  const Refinement refinement(distinct.points, edt, options, std::move(search), visibility);
+  const NormalizedCloud cloud(distinct.points, edt, std::move(search), visibility, options.num_threads);
+  const std::unique_ptr<PlaneFit> fit = makePlaneFit(
+      cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
+  const StagedRefinement refinement(cloud, *fit, options);
+  const PlaneJudge judge(cloud, *fit, options);
   timed("surface");
-  std::vector<Candidate> candidates = refinement.gather(map);
+
+  std::vector<Candidate> candidates = gatherCandidates(cloud, map, options);
   timed("maxima");
-  refinement.refineCoarsely(map, candidates);
+  candidates = refinement.coarse(std::move(candidates), map.grid);
   timed("coarse_refinement");
-  refinement.refineClosely(candidates);
+  candidates = refinement.close(std::move(candidates));
   timed("close_refinement");
-  detection.planes = refinement.finish(candidates);
+  std::vector<SymmetryPlane> planes = judge.judge(refinement.full(std::move(candidates)));
   timed("full_refinement");
-  std::vector<ReflectionPlane> known;
-  while (!(candidates = refinement.closure(detection.planes, known)).empty()) {
-    std::vector<SymmetryPlane> found = refinement.finish(candidates);
-    std::move(found.begin(), found.end(), std::back_inserter(detection.planes));
-  }
+
+  GroupClosure closure(cloud, {options.merge_angle, options.merge_offset});
+  while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
+    append(planes, judge.judge(refinement.full(std::move(candidates))));
   timed("closure");
-  if (options.families) refinement.collectFamilies(detection);
+  if (options.families) {
+    PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, *fit, judge, options);
+    planes = std::move(found.planes);
+    detection.axes = std::move(found.axes);
+    detection.centers = std::move(found.centers);
+  }
   timed("families");
-  if (options.approximate) {
-    std::vector<SymmetryPlane> parts = refinement.findParts(detection.planes);
-    std::move(parts.begin(), parts.end(), std::back_inserter(detection.planes));
-  }
+  if (options.approximate) append(planes, judge.findParts(planes));
   timed("parts");
-  detection.planes = refinement.report(std::move(detection.planes));
-  if (repeated) {
-    for (SymmetryPlane& plane : detection.planes) {
-      std::vector<float> support(distinct.index_of.size());
-      for (std::size_t i = 0; i < support.size(); ++i) support[i] = plane.point_support[distinct.index_of[i]];
-      plane.point_support = std::move(support);
-    }
-  }
+  detection.planes = rankedPlanes(std::move(planes), cloud, *fit, options);
+  if (repeated) spreadSupport(detection.planes, distinct);
   timed("report");
   return detection;
 }

@@ -5,50 +5,65 @@
 #include <optional>
 #include <vector>
 
+#include "core/detection/plane_judge.h"
+#include "core/refinement/plane_fit.h"
+#include "pcl_symmetry/core/detection/plane_detection.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 
 namespace pcl_symmetry {
 
 /// Continuous families of planes: all planes through a line (a body of revolution) or through a point (a sphere).
 ///
-/// A family is tested, not guessed from many planes: planes at angles that are in step with no polygon have to be as
-/// good as the planes that were found.
+/// A family is tested, not guessed from many planes: planes at angles that no regular polygon has must be as good as
+/// the planes that were found.
 struct FamilyTest {
-  /// Share of what is seen of the surface that a plane maps onto the surface, in [0, 1].
+  /// Share of the surface seen that a plane maps onto the surface, in [0, 1].
   std::function<double(const ReflectionPlane&)> share;
-  /// The same from fewer points, to find out early that a line is none.
+  /// The same from fewer samples, to drop most lines early.
   std::function<double(const ReflectionPlane&)> rough_share;
-  /// The plane after refinement.
+  /// The best plane nearby.
   std::function<ReflectionPlane(const ReflectionPlane&)> refine;
-  double min_share;  ///< of a symmetry
-  double
-      allowance;  ///< by which a family may be worse than the planes that were found: what sampling does, not a handle
-  double tolerance;  ///< offset within which planes pass through a point, units of the planes' frame
+  double min_share;  ///< of the planes of a family, on average, in [0, 1]
+  double allowance;  ///< by how much that may be less than the best plane found: an effect of sampling, not of a handle
+  double tolerance;  ///< distance within which a plane passes through a point, units of the planes' frame
 };
 
 using AxisLine = Eigen::ParametrizedLine<double, 3>;
 
-/// A line of planes and their mean share.
+/// A line, all planes through which are symmetries.
 struct AxisFamily {
   AxisLine line;
-  double share;
+  double share;                         ///< mean over the planes
   std::vector<ReflectionPlane> planes;  ///< that were tested
 };
 
-/// A point of planes and their mean share.
+/// A point, all planes through which are symmetries.
 struct CenterFamily {
   Eigen::Vector3d point;
-  double share;
+  double share;                         ///< mean over the planes
   std::vector<ReflectionPlane> planes;  ///< that were tested
 };
 
-/// \param planes symmetries found, best first. \return the point that all planes through are symmetries of, if any.
+/// \param planes symmetries found, best first.
 std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& planes, const FamilyTest& test);
 
-/// \return lines that all planes through are symmetries of, best first.
+/// \param planes symmetries found, best first.
+/// \return best first.
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test);
 
-/// Whether a plane contains a line within 3 degrees and the tolerance.
+/// Whether a plane contains a line, within 3 degrees and \p tolerance.
 bool contains(const ReflectionPlane& plane, const AxisLine& line, double tolerance);
+
+/// Planes, and the families that some of them belonged to.
+struct PlanesAndFamilies {
+  std::vector<SymmetryPlane> planes;  ///< of no family
+  std::vector<SymmetryAxis> axes;     ///< best first
+  std::vector<SymmetryCenter> centers;
+};
+
+/// Finds the families that symmetries belong to, and takes their planes away.
+/// \param planes input frame.
+PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const PlaneFit& fit,
+                                  const PlaneJudge& judge, const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

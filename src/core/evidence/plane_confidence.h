@@ -4,21 +4,23 @@ namespace pcl_symmetry {
 
 /// What the points say about one plane, and how finely they sample the surface.
 struct PlaneEvidence {
-  double support;    ///< mean over the points: the reflection lies on the surface
-  double conflict;   ///< mean over the points: the reflection lies where there is nothing
-  double score;      ///< D
-  double baseline;   ///< support of the points themselves on the surface of all others: below 1 by sampling and noise
-  double spacing;    ///< median of the samples, of the radius
-  double roughness;  ///< median, of the spacing
-  bool partial;      ///< seen from one viewpoint
-  bool volume;       ///< the points resolve no surface; support is the overlap of densities
+  double support = 0.0;    ///< mean over the points: the reflection lies on the surface, in [0, 1]
+  double conflict = 0.0;   ///< mean over the points: the reflection lies where there is nothing, in [0, 1]
+  double score = 0.0;      ///< D of equation 2, in [0, 1]
+  double baseline = 1.0;   ///< support of the points on the surface of all others: < 1 by sampling and noise
+  double spacing = 0.0;    ///< median distance of the samples, divided by the radius of the points
+  double roughness = 0.0;  ///< median distance of the samples from their tangent planes, divided by the spacing
+  bool partial = false;    ///< seen from one viewpoint
+  bool volume = false;     ///< the points resolve no surface; support is the overlap of their density
 };
 
-/// Share of what is seen of the surface that the plane maps onto the surface, as far as sampling lets it, in [0, 1].
+/// Share of the surface seen that the plane maps onto the surface, relative to what sampling allows.
+/// \return min(1, support / ((support + conflict) * baseline)), in [0, 1]; 0 where nothing was seen.
 double seenSupport(const PlaneEvidence& evidence);
 
-/// Probability that the plane is a symmetry of the object, in [0, 1]: logistic functions of a few of the values above,
-/// fifteen numbers in all, calibrated once (see the definition).
+/// Probability that the plane is a symmetry of the object: logistic regressions, one each for whole clouds, scans and
+/// points that resolve no surface (see README.md beside the source).
+/// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 
 }  // namespace pcl_symmetry

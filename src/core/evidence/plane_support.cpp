@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -11,16 +12,30 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// How far a point with a normal lies off the surface at sample \p j, squared, in units of what its support allows;
-/// anything >= \p most where it is not less.
+// Reach of a sample along the surface, spacings. derived: a disc of that radius on a surface of density rho is empty
+// with probability exp(-pi 1.25^2) = 1 / 135.
+constexpr float kReach = 1.25f;
+// Reach across the surface, radii of the points. chosen: the tolerance of a symmetry (1 % of the radius); smaller
+// values see smaller asymmetries, and take the errors of normals for them.
+constexpr float kNormalReach = 0.01f;
+// The same in units of the roughness. derived: 99.7 % of Gaussian noise.
+constexpr float kRoughReach = 3.0f;
+// Roughness in spacings at which normals mean nothing, and below which by 0.1 they count in full. chosen: between the
+// roughness of clean surfaces and that of volumes (0.42); smaller values ignore the normals of slightly noisy surfaces.
+constexpr float kRoughShare = 0.25f, kTrustWidth = 0.1f;
+// Radians between normals that agree. chosen: at half, curved surfaces with few samples lose support; at twice, the
+// faces of a blunt edge support each other.
+constexpr float kNormalAngle = 0.5f;
+// Squared deviation that counts as no support. derived: exp(-9) = 1.2e-4.
+constexpr float kMost = 9.0f;
+constexpr float kLeastLength = 1e-6f;  // radii. derived: rounding of coordinates about 1; avoids a division by 0
+
+/// How far a point with a normal lies off the surface at sample \p j, squared, in units of what its support allows.
+/// \return \p most where it is not less.
 float sqDeviation(int j, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal, const Points& samples,
                   const LocalGeometry& geometry, float most) {
-  constexpr float kReach = 1.25f;                            // spacings, along the surface
-  constexpr float kNormalReach = 0.01f, kRoughReach = 3.0f;  // across the surface: of the radius, of the roughness
-  constexpr float kRoughShare = 0.25f, kTrustWidth = 0.1f;   // of the spacing: from there on normals mean nothing
-  constexpr float kNormalAngle = 0.5f;                       // radians between normals that agree
   const Eigen::Vector3f difference = point - samples.col(j);
-  const float reach = std::max(1e-6f, kReach * geometry.spacing[j]);
+  const float reach = std::max(kLeastLength, kReach * geometry.spacing[j]);
   const float along = std::max(0.0f, difference.norm() / reach - 1.0f);
   if (along * along >= most) return most;
   const auto normal = geometry.normals.col(j);
@@ -29,7 +44,7 @@ float sqDeviation(int j, const Eigen::Vector3f& point, const Eigen::Vector3f& po
   const float sq_distance = along * along + across * across;
   if (sq_distance >= most) return most;
   // Normals count as far as they can be trusted, without a jump.
-  const float rough = geometry.roughness[j] / std::max(geometry.spacing[j], 1e-6f);
+  const float rough = geometry.roughness[j] / std::max(geometry.spacing[j], kLeastLength);
   const float trust = std::clamp((kRoughShare - rough) / kTrustWidth, 0.0f, 1.0f);
   if (trust == 0.0f) return sq_distance;
   const float cosine = std::min(1.0f, std::abs(normal.dot(point_normal)));
@@ -37,10 +52,9 @@ float sqDeviation(int j, const Eigen::Vector3f& point, const Eigen::Vector3f& po
   return sq_distance + turned * turned;
 }
 
-/// The best at the closest sample and those next to it, but for sample \p self.
+/// Support by the closest sample or one of those next to it, whichever is best, but not by sample \p self (-1 = none).
 float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
                   const Points& samples, const LocalGeometry& geometry) {
-  constexpr float kMost = 9.0f;  // a support of 1e-4, which counts as none
   float least = sqDeviation(closest, point, point_normal, samples, geometry, kMost);
   for (const int j : geometry.nearest[closest]) {
     if (least == 0.0f) return 1.0f;
@@ -71,9 +85,13 @@ std::vector<float> ownSupport(const Points& samples, const LocalGeometry& geomet
   return support;
 }
 
+double meanSupport(const std::vector<float>& support) {
+  return std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
+}
+
 std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,
                                 int num_threads) {
-  constexpr std::size_t kBlockSize = 4096;
+  constexpr std::size_t kBlockSize = 4096;  // points. chosen: large enough that threads start seldom
   const BoundingBall ball = boundingBall(samples);
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);

@@ -11,28 +11,44 @@ namespace pcl_symmetry {
 
 /// How well single points of a surface support a reflection (the white regions of Figure 8).
 ///
-/// A reflected point that lies on the surface is found at a distance from the nearest sample of it that depends on the
-/// density of the samples alone: beyond 1.25 spacings (1 / sqrt(density), measured at that sample) lies 1 in 130. Up to
-/// there the support is 1; beyond it falls as a Gaussian. So it needs no threshold in input units.
+/// Departure from the paper, which measures the distance of the reflected point by the Gaussian of the transform: here
+/// the unit is the distance between samples, so that the result needs no length in input units. A reflected point that
+/// lies on the surface is farther from the closest sample than 1.25 spacings in 1 of 135 cases (spacing = 1 /
+/// sqrt(density), measured at that sample). Up to there the support is 1; beyond, it falls as a Gaussian.
 
-/// One value in [0, 1] per reflected point each.
+/// Evidence of each of M reflected points, in [0, 1].
 struct PointEvidence {
-  std::vector<float> support;   ///< its reflection lies on the surface
-  std::vector<float> conflict;  ///< its reflection lies where the scanner saw that there is nothing
+  std::vector<float> support;   ///< the reflection lies on the surface
+  std::vector<float> conflict;  ///< the reflection lies where the scanner saw that there is nothing
 };
 
-/// At an edge the closest sample may lie on another face: the best of it and the samples next to it counts.
-/// \param reflected,reflected_normals 3 x M, of the points. \param closest of each the closest sample of the surface;
-/// -1: none is near. \param samples 3 x N, the surface, normalised to the unit ball, \p geometry of it.
-/// \param visibility what was seen, in the same frame; null = everything.
+/// Near an edge the closest sample may lie on another face: the best of that sample and of those next to it counts.
+/// \param reflected 3 x M, reflections of points of the surface, normalised to the unit ball.
+/// \param reflected_normals 3 x M, reflections of their normals.
+/// \param closest M indices of the closest samples; -1: none is near.
+/// \param samples 3 x N, the surface, in the same frame.
+/// \param geometry of the samples.
+/// \param visibility what a scanner saw, in the same frame; null = the samples show the object from all sides.
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
                             const Points& samples, const LocalGeometry& geometry, const Visibility* visibility);
 
-/// The support of each sample on the surface that the others describe: what sampling alone makes of a symmetry.
+/// Support of each sample on the surface that the other samples describe: what sampling alone leaves of a symmetry.
+/// \param samples 3 x N, normalised to the unit ball.
+/// \param geometry of the samples.
+/// \return N values in [0, 1].
 std::vector<float> ownSupport(const Points& samples, const LocalGeometry& geometry);
 
-/// The same from the points: the support of each of \p points on the surface that \p samples describe.
-/// \param points 3 x M, finite. \param samples 3 x N, finite, not all equal, in the same frame.
+/// \param support at least one value.
+/// \return the mean.
+double meanSupport(const std::vector<float>& support);
+
+/// Support of each of \p points for a plane, on the surface that \p samples describe.
+/// \param points 3 x M, finite.
+/// \param samples 3 x N, finite, not all equal, in the same frame.
+/// \param plane in the same frame.
+/// \param num_threads 0 = one per core.
+/// \return M values in [0, 1].
+/// \throws std::invalid_argument where all samples are at one place.
 std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,
                                 int num_threads = 0);
 

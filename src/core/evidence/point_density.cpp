@@ -5,16 +5,81 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/constants.h"
 #include "core/base/parallel.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kMostCells = 160;    // along the longest side
-constexpr double kMargin = 4.0;    // bandwidths around the points
-constexpr double kStep = 0.5;      // bandwidths that the farthest points move by in a difference
-constexpr double kSettled = 0.01;  // bandwidths
+constexpr int kMostCells = 160;    // along the longest side. chosen: 16 MB; half coarsens the density of large clouds
+constexpr double kCellSize = 0.5;  // bandwidths. chosen: at half, eight times the memory; at twice, cells show
+constexpr double kMargin = 4.0;    // bandwidths around the points. derived: the density is 3e-4 of its peak there
+constexpr double kKernelReach = 3.0;  // standard deviations. derived: 99.7 % of a Gaussian
+// Cells squared. derived: a third of a squared cell is what spreading and reading add to the variance.
+constexpr double kCellVariance = 1.0 / 3.0;
+constexpr double kLeastVariance =
+    0.1;                         // cells squared. chosen: less needs no blur; only where kMostCells makes cells wide
+constexpr double kLeast = 1e-9;  // chosen: any value far below all densities and extents; avoids a division by 0
+
+// Of refine(): bandwidths that the farthest points move by in a difference. chosen: at half, single points make the
+// differences noisy; at twice, they miss narrow maxima.
+constexpr double kStep = 0.5;
+constexpr double kLongestStep = 3.0;  // differences. chosen: the quadric holds that far; longer steps leave the maximum
+constexpr double kSettled = 0.01;     // bandwidths. chosen: far below the error of a plane; at twice, one step less
+constexpr double kLeastCurvature = 1e-3;  // share of the greatest. chosen: softer directions take no longer steps
+
+/// A cell and the weights of its lower corner and its upper one along each axis.
+struct CellPlace {
+  Eigen::Array3i cell;
+  Eigen::Array3f t;  ///< in [0, 1), from the lower corner to the upper one
+
+  explicit CellPlace(const Eigen::Array3f& cells) : cell(cells.cast<int>()), t(cells - cell.cast<float>()) {}
+};
+
+std::vector<float> gaussianKernel(double deviation, int reach) {
+  std::vector<float> kernel(2 * reach + 1);
+  double sum = 0.0;
+  for (int k = -reach; k <= reach; ++k) sum += std::exp(-0.5 * k * k / (deviation * deviation));
+  for (int k = -reach; k <= reach; ++k)
+    kernel[k + reach] = static_cast<float>(std::exp(-0.5 * k * k / (deviation * deviation)) / sum);
+  return kernel;
+}
+
+/// A function of three numbers about 0: value, slopes and curvatures, by differences.
+struct Quadric {
+  Eigen::Vector3d gradient;
+  Eigen::Matrix3d hessian;
+
+  template <typename Function>
+  Quadric(const Function& function, double at_zero, double step) {
+    for (int a = 0; a < 3; ++a) {
+      const Eigen::Vector3d e = step * Eigen::Vector3d::Unit(a);
+      const double up = function(e), down = function(-e);
+      gradient[a] = (up - down) / (2.0 * step);
+      hessian(a, a) = (up + down - 2.0 * at_zero) / (step * step);
+    }
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < a; ++b) {
+        const Eigen::Vector3d e = step * Eigen::Vector3d::Unit(a), f = step * Eigen::Vector3d::Unit(b);
+        hessian(a, b) = hessian(b, a) =
+            (function(e + f) - function(e - f) - function(f - e) + function(-e - f)) / (4.0 * step * step);
+      }
+    }
+  }
+
+  /// A Newton step upwards along every axis, also where the curvature is that of a minimum.
+  Eigen::Vector3d stepUp() const {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hessian);
+    Eigen::Vector3d step = Eigen::Vector3d::Zero();
+    const double least = kLeastCurvature * solver.eigenvalues().cwiseAbs().maxCoeff();
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d axis = solver.eigenvectors().col(k);
+      step += axis * axis.dot(gradient) / std::max(std::abs(solver.eigenvalues()[k]), least);
+    }
+    return step;
+  }
+};
 
 }  // namespace
 
@@ -22,38 +87,54 @@ PointDensity::PointDensity(const PointsRef& points, double bandwidth, int num_th
     : bandwidth_(bandwidth), middle_(centerOfMass(points)) {
   const Eigen::Array3f low = points.rowwise().minCoeff().array() - static_cast<float>(kMargin * bandwidth);
   const Eigen::Array3f high = points.rowwise().maxCoeff().array() + static_cast<float>(kMargin * bandwidth);
-  cell_size_ = std::max(static_cast<float>(0.5 * bandwidth), (high - low).maxCoeff() / kMostCells);
+  cell_size_ = std::max(static_cast<float>(kCellSize * bandwidth), (high - low).maxCoeff() / kMostCells);
   origin_ = low.matrix();
   size_ = ((high - low) / cell_size_).ceil().cast<int>() + 2;
+  spread(points);
+  const double deviation = blur(bandwidth, num_threads);
+  // What a point adds to the density at its own place.
+  const double own_part = std::pow(2.0 * kPi * (deviation * deviation + kCellVariance), -1.5);
+  double total = 0.0, sq_extent = 0.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    total += at(points.col(i));
+    sq_extent += (points.col(i).cast<double>() - middle_).squaredNorm();
+  }
+  const double count = static_cast<double>(points.cols());
+  mean_ = std::max(total / count - own_part, kLeast);
+  extent_ = std::max(std::sqrt(sq_extent / count), kLeast);
+}
+
+/// Counts each point in the eight cells around it, trilinearly.
+void PointDensity::spread(const PointsRef& points) {
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(size_[0]),
                                           static_cast<std::size_t>(size_[0]) * size_[1]};
   values_.assign(stride[2] * size_[2], 0.0f);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Array3f p = (points.col(i) - origin_).array() / cell_size_;
-    const Eigen::Array3i c = p.cast<int>();
-    const Eigen::Array3f t = p - c.cast<float>();
+    const CellPlace place((points.col(i) - origin_).array() / cell_size_);
+    const Eigen::Array3i& c = place.cell;
     float* cell = &values_[c[0] + c[1] * stride[1] + c[2] * stride[2]];
     for (int corner = 0; corner < 8; ++corner) {
       float weight = 1.0f;
       std::size_t offset = 0;
       for (int axis = 0; axis < 3; ++axis) {
         const bool upper = corner >> axis & 1;
-        weight *= upper ? t[axis] : 1.0f - t[axis];
+        weight *= upper ? place.t[axis] : 1.0f - place.t[axis];
         offset += upper ? stride[axis] : 0;
       }
       cell[offset] += weight;
     }
   }
+}
 
-  // Blur along each axis in turn; spreading and reading add a third of a squared cell to the variance.
+/// Blurs the counts along each axis in turn.
+/// \return standard deviation of the blur, cells: smaller than the bandwidth by what spreading and reading add.
+double PointDensity::blur(double bandwidth, int num_threads) {
+  const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(size_[0]),
+                                          static_cast<std::size_t>(size_[0]) * size_[1]};
   const double sq_cells = std::pow(bandwidth / cell_size_, 2);
-  const double blur = std::sqrt(std::max(0.1, sq_cells - 1.0 / 3.0));
-  const int reach = static_cast<int>(std::ceil(3.0 * blur));
-  std::vector<float> kernel(2 * reach + 1);
-  double sum = 0.0;
-  for (int k = -reach; k <= reach; ++k) sum += std::exp(-0.5 * k * k / (blur * blur));
-  for (int k = -reach; k <= reach; ++k)
-    kernel[k + reach] = static_cast<float>(std::exp(-0.5 * k * k / (blur * blur)) / sum);
+  const double deviation = std::sqrt(std::max(kLeastVariance, sq_cells - kCellVariance));
+  const int reach = static_cast<int>(std::ceil(kKernelReach * deviation));
+  const std::vector<float> kernel = gaussianKernel(deviation, reach);
   for (int axis = 0; axis < 3; ++axis) {
     const int along = size_[axis], across = size_[(axis + 1) % 3], deep = size_[(axis + 2) % 3];
     parallelBlocks(deep, num_threads, [&](std::size_t d) {
@@ -69,22 +150,15 @@ PointDensity::PointDensity(const PointsRef& points, double bandwidth, int num_th
       }
     });
   }
-  own_part_ = std::pow(2.0 * M_PI * (blur * blur + 1.0 / 3.0), -1.5);
-  double total = 0.0, sq_extent = 0.0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    total += at(points.col(i));
-    sq_extent += (points.col(i).cast<double>() - middle_).squaredNorm();
-  }
-  const double count = static_cast<double>(points.cols());
-  mean_ = std::max(total / count - own_part_, 1e-9);
-  extent_ = std::max(std::sqrt(sq_extent / count), 1e-9);
+  return deviation;
 }
 
 float PointDensity::at(const Eigen::Vector3f& x) const {
   const Eigen::Array3f p = (x - origin_).array() / cell_size_;
   if (!(p >= 0.0f).all() || !(p < (size_ - 1).cast<float>()).all()) return 0.0f;
-  const Eigen::Array3i c = p.cast<int>();
-  const Eigen::Array3f t = p - c.cast<float>();
+  const CellPlace place(p);
+  const Eigen::Array3i& c = place.cell;
+  const Eigen::Array3f& t = place.t;
   const std::size_t row = size_[0], slice = row * size_[1];
   const float* v = &values_[c[0] + c[1] * row + c[2] * slice];
   const auto along = [&](std::size_t i) { return v[i] + t[0] * (v[i + 1] - v[i]); };
@@ -103,51 +177,29 @@ double PointDensity::overlap(const PointsRef& samples, const ReflectionPlane& pl
   return sum / (mean_ * static_cast<double>(samples.cols()));
 }
 
-ReflectionPlane PointDensity::refine(const PointsRef& samples, const ReflectionPlane& plane, int max_iterations,
-                                     int& iterations) const {
-  ReflectionPlane best = plane;
-  double best_value = overlap(samples, best);
-  double step = kStep * bandwidth_ / extent_;  // radians; times the extent in offset
-  for (iterations = 0; iterations < max_iterations; ++iterations) {
-    const Eigen::Vector3d n = best.normal(), u = n.unitOrthogonal(), v = n.cross(u);
-    const double offset = best.signedDistance(middle_);
+PointDensity::Refined PointDensity::refine(const PointsRef& samples, const ReflectionPlane& plane,
+                                           int max_iterations) const {
+  Refined best{plane, 0};
+  double best_value = overlap(samples, best.plane);
+  const double step = kStep * bandwidth_ / extent_;  // radians; times the extent in offset
+  for (; best.iterations < max_iterations; ++best.iterations) {
+    const Eigen::Vector3d n = best.plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
+    const double offset = best.plane.signedDistance(middle_);
     const auto moved = [&](const Eigen::Vector3d& by) {
       const Eigen::Vector3d normal = (n + by[0] * u + by[1] * v).normalized();
       return ReflectionPlane(normal, normal.dot(middle_) - offset + by[2] * extent_);
     };
     const auto value = [&](const Eigen::Vector3d& by) { return overlap(samples, moved(by)); };
-    Eigen::Vector3d gradient;
-    Eigen::Matrix3d hessian;
-    for (int a = 0; a < 3; ++a) {
-      const Eigen::Vector3d e = step * Eigen::Vector3d::Unit(a);
-      const double up = value(e), down = value(-e);
-      gradient[a] = (up - down) / (2.0 * step);
-      hessian(a, a) = (up + down - 2.0 * best_value) / (step * step);
-    }
-    for (int a = 0; a < 3; ++a) {
-      for (int b = 0; b < a; ++b) {
-        const Eigen::Vector3d e = step * Eigen::Vector3d::Unit(a), f = step * Eigen::Vector3d::Unit(b);
-        hessian(a, b) = hessian(b, a) =
-            (value(e + f) - value(e - f) - value(f - e) + value(-e - f)) / (4.0 * step * step);
-      }
-    }
-    // Upwards along every axis of the quadric, and not beyond where it was measured.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hessian);
-    Eigen::Vector3d by = Eigen::Vector3d::Zero();
-    const double least = 1e-3 * solver.eigenvalues().cwiseAbs().maxCoeff();
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d axis = solver.eigenvectors().col(k);
-      by += axis * axis.dot(gradient) / std::max(std::abs(solver.eigenvalues()[k]), least);
-    }
+    Eigen::Vector3d by = Quadric(value, best_value, step).stepUp();
     if (!by.allFinite()) break;
-    if (by.norm() > 3.0 * step) by *= 3.0 * step / by.norm();
+    if (by.norm() > kLongestStep * step) by *= kLongestStep * step / by.norm();
     double next = value(by);
     while (next < best_value && by.norm() * extent_ > kSettled * bandwidth_) {
       by *= 0.5;
       next = value(by);
     }
     if (next < best_value) break;
-    best = moved(by);
+    best.plane = moved(by);
     best_value = next;
     if (by.norm() * extent_ < kSettled * bandwidth_) break;
   }

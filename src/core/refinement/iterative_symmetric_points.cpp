@@ -8,8 +8,122 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/refinement/far_test.h"
 
 namespace pcl_symmetry {
+
+namespace {
+
+// Share of the stiffest direction below which the surface leaves a direction free. chosen: at half, the noise of
+// normals makes free directions of coarse samples look stiff; at twice, slow directions of slender shapes pass for
+// free.
+constexpr double kLeastStiffness = 1e-3;
+// Radians, or times the extent of the samples. chosen: at half, far starts take more iterations; at twice, a step can
+// leave the basin of its maximum.
+constexpr double kLongestStep = 0.2;
+constexpr double kReach = 3.0;  // sigmas. derived: weights beyond are below exp(-9) = 1.3e-4
+constexpr double kRest = 0.1;   // sigmas. chosen: at half, a few iterations more; at twice, weights narrow on the way
+constexpr std::size_t kBlockSize = 1024;  // samples. chosen: large enough that threads start seldom
+
+/// Mean and extent of weighted points.
+struct WeightedExtent {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  double extent = 0.0;  ///< root mean square distance from the middle; 0 where all weights are 0
+
+  WeightedExtent(const PointsRef& x, const std::vector<double>& weights) {
+    double sum = 0.0, sq_extent = 0.0;
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      middle += weights[i] * x.col(i).cast<double>();
+      sum += weights[i];
+    }
+    if (!(sum > 0.0)) return;
+    middle /= sum;
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+      sq_extent += weights[i] * (x.col(i).cast<double>() - middle).squaredNorm() / sum;
+    extent = std::sqrt(sq_extent);
+  }
+};
+
+/// Normal equations of a plane's step. The unknowns (a, b, c) move the normal n by a u + b v, and the plane's distance
+/// from the middle of the samples by extent * c.
+struct StepEquations {
+  Eigen::Vector3d n, u, v;
+  Eigen::Vector3d middle;
+  double extent;
+  double offset;  ///< of the plane from the middle
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+
+  StepEquations(const ReflectionPlane& plane, const WeightedExtent& samples)
+      : n(plane.normal()),
+        u(n.unitOrthogonal()),
+        v(n.cross(u)),
+        middle(samples.middle),
+        extent(samples.extent),
+        offset(plane.offset() - n.dot(middle)) {}
+
+  /// Adds w (m . (x' - y))^2; fills the lower half of h.
+  void addPointToPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& x_normal,
+                       const Eigen::Vector3d& y_normal, double pair_weight) {
+    const Eigen::Vector3d p = x - middle, q = y - middle;
+    const double height = n.dot(p) - offset;
+    const Eigen::Vector3d turned = x_normal - 2.0 * n.dot(x_normal) * n;
+    const double cosine = turned.dot(y_normal);
+    const Eigen::Vector3d m = (y_normal + (cosine < 0.0 ? -turned : turned)).normalized();
+    const double m_n = m.dot(n), weight = pair_weight * cosine * cosine;
+    const Eigen::Vector3d slope(-2.0 * (u.dot(p) * m_n + height * m.dot(u)),
+                                -2.0 * (v.dot(p) * m_n + height * m.dot(v)), 2.0 * extent * m_n);
+    h.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
+    g += weight * m.dot(p - 2.0 * height * n - q) * slope;
+  }
+
+  /// Adds w |x' - y|^2.
+  void addPointToPoint(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double weight) {
+    const Eigen::Vector3d p = x - middle, q = y - middle;
+    const double height = n.dot(p) - offset;
+    Eigen::Matrix3d slopes;  // of the reflected point
+    slopes.col(0) = -2.0 * (u.dot(p) * n + height * u);
+    slopes.col(1) = -2.0 * (v.dot(p) * n + height * v);
+    slopes.col(2) = 2.0 * extent * n;
+    h += weight * slopes.transpose() * slopes;
+    g += weight * slopes.transpose() * (p - 2.0 * height * n - q);
+  }
+
+  ReflectionPlane moved(const Eigen::Vector3d& step) const {
+    const Eigen::Vector3d normal = (n + step[0] * u + step[1] * v).normalized();
+    return ReflectionPlane(normal, normal.dot(middle) + offset + step[2] * extent);
+  }
+};
+
+/// The closest points to the reflections, where there are any within reach of the weights.
+IspStep matchReflections(const IspSurface& surface, const Points& reflected, double sigma,
+                         const std::vector<int>* guesses) {
+  IspStep step;
+  const auto size = static_cast<std::size_t>(reflected.cols());
+  step.closest.assign(size, -1);
+  step.sq_distances.assign(size, std::numeric_limits<float>::infinity());
+  const float bound = surface.far ? surface.far->bound(kReach * sigma) : 0.0f;
+  const auto sq_reach = static_cast<float>(kReach * kReach * sigma * sigma);
+  parallelRanges(size, kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<Eigen::Index> near;
+    for (std::size_t i = begin; i < end; ++i)
+      if (!surface.far || !(*surface.far)(reflected.col(i).cast<double>(), bound)) near.push_back(i);
+    Points queries(3, near.size());
+    for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = reflected.col(near[i]);
+    std::vector<int> closest(near.size(), -1);
+    std::vector<float> sq_distances;
+    if (guesses)
+      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[near[i]];
+    surface.search.searchWithin(queries, sq_reach, closest, sq_distances);
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      step.closest[near[i]] = closest[i];
+      step.sq_distances[near[i]] = sq_distances[i];
+    }
+  });
+  return step;
+}
+
+}  // namespace
 
 void IspOptions::validate() const {
   check(std::isfinite(sigma) && sigma > 0.0, "sigma", sigma, "finite and > 0");
@@ -42,102 +156,44 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
 ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
                                     const PointsRef& y_normals, const std::vector<double>& weights,
                                     const ReflectionPlane& plane) {
-  constexpr double kLeastStiffness = 1e-3;  // of the stiffest direction; the surface leaves softer ones free
-  constexpr double kLongestStep = 0.2;      // radians, or times the extent of the samples
-  const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
-  double sum = 0.0, sq_extent = 0.0;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    middle += weights[i] * x.col(i).cast<double>();
-    sum += weights[i];
-  }
-  if (!(sum > 0.0)) return plane;
-  middle /= sum;
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    sq_extent += weights[i] * (x.col(i).cast<double>() - middle).squaredNorm() / sum;
-  const double extent = std::sqrt(sq_extent);
-  if (!(extent > 0.0)) return plane;
-
-  // Unknowns: n moves by (a u + b v), the plane's distance from the middle of the samples by extent * c.
-  const double offset = plane.offset() - n.dot(middle);
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  const WeightedExtent samples(x, weights);
+  if (!(samples.extent > 0.0)) return plane;
+  StepEquations across(plane, samples);
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     if (weights[i] == 0.0) continue;
-    const Eigen::Vector3d p = x.col(i).cast<double>() - middle, q = y.col(i).cast<double>() - middle;
-    const double height = n.dot(p) - offset;
-    const Eigen::Vector3d x_normal = x_normals.col(i).cast<double>(), y_normal = y_normals.col(i).cast<double>();
-    const Eigen::Vector3d turned = x_normal - 2.0 * n.dot(x_normal) * n;
-    const double cosine = turned.dot(y_normal);
-    const Eigen::Vector3d m = (y_normal + (cosine < 0.0 ? -turned : turned)).normalized();
-    const double m_n = m.dot(n), weight = weights[i] * cosine * cosine;
-    const Eigen::Vector3d slope(-2.0 * (u.dot(p) * m_n + height * m.dot(u)),
-                                -2.0 * (v.dot(p) * m_n + height * m.dot(v)), 2.0 * extent * m_n);
-    h.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
-    g += weight * m.dot(p - 2.0 * height * n - q) * slope;
+    across.addPointToPlane(x.col(i).cast<double>(), y.col(i).cast<double>(), x_normals.col(i).cast<double>(),
+                           y_normals.col(i).cast<double>(), weights[i]);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);  // reads the lower half
-  const Eigen::Vector3d& stiffness = solver.eigenvalues();         // ascending
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
+  const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
   int num_soft = 0;
   while (num_soft < 3 && !(stiffness[num_soft] > kLeastStiffness * stiffness[2])) ++num_soft;
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int i = num_soft; i < 3; ++i)
-    step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness[i]);
+    step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
   if (num_soft > 0) {
-    h.setZero();
-    g.setZero();
-    for (Eigen::Index i = 0; i < x.cols(); ++i) {
-      const Eigen::Vector3d p = x.col(i).cast<double>() - middle, q = y.col(i).cast<double>() - middle;
-      const double height = n.dot(p) - offset;
-      Eigen::Matrix3d slopes;  // of the reflected point
-      slopes.col(0) = -2.0 * (u.dot(p) * n + height * u);
-      slopes.col(1) = -2.0 * (v.dot(p) * n + height * v);
-      slopes.col(2) = 2.0 * extent * n;
-      h += weights[i] * slopes.transpose() * slopes;
-      g += weights[i] * slopes.transpose() * (p - 2.0 * height * n - q);
-    }
+    StepEquations whole(plane, samples);
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+      whole.addPointToPoint(x.col(i).cast<double>(), y.col(i).cast<double>(), weights[i]);
     const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
-    const Eigen::MatrixXd reduced = soft.transpose() * h * soft;
-    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * g);
+    const Eigen::MatrixXd reduced = soft.transpose() * whole.h * soft;
+    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * whole.g);
   }
   const double length = step.norm();
   if (!std::isfinite(length)) return plane;
   if (length > kLongestStep) step *= kLongestStep / length;
-  const Eigen::Vector3d normal = (n + step[0] * u + step[1] * v).normalized();
-  return ReflectionPlane(normal, normal.dot(middle) + offset + step[2] * extent);
+  return across.moved(step);
 }
 
 IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
                                double sigma, IspUpdate update, const std::vector<int>* guesses) {
   const auto size = static_cast<Eigen::Index>(samples.size());
-  IspStep step;
   Points x(3, size), reflected(3, size), y(3, size);
   for (Eigen::Index i = 0; i < size; ++i) {
     x.col(i) = surface.points.col(samples[i]);
     reflected.col(i) = plane.reflect(x.col(i).cast<double>()).cast<float>();
   }
-  constexpr std::size_t kBlockSize = 1024;
-  constexpr double kReach = 3.0;  // sigmas: beyond, weights are below 1.3e-4
-  step.closest.assign(samples.size(), -1);
-  step.sq_distances.assign(samples.size(), std::numeric_limits<float>::infinity());
-  const float bound = surface.far ? surface.far->bound(kReach * sigma) : 0.0f;
-  const auto sq_reach = static_cast<float>(kReach * kReach * sigma * sigma);
-  parallelRanges(samples.size(), kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<Eigen::Index> near;
-    for (std::size_t i = begin; i < end; ++i)
-      if (!surface.far || !(*surface.far)(reflected.col(i).cast<double>(), bound)) near.push_back(i);
-    Points queries(3, near.size());
-    for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = reflected.col(near[i]);
-    std::vector<int> closest(near.size(), -1);
-    std::vector<float> sq_distances;
-    if (guesses)
-      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[near[i]];
-    surface.search.searchWithin(queries, sq_reach, closest, sq_distances);
-    for (std::size_t i = 0; i < near.size(); ++i) {
-      step.closest[near[i]] = closest[i];
-      step.sq_distances[near[i]] = sq_distances[i];
-    }
-  });
+  IspStep step = matchReflections(surface, reflected, sigma, guesses);
   std::vector<double> weights(samples.size());
   double sum = 0.0, sq_sum = 0.0;
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -154,20 +210,19 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
   step.weight = size > 0 ? sum / static_cast<double>(size) : 0.0;
   if (update == IspUpdate::PointToPoint) {
     step.plane = fitReflectionPlane(x, y, weights, plane);
-  } else {
-    Points x_normals(3, size), y_normals(3, size);
-    for (Eigen::Index i = 0; i < size; ++i) {
-      x_normals.col(i) = surface.normals.col(samples[i]);
-      y_normals.col(i) = surface.normals.col(step.closest[i] >= 0 ? step.closest[i] : samples[i]);
-    }
-    step.plane = stepReflectionPlane(x, y, x_normals, y_normals, weights, plane);
+    return step;
   }
+  Points x_normals(3, size), y_normals(3, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    x_normals.col(i) = surface.normals.col(samples[i]);
+    y_normals.col(i) = surface.normals.col(step.closest[i] >= 0 ? step.closest[i] : samples[i]);
+  }
+  step.plane = stepReflectionPlane(x, y, x_normals, y_normals, weights, plane);
   return step;
 }
 
 IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
                                 const ReflectionPlane& plane, const IspOptions& options) {
-  constexpr double kRest = 0.1;  // sigmas
   options.validate();
   const double size = static_cast<double>(samples.size());
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();

@@ -1,4 +1,4 @@
-/// Planes of scans: what was seen from one side bears out the true planes and rules out others.
+/// Planes of scans: what was seen from one side supports the true planes and rules out others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -173,6 +173,8 @@ TEST(Scans, TruePlanesAreAmongTheAnswers) {
   std::printf("%d of %d true planes, %d called symmetries (wrongly %d); %d without the viewpoint\n", num_found,
               num_planes, num_certain, num_wrong, num_without);
   EXPECT_EQ(num_found, num_planes);
+  // The README's rate of scans of asymmetric objects that are called symmetric is 21 %: 1.9 of nine scans.
+  EXPECT_LE(num_wrong, static_cast<int>(0.21 * static_cast<double>(scans().size())));
 }
 
 TEST(Scans, SameBytesForAnyNumberOfThreads) {

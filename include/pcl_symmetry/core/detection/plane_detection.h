@@ -14,30 +14,33 @@
 
 namespace pcl_symmetry {
 
-/// What a plane is of the shape.
+/// What a plane is to the shape.
 enum class PlaneKind {
-  Symmetry,     ///< of the whole object, confidence >= min_confidence
-  Possible,     ///< of a scan: what the scanner saw neither bears it out nor rules it out
-  Approximate,  ///< nearly a symmetry
-  Local         ///< a symmetry of a part: of the points that support it, not of the others
+  Symmetry,     ///< of the whole object: confidence >= min_confidence
+  Possible,     ///< of a scan: what the scanner saw is too little to decide
+  Approximate,  ///< less than that: a local maximum of the transform
+  Local         ///< a symmetry of a part: of the points that support it
 };
 
 /// A refined local maximum of the transform. Canonical: theta of the normal in [0, pi/2].
 struct SymmetryPlane : ReflectionPlane {
+  SymmetryPlane() = default;
+  explicit SymmetryPlane(const ReflectionPlane& plane) : ReflectionPlane(plane.canonical()) {}
+
   PlaneKind kind = PlaneKind::Approximate;
   /// Probability that this is a symmetry of the object, in [0, 1]; comparable between objects, densities, noise levels,
-  /// whole and partial clouds. How it was calibrated: README, "What the numbers mean".
+  /// whole and partial clouds. src/core/evidence/README.md has the formula, its calibration and its limits.
   double confidence = 0.0;
-  /// D(f, gamma) at this very plane, the paper's measure: the correlation of the GEDT with its reflection, in [0, 1].
+  /// D(f, gamma) of equation 2 at this very plane: the correlation of the GEDT with its reflection, in [0, 1].
   double score = 0.0;
-  /// Share of what was seen of the surface that the plane maps onto the surface, within its sampling and noise, [0, 1].
+  /// Share of the surface seen that the plane maps onto the surface, relative to what sampling and noise allow, [0, 1].
   double support = 0.0;
   /// Share of the points whose reflection falls where the scanner could see, in [0, 1]; 1 without a viewpoint.
   double seen = 1.0;
-  /// One value in [0, 1] per point used, in their order: 1 where the reflection meets the surface as closely as samples
-  /// of the surface themselves lie, falling to 0 beyond.
+  /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
+  /// of a surface are to each other, falling to 0 beyond.
   std::vector<float> point_support;
-  int iterations = 0;      ///< of Iterative Symmetric Points, all stages
+  int iterations = 0;      ///< of Iterative Symmetric Points, in all stages
   bool converged = false;  ///< the plane stood still
   double residual = 0.0;   ///< weighted root mean square distance of the reflected points from the surface, input units
 };
@@ -46,43 +49,43 @@ struct SymmetryPlane : ReflectionPlane {
 struct SymmetryAxis {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
-  double confidence = 0.0;    ///< as of SymmetryPlane, of planes at eight angles together
-  double score = 0.0;         ///< mean D of these
-  double support = 0.0;       ///< mean support of these
+  double confidence = 0.0;    ///< as that of SymmetryPlane, for planes at eight angles together
+  double score = 0.0;         ///< mean D of these planes
+  double support = 0.0;       ///< mean support of these planes
 };
 
 /// All planes through a point are symmetries: a sphere.
 struct SymmetryCenter {
   Eigen::Vector3d point;                                ///< input frame
-  double confidence = 0.0, score = 0.0, support = 0.0;  ///< as of SymmetryAxis
+  double confidence = 0.0, score = 0.0, support = 0.0;  ///< as those of SymmetryAxis
 };
 
 struct DetectionOptions {
   GaussianEdtOptions edt;
-  /// Bins of the map that candidates come from. As many as the paper's 64 x 64 directions, but as fine in phi at the
-  /// equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
+  /// Bins of the map that candidates come from. chosen: as many as the paper's 64 x 64 directions, but as fine in phi
+  /// at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
   int num_theta = 32;    ///< >= 1
   int num_phi = 128;     ///< even, >= 2
   int num_radius = 64;   ///< >= 1
-  int num_samples = 64;  ///< of the sampled transform, >= 1: 1 % of PRST is enough to find maxima
+  int num_samples = 64;  ///< samples of the transform, >= 1. measured: the error is 1 % of PRST, enough to find maxima
   LocalMaximaOptions maxima;
   int max_candidates = 24;       ///< strongest maxima that are refined, >= 1
   bool principal_planes = true;  ///< planes across the principal axes are candidates too
-  /// A candidate that refinement moves by more than this many bins beyond its own is unstable and dropped, >= 0; the
-  /// paper has 0. One bin leaves room for the noise of the sampled map.
+  /// A candidate that refinement moves by more than this many bins beyond its own is unstable and dropped, >= 0.
+  /// Departure from the paper, which has 0: one bin leaves room for the noise of the sampled map.
   double max_drift = 1.0;
   IspUpdate update = IspUpdate::PointToPlane;
   int num_coarse_samples = 100;     ///< points reflected in early iterations, >= 10
   int num_refine_samples = 10'000;  ///< points reflected in late iterations (the paper's figure), >= 10
   int max_iterations = 30;          ///< of each stage, >= 1
-  double merge_angle = 0.035;       ///< radians, >= 0: planes closer than this in angle ...
-  double merge_offset = 0.02;       ///< ... and this share of the radius in offset are one, >= 0
-  double min_confidence = 0.5;      ///< confidence >= min_confidence: the plane is a symmetry; in [0, 1]
-  /// Of scans, planes with confidence >= min_possible are reported as possible, in [0, 1].
+  double merge_angle = 0.035;       ///< radians, >= 0: planes that differ by no more than this in angle ...
+  double merge_offset = 0.02;       ///< ... and by this share of the radius in offset are one, >= 0
+  double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
+  /// A plane of a scan is reported as possible if confidence >= min_possible; in [0, 1].
   double min_possible = 0.02;
   int max_possible = 5;  ///< symmetries and possible planes of a scan together, >= 1
   bool families = true;  ///< planes through one axis or one center are reported as such in place of single planes
-  /// Reports the other maxima too, after the symmetries: nearly symmetries of the whole, and symmetries of parts.
+  /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
   int max_planes = 20;  ///< >= 1
   std::uint64_t seed = 1;
@@ -93,6 +96,9 @@ struct DetectionOptions {
 };
 
 struct Detection {
+  /// Why there is no answer, one sentence such as "12 distinct points, at least 20 are needed"; empty where the search
+  /// ran, whatever it found.
+  std::string reason;
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
   std::vector<SymmetryAxis> axes;     ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;
@@ -101,17 +107,21 @@ struct Detection {
 };
 
 /// From points to planes: transform, maxima, refinement (Sections 4.1 to 4.4).
-/// \param points 3 x N, finite, input units; at least two different ones.
-/// \param make_search makes the search of refineMaxima for the distance transform of these points; null = FLANN.
-/// \param visibility what a scanner saw; null = the points show the object from all sides.
-/// \throws std::invalid_argument for bad options or points without extent.
+/// \param points 3 x N, finite, input units. Fewer than 20 distinct points, points at one place and points on one line
+/// give an empty result with a reason.
+/// \param make_search makes the search of refineMaxima() for the distance transform of these points; null = FLANN.
+/// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
+/// \throws std::invalid_argument for bad options or coordinates that are not finite.
 Detection detectPlanes(const PointsRef& points, const DetectionOptions& options = {},
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr,
                        const Visibility* visibility = nullptr);
 
-/// The same from a map that was made before.
-/// \param edt,map of these points. \param search closest points among \p points divided by edt.radius() after taking
-/// away edt.center(); null = FLANN. \param visibility as in detectPlanes.
+/// From a map that was made before to planes: maxima, refinement (Section 4.4).
+/// \param points as in detectPlanes().
+/// \param edt,map of these points.
+/// \param search closest points among (points - edt.center()) / edt.radius(); null = FLANN.
+/// \param visibility as in detectPlanes().
+/// \throws std::invalid_argument for bad options or coordinates that are not finite.
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
                        const DetectionOptions& options = {}, ClosestPointSearch::Ptr search = nullptr,
                        const Visibility* visibility = nullptr);

@@ -1,0 +1,58 @@
+#include "core/detection/candidates.h"
+
+#include "core/geometry/principal_axes.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Radians, and radii. chosen: a peak of D is about 0.1 radians wide at the default sigma; smaller values refine a peak
+// more than once, larger ones merge planes of a regular polygon with many sides.
+constexpr PlaneTolerance kBasin{0.1, 0.06};
+// Symmetries whose group is completed. chosen: the full group of a cube has 9, that of an icosahedron 15; more belong
+// to a family of planes, whose group never closes.
+constexpr std::size_t kMaxClosed = 16;
+
+}  // namespace
+
+PlaneTolerance basinTolerance() {
+  return kBasin;
+}
+
+std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
+                                        const DetectionOptions& options) {
+  std::vector<Candidate> candidates;
+  LocalMaximaOptions maxima = options.maxima;
+  maxima.num_threads = options.num_threads;
+  for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
+    if (static_cast<int>(candidates.size()) >= options.max_candidates) break;
+    const ReflectionPlane plane = cloud.toNormalized(maximum.plane);
+    if (kBasin.anySame(candidates, plane, [](const Candidate& candidate) { return candidate.plane; })) continue;
+    candidates.push_back({plane, true});
+  }
+  if (options.principal_planes)
+    for (const ReflectionPlane& plane : principalPlanes(principalAxes(cloud.points)))
+      candidates.push_back({plane, false});
+  return candidates;
+}
+
+std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& planes) {
+  std::vector<ReflectionPlane> symmetries;
+  for (const SymmetryPlane& plane : planes)
+    if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud_.toNormalized(plane));
+  std::vector<Candidate> found;
+  if (cloud_.isScan() || symmetries.size() > kMaxClosed) return found;
+  tried_.insert(tried_.end(), symmetries.begin(), symmetries.end());
+  for (const ReflectionPlane& plane : symmetries) {
+    for (const ReflectionPlane& across : symmetries) {
+      const Eigen::Vector3d normal = plane.normal() - 2.0 * plane.normal().dot(across.normal()) * across.normal();
+      const ReflectionPlane image(normal, normal.dot(across.reflect(plane.offset() * plane.normal())));
+      if (tolerance_.anySame(tried_, image)) continue;
+      tried_.push_back(image);
+      found.push_back({image, false});
+    }
+  }
+  return found;
+}
+
+}  // namespace pcl_symmetry

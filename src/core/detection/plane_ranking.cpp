@@ -1,0 +1,73 @@
+#include "core/detection/plane_ranking.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "core/geometry/point_samples.h"
+#include "core/refinement/plane_tolerance.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Radians, and radii: how far the slope of a maximum may reach. chosen: twice the limits of a basin of refinement;
+// smaller values report planes that came to rest on a slope, larger ones only cost a value of D each.
+constexpr PlaneTolerance kSlope{0.2, 0.15};
+// Of D. chosen: what rounding and cells make of a level slope; larger values drop shallow maxima of their own.
+constexpr double kSlopeDip = 0.005;
+
+int rankOf(const SymmetryPlane& plane) {
+  switch (plane.kind) {
+    case PlaneKind::Symmetry:
+      return 0;
+    case PlaneKind::Possible:
+      return 1;
+    default:
+      return 2;
+  }
+}
+
+bool isBefore(const SymmetryPlane& a, const SymmetryPlane& b) {
+  const int rank = rankOf(a);
+  if (rank != rankOf(b)) return rank < rankOf(b);
+  if (rank < 2 && a.confidence != b.confidence) return a.confidence > b.confidence;
+  return a.support > b.support;
+}
+
+/// Refinement can come to rest on the way to a maximum, where few points say how to go on (on flat pieces, for
+/// instance). A plane is a maximum of its own only if D falls on the way to a better plane nearby.
+bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
+  const ReflectionPlane a = cloud.toNormalized(better), b = cloud.toNormalized(plane);
+  if (!kSlope.same(a, b)) return false;
+  const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
+  const Eigen::Vector3d normal = a.normal() + sign * b.normal();
+  const ReflectionPlane between(normal, 0.5 * normal.norm() * (a.offset() + sign * b.offset()));
+  return cloud.score(cloud.toInput(between)) > plane.score - kSlopeDip;
+}
+
+}  // namespace
+
+std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
+                                        const PlaneFit& fit, const DetectionOptions& options) {
+  const PlaneTolerance tolerance{options.merge_angle, options.merge_offset};
+  std::stable_sort(planes.begin(), planes.end(), isBefore);
+  std::vector<SymmetryPlane> ranked;
+  for (SymmetryPlane& plane : planes) {
+    if (static_cast<int>(ranked.size()) >= options.max_planes) break;
+    if (rankOf(plane) == 2 && !options.approximate) continue;
+    if (rankOf(plane) == 1 && static_cast<int>(ranked.size()) >= options.max_possible) continue;
+    const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
+      return tolerance.same(cloud.toNormalized(other), cloud.toNormalized(plane)) || isOnSlopeOf(other, plane, cloud);
+    });
+    if (!is_known) ranked.push_back(std::move(plane));
+  }
+  const std::vector<int> all = allOf(cloud.points.cols());
+  parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) {
+    if (ranked[i].point_support.size() != all.size())
+      ranked[i].point_support = fit.shares(cloud.toNormalized(ranked[i]), all).point_support;
+  });
+  return ranked;
+}
+
+}  // namespace pcl_symmetry

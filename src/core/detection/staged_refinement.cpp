@@ -1,0 +1,146 @@
+#include "core/detection/staged_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Iterations. chosen: Gauss-Newton steps settle symmetries in fewer; half as many stop some early, twice as many only
+// move approximate symmetries, which never settle.
+constexpr int kCoarseIterations = 5, kCloseIterations = 6, kFullIterations = 8;
+constexpr int kRoughIterations = 4;  // chosen: as above, for candidates that never settle
+
+// Merit of a symmetry of a whole cloud. chosen: a symmetry of 97 % support and 3 % conflict has 0.97; higher values
+// lose symmetries where samples are few, lower ones refine hopeless candidates in full.
+constexpr double kLeastMerit = 0.93;
+// How far below that a candidate may be after the first two stages. chosen: wide weights and few samples blur the
+// merit; smaller values lose symmetries early, larger ones cost time.
+constexpr double kCoarseSlack = 0.4, kCloseSlack = 0.1;
+// Candidates with less merit that go on after the first two stages, best first. chosen: approximate symmetries and
+// those of scans; fewer lose some of them, more cost time.
+constexpr std::size_t kKeptCoarsely = 8, kKeptClosely = 4;
+
+// Samples of the second stage per sample of the first. chosen: fewer blur the merit by which candidates are dropped,
+// more cost time.
+constexpr int kCloseSampleFactor = 4;
+// Width of the weights at the end of the first stage, sigmas. chosen: narrower weights let planes rest on few pairs,
+// wider ones leave more to the second stage.
+constexpr double kNarrowestCoarsely = 0.5;
+
+// Share of a standard error: a shorter Gauss-Newton step of a symmetry is the last. measured: another one over all
+// points leaves the errors of boxes and prisms, exact and sampled, where they are.
+constexpr double kSettledErrorShare = 3.0;
+
+/// What differs between whole clouds and scans. A scan is limited by what was not seen, not by the number of samples;
+/// the merit of its symmetries is low, so that all candidates settle that may.
+struct StageRules {
+  int full_share;        ///< the last stage reflects one sample in this many
+  int rough_share;       ///< candidates that never settle reflect one sample in this many
+  double settled_merit;  ///< candidates with less never settle
+};
+// chosen: twice the samples cost twice the time and leave the planes where they are; half of them make planes of scans
+// and of approximate symmetries noisier.
+constexpr StageRules kWholeRules{1, 10, kLeastMerit - kCloseSlack};
+constexpr StageRules kScanRules{4, 20, kLeastMerit};  // chosen: see above
+
+StageRules rulesOf(const NormalizedCloud& cloud) {
+  return cloud.isScan() ? kScanRules : kWholeRules;
+}
+
+}  // namespace
+
+StagedRefinement::StagedRefinement(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
+    : cloud_(cloud), fit_(fit), options_(options) {}
+
+std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const {
+  const double narrow = std::clamp(cloud_.final_sigma, kNarrowestCoarsely * cloud_.sigma, cloud_.sigma);
+  const std::vector<Candidate> moved =
+      refined(candidates, stage(options_.num_coarse_samples, cloud_.sigma, narrow, kCoarseIterations));
+  return distinct(withinCells(moved, candidates, grid), leastMerit(kCoarseSlack), kKeptCoarsely);
+}
+
+std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
+  return distinct(refined(std::move(candidates), closeStage()), leastMerit(kCloseSlack), kKeptClosely);
+}
+
+std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
+  return distinct(refined(std::move(candidates), closeStage()), kLeastMerit - kCloseSlack, kKeptClosely);
+}
+
+std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates) const {
+  return refined(std::move(candidates), stage(options_.num_refine_samples / rulesOf(cloud_).full_share,
+                                              cloud_.final_sigma, cloud_.final_sigma, kFullIterations));
+}
+
+RefinementStage StagedRefinement::closeStage() const {
+  return stage(std::min(kCloseSampleFactor * options_.num_coarse_samples, options_.num_refine_samples),
+               std::clamp(cloud_.final_sigma, kNarrowestCoarsely * cloud_.sigma, cloud_.sigma), cloud_.final_sigma,
+               kCloseIterations);
+}
+
+RefinementStage StagedRefinement::stage(int num_samples, double sigma, double final_sigma, int max_iterations) const {
+  const StageRules rules = rulesOf(cloud_);
+  RefinementStage stage;
+  stage.num_samples = num_samples;
+  stage.num_rough_samples = std::min(num_samples, options_.num_refine_samples / rules.rough_share);
+  stage.least_merit = rules.settled_merit;
+  stage.undo_slides = cloud_.isScan() && final_sigma == sigma;
+  // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
+  const bool slides = cloud_.isScan() && num_samples > options_.num_coarse_samples && final_sigma < sigma;
+  stage.isp.update = slides ? IspUpdate::PointToPoint : options_.update;
+  stage.isp.sigma = sigma;
+  stage.isp.final_sigma = final_sigma;
+  stage.isp.max_iterations = std::min(max_iterations, options_.max_iterations);
+  stage.rough_isp = stage.isp;
+  stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kRoughIterations);
+  if (options_.update == IspUpdate::PointToPlane) stage.isp.error_share = kSettledErrorShare;
+  return stage;
+}
+
+std::vector<Candidate> StagedRefinement::refined(std::vector<Candidate> candidates,
+                                                 const RefinementStage& stage) const {
+  fit_.refine(candidates, stage);
+  return candidates;
+}
+
+/// The candidates that stayed near the cell they came from. Departure from the paper, which drops all that leave their
+/// cell: a map of few samples has its maxima up to one cell off, hence DetectionOptions::max_drift.
+std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate>& candidates,
+                                                     const std::vector<Candidate>& starts,
+                                                     const PlaneGrid& grid) const {
+  const double reach = 0.5 + options_.max_drift;
+  const PlaneTolerance cell{std::sqrt(2.0) * reach * std::max(grid.thetaStep(), grid.phiStep()),
+                            reach * grid.radiusStep() / cloud_.scale};
+  std::vector<Candidate> kept;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (!candidates[i].from_map || cell.same(starts[i].plane, candidates[i].plane)) kept.push_back(candidates[i]);
+  return kept;
+}
+
+/// What the first two stages demand. The best candidates of scans, and approximate symmetries that are wanted, go on
+/// whatever their merit.
+double StagedRefinement::leastMerit(double slack) const {
+  return cloud_.isScan() || options_.approximate ? -1.0 : kLeastMerit - slack;
+}
+
+/// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there are
+/// \p most.
+std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candidates, double least_merit,
+                                                  std::size_t most) const {
+  const PlaneTolerance tolerance{options_.merge_angle, options_.merge_offset};
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
+  std::vector<Candidate> kept;
+  for (Candidate& candidate : candidates) {
+    if (candidate.merit < least_merit) break;
+    if (candidate.merit < kLeastMerit - kCloseSlack && kept.size() >= most) break;
+    if (!tolerance.anySame(kept, candidate.plane, [](const Candidate& other) { return other.plane; }))
+      kept.push_back(std::move(candidate));
+  }
+  return kept;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,61 @@
+#include "core/refinement/normalized_cloud.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/median.h"
+#include "core/distance_transform/edt_correlation.h"
+#include "core/evidence/plane_support.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Spacings. chosen: half of it leaves reflected samples between the samples without weight, so that planes stop early;
+// twice lets the ends of a long shape pull at the plane of its middle.
+constexpr double kFinalSigmaInSpacings = 3.0;
+// Spacings. chosen: below the 0.42 of points that fill a volume evenly. Lower values judge noisy surfaces by density,
+// which blurs small asymmetries; above 0.42 nothing is a volume, and noise beyond the spacing leaves no symmetry.
+constexpr double kVolumeRoughness = 0.36;
+constexpr double kLeastSpacing = 1e-6;   // radii. derived: the rounding of coordinates about 1; avoids a division by 0
+constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supports of surfaces; avoids a division by 0
+
+}  // namespace
+
+NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input,
+                                 ClosestPointSearch::Ptr input_search, const Visibility* seen, int num_threads)
+    : edt(edt_of_input),
+      center(edt.center()),
+      scale(edt.radius()),
+      points(normalizePoints(input, center, scale)),
+      search(input_search ? std::move(input_search) : makeFlannSearch(points)),
+      geometry(localGeometry(points, *search, kNumSupportNeighbours, num_threads)),
+      visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
+      far(edt, center, scale),
+      surface{points, geometry.normals, *search, seen ? &geometry.at_border : nullptr, &far, num_threads},
+      spacing(median(geometry.spacing)),
+      roughness(median(geometry.roughness) / std::max(spacing, kLeastSpacing)),
+      baseline(std::max(meanSupport(ownSupport(points, geometry)), kLeastBaseline)),
+      sigma(edt.sigma() / scale),
+      final_sigma(std::min(sigma, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing))) {}
+
+bool NormalizedCloud::isVolume() const {
+  return roughness > kVolumeRoughness && !isScan();
+}
+
+ReflectionPlane NormalizedCloud::toNormalized(const ReflectionPlane& input_plane) const {
+  return ReflectionPlane(input_plane.normal(), input_plane.signedDistance(center) / -scale);
+}
+
+ReflectionPlane NormalizedCloud::toInput(const ReflectionPlane& plane) const {
+  return ReflectionPlane(plane.normal(), plane.offset() * scale + plane.normal().dot(center));
+}
+
+double NormalizedCloud::score(const ReflectionPlane& input_plane) const {
+  const ReflectionPlane cells(input_plane.normal(), input_plane.signedDistance(edt.origin()) / -edt.cellSize());
+  const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * input_plane.normal().x() * input_plane.normal();
+  return correlation(
+      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step);
+}
+
+}  // namespace pcl_symmetry

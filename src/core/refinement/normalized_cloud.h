@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+
+#include "core/neighbours/surface_normals.h"
+#include "core/refinement/far_test.h"
+#include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
+#include "pcl_symmetry/core/scan/visibility.h"
+
+namespace pcl_symmetry {
+
+/// The cloud as all stages of detection see it: in the unit ball about 0, with normals, spacing and roughness.
+///
+/// The normalised frame is (x - center) / scale. Lengths below are in this frame.
+struct NormalizedCloud {
+  /// \param input 3 x N, finite, distinct, input units.
+  /// \param edt_of_input distance transform of these points; must outlive this object.
+  /// \param input_search closest points among the normalised points; null = FLANN.
+  /// \param seen what a scanner saw, input frame; null = the points show the object from all sides.
+  /// \param num_threads 0 = one per core.
+  NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input, ClosestPointSearch::Ptr input_search,
+                  const Visibility* seen, int num_threads);
+  NormalizedCloud(const NormalizedCloud&) = delete;  // parts refer to each other
+  NormalizedCloud& operator=(const NormalizedCloud&) = delete;
+
+  const GaussianEdt& edt;        ///< input frame
+  const Eigen::Vector3d center;  ///< of the edt, input units
+  const double scale;            ///< radius of the edt, input units
+
+  const Points points;  ///< 3 x N
+  const ClosestPointSearch::Ptr search;
+  const LocalGeometry geometry;
+  const std::optional<Visibility> visibility;  ///< of a scan
+  const FarTest far;
+  const IspSurface surface;  ///< the above, as Iterative Symmetric Points wants it
+
+  const double spacing;      ///< median of the points' spacing
+  const double roughness;    ///< median of the points' roughness, divided by the spacing
+  const double baseline;     ///< mean support of the points on the surface of all others, > 0: a symmetry reaches it
+  const double sigma;        ///< width of the weights when refinement starts: that of the edt
+  const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma
+
+  bool isScan() const { return visibility.has_value(); }
+
+  /// Whether the points have neighbours on all sides: noise beyond their spacing leaves no surface.
+  bool isVolume() const;
+
+  ReflectionPlane toNormalized(const ReflectionPlane& input_plane) const;
+  ReflectionPlane toInput(const ReflectionPlane& plane) const;
+
+  /// D(f, gamma) of equation 2 for a normalised f: the full sum over the cells of the edt.
+  /// \param input_plane in the input frame.
+  /// \return in [0, 1].
+  double score(const ReflectionPlane& input_plane) const;
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,98 @@
+#include "core/refinement/surface_fit.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "core/distance_transform/free_space.h"
+#include "core/evidence/plane_support.h"
+#include "core/geometry/point_samples.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Share of the surface. chosen: smaller values break families up by sampling noise, larger ones let bodies with a small
+// handle pass for families.
+constexpr double kFamilyAllowance = 0.015;
+
+}  // namespace
+
+void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
+  const std::vector<int> samples = drawSamples(cloud_.points.cols(), stage.num_samples, options_.seed);
+  const std::vector<int> fewer = drawSamples(cloud_.points.cols(), stage.num_rough_samples, options_.seed);
+  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
+    Candidate& candidate = candidates[i];
+    const bool settles = candidate.iterations == 0 || candidate.merit >= stage.least_merit;
+    const std::vector<int>& used = settles ? samples : fewer;
+    const ReflectionPlane start = candidate.plane;
+    candidate.last = refineSymmetricPoints(cloud_.surface, used, start, settles ? stage.isp : stage.rough_isp);
+    candidate.plane = candidate.last.plane;
+    candidate.iterations += candidate.last.iterations;
+    candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
+    if (stage.undo_slides) undoSlide(candidate, start, used, stage.isp.final_sigma);
+  });
+}
+
+/// Point-to-plane distances say nothing about a plane along flat pieces, and a scan may have little else. The plane
+/// takes one point-to-point step from its start instead if that has more merit.
+void SurfaceFit::undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
+                           double sigma) const {
+  IspStep step = iterateSymmetricPoints(cloud_.surface, samples, start, sigma, IspUpdate::PointToPoint,
+                                        &candidate.last.last.closest);
+  const double point_to_point_merit = merit(shares(step.plane, samples, step));
+  if (point_to_point_merit <= candidate.merit) return;
+  candidate.plane = step.plane;
+  candidate.merit = point_to_point_merit;
+  candidate.last.last = std::move(step);
+}
+
+ReflectionPlane SurfaceFit::refined(const ReflectionPlane& plane, const std::vector<int>& samples,
+                                    int max_iterations) const {
+  IspOptions isp;
+  isp.update = options_.update;
+  isp.sigma = isp.final_sigma = cloud_.final_sigma;
+  isp.max_iterations = max_iterations;
+  return refineSymmetricPoints(cloud_.surface, samples, plane, isp).plane;
+}
+
+PlaneShares SurfaceFit::shares(const ReflectionPlane& plane, const std::vector<int>& samples,
+                               const IspStep& step) const {
+  const auto size = static_cast<Eigen::Index>(samples.size());
+  Points reflected(3, size), normals(3, size);
+  const Eigen::Vector3f n = plane.normal().cast<float>();
+  for (Eigen::Index i = 0; i < size; ++i) {
+    reflected.col(i) = plane.reflect(cloud_.points.col(samples[i]).cast<double>()).cast<float>();
+    const Eigen::Vector3f normal = cloud_.geometry.normals.col(samples[i]);
+    normals.col(i) = normal - 2.0f * n.dot(normal) * n;
+  }
+  PointEvidence evidence = pointEvidence(reflected, normals, step.closest, cloud_.points, cloud_.geometry,
+                                         cloud_.isScan() ? &*cloud_.visibility : nullptr);
+  return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence.support)};
+}
+
+double SurfaceFit::relativeSupport(const PlaneShares& shares) const {
+  return std::min(1.0, shares.support / cloud_.baseline);
+}
+
+double SurfaceFit::merit(const PlaneShares& shares) const {
+  return seenSymmetry(relativeSupport(shares), shares.conflict);
+}
+
+double SurfaceFit::familyAllowance() const {
+  return kFamilyAllowance;
+}
+
+PlaneEvidence SurfaceFit::evidence(double support, double conflict, double score) const {
+  PlaneEvidence evidence;
+  evidence.support = support;
+  evidence.conflict = conflict;
+  evidence.score = score;
+  evidence.baseline = cloud_.baseline;
+  evidence.spacing = cloud_.spacing;
+  evidence.roughness = cloud_.roughness;
+  evidence.partial = cloud_.isScan();
+  return evidence;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/refinement/plane_fit.h"
+
+namespace pcl_symmetry {
+
+/// Planes of points that resolve a surface: Iterative Symmetric Points, and the share of points whose reflection lies
+/// on the surface.
+class SurfaceFit : public PlaneFit {
+public:
+  /// \param cloud must outlive this object.
+  SurfaceFit(const NormalizedCloud& cloud, const PlaneFitOptions& options) : PlaneFit(cloud), options_(options) {}
+
+  void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override;
+  ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
+                          int max_iterations) const override;
+  using PlaneFit::shares;
+  PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const override;
+  double relativeSupport(const PlaneShares& shares) const override;
+  double merit(const PlaneShares& shares) const override;
+  double familyAllowance() const override;
+  PlaneEvidence evidence(double support, double conflict, double score) const override;
+
+private:
+  void undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
+                 double sigma) const;
+
+  PlaneFitOptions options_;
+};
+
+}  // namespace pcl_symmetry
