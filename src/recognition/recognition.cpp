@@ -6,6 +6,7 @@
 #include "pcl_symmetry/impl/point_selection.hpp"
 #include "pcl_symmetry/impl/seen_space.hpp"
 #include "pcl_symmetry/recognition/symmetry_database.h"
+#include "registration/pose_refinement.h"
 
 namespace pcl_symmetry {
 
