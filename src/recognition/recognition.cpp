@@ -2,9 +2,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 
 namespace pcl_symmetry {
@@ -119,7 +117,7 @@ Recognition SymmetryDatabase::recognizeView(const Points& points, const Points& 
   PosedScan posed(scan, seen, registration);
   for (const ShapeOfView& shape : view_index_.nearest(viewOf(points, ball.center - seen.viewpoint()), search)) {
     const std::string& name = indexed_[static_cast<std::size_t>(shape.shape)];
-    posed.bringTo(name, selectPoints(cloud(name), nullptr, kModelPoints, 1).points, shape.T_shape_scan);
+    posed.bringTo(name, detail::selectPoints(cloud(name), nullptr, kModelPoints, 1).points, shape.T_shape_scan);
   }
   return posed.refined(options.num_refined);
 }
@@ -132,8 +130,8 @@ Recognition SymmetryDatabase::recognizeWhole(const Points& points, const Points&
   for (const auto& [model, distance] : nearest(points, nullptr, options.num_candidates)) {
     const std::string& name = indexed_[static_cast<std::size_t>(model)];
     const CloudRegistration posed =
-        registerClouds(scan, std::nullopt, selectPoints(cloud(name), nullptr, kScanPoints, 1).points, std::nullopt,
-                       Eigen::Isometry3d::Identity(), registration);
+        registerClouds(scan, std::nullopt, detail::selectPoints(cloud(name), nullptr, kScanPoints, 1).points,
+                       std::nullopt, Eigen::Isometry3d::Identity(), registration);
     found.push_back({name, posed.T_target_source, posed.score, 0.0});
   }
   return found;
@@ -141,11 +139,11 @@ Recognition SymmetryDatabase::recognizeWhole(const Points& points, const Points&
 
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
                                         const Viewpoint& viewpoint) const {
-  return withBadArguments([&] {
+  return detail::withBadArguments([&] {
     options.validate();
-    const Points points = selectPoints(scan, nullptr, options_.max_points, 1).points;
-    const Points scan_points = selectPoints(scan, nullptr, kScanPoints, 1).points;
-    const std::optional<Visibility> seen = seenSpace(scan, points, viewpoint);
+    const Points points = detail::selectPoints(scan, nullptr, options_.max_points, 1).points;
+    const Points scan_points = detail::selectPoints(scan, nullptr, kScanPoints, 1).points;
+    const std::optional<Visibility> seen = detail::seenSpace(scan, points, viewpoint);
     CloudRegistrationOptions registration = options.registration;
     registration.num_threads = options.num_threads;
     Recognition found = seen ? recognizeView(points, scan_points, *seen, options, registration)

@@ -9,9 +9,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "database_files.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
 
@@ -34,7 +32,7 @@ void checkName(const std::string& name) {
 }
 
 Points finitePoints(const SymmetryDatabase::Cloud& cloud, std::size_t max_points) {
-  return selectPoints(cloud, nullptr, max_points, 1).points;
+  return detail::selectPoints(cloud, nullptr, max_points, 1).points;
 }
 
 }  // namespace
@@ -48,7 +46,7 @@ void DatabaseOptions::validate() const {
 
 SymmetryDatabase::SymmetryDatabase(const std::string& folder, const DatabaseOptions& options)
     : folder_(folder), options_(options) {
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   load();
 }
 
@@ -123,7 +121,7 @@ std::vector<std::string> SymmetryDatabase::names() const {
 }
 
 void SymmetryDatabase::add(const std::string& name, const Cloud& cloud) {
-  withBadArguments([&] {
+  detail::withBadArguments([&] {
     checkName(name);
     const Points points = finitePoints(cloud, options_.max_points);
     DescriptionOptions description;
@@ -172,7 +170,7 @@ void SymmetryDatabase::rebuild() {
     });
     ProjectionOptions projection;
     projection.num_threads = options_.num_threads;
-    projection_ = withBadArguments([&] { return SignatureProjection::fit(references, projection); });
+    projection_ = detail::withBadArguments([&] { return SignatureProjection::fit(references, projection); });
   }
   fillIndex();
 }
@@ -252,9 +250,9 @@ std::vector<std::pair<int, float>> SymmetryDatabase::nearest(const Points& point
 }
 
 std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_nearest, const Viewpoint& viewpoint) const {
-  return withBadArguments([&] {
+  return detail::withBadArguments([&] {
     const Points points = finitePoints(cloud, options_.max_points);
-    const std::optional<Visibility> seen = seenSpace(cloud, points, viewpoint);
+    const std::optional<Visibility> seen = detail::seenSpace(cloud, points, viewpoint);
     std::vector<ModelMatch> matches;
     for (const auto& [model, distance] : nearest(points, seen ? &*seen : nullptr, num_nearest))
       matches.push_back({indexed_[static_cast<std::size_t>(model)], distance});

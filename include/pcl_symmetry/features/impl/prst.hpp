@@ -7,8 +7,7 @@
 
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
 #include "pcl_symmetry/features/prst.h"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
 
@@ -54,7 +53,7 @@ template <typename PointInT, typename PointOutT>
 void PRSTEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& output) {
   output.width = output.height = 1;
   try {
-    const SelectedPoints selected = selectPoints(*input_, all_indices_.get(), max_points_, options_.seed);
+    const detail::SelectedPoints selected = detail::selectPoints(*input_, all_indices_.get(), max_points_, options_.seed);
     Eigen::Isometry3d T_frame_input = Eigen::Isometry3d::Identity();
     if (use_input_axes_) {
       T_frame_input.translation() = -centerOfMass(selected.points);
@@ -62,7 +61,7 @@ void PRSTEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& output) 
       FrameOptions frame;
       frame.seed = options_.seed;
       frame.num_threads = frame.edt.num_threads = options_.num_threads;
-      const std::optional<Visibility> seen = seenSpace(*input_, selected.points, viewpoint_);
+      const std::optional<Visibility> seen = detail::seenSpace(*input_, selected.points, viewpoint_);
       T_frame_input = symmetryFrame(selected.points, frame, seen ? &*seen : nullptr).T_canonical_input;
     }
     const std::vector<float> prst = symmetryDescriptors(selected.points, T_frame_input, options_).prst;
