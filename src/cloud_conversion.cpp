@@ -38,10 +38,9 @@ void checkAtLeast(const char* field, std::int64_t value, std::int64_t least) {
   withBadArguments([&] { check(value >= least, field, value, rule.c_str()); });
 }
 
-std::string reasonForNoAnswer(const Points& points) {
-  if (points.cols() == 0) return "input cloud: no finite point";
-  const std::string reason = whyUnanswerable(points);
-  return reason.empty() ? reason : "input cloud: " + reason;
+std::string reasonForNoAnswer(const Points& points, const std::string& input) {
+  const std::string reason = points.cols() == 0 ? "no finite point" : whyUnanswerable(points);
+  return reason.empty() ? reason : input + ": " + reason;
 }
 
 void warnOfNoAnswer(const std::string& source, const std::string& reason) {

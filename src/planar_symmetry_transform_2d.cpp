@@ -1,6 +1,14 @@
-#include "pcl_symmetry/impl/planar_symmetry_transform_2d.hpp"
+#include "pcl_symmetry/planar_symmetry_transform_2d.h"
 
-#include <pcl/point_types.h>
-#include <pcl/impl/instantiate.hpp>
+#include "core/geometry/principal_axes.h"
 
-PCL_INSTANTIATE(PlanarSymmetryTransform2D, PCL_XYZ_POINT_TYPES)
+namespace pcl_symmetry::detail {
+
+Sheet sheetOf(const Points& points) {
+  Sheet sheet;
+  sheet.T_input_sheet = sheetPose(points);
+  sheet.points = (sheet.T_input_sheet.inverse() * points.cast<double>()).topRows<2>().cast<float>();
+  return sheet;
+}
+
+}  // namespace pcl_symmetry::detail

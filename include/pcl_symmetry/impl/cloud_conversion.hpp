@@ -4,6 +4,7 @@
 #include <pcl/exceptions.h>
 #include <pcl/point_cloud.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -59,8 +60,9 @@ void changeOptions(Options& options, const Change& change) {
 void checkAtLeast(const char* field, std::int64_t value, std::int64_t least);
 
 /// \param points 3 x N, finite.
-/// \return why they hold no answer, one sentence that names the input cloud; empty where they can be analysed.
-std::string reasonForNoAnswer(const Points& points);
+/// \param input what the points are called in the sentence.
+/// \return why the points hold no answer, one sentence; empty where they can be analysed.
+std::string reasonForNoAnswer(const Points& points, const std::string& input = "input cloud");
 
 /// Prints "[pcl_symmetry::SOURCE] REASON." by PCL_WARN.
 void warnOfNoAnswer(const std::string& source, const std::string& reason);

@@ -46,6 +46,7 @@ struct ObjectSymmetries {
   double support = 1.0;     ///< share of the surface that the rotations map onto it, as far as sampling lets it, [0, 1]
   double confidence = 1.0;  ///< that the rotations are symmetries, as of planes, in [0, 1]
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+  std::string reason;  ///< why there is no answer, set by detectObjectSymmetries() for clouds; empty where there is one
 
   std::string name() const { return nameOf(kind, fold); }
 };
