@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "console.h"
-#include "core/geometry/diameter.h"
+#include "core/neighbours/diameter.h"
 #include "options.h"
 #include "pcl_symmetry/object_symmetries.h"
 #include "shape_input.h"

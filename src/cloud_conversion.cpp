@@ -11,7 +11,6 @@
 #include "core/base/check.h"
 #include "core/base/random.h"
 #include "core/geometry/answerable_points.h"
-#include "core/scan/single_view.h"
 
 namespace pcl_symmetry::detail {
 
@@ -112,7 +111,7 @@ void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
 std::optional<Visibility> seenFrom(const Points& points, const Viewpoint& viewpoint,
                                    const Eigen::Vector3d& sensor_origin) {
   if (viewpoint.mode == Viewpoint::Mode::None) return std::nullopt;
-  if (viewpoint.mode == Viewpoint::Mode::Auto) return recognizeViewpoint(points, sensor_origin);
+  if (viewpoint.mode == Viewpoint::Mode::Auto) return spaceSeenFrom(points, sensor_origin);
   std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);
   if (!seen)
     throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");

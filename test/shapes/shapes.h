@@ -8,14 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "core/base/constants.h"
 #include "core/base/random.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 
 namespace pcl_symmetry::test {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180.0;
+using pcl_symmetry::kDegree;
+using pcl_symmetry::kPi;
 
 struct Shape {
   Eigen::Matrix3Xd points;

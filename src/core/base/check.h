@@ -5,7 +5,10 @@
 
 namespace pcl_symmetry {
 
-/// Throws std::invalid_argument "field = value, must be rule" unless \p valid.
+/// Refuses a bad parameter with a message that names field, value and rule: "sigma = -1, must be > 0".
+/// \param valid whether the value obeys the rule.
+/// \param rule the rule as it reads after "must be".
+/// \throws std::invalid_argument unless \p valid.
 template <typename T>
 void check(bool valid, const char* field, const T& value, const char* rule) {
   if (valid) return;
@@ -14,6 +17,7 @@ void check(bool valid, const char* field, const T& value, const char* rule) {
   throw std::invalid_argument(message.str());
 }
 
+/// \throws std::invalid_argument for a negative number; 0 means one thread per core.
 inline void checkNumThreads(int num_threads) {
   check(num_threads >= 0, "num_threads", num_threads, ">= 0");
 }

@@ -6,8 +6,10 @@
 
 namespace pcl_symmetry {
 
-/// The upper median. \param values at least one.
-inline double median(std::vector<float> values) {
+/// The upper median: with an even number of values, the greater of the two in the middle.
+/// \param values at least one.
+template <typename T>
+T median(std::vector<T> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

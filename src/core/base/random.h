@@ -9,12 +9,13 @@ class RandomStream {
 public:
   using result_type = std::uint64_t;
 
-  /// Streams of the same seed and different \p stream numbers are independent.
+  /// Streams with the same seed and different \p stream numbers are independent.
   explicit RandomStream(std::uint64_t seed, std::uint64_t stream = 0) : state_(seed) {
     state_ = (*this)() + 0xD1342543DE82EF95ull * (stream + 1);
     (*this)();
   }
 
+  /// \return 64 random bits. The constants are those of Steele, Lea and Flood 2014.
   std::uint64_t operator()() {
     std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
@@ -22,12 +23,14 @@ public:
     return z ^ (z >> 31);
   }
 
-  /// Uniform in [0, 1).
+  /// \return a uniform number in [0, 1), a multiple of 2^-53.
   double uniform() { return static_cast<double>((*this)() >> 11) * 0x1.0p-53; }
 
-  /// Uniform in [0, size).
+  /// \param size >= 1, at most 2^53.
+  /// \return a uniform integer in [0, size).
   std::uint64_t below(std::uint64_t size) { return static_cast<std::uint64_t>(uniform() * static_cast<double>(size)); }
 
+  // A uniform random bit generator of the standard library.
   static constexpr std::uint64_t min() { return 0; }
   static constexpr std::uint64_t max() { return ~std::uint64_t{0}; }
 

@@ -4,9 +4,10 @@
 
 namespace pcl_symmetry {
 
+/// Wall-clock time of the stages of a computation.
 class Stopwatch {
 public:
-  /// Milliseconds since the last call, or since the start.
+  /// \return milliseconds since the last call, or since construction.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double, std::milli>(now - last_).count();

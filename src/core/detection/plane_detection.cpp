@@ -8,7 +8,7 @@
 #include "core/detection/refinement.h"
 #include "core/distance_transform/free_space.h"
 #include "core/geometry/answerable_points.h"
-#include "core/geometry/distinct_points.h"
+#include "core/neighbours/distinct_points.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
 
 namespace pcl_symmetry {

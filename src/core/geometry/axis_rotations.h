@@ -5,11 +5,13 @@
 
 namespace pcl_symmetry {
 
-/// The rotations that map the coordinate axes onto each other: how a frame can be laid on another one where neither
-/// order nor signs of its axes are known.
+/// Number of rotations that map the coordinate axes onto each other.
+/// derived: 6 orders of the axes times 8 choices of sign, half of which are reflections.
 constexpr int kNumAxisRotations = 24;
 
-/// Signed permutation matrices of determinant 1, the identity first.
+/// All rotations that map the coordinate axes onto each other. A frame whose axes have no known order and sign can be
+/// laid on another frame in these ways.
+/// \return signed permutation matrices of determinant 1, the identity first.
 const std::array<Eigen::Matrix3i, kNumAxisRotations>& axisRotations();
 
 }  // namespace pcl_symmetry

@@ -7,11 +7,12 @@
 
 namespace pcl_symmetry {
 
-/// Points spread over triangles by area: one in each of num_points equal shares of the total area, in the order of the
-/// triangles.
-/// \param vertices 3 x V. \param triangles indices into the vertices; those with a non-finite vertex are left out.
-/// \param num_points >= 1. \return 3 x num_points.
-/// \throws std::invalid_argument where an index is out of range or the total area is zero.
+/// Points spread evenly over triangles: one in each of num_points equal shares of the total area.
+/// \param vertices 3 x V, input units.
+/// \param triangles indices into the vertices; triangles with a vertex that is not finite are left out.
+/// \param num_points >= 1.
+/// \return 3 x num_points, in the order of the triangles.
+/// \throws std::invalid_argument for an index out of range, or a total area of zero.
 Points sampleTriangles(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles, int num_points,
                        std::uint64_t seed = 1);
 

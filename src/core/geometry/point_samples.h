@@ -1,4 +1,4 @@
-/// Which points of a cloud take part, by their indices.
+/// Subsets of a cloud, as indices of its points.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,16 @@
 
 namespace pcl_symmetry {
 
+/// \return 0, 1, ..., size - 1.
 inline std::vector<int> allOf(Eigen::Index size) {
   std::vector<int> samples(static_cast<std::size_t>(size));
   std::iota(samples.begin(), samples.end(), 0);
   return samples;
 }
 
-/// Each at most once; all of them where fewer than \p num_samples are there.
+/// Draws points without replacement.
+/// \param size number of points of the cloud.
+/// \return num_samples different indices in random order; all indices in order if size <= num_samples.
 inline std::vector<int> drawSamples(Eigen::Index size, int num_samples, std::uint64_t seed) {
   std::vector<int> samples = allOf(size);
   if (num_samples >= size) return samples;
@@ -28,6 +31,7 @@ inline std::vector<int> drawSamples(Eigen::Index size, int num_samples, std::uin
   return samples;
 }
 
+/// \return 3 x samples.size(), the points with these indices.
 inline Points pointsAt(const Points& points, const std::vector<int>& samples) {
   Points chosen(3, static_cast<Eigen::Index>(samples.size()));
   for (std::size_t i = 0; i < samples.size(); ++i) chosen.col(static_cast<Eigen::Index>(i)) = points.col(samples[i]);

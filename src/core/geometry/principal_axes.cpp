@@ -29,6 +29,8 @@ std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes) {
 }
 
 Eigen::Isometry3d sheetPose(const PointsRef& points) {
+  // share of the extent; chosen: some roundings of a float. Smaller values turn sheets with rounded z by their
+  // principal axes, larger ones take thin tilted sheets for level ones.
   constexpr float kFlat = 1e-6f;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const Eigen::Vector3f low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();

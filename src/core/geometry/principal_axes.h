@@ -10,20 +10,24 @@ namespace pcl_symmetry {
 
 /// Center of mass and principal axes of a point set (PCA).
 struct PrincipalAxes {
-  Eigen::Vector3d center;
-  Eigen::Matrix3d axes;       ///< columns, unit, by falling variance, right-handed
-  Eigen::Vector3d variances;  ///< input units squared, falling
+  Eigen::Vector3d center;     ///< center of mass, input frame
+  Eigen::Matrix3d axes;       ///< columns: unit, right-handed, by falling variance
+  Eigen::Vector3d variances;  ///< along the axes, input units squared, falling
 };
 
 /// \param points 3 x N, finite, N >= 1.
+/// \throws std::invalid_argument without a point.
 PrincipalAxes principalAxes(const PointsRef& points);
 
-/// The three planes through the center of mass across the principal axes: candidates that cost nothing.
+/// The three planes through the center of mass that are perpendicular to the principal axes: candidates for planes of
+/// symmetry that cost next to nothing.
 std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes);
 
-/// The pose of the plane that points lie in: takes (x, y, 0) to their frame.
-/// \param points 3 x N, finite, N >= 1. \return axes kept and z their own where all z are equal (to a millionth of the
-/// extent); else the center of mass and the principal axes.
+/// The pose of the plane in which flat points lie.
+/// \param points 3 x N, finite, N >= 1.
+/// \return T_input_sheet, which takes (x, y, 0) to the frame of the points. If all z are equal to a millionth of the
+/// extent, the axes are those of the input and the plane is at that z. Otherwise origin and axes are center of mass and
+/// principal axes.
 Eigen::Isometry3d sheetPose(const PointsRef& points);
 
 }  // namespace pcl_symmetry

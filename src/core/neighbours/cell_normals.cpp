@@ -7,13 +7,21 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kFewestPoints = 6;  // in the neighbourhood of a cell
+// points around a cell that make a normal; chosen: twice the three that span a plane. Fewer give normals that follow
+// noise, more leave thin parts without a normal.
+constexpr int kFewestPoints = 6;
 
+/// Sums over points that give their mean and covariance.
 struct Moments {
   float count = 0.0f;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
 
+  void add(const Eigen::Vector3f& p) {
+    count += 1.0f;
+    sum += p;
+    squares += p * p.transpose();
+  }
   void operator+=(const Moments& other) {
     count += other.count;
     sum += other.sum;
@@ -21,44 +29,63 @@ struct Moments {
   }
 };
 
-}  // namespace
+/// Moments of the points in each occupied cell. Occupied cells have slots, in the order of their first points.
+class CellMoments {
+public:
+  explicit CellMoments(int num_cells)
+      : side_(num_cells + 2), slot_of_cells_(static_cast<std::size_t>(side_) * side_ * side_, -1) {}
 
-CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, double cell_size, int num_cells) {
-  const int n = num_cells + 2;  // a border of one cell
-  std::vector<int> slot_of_cells(static_cast<std::size_t>(n) * n * n, -1);
-  std::vector<Moments> moments;
-  std::vector<int> occupied;
-  CellNormals result;
-  result.cell_of_points.resize(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d x = (points.col(i).cast<double>() - origin) / cell_size;
-    const Eigen::Array3i at = (x.array() + 1.0).cast<int>().max(1).min(n - 2);
-    const int index = (at.z() * n + at.y()) * n + at.x();
-    const Eigen::Vector3f p = (x - Eigen::Vector3d::Constant(0.5 * num_cells)).cast<float>();
-    int& slot = slot_of_cells[static_cast<std::size_t>(index)];
+  /// \param x position in cells from the corner of the cube.
+  /// \return the slot of its cell.
+  int add(const Eigen::Vector3d& x) {
+    const Eigen::Array3i at = (x.array() + 1.0).max(1.0).min(static_cast<double>(side_ - 2)).cast<int>();
+    const int index = (at.z() * side_ + at.y()) * side_ + at.x();
+    int& slot = slot_of_cells_[static_cast<std::size_t>(index)];
     if (slot < 0) {
-      slot = static_cast<int>(occupied.size());
-      occupied.push_back(index);
-      moments.emplace_back();
+      slot = static_cast<int>(occupied_.size());
+      occupied_.push_back(index);
+      moments_.emplace_back();
     }
-    Moments& cell = moments[static_cast<std::size_t>(slot)];
-    cell.count += 1.0f;
-    cell.sum += p;
-    cell.squares += p * p.transpose();
-    result.cell_of_points[static_cast<std::size_t>(i)] = slot;
+    // Relative to the middle of the cube: floats are precise enough there.
+    moments_[static_cast<std::size_t>(slot)].add((x - Eigen::Vector3d::Constant(0.5 * (side_ - 2))).cast<float>());
+    return slot;
   }
-  result.normals.resize(3, static_cast<Eigen::Index>(occupied.size()));
-  result.flatness.setZero(result.normals.cols());
-  for (std::size_t c = 0; c < occupied.size(); ++c) {
-    Moments near;
+
+  std::size_t numOccupied() const { return occupied_.size(); }
+
+  /// Sum over a cell and its 26 neighbours.
+  Moments around(std::size_t slot) const {
+    Moments sum;
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
-          const int slot = slot_of_cells[static_cast<std::size_t>(occupied[c] + (z * n + y) * n + x)];
-          if (slot >= 0) near += moments[static_cast<std::size_t>(slot)];
+          const int near = slot_of_cells_[static_cast<std::size_t>(occupied_[slot] + (z * side_ + y) * side_ + x)];
+          if (near >= 0) sum += moments_[static_cast<std::size_t>(near)];
         }
+    return sum;
+  }
+
+private:
+  int side_;  // with a border of one empty cell
+  std::vector<int> slot_of_cells_;
+  std::vector<int> occupied_;  // index of the cell of each slot
+  std::vector<Moments> moments_;
+};
+
+}  // namespace
+
+CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, double cell_size, int num_cells) {
+  CellMoments cells(num_cells);
+  CellNormals result;
+  result.cell_of_points.resize(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    result.cell_of_points[static_cast<std::size_t>(i)] = cells.add((points.col(i).cast<double>() - origin) / cell_size);
+  result.normals.resize(3, static_cast<Eigen::Index>(cells.numOccupied()));
+  result.flatness.setZero(result.normals.cols());
+  for (std::size_t c = 0; c < cells.numOccupied(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);
     result.normals.col(column).setUnit(2);
+    const Moments near = cells.around(c);
     if (near.count < kFewestPoints) continue;
     const Eigen::Matrix3f covariance = near.squares - near.sum * near.sum.transpose() / near.count;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;

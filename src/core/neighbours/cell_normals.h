@@ -7,16 +7,19 @@
 
 namespace pcl_symmetry {
 
-/// One normal for each cell of a coarse grid that the surface passes, so that neither the density of the points nor
-/// noise below the size of a cell matters.
+/// One normal for each occupied cell of a coarse grid. It depends neither on the density of the points nor on noise
+/// below the size of a cell.
 struct CellNormals {
-  Eigen::Matrix3Xf normals;         ///< 3 x C, unit, of any sign
-  Eigen::VectorXf flatness;         ///< C, in [0, 1]: 0 where the points show no surface
-  std::vector<int> cell_of_points;  ///< N, columns of the former
+  Eigen::Matrix3Xf normals;         ///< 3 x C, unit, of arbitrary sign
+  Eigen::VectorXf flatness;         ///< C, in [0, 1]: 1 for a plane, 0 where the points show no surface
+  std::vector<int> cell_of_points;  ///< N, the column of normals for each point
 };
 
-/// \param points 3 x N, finite. \param origin corner of a cube that holds them, but for a few that count with the cells
-/// next to its sides. \param num_cells along each of its sides.
+/// Fits a plane to the points of each occupied cell and its 26 neighbours.
+/// \param points 3 x N, finite.
+/// \param origin corner of the cube of cells. The few points outside it count with the cells at its sides.
+/// \param cell_size input units, > 0.
+/// \param num_cells cells along each side of the cube.
 CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, double cell_size, int num_cells);
 
 }  // namespace pcl_symmetry

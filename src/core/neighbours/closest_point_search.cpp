@@ -11,10 +11,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The closest of the points shown to it.
-class Closest : public flann::ResultSet<float> {
+/// FLANN's view of a search for one point: keeps the closest of all points that it is shown.
+class ClosestResult : public flann::ResultSet<float> {
 public:
-  Closest(int index, float sq_distance) : index_(index), sq_distance_(sq_distance) {}
+  ClosestResult(int index, float sq_distance) : index_(index), sq_distance_(sq_distance) {}
 
   bool full() const override { return true; }
   void addPoint(float sq_distance, std::size_t index) override {
@@ -31,11 +31,14 @@ private:
   float sq_distance_;
 };
 
+constexpr int kLeafSize = 10;  // points; chosen: FLANN's default
+
 class FlannSearch : public ClosestPointSearch {
 public:
   explicit FlannSearch(const PointsRef& points)
       : points_(points),
-        index_(flann::Matrix<float>(points_.data(), points_.cols(), 3), flann::KDTreeSingleIndexParams(10, true)) {
+        index_(flann::Matrix<float>(points_.data(), points_.cols(), 3),
+               flann::KDTreeSingleIndexParams(kLeafSize, true)) {
     index_.buildIndex();
   }
 
@@ -57,11 +60,12 @@ public:
   void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
                     std::vector<float>& sq_distances) const override {
     const flann::SearchParams params(flann::FLANN_CHECKS_UNLIMITED, 0.0f, true);
+    // FLANN accepts points strictly closer than the limit.
     const float limit = std::nextafter(max_sq_distance, std::numeric_limits<float>::infinity());
     sq_distances.resize(indices.size());
     for (Eigen::Index i = 0; i < queries.cols(); ++i) {
       const float guessed = indices[i] < 0 ? limit : (points_.col(indices[i]) - queries.col(i)).squaredNorm();
-      Closest closest(guessed < limit ? indices[i] : -1, std::min(guessed, limit));
+      ClosestResult closest(guessed < limit ? indices[i] : -1, std::min(guessed, limit));
       index_.findNeighbors(closest, queries.col(i).data(), params);
       indices[i] = closest.index();
       sq_distances[i] = indices[i] < 0 ? std::numeric_limits<float>::infinity() : closest.worstDist();

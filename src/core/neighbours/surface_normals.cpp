@@ -11,13 +11,18 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t kBlockSize = 512;
+constexpr std::size_t kBlockSize = 512;  // points; chosen: smaller blocks cost more calls, larger ones idle threads
 
-/// The plane through the neighbours of a point.
+// Distance of the neighbours' mean from the sample, in units of r_k, beyond which it lies at a border.
+// derived: eight neighbours all around have 0.25 by chance, half a disc has 4 / (3 pi) = 0.42; chosen between them:
+// less takes samples inside for borders, more misses borders.
+constexpr double kBorderOffset = 0.38;
+
+/// The plane fitted to the neighbours of a point.
 struct TangentPlane {
   Eigen::Vector3f normal;
-  Eigen::Vector3f offset_sum;  ///< of the neighbours from the point
-  float roughness;             ///< root mean square distance of the neighbours
+  Eigen::Vector3f offset_sum;  ///< sum of the neighbours' offsets from the point
+  float roughness;             ///< root mean square distance of the neighbours from the plane
 };
 
 TangentPlane fitTangentPlane(const Points& points, const Eigen::Vector3f& point, const int* neighbours, int count) {
@@ -41,17 +46,27 @@ TangentPlane fitTangentPlane(const Points& points, const Eigen::Vector3f& point,
   return plane;
 }
 
-int countWithin(Eigen::Index size, int num_neighbours) {
-  return static_cast<int>(std::min<Eigen::Index>(size, num_neighbours + 1));  // with the point itself
+/// Number of points to search for: the neighbours and the point itself, as far as there are any.
+int numToSearch(Eigen::Index size, int num_neighbours) {
+  return static_cast<int>(std::min<Eigen::Index>(size, num_neighbours + 1));
+}
+
+/// The closest other points.
+/// \param neighbours \p count indices, nearest first, among them \p self.
+std::array<int, kNumWitnesses> witnessesOf(int self, const int* neighbours, int count) {
+  std::array<int, kNumWitnesses> witnesses;
+  witnesses.fill(self);
+  for (int k = 0, next = 0; k < count && next < kNumWitnesses; ++k)
+    if (neighbours[k] != self) witnesses[next++] = neighbours[k];
+  return witnesses;
 }
 
 }  // namespace
 
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
                             int num_threads) {
-  constexpr double kBorderOffset = 0.38;  // of r_k, of the neighbours' mean: 0.25 is chance, 0.42 half a disc
   const auto size = static_cast<std::size_t>(points.cols());
-  const int count = countWithin(points.cols(), num_neighbours);
+  const int count = numToSearch(points.cols(), num_neighbours);
   const std::vector<float> zeros(size, 0.0f);
   LocalGeometry geometry{Points(3, points.cols()), zeros, std::vector<char>(size), {}, zeros};
   geometry.nearest.resize(size);
@@ -61,9 +76,7 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
     search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
     for (std::size_t i = begin; i < end; ++i) {
       const int* neighbours = indices.data() + (i - begin) * count;
-      geometry.nearest[i].fill(static_cast<int>(i));
-      for (int k = 0, next = 0; k < count && next < kNumWitnesses; ++k)
-        if (neighbours[k] != static_cast<int>(i)) geometry.nearest[i][next++] = neighbours[k];
+      geometry.nearest[i] = witnessesOf(static_cast<int>(i), neighbours, count);
       const TangentPlane plane = fitTangentPlane(points, points.col(i), neighbours, count);
       geometry.normals.col(i) = plane.normal;
       geometry.roughness[i] = plane.roughness;
@@ -78,7 +91,7 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
 
 std::vector<float> localRoughness(const Points& points, const ClosestPointSearch& search, const Points& places,
                                   int num_neighbours) {
-  const int count = countWithin(points.cols(), num_neighbours);
+  const int count = numToSearch(points.cols(), num_neighbours);
   std::vector<int> indices;
   std::vector<float> sq_distances;
   search.search(places, count, indices, sq_distances);

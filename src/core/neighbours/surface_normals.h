@@ -7,32 +7,41 @@
 
 namespace pcl_symmetry {
 
-/// So many samples next to the closest one are asked whether a point lies on the surface: of those within reach (1.25
-/// spacings) there are five on average.
+/// Samples beside the closest one that are asked whether a point lies on the surface.
+/// derived: a sample is within reach at 1.25 spacings, and that circle holds pi 1.25^2 = 5 samples on average.
 constexpr int kNumWitnesses = 4;
 
-/// What the neighbourhood of each point of a cloud says about the surface it was sampled from.
+/// What the neighbourhood of each sample says about the surface.
 struct LocalGeometry {
-  Points normals;                ///< 3 x N, unit, of any sign
+  Points normals;                ///< 3 x N, unit, of arbitrary sign
   std::vector<float> roughness;  ///< N, root mean square distance of the neighbours from the tangent plane
-  std::vector<char> at_border;   ///< N, 1 where the neighbours lie to one side: the rim of a scan, or a sharp edge
-  /// N, the closest other samples, nearest first (itself where there are no more)
+  std::vector<char> at_border;   ///< N, 1 if the neighbours lie to one side: the rim of a scan, or a sharp edge
+  /// N, the closest other samples, nearest first; the sample itself where there are no more
   std::vector<std::array<int, kNumWitnesses>> nearest;
-  /// N, 1 / sqrt(density): the distance at which a surface sample has 1 / pi of a neighbour
+  /// N, distance between neighbouring samples: 1 / sqrt(density), input units
   std::vector<float> spacing;
 };
 
-/// Neighbours that normals and spacing are taken from: the fewest that keep the error of the spacing below 20 %.
+/// Neighbours that give normals and spacing.
+/// derived: the error of the spacing from k neighbours is 1 / (2 sqrt(k)), 18 % for 8; fewer exceed 20 %.
 constexpr int kNumSupportNeighbours = 8;
 
-/// Normals by PCA of the nearest neighbours, and the local spacing of the samples from the distance r_k to the k-th of
-/// them: a surface of density rho has k = pi rho r_k^2 neighbours within r_k.
-/// \param num_neighbours >= 3; clouds with fewer points use all they have.
+/// Normals by PCA of the nearest neighbours, and the local spacing of the samples.
+///
+/// The spacing comes from the distance r_k to the k-th neighbour: a surface of density rho has k = pi rho r_k^2
+/// neighbours within r_k.
+/// \param points 3 x N, finite.
+/// \param search over the same points.
+/// \param num_neighbours >= 3; clouds with fewer points use all of them.
+/// \param num_threads 0 = one per core.
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
                             int num_threads);
 
-/// LocalGeometry::roughness at a few places of the surface.
-/// \param places 3 x M, among \p points. \return M values.
+/// LocalGeometry::roughness at a few of the points.
+/// \param points 3 x N, finite.
+/// \param search over the same points.
+/// \param places 3 x M, some of the points.
+/// \return M values, input units.
 std::vector<float> localRoughness(const Points& points, const ClosestPointSearch& search, const Points& places,
                                   int num_neighbours = kNumSupportNeighbours);
 

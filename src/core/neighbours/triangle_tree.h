@@ -8,31 +8,32 @@
 
 namespace pcl_symmetry {
 
-/// Where a ray first meets a triangle.
+/// The first triangle that a ray meets.
 struct RayHit {
-  int triangle = -1;  ///< -1: nowhere
-  float distance = std::numeric_limits<float>::infinity();
+  int triangle = -1;                                        ///< index of the triangle; -1 if the ray meets none
+  float distance = std::numeric_limits<float>::infinity();  ///< lengths of the direction
 };
 
-/// A bounding volume hierarchy that tells what rays meet. (The tools have Embree; the library goes without.)
+/// A bounding volume hierarchy for ray queries. (The tools use Embree; the library does not depend on it.)
 class TriangleTree {
 public:
-  /// \param corners,triangles are kept by reference. Triangles without area are met by no ray.
+  /// \param corners 3 x V, kept by reference.
+  /// \param triangles indices into the corners, kept by reference. Rays do not meet triangles without area.
   TriangleTree(const Points& corners, const std::vector<Eigen::Vector3i>& triangles);
 
-  /// \param direction of any length, which is the unit of the distances.
+  /// \param direction not zero; its length is the unit of the distances.
   /// \return the closest triangle at a distance in (nearest, farthest).
   RayHit closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest = 0.0f,
                  float farthest = std::numeric_limits<float>::infinity()) const;
 
-  /// \return whether any triangle lies between two points.
+  /// \return whether a triangle lies between two points.
   bool blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
 private:
   struct Node {
     Eigen::Array3f min, max;
-    int first;  ///< of its triangles in order_; of its two children where count = 0
-    int count;
+    int first;  // index of its first triangle in order_; of its two children in nodes_ if count = 0
+    int count;  // number of triangles of a leaf; 0 for an inner node
   };
 
   void build(int node, int begin, int end);

@@ -7,7 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/stopwatch.h"
-#include "core/geometry/distinct_points.h"
+#include "core/neighbours/distinct_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
 #include "core/rotation/rotation_fit.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/median.h"
 #include "core/neighbours/surface_normals.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 
@@ -11,16 +12,25 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kHiddenMargin = 0.1;  // radii: more than the depth of a pixel of a slanting surface
-constexpr double kMostHidden = 0.18;   // a pixel of a sphere's rim is deep: 0.1; from elsewhere it is 0.3 and more
-// Calibrated on 100 models of the training half of the Princeton Shape Benchmark: accepts 200 of 200 scans of 10 000
-// and of 1000 points, 99 % with noise of 0.5 % of the diagonal, and 6 % of whole clouds.
+// radii; chosen: more than the depth within a pixel of a slanting surface. Half counts such points as hidden, twice
+// misses thicker objects.
+constexpr double kHiddenMargin = 0.1;
+// share of the points; chosen between 0.1, the rim of a sphere, and the 0.3 and more of whole objects
+constexpr double kMostHidden = 0.18;
+// share of the points; fitted: on 100 models of the training half of the Princeton Shape Benchmark. It accepts 200 of
+// 200 scans of 10 000 and of 1000 points, 99 % of them with noise of 0.5 % of the diagonal, and 6 % of whole clouds.
 constexpr double kMostLayered = 0.25;
-constexpr double kSteepest = 4.0;     // of one surface, depth over width: it slants by 76 degrees
-constexpr double kRoughnesses = 6.0;  // two points of one rough surface are hardly farther apart
+// depth over width of one surface; chosen: it slants by up to 76 degrees. Half takes steep surfaces for layers, twice
+// misses layers that lie close behind each other.
+constexpr double kSteepest = 4.0;
+// chosen: two points of one rough surface are hardly farther apart. Half takes noise for layers, twice misses thin
+// objects.
+constexpr double kRoughnesses = 6.0;
+// points; chosen: half makes the share less certain (0.011 at 2000), twice takes twice the time
 constexpr Eigen::Index kLargestSample = 2000;
 
-/// The picture as seen from the viewpoint: unit vectors to the points less the one to their middle, in \p widths.
+/// Points in the picture seen from a viewpoint: unit vectors to them, less the one to their middle, in units of \p
+/// width.
 Points picture(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& middle, double width) {
   const Eigen::Vector3d forward = (middle - viewpoint).normalized();
   Points directions(3, points.cols());
@@ -35,6 +45,11 @@ Points everyNth(const Points& points, Eigen::Index stride) {
   return chosen;
 }
 
+/// Median distance of neighbours from the tangent planes at every \p stride-th point.
+double typicalRoughness(const Points& surface, Eigen::Index stride) {
+  return median(localRoughness(surface, *makeFlannSearch(surface), everyNth(surface, stride)));
+}
+
 }  // namespace
 
 double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
@@ -43,17 +58,15 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   const double distance = (ball.center - viewpoint).norm();
   if (!(ball.radius > 0.0) || !(distance > 0.0)) return 0.0;
   const Eigen::Index stride = 1 + (points.cols() - 1) / kLargestSample;
-  const Points surface = normalizePoints(points, ball.center, ball.radius);
-  std::vector<float> roughness = localRoughness(surface, *makeFlannSearch(surface), everyNth(surface, stride));
-  std::nth_element(roughness.begin(), roughness.begin() + static_cast<std::ptrdiff_t>(roughness.size() / 2),
-                   roughness.end());
-  const double least_gap = kRoughnesses * roughness[roughness.size() / 2];
+  const double least_gap = kRoughnesses * typicalRoughness(normalizePoints(points, ball.center, ball.radius), stride);
 
+  // The next point of each sample in the picture.
   const double width = ball.radius / distance;
   const Points directions = picture(points, viewpoint, ball.center, width);
   std::vector<int> closest;
   std::vector<float> sq_distances;
   makeFlannSearch(directions)->search(everyNth(directions, stride), 2, closest, sq_distances);
+
   const auto depth = [&](Eigen::Index i) { return (points.col(i).cast<double>() - viewpoint).norm() / ball.radius; };
   std::size_t num_layered = 0;
   const std::size_t num_samples = closest.size() / 2;
@@ -67,7 +80,7 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   return static_cast<double>(num_layered) / static_cast<double>(num_samples);
 }
 
-std::optional<Visibility> recognizeViewpoint(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
+std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   const BoundingBall ball = boundingBall(points);
   if (!((viewpoint - ball.center).norm() > ball.radius)) return std::nullopt;
   std::optional<Visibility> visibility = Visibility::fromPoints(points, viewpoint);

@@ -1,21 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
 #include "pcl_symmetry/core/scan/visibility.h"
 
 namespace pcl_symmetry {
 
-/// Share of the points that form layers as seen from a viewpoint: next to them in the picture is a point much farther
-/// away or much nearer, although the surface is not so rough. A scan has one layer but for its silhouettes (0.1 of the
-/// points, 0.2 of some in noise), an object that is known from all sides has two and more.
-/// \param points 3 x N, finite. \return a value in [0, 1]; 0 for fewer than two points.
+/// Share of the points that form layers as seen from a viewpoint.
+///
+/// A point is layered if the next point in the picture is much farther away or much nearer, and the roughness of the
+/// surface does not explain it. A scan has one layer except at its silhouettes (0.1 of the points, up to 0.2 with
+/// noise); an object that is known from all sides has two or more. \param points 3 x N, finite. \param viewpoint in the
+/// frame of the points. \return a value in [0, 1]; 0 for fewer than two points.
 double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint);
-
-/// Finds out whether points were measured from a viewpoint: they lie in front of it, hardly any of them behind others,
-/// in one layer. An open surface that can be seen whole from there passes too.
-/// \param points 3 x N, finite, N >= 1. \return the space seen, or nothing.
-std::optional<Visibility> recognizeViewpoint(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 }  // namespace pcl_symmetry

@@ -6,45 +6,48 @@ namespace pcl_symmetry {
 
 /// A plane of reflection gamma = { x : n.x = r } with unit normal n and signed offset r (Section 3 of the paper).
 ///
-/// Invariant: |normal| = 1. (n, r) and (-n, -r) are the same plane: compare canonical forms, or use angleTo().
+/// Invariant: |n| = 1. (n, r) and (-n, -r) are the same plane: compare canonical forms, or use angleTo().
 class ReflectionPlane {
 public:
   /// The plane z = 0.
   ReflectionPlane() = default;
 
-  /// \param normal any finite vector but zero; it is normalised, and the offset is divided by its length.
-  /// \param offset such that normal.x = offset on the plane, in the units of x.
-  /// \throws std::invalid_argument where the normal is zero or a value is not finite.
+  /// \param normal finite and not zero; it is normalised, and the offset is divided by its length.
+  /// \param offset normal.x for points x of the plane, input units times the length of the normal.
+  /// \throws std::invalid_argument for a zero normal or a value that is not finite.
   ReflectionPlane(const Eigen::Vector3d& normal, double offset);
 
-  /// \param coefficients [a, b, c, d] of a x + b y + c z + d = 0, as PCL's plane models have them.
+  /// \param coefficients [a, b, c, d] of a x + b y + c z + d = 0, as in PCL's plane models: [n, -r].
+  /// \throws std::invalid_argument as the constructor.
   static ReflectionPlane fromCoefficients(const Eigen::Vector4d& coefficients);
 
-  /// The plane that reflects \p x onto \p y; the two must differ.
+  /// The plane that reflects \p x onto \p y.
+  /// \throws std::invalid_argument for equal points.
   static ReflectionPlane between(const Eigen::Vector3d& x, const Eigen::Vector3d& y);
 
   const Eigen::Vector3d& normal() const { return normal_; }
   double offset() const { return offset_; }
 
-  /// [n, -r]: the coefficients of n.x - r = 0.
+  /// \return [n, -r], the coefficients of n.x - r = 0.
   Eigen::Vector4d coefficients() const { return {normal_.x(), normal_.y(), normal_.z(), -offset_}; }
 
-  /// \return n.x - r.
+  /// \return n.x - r, input units.
   double signedDistance(const Eigen::Vector3d& x) const { return normal_.dot(x) - offset_; }
 
-  /// \return x - 2 (n.x - r) n.
+  /// \return the reflected point, x - 2 (n.x - r) n.
   Eigen::Vector3d reflect(const Eigen::Vector3d& x) const { return x - 2.0 * signedDistance(x) * normal_; }
 
-  /// The reflection as an affine map (a determinant of -1).
+  /// \return the reflection as an affine map, of determinant -1.
   Eigen::Affine3d reflection() const;
 
-  /// The same plane with theta in [0, pi/2]: z > 0, or z = 0 and y > 0, or y = z = 0 and x > 0.
+  /// \return the same plane with a normal of theta in [0, pi/2]: n_z > 0, or n_z = 0 and n_y > 0, or n_y = n_z = 0 and
+  /// n_x > 0.
   ReflectionPlane canonical() const;
 
-  /// The image of this plane under a rigid motion x -> T x.
+  /// \return the image of this plane under the rigid motion x -> T x.
   ReflectionPlane transformed(const Eigen::Isometry3d& motion) const;
 
-  /// Angle between the two normals as lines, in [0, pi/2] radians.
+  /// \return angle between the lines along the two normals, in [0, pi/2] radians.
   double angleTo(const ReflectionPlane& other) const;
 
 private:

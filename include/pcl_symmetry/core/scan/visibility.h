@@ -9,47 +9,56 @@
 
 namespace pcl_symmetry {
 
-/// What a range scanner saw: space in front of the surface on each ray is free, space behind it unknown.
+/// What a range scanner saw: space in front of the surface on each ray is free, space behind it is unknown.
 ///
-/// A picture of depths with the projection that made it. A reflected point that lands in free space speaks against the
-/// plane; one in unknown space says nothing.
+/// It is a picture of depths with the projection that made it. A reflected point in free space speaks against the
+/// plane; a reflected point in unknown space says nothing. Departure from the paper, which takes scans for whole
+/// objects: their best planes then often lie beside the true ones.
 class Visibility {
 public:
   using Projection = Eigen::Matrix<double, 3, 4>;
 
-  /// Depths of pixels that are no distance.
-  static constexpr float kBackground = std::numeric_limits<float>::infinity();  ///< the ray met nothing: all free
-  static constexpr float kNoRay = -std::numeric_limits<float>::infinity();      ///< nothing is known about the ray
+  /// Depth of a ray that met nothing: all of its space is free. derived: farther than every point.
+  static constexpr float kBackground = std::numeric_limits<float>::infinity();
+  /// Depth of a pixel without a ray: all of its space is unknown. derived: nearer than every point.
+  static constexpr float kNoRay = -std::numeric_limits<float>::infinity();
 
-  /// The rays of an organized cloud.
+  /// The rays of an organized cloud or a depth image.
   /// \param projection takes a homogeneous point of the input frame to (u w, v w, w) with w its depth, input units.
-  /// \param depths width * height depths, row by row, pixel (u, v) about its integer coordinates.
-  /// \throws std::invalid_argument for a picture without pixels or a size that does not fit.
-  /// \param outside depth of rays beyond the picture.
+  /// \param width,height number of columns and rows, >= 1.
+  /// \param depths width * height depths, row by row, input units; pixel (u, v) covers u - 1/2 to u + 1/2.
+  /// \param outside depth of rays beyond the picture: kNoRay or kBackground.
+  /// \throws std::invalid_argument for a picture without pixels, or a number of depths that does not fit.
   Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside = kNoRay);
 
-  /// A range image of points without order: the nearest point in each pixel, pixels as wide as the points are apart as
-  /// seen from there, small gaps between the points closed.
-  /// \param points 3 x N, finite, N >= 1. \param viewpoint in the same frame.
-  /// \return nothing where the points do not lie in a cone of 75 degrees around one direction: seen from inside.
+  /// A range image of points without order: the nearest point in each pixel. The size of the pixels follows the
+  /// distance between the points in the picture; small gaps between the points are closed.
+  /// \param points 3 x N, finite.
+  /// \param viewpoint in the frame of the points.
+  /// \return nothing without a point, or if the viewpoint is among the points: they do not lie in a cone of 75 degrees
+  /// around one direction.
   static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
-  /// How far behind the surface on its ray a point lies, input units: < 0 in free space; -infinity in front of nothing,
-  /// +infinity where no ray passed.
+  /// \param x in the frame of the points.
+  /// \return distance of the point behind the surface, along its ray, input units: negative in free space, -infinity
+  /// where the ray met nothing, +infinity where no ray passed.
   double depthBehind(const Eigen::Vector3d& x) const;
 
-  /// Share of the points that lie more than \p margin behind what is seen on their ray. Seen from where they were
-  /// measured it is near 0: each ray meets the cloud once.
+  /// \param points 3 x N, finite, N >= 1.
+  /// \param margin input units.
+  /// \return share of the points that lie more than the margin behind the surface on their ray. From the viewpoint of a
+  /// scan it is close to 0, because each ray meets the cloud once.
   double hiddenShare(const PointsRef& points, double margin) const;
 
-  /// The same for coordinates (x - center) / scale.
+  /// \return the same visibility for coordinates (x - center) / scale.
   Visibility normalized(const Eigen::Vector3d& center, double scale) const;
 
-  /// Where the rays meet, in the frame of the points.
+  /// \return the point where all rays meet, in the frame of the points.
   Eigen::Vector3d viewpoint() const;
 
   int width() const { return width_; }
   int height() const { return height_; }
+  /// \return depth of a pixel, input units.
   float depth(int u, int v) const { return depths_[static_cast<std::size_t>(v) * width_ + u]; }
 
 private:
@@ -59,5 +68,12 @@ private:
   std::vector<float> depths_;
   float outside_;
 };
+
+/// Finds out from the points whether they were measured from a viewpoint: they lie in front of it, hardly any of them
+/// behind others, in one layer. An open surface that is visible as a whole from there passes too.
+/// \param points 3 x N, finite.
+/// \param viewpoint in the frame of the points.
+/// \return the space seen from the viewpoint; nothing if the points were not measured from there.
+std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 }  // namespace pcl_symmetry

@@ -1,4 +1,4 @@
-#include "core/geometry/diameter.h"
+#include "core/neighbours/diameter.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,13 +6,16 @@
 #include <numeric>
 #include <vector>
 
+#include "core/base/constants.h"
+
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kLeafSize = 8;
+constexpr int kLeafSize = 8;  // points; chosen: half and twice as many shift work between bounds and distances
 
-/// Boxes, and cones from the center, around halves of halves of the points.
+/// A binary tree that halves the points at each node. Each node knows a box around its points, and a cone from the
+/// center of the bounding ball.
 class HalvingTree {
 public:
   explicit HalvingTree(const PointsRef& points)
@@ -21,9 +24,8 @@ public:
     build(0, static_cast<int>(order_.size()));
   }
 
-  /// \return squared.
-  double greatestDistance() const {
-    double best = hop();
+  double greatestSqDistance() const {
+    double best = sqDistanceOfHops();
     search(0, 0, best);
     return best;
   }
@@ -31,14 +33,15 @@ public:
 private:
   struct Node {
     Eigen::AlignedBox3d box;
-    Eigen::Vector3d axis;     // of a cone from the center
-    double half_angle = 0.0;  // of the cone
-    double reach = 0.0;       // greatest distance from the center
-    int begin = 0, end = 0;   // of order_
-    int right = -1;           // the left child is the next node; -1: a leaf
+    Eigen::Vector3d axis;     // axis of the cone, unit
+    double half_angle = 0.0;  // half opening angle of the cone, radians
+    double reach = 0.0;       // greatest distance of a point from the center
+    int begin = 0, end = 0;   // range of the points in order_
+    int right = -1;           // index of the right child, the left one is the next node; -1 for a leaf
   };
+
   Node around(int begin, int end) const {
-    constexpr double kRounding = 1e-9;
+    constexpr double kRounding = 1e-9;  // derived: far above the rounding of doubles, so that bounds stay bounds
     Node node;
     node.begin = begin;
     node.end = end;
@@ -75,11 +78,12 @@ private:
     return index;
   }
 
-  /// From any point to the farthest one, and on from there: nearly the diameter, mostly.
-  double hop() const {
+  /// A first guess that is mostly close to the diameter: from a point to the farthest one, and on from there.
+  double sqDistanceOfHops() const {
+    constexpr int kNumHops = 4;  // chosen: fewer start the search lower, more rarely find a greater distance
     double best = 0.0;
     Eigen::Index at = 0;
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < kNumHops; ++k) {
       const Eigen::Vector3f from = points_.col(at);
       (points_.colwise() - from).colwise().squaredNorm().maxCoeff(&at);
       best = std::max(best, (points_.col(at).cast<double>() - from.cast<double>()).squaredNorm());
@@ -87,11 +91,12 @@ private:
     return best;
   }
 
+  /// Raises \p best to the greatest squared distance between a point of node \p a and one of node \p b.
   void search(int a, int b, double& best) const {
     const Node &first = nodes_[a], &second = nodes_[b];
     if (sqBoundOfBoxes(first, second) <= best || sqBoundOfCones(first, second) <= best) return;
     if (first.right < 0 && second.right < 0) {
-      best = std::max(best, greatestDistance(first, second));
+      best = std::max(best, greatestSqDistance(first, second));
     } else if (a == b) {
       search(a + 1, first.right, best);
       search(a + 1, a + 1, best);
@@ -105,19 +110,19 @@ private:
     }
   }
 
-  /// No two points of the boxes are farther apart.
+  /// Upper bound of the squared distance between points of two boxes.
   static double sqBoundOfBoxes(const Node& a, const Node& b) {
     return (a.box.max() - b.box.min()).cwiseAbs().cwiseMax((b.box.max() - a.box.min()).cwiseAbs()).squaredNorm();
   }
 
-  /// The same for the cones: what makes round shapes, where all boxes are equally far apart, no harder than others.
+  /// The same bound from the cones. It decides on round shapes, where opposite boxes are all equally far apart.
   static double sqBoundOfCones(const Node& a, const Node& b) {
-    const double angle = std::min(M_PI, angleBetween(a.axis, b.axis) + a.half_angle + b.half_angle);
+    const double angle = std::min(kPi, angleBetween(a.axis, b.axis) + a.half_angle + b.half_angle);
     const double cosine = std::cos(angle);
     return a.reach * a.reach + b.reach * b.reach - 2.0 * std::min(0.0, cosine) * a.reach * b.reach;
   }
 
-  double greatestDistance(const Node& a, const Node& b) const {
+  double greatestSqDistance(const Node& a, const Node& b) const {
     double best = 0.0;
     for (int i = a.begin; i < a.end; ++i) {
       const Eigen::Vector3d x = points_.col(order_[i]).cast<double>();
@@ -136,7 +141,7 @@ private:
 }  // namespace
 
 double diameter(const PointsRef& points) {
-  return points.cols() < 2 ? 0.0 : std::sqrt(HalvingTree(points).greatestDistance());
+  return points.cols() < 2 ? 0.0 : std::sqrt(HalvingTree(points).greatestSqDistance());
 }
 
 }  // namespace pcl_symmetry

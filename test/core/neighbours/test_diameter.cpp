@@ -1,5 +1,5 @@
 /// The greatest distance between two points, against all pairs.
-#include "core/geometry/diameter.h"
+#include "core/neighbours/diameter.h"
 
 #include <gtest/gtest.h>
 

@@ -8,12 +8,13 @@
 
 namespace pcl_symmetry {
 
-/// The points without repetitions: copies of a point say nothing about the surface, and hide how far apart its samples
-/// are.
+/// The points without repetitions. Copies of a point say nothing about the surface, and they hide the distance between
+/// its samples.
 struct DistinctPoints {
-  Points points;
-  std::vector<int> index_of;  ///< of each original point among points
+  Points points;              ///< 3 x M, each position once, in the order of the first copies
+  std::vector<int> index_of;  ///< N, the column of points that holds each original point
 
+  /// \param all 3 x N, finite.
   explicit DistinctPoints(const PointsRef& all) : index_of(static_cast<std::size_t>(all.cols())) {
     struct Entry {
       float x, y, z;
