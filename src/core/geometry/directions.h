@@ -5,8 +5,30 @@
 
 namespace pcl_symmetry {
 
-/// Directions spread evenly over the sphere, on a spiral (Fibonacci lattice).
-/// \param num_directions >= 1. \return unit vectors, z falling.
+/// Fractional part of the golden ratio. derived: (sqrt(5) - 1) / 2; its multiples modulo 1 fill [0, 1) evenly after any
+/// number of terms.
+constexpr double kGoldenSection = 0.61803398874989485;
+
+/// Turn from one point of a Fibonacci lattice to the next, radians. derived: 2 pi (1 - kGoldenSection).
+constexpr double kGoldenAngle = 2.39996322972865332;
+
+/// Term \p k of the golden-ratio sequence, which spreads evenly over an interval however many terms are used.
+/// \return fractional part of k * kGoldenSection, in [0, 1).
+double goldenFraction(int k);
+
+/// A direction of a spiral over the upper half sphere, which stands for all lines through a point.
+///
+/// The heights z = (k + 1/2) / count cut the half sphere into rings of equal area. An even spiral (Fibonacci lattice)
+/// has angles that advance by kGoldenAngle, or 2 pi times goldenFraction().
+/// \param k in [0, count).
+/// \param count number of directions, >= 1.
+/// \param angle about z, from x, in radians.
+/// \return unit vector with z > 0.
+Eigen::Vector3d spiralDirection(int k, int count, double angle);
+
+/// Directions spread evenly over the whole sphere, on a spiral (Fibonacci lattice).
+/// \param num_directions >= 1.
+/// \return unit vectors by falling z.
 /// \throws std::invalid_argument for less than one direction.
 std::vector<Eigen::Vector3d> evenDirections(int num_directions);
 

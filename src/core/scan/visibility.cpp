@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/base/parallel.h"
+#include "core/geometry/viewing_frame.h"
 
 namespace pcl_symmetry {
 
@@ -90,10 +91,7 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   const BoundingBall ball = boundingBall(points);
   const Eigen::Vector3d forward = (ball.center - viewpoint).normalized();
   if (!forward.allFinite() || forward.norm() < 0.5) return std::nullopt;
-  Eigen::Matrix3d R_camera_input;
-  R_camera_input.row(2) = forward;
-  R_camera_input.row(0) = forward.unitOrthogonal();
-  R_camera_input.row(1) = forward.cross(R_camera_input.row(0).transpose());
+  const Eigen::Matrix3d R_camera_input = viewingFrame(forward);
 
   // Coordinates on the plane at depth one.
   std::vector<Eigen::Array2d> places(points.cols());
