@@ -3,12 +3,12 @@
 #include <pcl/conversions.h>
 
 #include "core/geometry/mesh_sampling.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int num_points, std::uint64_t seed) {
-  return withBadArguments([&] {
+  return detail::withBadArguments([&] {
     // PCL's conversions refer to the first point, also where there is none.
     Points vertices(3, 0);
     if (mesh.cloud.width > 0 && mesh.cloud.height > 0) {

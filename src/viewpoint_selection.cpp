@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/constants.h"
 #include "core/base/check.h"
+#include "core/base/constants.h"
 #include "pcl_symmetry/core/scan/visibility.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
 
@@ -83,17 +82,19 @@ void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, con
 }
 
 void ViewpointSelection::setInputCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud) {
-  points_ = cloud ? selectPoints(*cloud, nullptr, kMaxPoints, 1).points : Points();
+  points_ = cloud ? detail::selectPoints(*cloud, nullptr, kMaxPoints, 1).points : Points();
   ball_ = boundingBall(points_);
 }
 
 void ViewpointSelection::setUp(const Eigen::Vector3d& up) {
-  withBadArguments([&] { check(up.allFinite() && up.norm() > 0.0, "up", up.transpose(), "finite and not zero"); });
+  detail::withBadArguments(
+      [&] { check(up.allFinite() && up.norm() > 0.0, "up", up.transpose(), "finite and not zero"); });
   up_ = up.normalized();
 }
 
 void ViewpointSelection::setSeparation(double separation) {
-  withBadArguments([&] { check(separation >= 0.0 && separation <= kPi, "separation", separation, "in [0, pi]"); });
+  detail::withBadArguments(
+      [&] { check(separation >= 0.0 && separation <= kPi, "separation", separation, "in [0, pi]"); });
   separation_ = separation;
 }
 
@@ -121,7 +122,7 @@ Eigen::Vector3d ViewpointSelection::getUpAxis() const {
 }
 
 Eigen::Affine3f ViewpointSelection::computePose(const Eigen::Vector3d& direction) const {
-  if (points_.cols() == 0) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "input cloud: holds no finite point");
+  if (points_.cols() == 0) detail::throwBadArgument("input cloud: holds no finite point");
   const Eigen::Vector3d forward = -direction.normalized();
   Eigen::Vector3d up = getUpAxis();
   constexpr double kAlong = 0.98;  // cosine
@@ -164,7 +165,7 @@ SelectedView ViewpointSelection::getWorstView() const {
 }
 
 std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const {
-  withBadArguments([&] { check(num_views >= 1, "num_views", num_views, ">= 1"); });
+  detail::withBadArguments([&] { check(num_views >= 1, "num_views", num_views, ">= 1"); });
   std::vector<RankedView> remaining = bestViews(planes_);
   if (remaining.empty()) {
     const Eigen::Vector3d up = getUpAxis(), side = up.unitOrthogonal();

@@ -4,7 +4,7 @@
 
 #include "console.h"
 #include "core/geometry/principal_axes.h"
-#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_alignment.h"
 
 namespace pcl_symmetry::apps {
@@ -31,7 +31,7 @@ FoundFrame bySymmetry(bool as_published, const pcl::PointCloud<pcl::PointXYZ>::C
 }
 
 FoundFrame byMass(const pcl::PointCloud<pcl::PointXYZ>& cloud, const std::optional<Eigen::Vector3d>& away_from) {
-  const Points points = selectPoints(cloud, nullptr, cloud.size(), 0).points;
+  const Points points = detail::selectPoints(cloud, nullptr, cloud.size(), 0).points;
   const PrincipalAxes principal = principalAxes(points);
   FoundFrame found{principal.center, principal.axes, {}};
   if (away_from) found.center += kPush * boundingBall(points).radius * (principal.center - *away_from).normalized();

@@ -5,7 +5,9 @@
 #include <pcl/point_types.h>
 #include <pcl/register_point_struct.h>
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/exports.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The planar-reflective symmetry transform: sqrt(max(D, 0)) in 32 x 32 x 32 bins (theta, phi, r), r fastest.
 struct PRSTSignature32768 {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/base/check.h"
 #include "core/descriptors/shape_signature.h"
 #include "core/descriptors/symmetry_descriptor.h"
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
@@ -14,6 +15,11 @@ static_assert(PRSTSignature32768::descriptorSize() == kPRSTSize);
 static_assert(PRSDSignature1024::descriptorSize() == kPRSDSize);
 static_assert(GEDTSignature32768::descriptorSize() == kGEDTSize);
 static_assert(ShapeSignature20736::descriptorSize() == kSignatureSize);
+
+void detail::PRSTParameters::validate() const {
+  check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
+  checkNumThreads(num_threads);
+}
 
 std::vector<float> detail::describePRST(const Points& points, const PRSTParameters& parameters,
                                         const Visibility* seen) {

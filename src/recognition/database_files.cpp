@@ -17,10 +17,20 @@ namespace {
 constexpr Eigen::Index kPoseSize = 12;
 constexpr Eigen::Index kViewSize = kViewSignatureSize + 1 + kPoseSize;  // derived: see above
 
+/// pcl::IOException puts " : " before its text.
+class PlainIOException : public pcl::IOException {
+public:
+  explicit PlainIOException(const std::string& message) : pcl::IOException(message), message_(message) {}
+  const char* what() const noexcept override { return message_.c_str(); }
+
+private:
+  std::string message_;
+};
+
 }  // namespace
 
 void failIO(const std::string& file, const std::string& reason) {
-  throw pcl::IOException(file + ": " + reason);
+  throw PlainIOException(file + ": " + reason);
 }
 
 void writeFloats(const std::string& path, const std::vector<float>& values) {

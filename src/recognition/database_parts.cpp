@@ -23,10 +23,4 @@ Points DatabaseParts::modelPoints(const std::string& name, std::size_t max_point
   return finitePoints(modelCloud(name), max_points);
 }
 
-bool hasExtent(const char* input, const Points& points) {
-  const bool extended = points.cols() > 0 && boundingBall(points).radius > 0.0;
-  if (!extended) PCL_WARN("[pcl_symmetry::SymmetryDatabase] %s: must have two different finite points\n", input);
-  return extended;
-}
-
 }  // namespace pcl_symmetry::detail

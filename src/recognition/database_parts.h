@@ -1,12 +1,10 @@
 #pragma once
 
-#include <pcl/console/print.h>
-
 #include <stdexcept>
 #include <string>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 #include "recognition/model_folder.h"
 #include "recognition/model_search.h"
@@ -37,19 +35,18 @@ inline Points finitePoints(const PositionCloud& cloud, std::size_t max_points) {
   return selectPoints(cloud, nullptr, max_points, 1).points;
 }
 
-/// True where the points are not all at one place; else a PCL_WARN says that the \p input holds no answer.
-bool hasExtent(const char* input, const Points& points);
-
-/// Calls \p body. Where the data hold no answer (the core throws std::invalid_argument), the result is empty and a
-/// PCL_WARN says why.
+/// Calls \p body if the points hold an answer. Else, and where the core finds that they do not (std::invalid_argument),
+/// the result is empty and a PCL_WARN says why.
 template <typename Body>
-auto emptyWithoutAnswer(const char* input, const Body& body) -> decltype(body()) {
+auto emptyWithoutAnswer(const Points& points, const Body& body) -> decltype(body()) {
+  std::string reason = reasonForNoAnswer(points);
   try {
-    return body();
-  } catch (const std::invalid_argument& reason) {
-    PCL_WARN("[pcl_symmetry::SymmetryDatabase] %s: %s\n", input, reason.what());
-    return {};
+    if (reason.empty()) return body();
+  } catch (const std::invalid_argument& error) {
+    reason = std::string("input cloud: ") + error.what();
   }
+  warnOfNoAnswer("SymmetryDatabase", reason);
+  return {};
 }
 
 }  // namespace pcl_symmetry::detail

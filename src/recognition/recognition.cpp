@@ -6,8 +6,7 @@
 #include "core/base/check.h"
 #include "core/descriptors/shape_signature.h"
 #include "core/views/view_signature.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 #include "recognition/database_parts.h"
 #include "recognition/posed_scan.h"
@@ -100,14 +99,14 @@ void RecognitionOptions::validate() const {
 
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
                                         const Viewpoint& viewpoint) const {
-  withBadArguments([&] { options.validate(); });
-  const Points points = detail::finitePoints(scan, parts_->options.max_points);
-  if (!detail::hasExtent("scan", points)) return {};
-  const Points scan_points = detail::finitePoints(scan, kScanPoints);
-  const std::optional<Visibility> seen = withBadArguments([&] { return seenSpace(scan, points, viewpoint); });
   RecognitionOptions used = options;
   used.registration.num_threads = options.num_threads;
-  return detail::emptyWithoutAnswer("scan", [&] {
+  detail::withBadArguments([&] { used.validate(); });
+  const Points points = detail::finitePoints(scan, parts_->options.max_points);
+  return detail::emptyWithoutAnswer(points, [&] {
+    const Points scan_points = detail::finitePoints(scan, kScanPoints);
+    const std::optional<Visibility> seen =
+        detail::withBadArguments([&] { return detail::seenSpace(scan, points, viewpoint); });
     Recognition found = seen ? fitLikeViews(*parts_, points, scan_points, *seen, used)
                              : fitLikeShapes(*parts_, points, scan_points, used);
     keepFitting(found, options.min_merit);

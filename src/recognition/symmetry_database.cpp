@@ -6,8 +6,7 @@
 #include "core/base/check.h"
 #include "core/matching/shape_description.h"
 #include "core/views/view_signature.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "recognition/database_parts.h"
 
 namespace pcl_symmetry {
@@ -41,7 +40,7 @@ void DatabaseOptions::validate() const {
 }
 
 SymmetryDatabase::SymmetryDatabase(const std::string& folder, const DatabaseOptions& options) {
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   parts_ = std::make_unique<detail::DatabaseParts>(folder, options);
 }
 
@@ -64,16 +63,19 @@ bool SymmetryDatabase::contains(const std::string& name) const {
 }
 
 void SymmetryDatabase::add(const std::string& name, const Cloud& cloud) {
-  withBadArguments([&] {
+  detail::withBadArguments([&] {
     checkModelName(name);
-    parts_->models[name] = describedModel(detail::finitePoints(cloud, parts_->options.max_points), parts_->options);
+    const Points points = detail::finitePoints(cloud, parts_->options.max_points);
+    if (const std::string reason = detail::reasonForNoAnswer(points); !reason.empty())
+      throw std::invalid_argument(reason);
+    parts_->models[name] = describedModel(points, parts_->options);
     parts_->search.forget(name);
     parts_->changed = true;
   });
 }
 
 void SymmetryDatabase::remove(const std::string& name) {
-  withBadArguments([&] {
+  detail::withBadArguments([&] {
     if (parts_->models.erase(name) == 0) throw std::invalid_argument("name = '" + name + "', must be that of a model");
     parts_->search.forget(name);
     parts_->changed = true;
@@ -82,7 +84,7 @@ void SymmetryDatabase::remove(const std::string& name) {
 
 void SymmetryDatabase::rebuild() {
   parts_->changed = true;
-  withBadArguments([&] { parts_->search.fit(parts_->models, parts_->folder); });
+  detail::withBadArguments([&] { parts_->search.fit(parts_->models, parts_->folder); });
   parts_->search.index(parts_->models, parts_->folder);
 }
 
@@ -97,16 +99,17 @@ void SymmetryDatabase::save() {
 }
 
 SymmetryDatabase::Cloud SymmetryDatabase::cloud(const std::string& name) const {
-  return withBadArguments([&] { return parts_->modelCloud(name); });
+  return detail::withBadArguments([&] { return parts_->modelCloud(name); });
 }
 
 std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_nearest, const Viewpoint& viewpoint) const {
-  withBadArguments([&] { check(num_nearest >= 0, "num_nearest", num_nearest, ">= 0"); });
+  detail::checkAtLeast("num_nearest", num_nearest, 0);
   const Points points = detail::finitePoints(cloud, parts_->options.max_points);
-  if (!detail::hasExtent("cloud", points)) return {};
-  const std::optional<Visibility> seen = withBadArguments([&] { return seenSpace(cloud, points, viewpoint); });
-  return detail::emptyWithoutAnswer(
-      "cloud", [&] { return parts_->search.likeShapes(points, seen ? &*seen : nullptr, num_nearest); });
+  return detail::emptyWithoutAnswer(points, [&] {
+    const std::optional<Visibility> seen =
+        detail::withBadArguments([&] { return detail::seenSpace(cloud, points, viewpoint); });
+    return parts_->search.likeShapes(points, seen ? &*seen : nullptr, num_nearest);
+  });
 }
 
 }  // namespace pcl_symmetry

@@ -14,13 +14,12 @@
 
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/scan/visibility.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/exports.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/point_types.h"
 #include "pcl_symmetry/viewpoint.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
@@ -30,6 +29,9 @@ struct PRSTParameters {
   double radius = 2.0;  ///< in mean distances of the points from the center, > 0
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
 };
 
 /// \param points 3 x N, finite, input units.
@@ -70,8 +72,7 @@ public:
   /// is ignored. \param radius in mean distances of the points from the center, > 0; default 2. \throws
   /// pcl::BadArgumentException for another radius.
   void setRadius(double radius) {
-    withBadArguments([&] { require(radius > 0.0, "radius = " + std::to_string(radius) + ", must be > 0"); });
-    parameters_.radius = radius;
+    detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.radius = radius; });
   }
   double getRadius() const { return parameters_.radius; }
 
@@ -80,16 +81,13 @@ public:
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   /// \throws pcl::BadArgumentException for a negative number.
   void setNumberOfThreads(int num_threads) {
-    withBadArguments(
-        [&] { require(num_threads >= 0, "num_threads = " + std::to_string(num_threads) + ", must be >= 0"); });
-    parameters_.num_threads = num_threads;
+    detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.num_threads = num_threads; });
   }
 
   /// \param max_points points that are drawn from a larger cloud, >= 2; default 20 000.
   /// \throws pcl::BadArgumentException for fewer than 2.
   void setMaxPoints(std::size_t max_points) {
-    withBadArguments(
-        [&] { require(max_points >= 2, "max_points = " + std::to_string(max_points) + ", must be >= 2"); });
+    detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 2);
     max_points_ = max_points;
   }
 
@@ -104,11 +102,11 @@ protected:
   /// \throws pcl::BadArgumentException where the points surround the given viewpoint.
   bool initCompute() override {
     warnOfIgnoredSearch();
-    if (!pcl::PCLBase<PointInT>::initCompute()) return warnOfNoAnswer("no input cloud");
-    points_ = selectPoints(*input_, indices_.get(), max_points_, parameters_.seed).points;
-    if (points_.cols() == 0 || !(boundingBall(points_).radius > 0.0))
-      return warnOfNoAnswer("input cloud without extent, must have two different finite points");
-    seen_ = withBadArguments([&] { return seenSpace(*input_, points_, viewpoint_); });
+    if (!pcl::PCLBase<PointInT>::initCompute()) return warnOfNoAnswer("input cloud: not set");
+    points_ = detail::selectPoints(*input_, indices_.get(), max_points_, parameters_.seed).points;
+    const std::string reason = detail::reasonForNoAnswer(points_);
+    if (!reason.empty()) return warnOfNoAnswer(reason);
+    seen_ = detail::withBadArguments([&] { return detail::seenSpace(*input_, points_, viewpoint_); });
     all_indices_ = indices_;
     indices_ = pcl::make_shared<pcl::Indices>(1, 0);
     return true;
@@ -128,19 +126,16 @@ protected:
       const std::vector<float> prst = detail::describePRST(points_, parameters_, seen_ ? &*seen_ : nullptr);
       std::copy(prst.begin(), prst.end(), output[0].prst);
     } catch (const std::invalid_argument& reason) {
-      warnOfNoAnswer(reason.what());
+      warnOfNoAnswer(std::string("input cloud: ") + reason.what());
       output.clear();
       output.height = 1;
     }
   }
 
 private:
-  static void require(bool valid, const std::string& message) {
-    if (!valid) throw std::invalid_argument(message);
-  }
-
-  bool warnOfNoAnswer(const char* reason) const {
-    PCL_WARN("[pcl_symmetry::%s] %s\n", this->getClassName().c_str(), reason);
+  /// \return false.
+  bool warnOfNoAnswer(const std::string& reason) const {
+    detail::warnOfNoAnswer(this->getClassName(), reason);
     return false;
   }
 

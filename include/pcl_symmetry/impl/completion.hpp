@@ -3,9 +3,7 @@
 #include <pcl/point_types.h>
 
 #include "pcl_symmetry/completion.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
 
@@ -28,10 +26,10 @@ PointT reflectPoint(PointT point, const ReflectionPlane& plane) {
 template <typename PointT>
 CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
                                           const CompletionOptions& options, const Viewpoint& viewpoint) {
-  return withBadArguments([&] {
-    const SelectedPoints all = selectPoints(cloud, nullptr, cloud.size(), 0);
+  return detail::withBadArguments([&] {
+    const detail::SelectedPoints all = detail::selectPoints(cloud, nullptr, cloud.size(), 0);
     const std::optional<Visibility> seen =
-        all.points.cols() > 0 ? seenSpace(cloud, all.points, viewpoint) : std::optional<Visibility>();
+        all.points.cols() > 0 ? detail::seenSpace(cloud, all.points, viewpoint) : std::optional<Visibility>();
     CompletedCloud<PointT> completed;
     completed.cloud = cloud;
     completed.cloud.width = static_cast<std::uint32_t>(cloud.size());

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/object_symmetries.h"
 
 namespace pcl_symmetry {
 
 template <typename PointT>
 ObjectSymmetries detectObjectSymmetries(const pcl::PointCloud<PointT>& cloud, const ObjectSymmetryOptions& options) {
-  return withBadArguments(
-      [&] { return objectSymmetries(selectPoints(cloud, nullptr, cloud.size(), options.seed).points, options); });
+  return detail::withBadArguments([&] {
+    return objectSymmetries(detail::selectPoints(cloud, nullptr, cloud.size(), options.seed).points, options);
+  });
 }
 
 }  // namespace pcl_symmetry

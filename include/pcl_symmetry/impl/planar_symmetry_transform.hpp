@@ -3,9 +3,7 @@
 #include <pcl/impl/pcl_base.hpp>
 
 #include "core/distance_transform/free_space.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 
@@ -21,13 +19,13 @@ template <typename PointT>
 void PlanarSymmetryTransform<PointT>::setNumCells(int num_cells) {
   GaussianEdtOptions options = edt_options_;
   options.num_cells = num_cells;
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   edt_options_ = options;
 }
 
 template <typename PointT>
 void PlanarSymmetryTransform<PointT>::setMapSize(int num_theta, int num_phi, int num_radius) {
-  withBadArguments([&] { PlaneGrid(num_theta, num_phi, num_radius, Eigen::Vector3d::Zero(), 1.0); });
+  detail::withBadArguments([&] { PlaneGrid(num_theta, num_phi, num_radius, Eigen::Vector3d::Zero(), 1.0); });
   num_theta_ = num_theta;
   num_phi_ = num_phi;
   num_radius_ = num_radius;
@@ -37,13 +35,13 @@ template <typename PointT>
 void PlanarSymmetryTransform<PointT>::setSigma(double sigma) {
   GaussianEdtOptions options = edt_options_;
   options.sigma = sigma;
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   edt_options_ = options;
 }
 
 template <typename PointT>
 void PlanarSymmetryTransform<PointT>::setBounds(const Eigen::Vector3d& center, double radius) {
-  withBadArguments([&] { PlaneGrid(1, 2, 1, center, radius); });
+  detail::withBadArguments([&] { PlaneGrid(1, 2, 1, center, radius); });
   edt_options_.center = center;
   edt_options_.radius = radius;
 }
@@ -52,7 +50,7 @@ template <typename PointT>
 void PlanarSymmetryTransform<PointT>::setNumSamples(int num_samples) {
   SampledTransformOptions options = transform_.sampled;
   options.num_samples = num_samples;
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   transform_.sampled = options;
 }
 
@@ -60,13 +58,13 @@ template <typename PointT>
 void PlanarSymmetryTransform<PointT>::setNumPairs(std::int64_t num_pairs) {
   VotingTransformOptions options = transform_.voting;
   options.num_pairs = num_pairs;
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   transform_.voting = options;
 }
 
 template <typename PointT>
 void PlanarSymmetryTransform<PointT>::setMaxPoints(std::size_t max_points) {
-  if (max_points < 2) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 2");
+  detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 2);
   max_points_ = max_points;
 }
 
@@ -77,8 +75,7 @@ void PlanarSymmetryTransform<PointT>::setRandomSeed(std::uint64_t seed) {
 
 template <typename PointT>
 void PlanarSymmetryTransform<PointT>::setNumberOfThreads(int num_threads) {
-  if (num_threads < 0)
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "num_threads = " << num_threads << ", must be >= 0");
+  detail::checkAtLeast("num_threads", static_cast<std::int64_t>(num_threads), 0);
   edt_options_.num_threads = transform_.sampled.num_threads = transform_.convolution.num_threads =
       transform_.voting.num_threads = num_threads;
 }
@@ -95,13 +92,13 @@ void PlanarSymmetryTransform<PointT>::setInputMesh(const pcl::PolygonMesh& mesh,
 
 template <typename PointT>
 SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
-  return withBadArguments([&] {
+  return detail::withBadArguments([&] {
     if (!input_) throw std::invalid_argument("input cloud: not set, must be given by setInputCloud");
-    const SelectedPoints selected =
-        selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, transform_.sampled.seed);
+    const detail::SelectedPoints selected =
+        detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, transform_.sampled.seed);
     edt_ = std::make_shared<GaussianEdt>(selected.points, edt_options_);
     const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
-    const std::optional<Visibility> seen = seenSpace(*input_, selected.points, viewpoint_);
+    const std::optional<Visibility> seen = detail::seenSpace(*input_, selected.points, viewpoint_);
     return planarTransform(*edt_, grid, centerOfMass(selected.points), transform_,
                            seen ? freeSpace(*edt_, *seen, edt_options_.num_threads) : std::vector<float>());
   });

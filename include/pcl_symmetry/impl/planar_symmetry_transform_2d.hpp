@@ -3,8 +3,7 @@
 #include <pcl/impl/pcl_base.hpp>
 
 #include "core/geometry/principal_axes.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/planar_symmetry_transform_2d.h"
 
 namespace pcl_symmetry {
@@ -13,7 +12,7 @@ template <typename PointT>
 void PlanarSymmetryTransform2D<PointT>::setGridSize(int n) {
   GaussianEdt2DOptions options = edt_options_;
   options.num_cells = n;
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   edt_options_ = options;
 }
 
@@ -21,35 +20,35 @@ template <typename PointT>
 void PlanarSymmetryTransform2D<PointT>::setSigma(double sigma) {
   GaussianEdt2DOptions options = edt_options_;
   options.sigma = sigma;
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   edt_options_ = options;
 }
 
 template <typename PointT>
 void PlanarSymmetryTransform2D<PointT>::setMaximaOptions(const LocalMaximaOptions& options) {
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   maxima_ = options;
 }
 
 template <typename PointT>
 void PlanarSymmetryTransform2D<PointT>::setMaxPoints(std::size_t max_points) {
-  if (max_points < 2) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 2");
+  detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 2);
   max_points_ = max_points;
 }
 
 template <typename PointT>
 void PlanarSymmetryTransform2D<PointT>::setNumberOfThreads(int num_threads) {
-  if (num_threads < 0)
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "num_threads = " << num_threads << ", must be >= 0");
+  detail::checkAtLeast("num_threads", static_cast<std::int64_t>(num_threads), 0);
   num_threads_ = maxima_.num_threads = num_threads;
 }
 
 template <typename PointT>
 LineMap PlanarSymmetryTransform2D<PointT>::compute() {
-  return withBadArguments([&] {
+  return detail::withBadArguments([&] {
     if (!input_) throw std::invalid_argument("input cloud: not set, must be given by setInputCloud");
     constexpr std::uint64_t kSeed = 1;
-    const Points points = selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, kSeed).points;
+    const Points points =
+        detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, kSeed).points;
     if (points.cols() == 0) throw std::invalid_argument("input cloud: holds no finite point, must hold two");
     T_input_sheet_ = sheetPose(points);
     sheet_points_ =

@@ -4,16 +4,14 @@
 
 #include <chrono>
 
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_alignment.h"
 
 namespace pcl_symmetry {
 
 template <typename PointT>
 void SymmetryAlignment<PointT>::setOptions(const FrameOptions& options) {
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   options_ = options;
 }
 
@@ -45,18 +43,18 @@ void SymmetryAlignment<PointT>::setNumberOfThreads(int num_threads) {
 
 template <typename PointT>
 void SymmetryAlignment<PointT>::setMaxPoints(std::size_t max_points) {
-  if (max_points < 2) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 2");
+  detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 2);
   max_points_ = max_points;
 }
 
 template <typename PointT>
 SymmetryFrame SymmetryAlignment<PointT>::compute() {
-  return withBadArguments([&] {
+  return detail::withBadArguments([&] {
     if (!input_) throw std::invalid_argument("input cloud: not set, must be given by setInputCloud");
     const auto start = std::chrono::steady_clock::now();
-    SelectedPoints selected =
-        selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, options_.seed);
-    const std::optional<Visibility> seen = seenSpace(*input_, selected.points, viewpoint_);
+    detail::SelectedPoints selected =
+        detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, options_.seed);
+    const std::optional<Visibility> seen = detail::seenSpace(*input_, selected.points, viewpoint_);
     const std::chrono::duration<double, std::milli> seen_ms = std::chrono::steady_clock::now() - start;
     SymmetryFrame frame = symmetryFrame(selected.points, options_, seen ? &*seen : nullptr);
     used_viewpoint_ = seen.has_value();

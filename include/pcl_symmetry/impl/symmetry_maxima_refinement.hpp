@@ -7,9 +7,7 @@
 #include <mutex>
 
 #include "core/evidence/plane_support.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace pcl_symmetry {
@@ -55,7 +53,7 @@ private:
 
 template <typename PointT>
 void SymmetryMaximaRefinement<PointT>::setOptions(const DetectionOptions& options) {
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   options_ = options;
 }
 
@@ -106,31 +104,30 @@ void SymmetryMaximaRefinement<PointT>::setNumberOfThreads(int num_threads) {
 
 template <typename PointT>
 void SymmetryMaximaRefinement<PointT>::setMaxPoints(std::size_t max_points) {
-  if (max_points < 2) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 2");
+  detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 2);
   max_points_ = max_points;
 }
 
 template <typename PointT>
 void SymmetryMaximaRefinement<PointT>::setSymmetryMap(const SymmetryMap& map,
                                                       const std::shared_ptr<const GaussianEdt>& edt) {
-  if (map.empty() || !edt)
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "symmetry map: empty, must be made by PlanarSymmetryTransform");
+  if (map.empty() || !edt) detail::throwBadArgument("symmetry map: empty, must be made by PlanarSymmetryTransform");
   map_ = map;
   edt_ = edt;
 }
 
 template <typename PointT>
 std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
-  return withBadArguments([&] {
+  return detail::withBadArguments([&] {
     if (!input_) throw std::invalid_argument("input cloud: not set, must be given by setInputCloud");
-    SelectedPoints selected =
-        selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, options_.seed);
+    detail::SelectedPoints selected =
+        detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, options_.seed);
     used_indices_ = std::move(selected.indices);
     used_points_ = std::move(selected.points);
     const auto search = [&](const GaussianEdt& edt) -> ClosestPointSearch::Ptr {
       return search_ ? std::make_shared<PCLPointSearch<PointT>>(search_, *input_, used_indices_, edt) : nullptr;
     };
-    const std::optional<Visibility> seen = seenSpace(*input_, used_points_, viewpoint_);
+    const std::optional<Visibility> seen = detail::seenSpace(*input_, used_points_, viewpoint_);
     used_viewpoint_ = seen.has_value();
     const Visibility* visibility = seen ? &*seen : nullptr;
     Detection detection = edt_ ? refineMaxima(used_points_, *edt_, map_, options_, search(*edt_), visibility)
@@ -145,9 +142,9 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
 
 template <typename PointT>
 std::vector<float> SymmetryMaximaRefinement<PointT>::computePointSupport(const ReflectionPlane& plane) const {
-  return withBadArguments([&] {
+  return detail::withBadArguments([&] {
     if (used_points_.cols() == 0) throw std::invalid_argument("input cloud: not analysed, must be by compute()");
-    const SelectedPoints all = selectPoints(*input_, nullptr, input_->size(), 0);
+    const detail::SelectedPoints all = detail::selectPoints(*input_, nullptr, input_->size(), 0);
     const std::vector<float> finite = planeSupport(all.points, used_points_, plane, options_.num_threads);
     std::vector<float> support(input_->size(), std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = 0; i < finite.size(); ++i) support[all.indices[i]] = finite[i];

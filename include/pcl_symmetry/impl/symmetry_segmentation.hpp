@@ -8,15 +8,14 @@
 #include <stdexcept>
 
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_segmentation.h"
 
 namespace pcl_symmetry {
 
 template <typename PointT>
 void SymmetrySegmentation<PointT>::setOptions(const SegmentationOptions& options) {
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   options_ = options;
 }
 
@@ -43,15 +42,13 @@ void SymmetrySegmentation<PointT>::setNumberOfThreads(int num_threads) {
 
 template <typename PointT>
 void SymmetrySegmentation<PointT>::setNumberOfNeighbors(int num_neighbors) {
-  if (num_neighbors < 3)
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "num_neighbors = " << num_neighbors << ", must be >= 3");
+  detail::checkAtLeast("num_neighbors", static_cast<std::int64_t>(num_neighbors), 3);
   num_neighbors_ = num_neighbors;
 }
 
 template <typename PointT>
 void SymmetrySegmentation<PointT>::setMaxPoints(std::size_t max_points) {
-  if (max_points < 10)
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 10");
+  detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 10);
   max_points_ = max_points;
 }
 
@@ -87,7 +84,7 @@ template <typename PointT>
 void SymmetrySegmentation<PointT>::segmentCloud() {
   if (!input_) throw std::invalid_argument("input: not set, must be given by setInputCloud or setInputMesh");
   const pcl::Indices* indices = use_indices_ ? indices_.get() : nullptr;
-  const SelectedPoints used = selectPoints(*input_, indices, max_points_, options_.seed);
+  const detail::SelectedPoints used = detail::selectPoints(*input_, indices, max_points_, options_.seed);
   const auto num_neighbors = std::min<std::size_t>(num_neighbors_, std::max<Eigen::Index>(1, used.points.cols()) - 1);
   const auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>(*input_, used.indices);
   const SearchPtr search = search_ ? search_ : pcl::make_shared<pcl::search::KdTree<PointT>>();
@@ -103,7 +100,7 @@ void SymmetrySegmentation<PointT>::segmentCloud() {
   segmentation_ = segmentSurface(cloudGraph(used.points, neighbors), options_);
 
   labels_.assign(input_->size(), -1);
-  const SelectedPoints all = selectPoints(*input_, indices, input_->size(), options_.seed);
+  const detail::SelectedPoints all = detail::selectPoints(*input_, indices, input_->size(), options_.seed);
   std::vector<int> closest;
   makeFlannSearch(used.points)->search(all.points, 1, closest, sq_distances);
   for (std::size_t i = 0; i < all.indices.size(); ++i) labels_[all.indices[i]] = segmentation_.labels[closest[i]];

@@ -10,10 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "pcl_symmetry/exports.h"
 #include "pcl_symmetry/registration/cloud_registration.h"
 #include "pcl_symmetry/viewpoint.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 struct DatabaseParts;
@@ -79,7 +80,8 @@ using Recognition = std::vector<RecognizedModel>;
 /// A save writes new files beside the old ones and then replaces manifest.txt: if it is interrupted, the old state
 /// stays whole. Other files in the folder are neither changed nor removed. Only one program may write at a time.
 ///
-/// Clouds that hold no answer (no finite point, all points at one place) give an empty result and a PCL_WARN.
+/// Clouds that hold no answer (fewer than 20 distinct points, or all of them on one line) give an empty result and a
+/// PCL_WARN.
 ///
 /// \code
 /// pcl_symmetry::SymmetryDatabase database("models");
@@ -107,8 +109,8 @@ public:
   /// Adds a model, or replaces the model of that name. The model is stored by save(), and found after save() or
   /// rebuild().
   /// \param name 1 to 100 letters, digits and "_-."; the first one is not ".".
-  /// \param cloud the object seen from all sides, at least two different finite points.
-  /// \throws pcl::BadArgumentException for another name or a cloud without extent.
+  /// \param cloud the object seen from all sides.
+  /// \throws pcl::BadArgumentException for another name or a cloud that holds no answer: it would never be found.
   void add(const std::string& name, const Cloud& cloud);
   /// Removes a model. Its files are removed by save().
   /// \throws pcl::BadArgumentException where there is no such model.

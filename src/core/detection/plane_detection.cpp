@@ -7,10 +7,21 @@
 #include "core/base/stopwatch.h"
 #include "core/detection/refinement.h"
 #include "core/distance_transform/free_space.h"
+#include "core/geometry/answerable_points.h"
 #include "core/geometry/distinct_points.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
 
 namespace pcl_symmetry {
+
+namespace {
+
+Detection unanswered(std::string reason) {
+  Detection detection;
+  detection.reason = std::move(reason);
+  return detection;
+}
+
+}  // namespace
 
 void DetectionOptions::validate() const {
   edt.validate();
@@ -37,6 +48,7 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search,
                        const Visibility* visibility) {
   options.validate();
+  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
   Stopwatch watch;
   const GaussianEdt edt(points, options.edt);
   const double edt_ms = watch.lap();
@@ -62,6 +74,7 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
                        const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility) {
   options.validate();
+  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
   Stopwatch watch;
   Detection detection;
   const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };

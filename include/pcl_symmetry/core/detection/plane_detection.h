@@ -93,6 +93,9 @@ struct DetectionOptions {
 };
 
 struct Detection {
+  /// Why there is no answer, one sentence such as "12 distinct points, at least 20 are needed"; empty where the search
+  /// ran, whatever it found.
+  std::string reason;
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
   std::vector<SymmetryAxis> axes;     ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;
@@ -101,10 +104,11 @@ struct Detection {
 };
 
 /// From points to planes: transform, maxima, refinement (Sections 4.1 to 4.4).
-/// \param points 3 x N, finite, input units; at least two different ones.
+/// \param points 3 x N, finite, input units. Fewer than 20 distinct ones, and points on one line, give an empty result
+/// with a reason.
 /// \param make_search makes the search of refineMaxima for the distance transform of these points; null = FLANN.
 /// \param visibility what a scanner saw; null = the points show the object from all sides.
-/// \throws std::invalid_argument for bad options or points without extent.
+/// \throws std::invalid_argument for bad options or coordinates that are not finite.
 Detection detectPlanes(const PointsRef& points, const DetectionOptions& options = {},
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr,
                        const Visibility* visibility = nullptr);

@@ -6,11 +6,10 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/registration/symmetry_registration.h"
 
 namespace pcl_symmetry {
@@ -24,27 +23,29 @@ SymmetryRegistration<PointSource, PointTarget, Scalar>::SymmetryRegistration() {
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::setMinMerit(double min_merit) {
-  if (!(min_merit >= -1.0 && min_merit <= 1.0))
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "min_merit = " << min_merit << ", must be in [-1, 1]");
+  if (!(min_merit >= -1.0 && min_merit <= 1.0)) {
+    std::ostringstream message;
+    message << "min_merit = " << min_merit << ", must be in [-1, 1]";
+    detail::throwBadArgument(message.str());
+  }
   min_merit_ = min_merit;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::setSearchOptions(const PoseSearchOptions& options) {
-  withBadArguments([&] { options.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   options_.search = options;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::setMaxPoints(std::size_t max_points) {
-  if (max_points < 3) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 3");
+  detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 3);
   max_points_ = max_points;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::setNumberOfThreads(int num_threads) {
-  if (num_threads < 0)
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "num_threads = " << num_threads << ", must be >= 0");
+  detail::checkAtLeast("num_threads", static_cast<std::int64_t>(num_threads), 0);
   options_.num_threads = num_threads;
 }
 
@@ -71,8 +72,8 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
   score_ = {};
   timing_ms_.clear();
   try {
-    const SelectedPoints source = selectPoints(*input_, indices_.get(), max_points_, options_.seed);
-    const SelectedPoints target = selectPoints(*target_, nullptr, max_points_, options_.seed);
+    const detail::SelectedPoints source = detail::selectPoints(*input_, indices_.get(), max_points_, options_.seed);
+    const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
     CloudRegistrationOptions options = options_;
     options.max_iterations = max_iterations_;
     options.transformation_epsilon = transformation_epsilon_;
@@ -80,8 +81,8 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
     if (corr_dist_threshold_ < std::sqrt(std::numeric_limits<double>::max()))
       options.max_correspondence = corr_dist_threshold_;
     const CloudRegistration result =
-        registerClouds(source.points, seenSpace(*input_, source.points, source_viewpoint_), target.points,
-                       seenSpace(*target_, target.points, target_viewpoint_),
+        registerClouds(source.points, detail::seenSpace(*input_, source.points, source_viewpoint_), target.points,
+                       detail::seenSpace(*target_, target.points, target_viewpoint_),
                        Eigen::Isometry3d(guess.template cast<double>()), options);
     score_ = result.score;
     timing_ms_ = result.timing_ms;
