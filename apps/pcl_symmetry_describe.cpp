@@ -10,6 +10,7 @@
 
 #include "console.h"
 #include "core/base/parallel.h"
+#include "core/descriptors/symmetry_descriptor.h"
 #include "core/matching/shape_description.h"
 #include "input_cloud.h"
 #include "options.h"
