@@ -40,7 +40,8 @@ pcl::ModelCoefficients toModelCoefficients(const SymmetryAxis& axis) {
 
 ReflectionPlane planeFromModelCoefficients(const pcl::ModelCoefficients& coefficients) {
   checkCoefficients(coefficients, 4, 0);
-  return ReflectionPlane::fromCoefficients(Eigen::Map<const Eigen::Vector4f>(coefficients.values.data()).cast<double>());
+  return ReflectionPlane::fromCoefficients(
+      Eigen::Map<const Eigen::Vector4f>(coefficients.values.data()).cast<double>());
 }
 
 SymmetryAxis axisFromModelCoefficients(const pcl::ModelCoefficients& coefficients) {

@@ -24,7 +24,8 @@ constexpr std::size_t kMaxPoints = 20'000;
 double hiddenShare(const Points& points, const BoundingBall& ball, const Eigen::Vector3d& direction) {
   // Radii. chosen: a nearer camera sees less of the sides, a farther one sees the same.
   constexpr double kDistance = 5.0;
-  // Radii. chosen: a smaller margin counts points on rough or slanted surfaces as hidden, a larger one misses thin parts.
+  // Radii. chosen: a smaller margin counts points on rough or slanted surfaces as hidden, a larger one misses thin
+  // parts.
   constexpr double kMargin = 0.05;
   const auto seen = Visibility::fromPoints(points, ball.center + kDistance * ball.radius * direction);
   return seen ? seen->hiddenShare(points, kMargin * ball.radius) : 1.0;
@@ -54,7 +55,8 @@ std::vector<Eigen::Vector3d> mirrorImages(const Eigen::Vector3d& direction,
 
 /// \return whether no direction has less than a fifth of the best score.
 bool seenFromEverywhere(const std::vector<ViewPlane>& planes) {
-  // Share of the best score. chosen: half leaves a mug without a plane across its axis, twice adds weak maxima to boxes.
+  // Share of the best score. chosen: half leaves a mug without a plane across its axis, twice adds weak maxima to
+  // boxes.
   constexpr double kLeast = 0.2;
   const std::vector<RankedView> best = bestViews(planes);
   return !best.empty() && worstView(planes).score >= kLeast * best[0].score;
@@ -132,7 +134,8 @@ Eigen::Vector3d ViewpointSelection::getUpAxis() const {
     consider(in_plane.normalized());
   }
   // An axis that is far from the given direction would tilt the object: the given direction is up then.
-  constexpr double kFar = 0.8;  // cosine of 37 degrees. chosen: a smaller value tilts objects, a larger one uses no axis
+  constexpr double kFar =
+      0.8;  // cosine of 37 degrees. chosen: a smaller value tilts objects, a larger one uses no axis
   return std::abs(best.dot(up_)) < kFar ? up_ : Eigen::Vector3d(std::copysign(1.0, best.dot(up_)) * best);
 }
 
@@ -176,8 +179,8 @@ RankedView ViewpointSelection::leastHidden(const std::vector<RankedView>& views)
 
 bool ViewpointSelection::hasExtent() const {
   if (ball_.radius > 0.0) return true;
-  detail::warnOfNoAnswer("ViewpointSelection",
-                         points_.cols() == 0 ? "input cloud: no finite point" : "input cloud: all points are at one place");
+  detail::warnOfNoAnswer("ViewpointSelection", points_.cols() == 0 ? "input cloud: no finite point"
+                                                                   : "input cloud: all points are at one place");
   return false;
 }
 

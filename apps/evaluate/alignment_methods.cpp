@@ -24,6 +24,7 @@ FoundFrame bySymmetry(bool as_published, const pcl::PointCloud<pcl::PointXYZ>::C
   if (as_published) alignment.setViewpointMode(Viewpoint::Mode::None);
   alignment.setInputCloud(cloud);
   const SymmetryFrame frame = alignment.compute();
+  if (!alignment.getReason().empty()) detail::throwBadArgument(alignment.getReason());
   FoundFrame found{frame.center, frame.axes, {}, frame.revolution_axis};
   for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
     found.equivalent.emplace_back(T_canonical_input.linear().transpose());

@@ -25,9 +25,9 @@ SymmetryMap mapOfPlanes(const Points& points, const GaussianEdt& edt, const Plan
 /// The planar-reflective symmetry transform of a point cloud: a measure of its symmetry with respect to every plane
 /// (Sections 3 and 4.1 to 4.3 of the paper).
 ///
-/// The defaults depend neither on units nor on tuning: the grid covers the bounding ball of the points, and sigma is two
-/// cells. With a viewpoint the map holds seenSymmetry() of D and of its counterpart for the space that the scanner saw
-/// to be empty.
+/// The defaults depend neither on units nor on tuning: the grid covers the bounding ball of the points, and sigma is
+/// two cells. With a viewpoint the map holds seenSymmetry() of D and of its counterpart for the space that the scanner
+/// saw to be empty.
 ///
 /// \code
 /// pcl_symmetry::PlanarSymmetryTransform<pcl::PointXYZ> transform;
@@ -48,9 +48,8 @@ public:
   void setMethod(TransformMethod method) { transform_.method = method; }
   TransformMethod getMethod() const { return transform_.method; }
 
-  /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper; even,
-  /// in [8, 512].
-  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
+  /// even, in [8, 512]. \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setGridSize(int n) {
     setNumCells(n);
     setMapSize(n, n, n);

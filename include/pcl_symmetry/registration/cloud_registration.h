@@ -9,8 +9,9 @@
 
 #include "core/registration/pose_search.h"
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 struct CloudRegistrationOptions {
   bool frames = true;  ///< tries the poses that bring symmetry frames together; or else evenly spread rotations alone

@@ -91,8 +91,8 @@ public:
     options_.num_threads = num_threads;
   }
 
-  /// \return how well the clouds agree with the transformation of the last align(), or with the best pose that was found
-  /// where nothing fits.
+  /// \return how well the clouds agree with the transformation of the last align(), or with the best pose that was
+  /// found where nothing fits.
   const PoseScore& getScore() const { return score_; }
   /// \return why the last align() did not converge, one sentence; empty where it did.
   const std::string& getReason() const { return reason_; }

@@ -5,8 +5,9 @@
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 struct CompletionOptions {
   /// A reflected point this close to a point that was measured, in spacings of the points there, adds nothing; > 0.

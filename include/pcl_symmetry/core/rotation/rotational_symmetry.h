@@ -8,8 +8,9 @@
 
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/rotation/rotation_group.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 struct ObjectSymmetryOptions {
   int num_cells = 64;         ///< of the distance transform along each side, in [8, 512]

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The discrete space of planes (Section 4.2): theta in [0, pi/2], phi in [0, 2 pi), r in [-radius, radius] about a
 /// center, cut into equal bins; bin (t, p, k) has its center at ((t + 1/2) dtheta, (p + 1/2) dphi, (k + 1/2) dr -

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/exports.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// 2 x N points of a contour or image, finite.
 using Points2D = Eigen::Matrix2Xf;

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/transform_2d/reflection_line.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The discrete space of lines (Section 4.2): theta in [0, pi), r in [-radius, radius] about a center, cut into equal
 /// bins; bin (t, k) has its center at ((t + 1/2) dtheta, (k + 1/2) dr - radius).

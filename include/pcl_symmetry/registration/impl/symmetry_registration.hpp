@@ -67,9 +67,9 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   options.rotation_epsilon = transformation_rotation_epsilon_;
   if (corr_dist_threshold_ < std::sqrt(std::numeric_limits<double>::max()))
     options.max_correspondence = corr_dist_threshold_;
-  const CloudRegistration result = registerClouds(
-      source, detail::seenSpace(*input_, source, source_viewpoint_), target,
-      detail::seenSpace(*target_, target, target_viewpoint_), Eigen::Isometry3d(guess.template cast<double>()), options);
+  const CloudRegistration result = registerClouds(source, detail::seenSpace(*input_, source, source_viewpoint_), target,
+                                                  detail::seenSpace(*target_, target, target_viewpoint_),
+                                                  Eigen::Isometry3d(guess.template cast<double>()), options);
   score_ = result.score;
   timing_ms_ = result.timing_ms;
   if (score_.merit() >= min_merit_) {
