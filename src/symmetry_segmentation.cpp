@@ -1,7 +1,4 @@
-#include "pcl_symmetry/impl/symmetry_segmentation.hpp"
-
-#include <pcl/point_types.h>
-#include <pcl/impl/instantiate.hpp>
+#include "pcl_symmetry/symmetry_segmentation.h"
 
 #include "mesh_conversion.h"
 
@@ -17,5 +14,3 @@ SurfaceGraph meshGraph(const pcl::PolygonMesh& mesh) {
 }
 
 }  // namespace pcl_symmetry
-
-PCL_INSTANTIATE(SymmetrySegmentation, PCL_XYZ_POINT_TYPES)

@@ -2,24 +2,31 @@
 
 #include <pcl/PointIndices.h>
 #include <pcl/PolygonMesh.h>
-#include <pcl/search/search.h>
+#include <pcl/search/kdtree.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "pcl_symmetry/cloud_analysis.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+namespace detail {
+
+/// \return whether any polygon with finite corners has an area.
+/// \throws std::invalid_argument where the mesh refers to vertices that it does not have.
+bool hasArea(const pcl::PolygonMesh& mesh);
+
+}  // namespace detail
 
 /// Cuts a cloud or a mesh into parts by its symmetries (Section 5.3 of the paper).
 ///
 /// The input is a cloud (setInputCloud(), setIndices(); points that are not finite belong to no segment) or a mesh
 /// (setInputMesh(); indices and labels count its polygons then), whichever was set last. The cloud has to show the
 /// surface from all sides, because thickness and line of sight need an inside.
-///
-/// The library holds this class for PCL's point types with x, y and z. For other point types define PCL_NO_PRECOMPILE
-/// before the first include, as with PCL's own classes.
 template <typename PointT>
 class SymmetrySegmentation : public CloudAnalysis<PointT> {
 public:
@@ -120,8 +127,59 @@ private:
 /// \throws std::invalid_argument where the mesh refers to vertices that it does not have or no polygon has an area.
 SurfaceGraph meshGraph(const pcl::PolygonMesh& mesh);
 
-}  // namespace pcl_symmetry
+template <typename PointT>
+void SymmetrySegmentation<PointT>::segment(std::vector<pcl::PointIndices>& segments) {
+  segments.clear();
+  detail::withBadArguments([&] { mesh_ ? segmentMesh() : segmentCloud(); });
+  segments.resize(static_cast<std::size_t>(segmentation_.num_segments));
+  for (pcl::PointIndices& segment : segments) segment.header = mesh_ ? mesh_->header : input_->header;
+  for (std::size_t i = 0; i < labels_.size(); ++i)
+    if (labels_[i] >= 0) segments[labels_[i]].indices.push_back(static_cast<pcl::index_t>(i));
+}
 
-#ifdef PCL_NO_PRECOMPILE
-#include "pcl_symmetry/impl/symmetry_segmentation.hpp"
-#endif
+template <typename PointT>
+void SymmetrySegmentation<PointT>::segmentMesh() {
+  clearResults();
+  if (!detail::hasArea(*mesh_)) {
+    this->giveNoAnswer("mesh: no polygon has an area");
+    return;
+  }
+  segmentation_ = segmentSurface(meshGraph(*mesh_), options_);
+  labels_ = segmentation_.labels;
+}
+
+template <typename PointT>
+void SymmetrySegmentation<PointT>::segmentCloud() {
+  const Points points = this->selectInput(options_.seed);
+  if (points.cols() == 0) return;
+  const pcl::Indices& used = this->getUsedIndices();
+  segmentation_ = segmentSurface(cloudGraph(points, neighborsOf(used)), options_);
+
+  labels_.assign(input_->size(), -1);
+  const detail::SelectedPoints all =
+      detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, input_->size(), options_.seed);
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  makeFlannSearch(points)->search(all.points, 1, closest, sq_distances);
+  for (std::size_t i = 0; i < all.indices.size(); ++i) labels_[all.indices[i]] = segmentation_.labels[closest[i]];
+  for (std::size_t i = 0; i < used.size(); ++i) labels_[used[i]] = segmentation_.labels[i];
+}
+
+template <typename PointT>
+std::vector<std::vector<int>> SymmetrySegmentation<PointT>::neighborsOf(const pcl::Indices& used) const {
+  const auto num_neighbors = std::min<std::size_t>(num_neighbors_, used.size() - 1);
+  const auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>(*input_, used);
+  const SearchPtr search = search_ ? search_ : pcl::make_shared<pcl::search::KdTree<PointT>>();
+  search->setInputCloud(cloud);
+  std::vector<std::vector<int>> neighbors(cloud->size());
+  pcl::Indices found;
+  std::vector<float> sq_distances;
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    search->nearestKSearch((*cloud)[i], static_cast<int>(num_neighbors) + 1, found, sq_distances);
+    for (const pcl::index_t j : found)
+      if (static_cast<std::size_t>(j) != i && neighbors[i].size() < num_neighbors) neighbors[i].push_back(j);
+  }
+  return neighbors;
+}
+
+}  // namespace pcl_symmetry

@@ -57,7 +57,9 @@ TEST(CompleteBySymmetry, ReflectsTheViewpointThatAPointCarries) {
   EXPECT_EQ(completed.cloud[1].vp_x, -5.0f);
   EXPECT_EQ(completed.cloud[1].vp_y, 6.0f);
   EXPECT_TRUE(completeBySymmetry(pcl::PointCloud<pcl::PointXYZ>(), ReflectionPlane()).cloud.empty());
-  EXPECT_EQ(completeBySymmetry(pcl::PointCloud<pcl::PointXYZ>(3, 1, pcl::PointXYZ(NAN, 0, 0)), ReflectionPlane()).cloud.size(), 3u);
+  EXPECT_EQ(completeBySymmetry(pcl::PointCloud<pcl::PointXYZ>(3, 1, pcl::PointXYZ(NAN, 0, 0)), ReflectionPlane())
+                .cloud.size(),
+            3u);
   CompletionOptions options;
   options.overlap = -1.0;
   EXPECT_THROW(completeBySymmetry(cloud, ReflectionPlane(), options), pcl::BadArgumentException);
