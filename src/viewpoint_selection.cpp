@@ -134,8 +134,8 @@ Eigen::Vector3d ViewpointSelection::getUpAxis() const {
     consider(in_plane.normalized());
   }
   // An axis that is far from the given direction would tilt the object: the given direction is up then.
-  constexpr double kFar =
-      0.8;  // cosine of 37 degrees. chosen: a smaller value tilts objects, a larger one uses no axis
+  // Cosine of 37 degrees. chosen: a smaller value tilts objects, a larger one leaves axes unused.
+  constexpr double kFar = 0.8;
   return std::abs(best.dot(up_)) < kFar ? up_ : Eigen::Vector3d(std::copysign(1.0, best.dot(up_)) * best);
 }
 
