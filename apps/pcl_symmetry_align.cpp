@@ -100,6 +100,7 @@ SymmetryFrame computeFrame(const Console& console, const Input& input, const Com
     alignment.setViewpoint(common.viewpoint);
     alignment.setInputCloud(input.points);
     const SymmetryFrame frame = alignment.compute();
+    if (!alignment.getReason().empty()) throw InputError(input.path + ": " + alignment.getReason());
     step.done(alignment.usedViewpoint() ? "seen from one side" : "");
     return frame;
   } catch (const pcl::BadArgumentException& error) {
@@ -121,6 +122,7 @@ ReflectionPlane bestPlane(const Console& console, const Input& input, const Comm
     refinement.setViewpoint(common.viewpoint);
     refinement.setInputCloud(input.points);
     planes = refinement.compute();
+    if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
   } catch (const pcl::BadArgumentException& error) {
     throw InputError(input.path + ": " + error.detailedMessage());
   }

@@ -108,6 +108,7 @@ ModelInfo analyse(const Console& console, const std::string& path, const BopOpti
   } catch (const pcl::BadArgumentException& error) {
     throw InputError(path + ": " + error.detailedMessage());
   }
+  if (!info.symmetries.reason.empty()) throw InputError(path + ": " + info.symmetries.reason);
   searching.done(info.symmetries.name());
   return info;
 }

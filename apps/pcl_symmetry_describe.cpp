@@ -10,11 +10,11 @@
 
 #include "console.h"
 #include "core/base/parallel.h"
+#include "core/descriptors/symmetry_descriptor.h"
 #include "core/matching/shape_description.h"
 #include "input_cloud.h"
 #include "options.h"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/point_types.h"
 #include "shape_output.h"
 
@@ -61,8 +61,8 @@ pcl::PCLPointCloud2 toBlob(const std::vector<const float*>& values, float (Point
 
 pcl::PCLPointCloud2 describe(const pcl::PointCloud<pcl::PointXYZ>& cloud, const DescribeOptions& options) {
   const auto max_points = static_cast<std::size_t>(options.num_points);
-  const SelectedPoints selected = selectPoints(cloud, nullptr, max_points, options.common.seed + 1);
-  const std::optional<Visibility> seen = seenSpace(cloud, selected.points, options.common.viewpoint);
+  const detail::SelectedPoints selected = detail::selectPoints(cloud, nullptr, max_points, options.common.seed + 1);
+  const std::optional<Visibility> seen = detail::seenSpace(cloud, selected.points, options.common.viewpoint);
   DescriptionOptions description;
   description.seed = options.common.seed + 1;
   description.num_threads = 1;

@@ -103,6 +103,7 @@ std::pair<nlohmann::json, std::optional<RasterImage>> analyse(const std::string&
     transform.setNumberOfThreads(options.threads);
     transform.setInputCloud(contour);
     map = transform.compute();
+    if (!transform.getReason().empty()) throw InputError(input + ": " + transform.getReason());
   } catch (const pcl::BadArgumentException& error) {
     throw InputError(input + ": " + error.detailedMessage());
   }

@@ -189,7 +189,9 @@ SymmetryMap transformOf(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, c
     transform.setNumberOfThreads(options.common.threads);
     transform.setViewpoint(options.common.viewpoint);
     transform.setInputCloud(cloud);
-    return transform.compute();
+    const SymmetryMap map = transform.compute();
+    if (!transform.getReason().empty()) throw InputError(options.input + ": " + transform.getReason());
+    return map;
   } catch (const pcl::BadArgumentException& error) {
     throw InputError(options.input + ": " + error.detailedMessage());
   }

@@ -215,6 +215,7 @@ int run(int argc, char** argv) {
     refinement.setOptions(detection);
     refinement.setInputCloud(cloud);
     findings.planes = refinement.compute();
+    if (!refinement.getReason().empty()) throw InputError(options.input + ": " + refinement.getReason());
     findings.axes = refinement.getAxes();
     findings.centers = refinement.getCenters();
   } catch (const pcl::BadArgumentException& error) {

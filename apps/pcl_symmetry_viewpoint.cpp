@@ -134,6 +134,7 @@ double choose(ViewpointSelection& selection, const pcl::PointCloud<pcl::PointXYZ
     refinement.setViewpoint(options.common.viewpoint);
     refinement.setInputCloud(cloud);
     planes = refinement.compute();
+    if (!refinement.getReason().empty()) throw InputError(options.input + ": " + refinement.getReason());
   } catch (const pcl::BadArgumentException& error) {
     throw InputError(options.input + ": " + error.detailedMessage());
   }

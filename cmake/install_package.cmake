@@ -3,15 +3,25 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcl_symmetry)
 
-# Two export sets, so that the core can be had without PCL.
+# Without the classes for PCL clouds, what is installed needs no PCL. Two export sets, so that programs can also have
+# the core alone.
+set(with_pcl OFF)
+if(TARGET pcl_symmetry)
+  set(with_pcl ON)
+endif()
 install(TARGETS pcl_symmetry_core EXPORT pcl_symmetry_core_targets)
-install(TARGETS pcl_symmetry EXPORT pcl_symmetry_pcl_targets)
 install(EXPORT pcl_symmetry_core_targets NAMESPACE pcl_symmetry:: DESTINATION ${package_dir})
-install(EXPORT pcl_symmetry_pcl_targets NAMESPACE pcl_symmetry:: DESTINATION ${package_dir})
-install(DIRECTORY include/pcl_symmetry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+if(with_pcl)
+  install(TARGETS pcl_symmetry EXPORT pcl_symmetry_pcl_targets)
+  install(EXPORT pcl_symmetry_pcl_targets NAMESPACE pcl_symmetry:: DESTINATION ${package_dir})
+  install(DIRECTORY include/pcl_symmetry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+else()
+  install(DIRECTORY include/pcl_symmetry/core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcl_symmetry FILES_MATCHING PATTERN "*.h")
+  install(FILES include/pcl_symmetry/exports.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcl_symmetry)
+endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# What a static core leaves to be linked by its users; a shared one has linked it.
+# Libraries that a static core leaves to the programs that link it; a shared core has linked them.
 get_target_property(core_type pcl_symmetry_core TYPE)
 set(static_core OFF)
 set(core_link_flags "")
@@ -41,7 +51,11 @@ else()
   set(pc_libdir "\${prefix}/${CMAKE_INSTALL_LIBDIR}")
   set(pc_includedir "\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}")
 endif()
-foreach(name pcl_symmetry_core pcl_symmetry)
+set(pc_names pcl_symmetry_core)
+if(with_pcl)
+  list(APPEND pc_names pcl_symmetry)
+endif()
+foreach(name IN LISTS pc_names)
   configure_file(cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endforeach()

@@ -1,28 +1,22 @@
 #include "pcl_symmetry/mesh_sampling.h"
 
-#include <pcl/conversions.h>
-
 #include "core/geometry/mesh_sampling.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
+#include "mesh_conversion.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int num_points, std::uint64_t seed) {
-  return withBadArguments([&] {
-    // PCL's conversions refer to the first point, also where there is none.
-    Points vertices(3, 0);
-    if (mesh.cloud.width > 0 && mesh.cloud.height > 0) {
-      pcl::PointCloud<pcl::PointXYZ> vertex_cloud;
-      pcl::fromPCLPointCloud2(mesh.cloud, vertex_cloud);
-      vertices = vertex_cloud.getMatrixXfMap(3, 4, 0);
-    }
-    std::vector<Eigen::Vector3i> triangles;
-    for (const pcl::Vertices& polygon : mesh.polygons)
-      for (std::size_t i = 2; i < polygon.vertices.size(); ++i)
-        triangles.emplace_back(polygon.vertices[0], polygon.vertices[i - 1], polygon.vertices[i]);
-    const Points points = sampleTriangles(vertices, triangles, num_points, seed);
+  detail::checkAtLeast("num_points", num_points, 1);
+  return detail::withBadArguments([&] {
     auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
     cloud->header = mesh.header;
+    const MeshArrays arrays = toArrays(mesh);
+    if (!hasArea(arrays)) {
+      detail::warnOfNoAnswer("sampleMesh", "mesh: no polygon has an area");
+      return cloud;
+    }
+    const Points points = sampleTriangles(arrays.vertices, fansOf(arrays), num_points, seed);
     cloud->resize(points.cols());
     cloud->getMatrixXfMap(3, 4, 0) = points;
     return cloud;

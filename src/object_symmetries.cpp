@@ -1,11 +1,25 @@
-#include "pcl_symmetry/impl/object_symmetries.hpp"
-
-#include <pcl/point_types.h>
-#include <pcl/impl/instantiate.hpp>
+#include "pcl_symmetry/object_symmetries.h"
 
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry {
+
+namespace detail {
+
+ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options) {
+  return withBadArguments([&] {
+    options.validate();
+    std::string reason = reasonForNoAnswer(points);
+    if (reason.empty()) return objectSymmetries(points, options);
+    warnOfNoAnswer("detectObjectSymmetries", reason);
+    ObjectSymmetries none;
+    none.support = none.confidence = 0.0;
+    none.reason = std::move(reason);
+    return none;
+  });
+}
+
+}  // namespace detail
 
 ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const ObjectSymmetryOptions& options,
                                         int num_points) {
@@ -13,5 +27,3 @@ ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const Obje
 }
 
 }  // namespace pcl_symmetry
-
-PCL_INSTANTIATE(detectObjectSymmetries, PCL_XYZ_POINT_TYPES)

@@ -3,15 +3,15 @@
 #include <pcl/point_types.h>
 #include <pcl/impl/instantiate.hpp>
 
-#include "pcl_symmetry/mesh_sampling.h"
+#include "core/evidence/plane_support.h"
 
-namespace pcl_symmetry {
+namespace pcl_symmetry::detail {
 
-std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PolygonMesh& mesh, const DetectionOptions& options,
-                                                int num_points) {
-  return detectSymmetryPlanes(*sampleMesh(mesh, num_points, options.seed), options);
+std::vector<float> pointSupport(const Points& points, const Points& samples, const ReflectionPlane& plane,
+                                int num_threads) {
+  return planeSupport(points, samples, plane, num_threads);
 }
 
-}  // namespace pcl_symmetry
+}  // namespace pcl_symmetry::detail
 
 PCL_INSTANTIATE(SymmetryMaximaRefinement, PCL_XYZ_POINT_TYPES)

@@ -21,7 +21,9 @@ inline pcl::PointCloud<pcl::PointXYZ>::Ptr loadInputCloud(const std::string& pat
     return shape.points;
   }
   try {
-    return sampleMesh(*shape.mesh, mesh_points);
+    const auto cloud = sampleMesh(*shape.mesh, mesh_points);
+    if (cloud->empty()) throw InputError(path + ": no polygon has an area");
+    return cloud;
   } catch (const pcl::BadArgumentException& error) {
     throw InputError(path + ": " + error.detailedMessage());
   }

@@ -12,7 +12,7 @@
 #include "options.h"
 #include "patches.h"
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
-#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "shape_input.h"
 #include "shape_output.h"
 #include "test_clouds.h"
@@ -150,7 +150,7 @@ private:
                   std::vector<FrameErrors>& errors) const {
     FrameOptions options;
     options.num_threads = options.edt.num_threads = options_.common.threads;
-    const Points points = selectPoints(*wholes.cloud, nullptr, wholes.cloud->size(), 0).points;
+    const Points points = detail::selectPoints(*wholes.cloud, nullptr, wholes.cloud->size(), 0).points;
     std::vector<Eigen::Vector3d> scores = axisScores(points, axes, options);
     for (Eigen::Vector3d& s : scores) std::sort(s.data(), s.data() + 3);
     for (std::size_t i = 0; i < errors.size(); ++i)

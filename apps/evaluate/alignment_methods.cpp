@@ -4,7 +4,7 @@
 
 #include "console.h"
 #include "core/geometry/principal_axes.h"
-#include "pcl_symmetry/impl/point_selection.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_alignment.h"
 
 namespace pcl_symmetry::apps {
@@ -24,6 +24,7 @@ FoundFrame bySymmetry(bool as_published, const pcl::PointCloud<pcl::PointXYZ>::C
   if (as_published) alignment.setViewpointMode(Viewpoint::Mode::None);
   alignment.setInputCloud(cloud);
   const SymmetryFrame frame = alignment.compute();
+  if (!alignment.getReason().empty()) detail::throwBadArgument(alignment.getReason());
   FoundFrame found{frame.center, frame.axes, {}, frame.revolution_axis};
   for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
     found.equivalent.emplace_back(T_canonical_input.linear().transpose());
@@ -31,7 +32,7 @@ FoundFrame bySymmetry(bool as_published, const pcl::PointCloud<pcl::PointXYZ>::C
 }
 
 FoundFrame byMass(const pcl::PointCloud<pcl::PointXYZ>& cloud, const std::optional<Eigen::Vector3d>& away_from) {
-  const Points points = selectPoints(cloud, nullptr, cloud.size(), 0).points;
+  const Points points = detail::selectPoints(cloud, nullptr, cloud.size(), 0).points;
   const PrincipalAxes principal = principalAxes(points);
   FoundFrame found{principal.center, principal.axes, {}};
   if (away_from) found.center += kPush * boundingBall(points).radius * (principal.center - *away_from).normalized();

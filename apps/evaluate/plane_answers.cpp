@@ -80,6 +80,7 @@ PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud
     const Stopwatch watch;
     const std::vector<SymmetryPlane> planes = refinement.compute();
     result.milliseconds = watch.milliseconds();
+    result.failed = !refinement.getReason().empty();
     for (const SymmetryCenter& center : refinement.getCenters())
       result.answers.push_back(Answer::ofCenter(center.point, center.confidence));
     for (const SymmetryAxis& axis : refinement.getAxes())
@@ -88,7 +89,7 @@ PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud
       result.answers.push_back(Answer::ofPlane(plane, plane.confidence));
       result.answers.back().possible = plane.kind == PlaneKind::Possible;
     }
-  } catch (const pcl::BadArgumentException&) {  // a cloud without extent
+  } catch (const pcl::BadArgumentException&) {
     result.failed = true;
   }
   return result;

@@ -1,6 +1,6 @@
 /// The first plane of symmetry of a cloud, with nothing to tune.
 #include <pcl/io/pcd_io.h>
-#include <pcl_symmetry/symmetry_maxima_refinement.h>
+#include <pcl_symmetry/symmetry_detection.h>
 
 #include <iostream>
 

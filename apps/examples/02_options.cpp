@@ -1,5 +1,4 @@
-/// All that can be asked of the search: weaker planes, axes, more cells, fewer threads; and the map that planes come
-/// from.
+/// The options of the search: weaker planes, axes, more cells, fewer threads; and the map that the planes come from.
 #include <pcl/io/pcd_io.h>
 #include <pcl_symmetry/planar_symmetry_transform.h>
 #include <pcl_symmetry/symmetry_maxima_refinement.h>
@@ -17,13 +16,14 @@ int main(int argc, char** argv) {
   transform.setInputCloud(cloud);
   transform.setMapSize(32, 128, 64);  // theta, phi, r
   const pcl_symmetry::SymmetryMap map = transform.compute();
+  if (map.empty()) return 1;  // too few points; PCL_WARN has said why
   std::cout << map.values.size() << " planes, the best has D = " << map[map.strongest()] << "\n";
 
   pcl_symmetry::SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   refinement.setInputCloud(cloud);
-  refinement.setSymmetryMap(map, transform.getDistanceTransform());  // or else it makes its own
-  refinement.setMinConfidence(0.8);                                  // what is called a symmetry
-  refinement.setApproximate(true);                                   // reports the others too, by their kind
+  refinement.setSymmetryMap(map, transform.getDistanceTransform());  // otherwise it computes its own map
+  refinement.setMinConfidence(0.8);                                  // planes above are symmetries
+  refinement.setApproximate(true);                                   // reports other planes too, marked by their kind
   refinement.setMaxPlanes(5);
   refinement.setNumberOfThreads(2);  // the result does not depend on it
   for (const pcl_symmetry::SymmetryPlane& plane : refinement.compute()) {

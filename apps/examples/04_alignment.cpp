@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   pcl_symmetry::SymmetryAlignment<pcl::PointXYZ> alignment;
   alignment.setInputCloud(cloud);
   const pcl_symmetry::SymmetryFrame frame = alignment.compute();
+  if (frame.equivalent.empty()) return 1;  // too few points; PCL_WARN has said why
   std::cout << "center of symmetry " << frame.center.transpose() << "\n";
   for (int k = 0; k < 3; ++k)
     std::cout << "axis " << k + 1 << "  " << frame.axes.col(k).transpose() << "  score " << frame.scores[k] << "\n";

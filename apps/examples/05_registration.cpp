@@ -1,4 +1,4 @@
-/// A scan brought to a model of its object from any pose, by a class that stands where PCL's registrations stand.
+/// Registers a scan to a model of its object from any pose, by a class that is used like PCL's registrations.
 #include <pcl/io/pcd_io.h>
 #include <pcl_symmetry/registration/symmetry_registration.h>
 

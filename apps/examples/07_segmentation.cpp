@@ -1,4 +1,4 @@
-/// Parts of a cloud, and which of them are each other's image; written as a field that viewers colour by.
+/// Cuts a cloud into parts, says which parts are images of each other, and writes the parts as labels of the points.
 #include <pcl/common/io.h>
 #include <pcl/io/pcd_io.h>
 #include <pcl_symmetry/symmetry_segmentation.h>
@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   pcl_symmetry::SymmetrySegmentation<pcl::PointXYZ> segmentation;
   segmentation.setInputCloud(cloud);  // or setInputMesh(): then indices and labels count its polygons
   std::vector<pcl::PointIndices> segments;
-  segmentation.segment(segments);
+  segmentation.extract(segments);
   for (std::size_t i = 0; i < segments.size(); ++i)
     std::cout << "part " << i << ": " << segments[i].indices.size() << " points\n";
 
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   pcl::PointCloud<pcl::PointXYZL> labelled;
   pcl::copyPointCloud(*cloud, labelled);
   for (std::size_t i = 0; i < labelled.size(); ++i)
-    // -1, of points in no part, wraps to the largest label.
+    // Points in no part have -1, which becomes the largest label.
     labelled[i].label = static_cast<std::uint32_t>(segmentation.getLabels()[i]);
   return pcl::io::savePCDFileBinary(argv[2], labelled) < 0 ? 1 : 0;
 }

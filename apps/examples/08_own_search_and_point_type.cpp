@@ -1,9 +1,9 @@
-/// A point type of one's own, and a search of PCL in place of ours.
+/// A point type of the user's own, and a search of PCL in place of the library's. PCL_NO_PRECOMPILE brings the bodies
+/// of the templates, as in PCL.
 #define PCL_NO_PRECOMPILE
 #include <pcl/io/pcd_io.h>
 #include <pcl/search/octree.h>
-#include <pcl/search/impl/search.hpp>
-#include <pcl_symmetry/impl/symmetry_maxima_refinement.hpp>
+#include <pcl_symmetry/symmetry_maxima_refinement.h>
 
 #include <iostream>
 

@@ -112,6 +112,7 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
   refinement.setInputCloud(cloud);
   ViewerModel model;
   model.planes = refinement.compute();
+  if (!refinement.getReason().empty()) detail::throwBadArgument(refinement.getReason());
   model.axes = refinement.getAxes();
   model.centers = refinement.getCenters();
   model.frame = frameOf(cloud, options);

@@ -1,27 +1,78 @@
 #pragma once
 
 #include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cstdint>
+#include <optional>
 
 #include "pcl_symmetry/core/registration/symmetric_completion.h"
-#include "pcl_symmetry/viewpoint.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// A cloud and what its symmetry adds to it.
+/// A cloud and the points that a symmetry adds to it.
 template <typename PointT>
 struct CompletedCloud {
-  pcl::PointCloud<PointT> cloud;  ///< the points of the input in their order, then those added; not organized
-  pcl::Indices added;             ///< of the points added
-  pcl::Indices sources;           ///< of each point added, the point of the input that it is the reflection of
+  pcl::PointCloud<PointT> cloud;  ///< the points of the input in their order, then the added points; not organized
+  pcl::Indices added;             ///< indices of the added points
+  pcl::Indices sources;           ///< for each added point the index of the point that it is the reflection of
 };
 
-/// Mirrors a partial scan across a plane of symmetry where free space allows it: points whose reflections fall onto the
-/// surface that was measured, or into space that the scanner saw to be empty, add nothing. Normals of added points are
-/// reflected, and so is the viewpoint that a point may carry; all other fields are those of the source.
-/// \param viewpoint where the scanner stood; by default the data decide, as in SymmetryMaximaRefinement.
-/// \throws pcl::BadArgumentException for bad options.
+/// Completes a partial scan by its reflection in a plane of symmetry. A point adds nothing if its reflection falls onto
+/// the surface that was measured, or into space that the scanner saw to be empty. Added points have their position,
+/// their normal and the viewpoint that they may carry reflected; their other fields are those of the source.
+/// \param cloud points that are not finite stay in the cloud and add nothing. Without a finite point nothing is added,
+/// and PCL_WARN says so.
+/// \param plane of symmetry, frame of the cloud.
+/// \param viewpoint where the scanner stood; by default the data decide, see ScanAnalysis.
+/// \throws pcl::BadArgumentException for bad options, and where the points surround the viewpoint that was given.
 template <typename PointT>
 CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
                                           const CompletionOptions& options = {}, const Viewpoint& viewpoint = {});
+
+namespace detail {
+
+/// \return the point with its position, its normal and the viewpoint that it carries reflected.
+template <typename PointT>
+PointT reflectPoint(PointT point, const ReflectionPlane& plane) {
+  const Eigen::Affine3f reflection = plane.reflection().cast<float>();
+  point.getVector3fMap() = plane.reflect(point.getVector3fMap().template cast<double>()).template cast<float>();
+  if constexpr (pcl::traits::has_normal<PointT>::value)
+    point.getNormalVector3fMap() = (reflection.linear() * point.getNormalVector3fMap()).eval();
+  if constexpr (pcl::traits::has_field<PointT, pcl::fields::vp_x>::value) {
+    const Eigen::Vector3f seen_from = reflection * Eigen::Vector3f(point.vp_x, point.vp_y, point.vp_z);
+    point.vp_x = seen_from.x();
+    point.vp_y = seen_from.y();
+    point.vp_z = seen_from.z();
+  }
+  return point;
+}
+
+}  // namespace detail
+
+template <typename PointT>
+CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
+                                          const CompletionOptions& options, const Viewpoint& viewpoint) {
+  return detail::withBadArguments([&] {
+    options.validate();
+    CompletedCloud<PointT> completed;
+    completed.cloud = cloud;
+    completed.cloud.width = static_cast<std::uint32_t>(cloud.size());
+    completed.cloud.height = 1;
+    const detail::SelectedPoints all = detail::selectPoints(cloud, nullptr, cloud.size(), 0);
+    if (all.points.cols() == 0) {
+      detail::warnOfNoAnswer("completeBySymmetry", "cloud: no finite point");
+      return completed;
+    }
+    const std::optional<Visibility> seen = detail::seenSpace(cloud, all.points, viewpoint);
+    for (const int i : completingPoints(all.points, plane, options, seen ? &*seen : nullptr)) {
+      completed.sources.push_back(all.indices[i]);
+      completed.added.push_back(static_cast<pcl::index_t>(completed.cloud.size()));
+      completed.cloud.push_back(detail::reflectPoint(cloud[all.indices[i]], plane));
+    }
+    return completed;
+  });
+}
 
 }  // namespace pcl_symmetry

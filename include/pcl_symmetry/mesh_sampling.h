@@ -6,12 +6,16 @@
 
 #include <cstdint>
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/exports.h"
 
-/// A cloud of points spread over a mesh by area, in the frame of the mesh: how meshes enter the transform.
-/// \param mesh polygons of any size, planar and convex, as a soup or connected.
-/// \param num_points >= 1.
-/// \throws pcl::BadArgumentException where the mesh has no area or refers to vertices it does not have.
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// Spreads points over a mesh by area: this is how meshes enter the transform.
+/// \param mesh polygons of any number of corners, planar and convex, as a soup or connected.
+/// \param num_points >= 1; equal shares of the total area get one point each.
+/// \return the points, in the frame of the mesh; empty where no polygon has an area, which PCL_WARN says.
+/// \throws pcl::BadArgumentException where \p num_points is less than 1 or the mesh refers to vertices that it does not
+/// have.
 pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int num_points, std::uint64_t seed = 1);
 
 }  // namespace pcl_symmetry

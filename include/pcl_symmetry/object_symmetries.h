@@ -4,18 +4,37 @@
 #include <pcl/point_cloud.h>
 
 #include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// The rotations that map the shape of a cloud onto itself: what pose estimation has to know of an object, as two poses
-/// that differ by one of them look the same. Points that are not finite are left out.
-/// \throws pcl::BadArgumentException for bad options, or where the finite points are too few or on a line.
+/// Finds the rotations that map the shape of a cloud onto itself: two poses that differ by one of them look the same,
+/// which pose estimation has to know of an object.
+/// \param cloud seen from all sides; points that are not finite are left out.
+/// \return the group of rotations; where the cloud holds no answer, the identity alone with confidence 0 and
+/// ObjectSymmetries::reason, which PCL_WARN prints.
+/// \throws pcl::BadArgumentException for bad options.
 template <typename PointT>
 ObjectSymmetries detectObjectSymmetries(const pcl::PointCloud<PointT>& cloud,
                                         const ObjectSymmetryOptions& options = {});
 
-/// The same for a mesh, by points spread over it.
+/// The same for a mesh.
+/// \param num_points points spread over the mesh, >= 1.
+/// \throws pcl::BadArgumentException for bad options, and where the mesh refers to vertices that it does not have.
 ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const ObjectSymmetryOptions& options = {},
                                         int num_points = 10'000);
+
+namespace detail {
+
+/// \param points 3 x N, finite.
+ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options);
+
+}  // namespace detail
+
+template <typename PointT>
+ObjectSymmetries detectObjectSymmetries(const pcl::PointCloud<PointT>& cloud, const ObjectSymmetryOptions& options) {
+  return detail::objectSymmetriesOrNone(detail::selectPoints(cloud, nullptr, cloud.size(), options.seed).points,
+                                        options);
+}
 
 }  // namespace pcl_symmetry

@@ -1,90 +1,136 @@
 #pragma once
 
 #include <pcl/PolygonMesh.h>
-#include <pcl/pcl_base.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
+#include "pcl_symmetry/cloud_analysis.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
-#include "pcl_symmetry/viewpoint.h"
+#include "pcl_symmetry/mesh_sampling.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The planar-reflective symmetry transform of a point cloud: a measure of its symmetry with respect to every plane
 /// (Sections 3 and 4.1 to 4.3 of the paper).
 ///
-/// Honours setIndices; points that are not finite are left out. With the defaults no unit and no tuning enters: the
-/// grid covers the bounding ball of the points, sigma is two cells.
+/// The defaults depend neither on units nor on tuning: the grid covers the bounding ball of the points, and sigma is
+/// two cells. With a viewpoint the map holds seenSymmetry() of D and of its counterpart for the space that the scanner
+/// saw to be empty.
 ///
 /// \code
 /// pcl_symmetry::PlanarSymmetryTransform<pcl::PointXYZ> transform;
 /// transform.setInputCloud(cloud);
 /// const pcl_symmetry::SymmetryMap map = transform.compute();
-/// const pcl_symmetry::ReflectionPlane plane = map.grid.plane(map.grid.bin(map.strongest()));
+/// if (!map.empty()) std::cout << map.grid.plane(map.grid.bin(map.strongest())).coefficients().transpose() << "\n";
 /// \endcode
 template <typename PointT>
-class PlanarSymmetryTransform : public pcl::PCLBase<PointT> {
+class PlanarSymmetryTransform : public ScanAnalysis<PointT> {
 public:
   using Ptr = pcl::shared_ptr<PlanarSymmetryTransform<PointT>>;
   using ConstPtr = pcl::shared_ptr<const PlanarSymmetryTransform<PointT>>;
 
-  /// The estimator: sampled (default), convolution or voting; all give the same normalised quantity.
+  /// Uses at most 200 000 points, see setMaxPoints().
+  PlanarSymmetryTransform() : ScanAnalysis<PointT>("PlanarSymmetryTransform", 200'000) {}
+
+  /// \param method sampled (default), convolution or voting; all estimate the same normalised quantity.
   void setMethod(TransformMethod method) { transform_.method = method; }
   TransformMethod getMethod() const { return transform_.method; }
 
-  /// Cells of the distance transform and bins of theta, phi and r, n of each as in the paper; even, in [8, 512].
-  void setGridSize(int n);
-  /// Cells along each side of the distance transform alone, in [8, 512]; default 64.
-  void setNumCells(int num_cells);
-  /// Bins of the map alone; num_phi even; default 64 x 64 x 64.
-  void setMapSize(int num_theta, int num_phi, int num_radius);
+  /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
+  /// even, in [8, 512]. \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  void setGridSize(int n) {
+    setNumCells(n);
+    setMapSize(n, n, n);
+  }
+  /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
+  void setNumCells(int num_cells) {
+    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_cells = num_cells; });
+  }
+  /// \param num_theta,num_phi,num_radius bins of the map, each >= 1, num_phi even; default 64 each.
+  void setMapSize(int num_theta, int num_phi, int num_radius) {
+    detail::withBadArguments([&] { PlaneGrid(num_theta, num_phi, num_radius, Eigen::Vector3d::Zero(), 1.0); });
+    num_theta_ = num_theta;
+    num_phi_ = num_phi;
+    num_radius_ = num_radius;
+  }
 
-  /// Width of the Gaussian, input units, > 0; default two cells, or the spacing of the points where that is more.
-  void setSigma(double sigma);
-  /// Ball to cover instead of the bounding ball of the points, input frame and units; radius > 0.
-  void setBounds(const Eigen::Vector3d& center, double radius);
+  /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
+  /// that is more.
+  void setSigma(double sigma) {
+    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.sigma = sigma; });
+  }
+  /// Covers this ball in place of the bounding ball of the points.
+  /// \param center,radius input frame and units; radius > 0.
+  void setBounds(const Eigen::Vector3d& center, double radius) {
+    detail::withBadArguments([&] { PlaneGrid(1, 2, 1, center, radius); });
+    edt_options_.center = center;
+    edt_options_.radius = radius;
+  }
 
-  /// Points drawn by the sampled estimator, >= 1; default 128, for an error below 1 %.
-  void setNumSamples(int num_samples);
-  /// Pairs drawn by voting, >= 1; default 2 million.
-  void setNumPairs(std::int64_t num_pairs);
-  /// Of larger clouds so many points are drawn, >= 2; default 200 000.
-  void setMaxPoints(std::size_t max_points);
-  void setRandomSeed(std::uint64_t seed);
-  /// 0 = one per core (default). The result does not depend on it.
-  void setNumberOfThreads(int num_threads);
+  /// \param num_samples points drawn by the sampled estimator, >= 1; default 128, for an error below 1 %.
+  void setNumSamples(int num_samples) {
+    detail::changeOptions(transform_.sampled,
+                          [&](SampledTransformOptions& changed) { changed.num_samples = num_samples; });
+  }
+  /// \param num_pairs pairs drawn by voting, >= 1; default 2 million.
+  void setNumPairs(std::int64_t num_pairs) {
+    detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.num_pairs = num_pairs; });
+  }
+  void setRandomSeed(std::uint64_t seed) { transform_.sampled.seed = transform_.voting.seed = seed; }
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  void setNumberOfThreads(int num_threads) {
+    detail::checkAtLeast("num_threads", num_threads, 0);
+    edt_options_.num_threads = transform_.sampled.num_threads = transform_.convolution.num_threads =
+        transform_.voting.num_threads = num_threads;
+  }
 
-  /// Where the scanner stood; by default the data decide, as in SymmetryMaximaRefinement. With a viewpoint the map
-  /// holds seenSymmetry() of D and of its counterpart for the space that the scanner saw to be empty.
-  void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
-  /// The scanner stood here, input frame.
-  void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
-  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
-  const Viewpoint& getViewpoint() const { return viewpoint_; }
-
-  /// Takes points spread over the mesh by area in place of a cloud (PointT needs nothing but x, y and z).
+  /// Analyses points spread over a mesh by area in place of a cloud.
+  /// \param num_points >= 1.
+  /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.
   void setInputMesh(const pcl::PolygonMesh& mesh, int num_points = 50'000);
 
-  /// \return the map, in the frame and units of the input.
-  /// \throws pcl::BadArgumentException without input, or where the finite points have no extent.
+  /// \return the map, in the frame and units of the input; empty where the input holds no answer, see getReason().
+  /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
   SymmetryMap compute();
 
-  /// The function f that the last map was made from; null before compute().
+  /// \return the function f that the last map was made from; null without one.
   std::shared_ptr<const GaussianEdt> getDistanceTransform() const { return edt_; }
 
 protected:
-  using pcl::PCLBase<PointT>::input_;
-  using pcl::PCLBase<PointT>::indices_;
-  using pcl::PCLBase<PointT>::use_indices_;
+  void clearResults() override {
+    ScanAnalysis<PointT>::clearResults();
+    edt_.reset();
+  }
 
 private:
   GaussianEdtOptions edt_options_;
   PlanarTransformOptions transform_;
-  Viewpoint viewpoint_;
   int num_theta_ = 64, num_phi_ = 64, num_radius_ = 64;
-  std::size_t max_points_ = 200'000;
   std::shared_ptr<const GaussianEdt> edt_;
 };
+
+template <typename PointT>
+void PlanarSymmetryTransform<PointT>::setInputMesh(const pcl::PolygonMesh& mesh, int num_points) {
+  const auto samples = sampleMesh(mesh, num_points);
+  auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>();
+  cloud->header = mesh.header;
+  cloud->resize(samples->size());
+  for (std::size_t i = 0; i < samples->size(); ++i) (*cloud)[i].getVector3fMap() = (*samples)[i].getVector3fMap();
+  this->setInputCloud(cloud);
+}
+
+template <typename PointT>
+SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
+  return detail::withBadArguments([&] {
+    const Points points = this->selectInput(transform_.sampled.seed);
+    if (points.cols() == 0) return SymmetryMap();
+    const std::optional<Visibility> seen = this->seenSpace(points);
+    edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);
+    const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
+    return planarTransform(*edt_, grid, centerOfMass(points), transform_, seen ? &*seen : nullptr);
+  });
+}
 
 }  // namespace pcl_symmetry

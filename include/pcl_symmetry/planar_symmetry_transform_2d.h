@@ -1,21 +1,20 @@
 #pragma once
 
-#include <pcl/pcl_base.h>
-
 #include <Eigen/Geometry>
 #include <memory>
 #include <vector>
 
+#include "pcl_symmetry/cloud_analysis.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/transform_2d/line_transform.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// The planar case (Section 4.2): symmetry of points that lie in a plane, a contour or the pixels of a picture, with
-/// respect to every line in it.
+/// The planar case of the transform (Section 4.2): the symmetry of points that lie in a plane, such as a contour or the
+/// pixels of a picture, with respect to every line in that plane.
 ///
-/// Honours setIndices; points that are not finite are left out. The sheet that the points lie in is found by itself:
-/// z = constant keeps x and y, any other is the plane of the first two principal axes, onto which points are projected.
+/// The sheet that the points lie in is found from the data: points with equal z keep their x and y; all others are
+/// projected onto the plane of their first two principal axes.
 ///
 /// \code
 /// pcl_symmetry::PlanarSymmetryTransform2D<pcl::PointXYZ> transform;
@@ -25,51 +24,81 @@ namespace pcl_symmetry {
 ///   std::cout << transform.getPlane(maximum.line).coefficients().transpose() << " " << maximum.value << "\n";
 /// \endcode
 template <typename PointT>
-class PlanarSymmetryTransform2D : public pcl::PCLBase<PointT> {
+class PlanarSymmetryTransform2D : public CloudAnalysis<PointT> {
 public:
   using Ptr = pcl::shared_ptr<PlanarSymmetryTransform2D<PointT>>;
   using ConstPtr = pcl::shared_ptr<const PlanarSymmetryTransform2D<PointT>>;
 
-  /// Cells along each side of the distance transform, and bins of theta and of r, in [8, 4096]; default 128.
-  void setGridSize(int n);
-  /// Width of the Gaussian, input units, > 0; default two cells, or the spacing of the points where that is more.
-  void setSigma(double sigma);
-  /// Thresholds on the maxima that getLines() gives; default those of the paper.
-  void setMaximaOptions(const LocalMaximaOptions& options);
-  /// Of larger clouds so many points are drawn, >= 2; default 200 000.
-  void setMaxPoints(std::size_t max_points);
-  /// 0 = one per core (default). The result does not depend on it.
-  void setNumberOfThreads(int num_threads);
+  /// Uses at most 200 000 points, see setMaxPoints().
+  PlanarSymmetryTransform2D() : CloudAnalysis<PointT>("PlanarSymmetryTransform2D", 200'000) {}
 
-  /// \return the map, in the coordinates of the sheet.
-  /// \throws pcl::BadArgumentException without input, or where the finite points have no extent.
+  /// \param n cells of the distance transform along each side, and bins of theta and of r, in [8, 4096]; default 128.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  void setGridSize(int n) {
+    detail::changeOptions(edt_options_, [&](GaussianEdt2DOptions& changed) { changed.num_cells = n; });
+  }
+  /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
+  /// that is more.
+  void setSigma(double sigma) {
+    detail::changeOptions(edt_options_, [&](GaussianEdt2DOptions& changed) { changed.sigma = sigma; });
+  }
+  /// \param options thresholds on the maxima that getLines() returns; default those of the paper.
+  void setMaximaOptions(const LocalMaximaOptions& options) {
+    detail::changeOptions(maxima_, [&](LocalMaximaOptions& changed) { changed = options; });
+  }
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  void setNumberOfThreads(int num_threads) {
+    detail::changeOptions(maxima_, [&](LocalMaximaOptions& changed) { changed.num_threads = num_threads; });
+  }
+
+  /// \return the map, in the coordinates of the sheet; empty where the input holds no answer, see getReason().
   LineMap compute();
 
-  /// Of the last compute(): local maxima of the map, refined, strongest first, in the coordinates of the sheet.
+  /// \return the local maxima of the last map, refined, strongest first, in the coordinates of the sheet.
   const std::vector<LineMaximum>& getLines() const { return lines_; }
-  /// Of the last compute(): takes points (x, y, 0) of the sheet to the frame of the input.
-  const Eigen::Isometry3d& getSheetPose() const { return T_input_sheet_; }
-  /// The plane across the sheet that holds the line: its reflection is that of the line. Input frame.
-  ReflectionPlane getPlane(const ReflectionLine& line) const;
-  /// Of the last compute(): the points used, in the coordinates of the sheet.
-  const Points2D& getSheetPoints() const { return sheet_points_; }
-  /// The function f that the last map was made from; null before compute().
+  /// \return the pose of the last sheet: takes points (x, y, 0) of the sheet to the frame of the input.
+  const Eigen::Isometry3d& getSheetPose() const { return sheet_.T_input_sheet; }
+  /// \param line in the coordinates of the last sheet.
+  /// \return the plane across the sheet that contains the line, input frame: it reflects the points as the line does.
+  ReflectionPlane getPlane(const ReflectionLine& line) const {
+    const ReflectionPlane across(Eigen::Vector3d(line.normal().x(), line.normal().y(), 0.0), line.offset());
+    return across.transformed(sheet_.T_input_sheet).canonical();
+  }
+  /// \return the points that the last compute() used, in the coordinates of the sheet.
+  const Points2D& getSheetPoints() const { return sheet_.points; }
+  /// \return the function f that the last map was made from; null without one.
   std::shared_ptr<const GaussianEdt2D> getDistanceTransform() const { return edt_; }
 
 protected:
-  using pcl::PCLBase<PointT>::input_;
-  using pcl::PCLBase<PointT>::indices_;
-  using pcl::PCLBase<PointT>::use_indices_;
+  void clearResults() override {
+    CloudAnalysis<PointT>::clearResults();
+    sheet_ = {};
+    edt_.reset();
+    lines_.clear();
+  }
 
 private:
   GaussianEdt2DOptions edt_options_;
   LocalMaximaOptions maxima_;
-  std::size_t max_points_ = 200'000;
-  int num_threads_ = 0;
-  Eigen::Isometry3d T_input_sheet_ = Eigen::Isometry3d::Identity();
-  Points2D sheet_points_;
+  Sheet sheet_;
   std::shared_ptr<const GaussianEdt2D> edt_;
   std::vector<LineMaximum> lines_;
 };
+
+template <typename PointT>
+LineMap PlanarSymmetryTransform2D<PointT>::compute() {
+  return detail::withBadArguments([&] {
+    constexpr std::uint64_t kSeed = 1;
+    const Points points = this->selectInput(kSeed);
+    if (points.cols() == 0) return LineMap();
+    sheet_ = flattened(points);
+    edt_ = std::make_shared<const GaussianEdt2D>(sheet_.points, edt_options_);
+    const LineGrid grid(edt_options_.num_cells, edt_options_.num_cells, edt_->center(), edt_->radius());
+    const Eigen::Vector2d center_of_mass = sheet_.points.template cast<double>().rowwise().mean();
+    LineMap map = lineTransform(*edt_, grid, center_of_mass, maxima_.num_threads);
+    lines_ = findLineMaxima(*edt_, map, maxima_);
+    return map;
+  });
+}
 
 }  // namespace pcl_symmetry

@@ -1,73 +1,86 @@
 #pragma once
 
-#include <pcl/pcl_base.h>
-
+#include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pcl_symmetry/cloud_analysis.h"
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
-#include "pcl_symmetry/viewpoint.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// From a cloud, whole or seen from one side, to its canonical frame: center of symmetry and principal symmetry axes
-/// (Section 5.1 of the paper).
-///
-/// Honours setIndices; points that are not finite are left out.
+/// Finds the canonical frame of a cloud, whole or seen from one side: its center of symmetry and its principal symmetry
+/// axes (Section 5.1 of the paper).
 template <typename PointT>
-class SymmetryAlignment : public pcl::PCLBase<PointT> {
+class SymmetryAlignment : public ScanAnalysis<PointT> {
 public:
   using Ptr = pcl::shared_ptr<SymmetryAlignment<PointT>>;
   using ConstPtr = pcl::shared_ptr<const SymmetryAlignment<PointT>>;
 
-  /// Every option at once. \throws pcl::BadArgumentException naming field, value and rule.
-  void setOptions(const FrameOptions& options);
+  /// Uses at most 50 000 points, see setMaxPoints().
+  SymmetryAlignment() : ScanAnalysis<PointT>("SymmetryAlignment", 50'000) {}
+
+  /// Sets every option at once.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  void setOptions(const FrameOptions& options) {
+    change([&](FrameOptions& changed) { changed = options; });
+  }
   const FrameOptions& getOptions() const { return options_; }
 
-  /// Frames whose scores are this close to the best are equally good, >= 0.
-  void setTie(double tie);
-  /// Cells of the distance transform along each side, in [8, 512]; default 64.
-  void setGridSize(int num_cells);
-  void setRandomSeed(std::uint64_t seed);
-  /// 0 = one per core (default). The result does not depend on it.
-  void setNumberOfThreads(int num_threads);
-  /// Of larger clouds so many points are drawn, >= 2; default 50 000.
-  void setMaxPoints(std::size_t max_points);
+  /// \param tie frames whose scores differ by no more than this are equally good, >= 0; default 0.06.
+  void setTie(double tie) {
+    change([&](FrameOptions& changed) { changed.tie = tie; });
+  }
+  /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
+  void setGridSize(int num_cells) {
+    change([&](FrameOptions& changed) { changed.edt.num_cells = num_cells; });
+  }
+  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  void setNumberOfThreads(int num_threads) {
+    change([&](FrameOptions& changed) { changed.num_threads = changed.edt.num_threads = num_threads; });
+  }
 
-  /// Where the scanner stood. By default the data decide: an organized cloud tells by its own rays, another one by its
-  /// sensor_origin_ if the points can have been seen from there. Reflections that land in space that the scanner saw to
-  /// be empty then speak against a plane, those that land behind the surface do not.
-  void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
-  /// The scanner stood here, input frame.
-  void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
-  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
-  const Viewpoint& getViewpoint() const { return viewpoint_; }
-
-  /// \return the frame, in the frame of the input.
-  /// \throws pcl::BadArgumentException without input, or where the finite points have no extent.
+  /// \return the frame, in the frame of the input; SymmetryFrame::equivalent is empty where the input holds no answer,
+  /// see getReason().
+  /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
   SymmetryFrame compute();
 
-  /// Of the last compute(): whether a viewpoint was used.
-  bool usedViewpoint() const { return used_viewpoint_; }
-  /// Of the last compute(): the points used.
-  const pcl::Indices& getUsedIndices() const { return used_indices_; }
-  /// Of the last compute(): stages and their milliseconds, in order.
+  /// \return stages of the last compute() and their milliseconds, in order.
   const std::vector<std::pair<std::string, double>>& getTiming() const { return timing_ms_; }
 
 protected:
-  using pcl::PCLBase<PointT>::input_;
-  using pcl::PCLBase<PointT>::indices_;
-  using pcl::PCLBase<PointT>::use_indices_;
+  void clearResults() override {
+    ScanAnalysis<PointT>::clearResults();
+    timing_ms_.clear();
+  }
 
 private:
+  template <typename Change>
+  void change(const Change& change) {
+    detail::changeOptions(options_, change);
+  }
+
   FrameOptions options_;
-  std::size_t max_points_ = 50'000;
-  Viewpoint viewpoint_;
-  bool used_viewpoint_ = false;
-  pcl::Indices used_indices_;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };
+
+template <typename PointT>
+SymmetryFrame SymmetryAlignment<PointT>::compute() {
+  return detail::withBadArguments([&] {
+    const auto start = std::chrono::steady_clock::now();
+    const Points points = this->selectInput(options_.seed);
+    if (points.cols() == 0) return SymmetryFrame();
+    const std::optional<Visibility> seen = this->seenSpace(points);
+    const std::chrono::duration<double, std::milli> seen_ms = std::chrono::steady_clock::now() - start;
+    SymmetryFrame frame = symmetryFrame(points, options_, seen ? &*seen : nullptr);
+    frame.timing_ms.insert(frame.timing_ms.begin(), {"seen_space", seen_ms.count()});
+    timing_ms_ = frame.timing_ms;
+    return frame;
+  });
+}
 
 }  // namespace pcl_symmetry

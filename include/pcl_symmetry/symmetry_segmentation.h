@@ -2,62 +2,96 @@
 
 #include <pcl/PointIndices.h>
 #include <pcl/PolygonMesh.h>
-#include <pcl/pcl_base.h>
-#include <pcl/search/search.h>
+#include <pcl/search/kdtree.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include "pcl_symmetry/cloud_analysis.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+namespace detail {
+
+/// \return whether any polygon with finite corners has an area.
+/// \throws std::invalid_argument where the mesh refers to vertices that it does not have.
+bool hasArea(const pcl::PolygonMesh& mesh);
+
+}  // namespace detail
 
 /// Cuts a cloud or a mesh into parts by its symmetries (Section 5.3 of the paper).
 ///
-/// Input is a cloud (setInputCloud, setIndices; points that are not finite belong to no segment) or a mesh
-/// (setInputMesh; then indices and labels count its polygons). The cloud is a surface seen from all sides: thickness
-/// and line of sight need an inside.
+/// The input is a cloud (setInputCloud(), setIndices(); points that are not finite belong to no segment) or a mesh
+/// (setInputMesh(); indices and labels count its polygons then), whichever was set last. The cloud has to show the
+/// surface from all sides, because thickness and line of sight need an inside.
 template <typename PointT>
-class SymmetrySegmentation : public pcl::PCLBase<PointT> {
+class SymmetrySegmentation : public CloudAnalysis<PointT> {
 public:
   using Ptr = pcl::shared_ptr<SymmetrySegmentation<PointT>>;
   using ConstPtr = pcl::shared_ptr<const SymmetrySegmentation<PointT>>;
   using SearchPtr = typename pcl::search::Search<PointT>::Ptr;
+  using typename pcl::PCLBase<PointT>::PointCloudConstPtr;
 
-  /// Every option at once. \throws pcl::BadArgumentException naming field, value and rule.
-  void setOptions(const SegmentationOptions& options);
+  /// Draws at most 30 000 points, see setMaxPoints(); the others follow the closest of them.
+  SymmetrySegmentation() : CloudAnalysis<PointT>("SymmetrySegmentation", 30'000, 10) {}
+
+  /// Sets the cloud to segment, in place of the last cloud or mesh.
+  void setInputCloud(const PointCloudConstPtr& cloud) override {
+    CloudAnalysis<PointT>::setInputCloud(cloud);
+    mesh_.reset();
+  }
+  /// Sets the mesh whose polygons are segmented, in place of the last mesh or of the cloud. Null: the cloud again.
+  void setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh) {
+    mesh_ = mesh;
+    clearResults();
+  }
+
+  /// Sets every option at once.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  void setOptions(const SegmentationOptions& options) {
+    change([&](SegmentationOptions& changed) { changed = options; });
+  }
   const SegmentationOptions& getOptions() const { return options_; }
 
-  /// Faces of this mesh instead of points; null goes back to the cloud.
-  void setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh) { mesh_ = mesh; }
-
-  /// Splits in a row at most, for SegmentationMethod::Splitting; default 3.
-  void setDepth(int depth);
-  /// Exactly so many parts where the shape allows; 0 = as many as the method finds (default).
-  void setNumberOfParts(int num_parts);
+  /// \param depth greatest number of splits in a row, for SegmentationMethod::Splitting, in [0, 30]; default 3.
+  void setDepth(int depth) {
+    change([&](SegmentationOptions& changed) { changed.splitting.depth = depth; });
+  }
+  /// \param num_parts number of parts where the shape allows it, >= 0; 0 = as many as the method finds (default).
+  void setNumberOfParts(int num_parts) {
+    change([&](SegmentationOptions& changed) { changed.num_parts = num_parts; });
+  }
   void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }
-  /// 0 = one per core (default). The result does not depend on it.
-  void setNumberOfThreads(int num_threads);
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  void setNumberOfThreads(int num_threads) {
+    change([&](SegmentationOptions& changed) { changed.num_threads = num_threads; });
+  }
 
-  /// Any PCL search for the neighbourhood of the points, in place of a k-d tree. It is given a cloud of the points
-  /// used.
+  /// Finds the neighbours of the points by any search of PCL.
+  /// \param search is given a cloud of the points used. Null: a k-d tree (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
-  /// Points that each point is joined with, >= 3; default 12.
-  void setNumberOfNeighbors(int num_neighbors);
-  /// Of larger clouds so many points are drawn, >= 10, and the others follow the closest of them; default 30 000.
-  void setMaxPoints(std::size_t max_points);
+  /// \param num_neighbors number of neighbours that each point is joined with, >= 3; default 12.
+  void setNumberOfNeighbors(int num_neighbors) {
+    detail::checkAtLeast("num_neighbors", num_neighbors, 3);
+    num_neighbors_ = num_neighbors;
+  }
 
-  /// \param segments by falling area: indices into the cloud or the polygons of the mesh. Without input or extent it is
-  /// empty, and the reason goes to PCL_ERROR.
+  /// \param segments is filled with the segments, by falling area: indices into the cloud or the polygons of the mesh.
+  /// Empty where the input holds no answer, see getReason().
+  /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.
   void segment(std::vector<pcl::PointIndices>& segments);
+  /// The same under the name that PCL's clustering classes use.
+  void extract(std::vector<pcl::PointIndices>& clusters) { segment(clusters); }
 
-  /// Of the last segment(): per point of the cloud or polygon of the mesh its segment, -1 for none.
+  /// \return the segment of each point of the cloud or polygon of the mesh, -1 for none; result of the last segment().
   const std::vector<int>& getLabels() const { return labels_; }
-  /// Of the last segment(): how the parts came about, the root first.
+  /// \return how the parts of the last segment() came about, the root first.
   const std::vector<SegmentNode>& getTree() const { return segmentation_.tree; }
-
-  /// Of the last segment(): per plane that maps most of the surface onto itself, the segment that each one is reflected
-  /// onto.
+  /// \return for each plane that maps most of the surface onto itself, the segment that each segment is reflected onto;
+  /// result of the last segment().
   const std::vector<std::vector<int>>& getImages() const { return segmentation_.images; }
 
 protected:
@@ -65,20 +99,87 @@ protected:
   using pcl::PCLBase<PointT>::indices_;
   using pcl::PCLBase<PointT>::use_indices_;
 
+  void clearResults() override {
+    CloudAnalysis<PointT>::clearResults();
+    segmentation_ = {};
+    labels_.clear();
+  }
+
 private:
+  template <typename Change>
+  void change(const Change& change) {
+    detail::changeOptions(options_, change);
+  }
   void segmentMesh();
   void segmentCloud();
+  /// For each point the closest others, nearest first.
+  std::vector<std::vector<int>> neighborsOf(const pcl::Indices& used) const;
 
   SegmentationOptions options_;
   pcl::PolygonMesh::ConstPtr mesh_;
   SearchPtr search_;
   int num_neighbors_ = 12;
-  std::size_t max_points_ = 30'000;
   Segmentation segmentation_;
   std::vector<int> labels_;
 };
 
-/// The faces of a mesh as a graph. \throws std::invalid_argument as meshGraph() does.
+/// \return the faces of a mesh as a graph.
+/// \throws std::invalid_argument where the mesh refers to vertices that it does not have or no polygon has an area.
 SurfaceGraph meshGraph(const pcl::PolygonMesh& mesh);
+
+template <typename PointT>
+void SymmetrySegmentation<PointT>::segment(std::vector<pcl::PointIndices>& segments) {
+  segments.clear();
+  detail::withBadArguments([&] { mesh_ ? segmentMesh() : segmentCloud(); });
+  segments.resize(static_cast<std::size_t>(segmentation_.num_segments));
+  for (pcl::PointIndices& segment : segments) segment.header = mesh_ ? mesh_->header : input_->header;
+  for (std::size_t i = 0; i < labels_.size(); ++i)
+    if (labels_[i] >= 0) segments[labels_[i]].indices.push_back(static_cast<pcl::index_t>(i));
+}
+
+template <typename PointT>
+void SymmetrySegmentation<PointT>::segmentMesh() {
+  clearResults();
+  if (!detail::hasArea(*mesh_)) {
+    this->giveNoAnswer("mesh: no polygon has an area");
+    return;
+  }
+  segmentation_ = segmentSurface(meshGraph(*mesh_), options_);
+  labels_ = segmentation_.labels;
+}
+
+template <typename PointT>
+void SymmetrySegmentation<PointT>::segmentCloud() {
+  const Points points = this->selectInput(options_.seed);
+  if (points.cols() == 0) return;
+  const pcl::Indices& used = this->getUsedIndices();
+  segmentation_ = segmentSurface(cloudGraph(points, neighborsOf(used)), options_);
+
+  labels_.assign(input_->size(), -1);
+  const detail::SelectedPoints all =
+      detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, input_->size(), options_.seed);
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  makeFlannSearch(points)->search(all.points, 1, closest, sq_distances);
+  for (std::size_t i = 0; i < all.indices.size(); ++i) labels_[all.indices[i]] = segmentation_.labels[closest[i]];
+  for (std::size_t i = 0; i < used.size(); ++i) labels_[used[i]] = segmentation_.labels[i];
+}
+
+template <typename PointT>
+std::vector<std::vector<int>> SymmetrySegmentation<PointT>::neighborsOf(const pcl::Indices& used) const {
+  const auto num_neighbors = std::min<std::size_t>(num_neighbors_, used.size() - 1);
+  const auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>(*input_, used);
+  const SearchPtr search = search_ ? search_ : pcl::make_shared<pcl::search::KdTree<PointT>>();
+  search->setInputCloud(cloud);
+  std::vector<std::vector<int>> neighbors(cloud->size());
+  pcl::Indices found;
+  std::vector<float> sq_distances;
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    search->nearestKSearch((*cloud)[i], static_cast<int>(num_neighbors) + 1, found, sq_distances);
+    for (const pcl::index_t j : found)
+      if (static_cast<std::size_t>(j) != i && neighbors[i].size() < num_neighbors) neighbors[i].push_back(j);
+  }
+  return neighbors;
+}
 
 }  // namespace pcl_symmetry

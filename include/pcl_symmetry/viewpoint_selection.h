@@ -8,8 +8,9 @@
 
 #include "pcl_symmetry/core/detection/plane_detection.h"
 #include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// A direction to look at an object from, and a camera there.
 struct SelectedView : RankedView {
@@ -19,16 +20,16 @@ struct SelectedView : RankedView {
   Eigen::Affine3f pose = Eigen::Affine3f::Identity();
 };
 
-/// Good and bad views of an object, by the symmetries that they show (Section 5.4).
+/// Selects good and bad views of an object by the symmetries that they show (Section 5.4 of the paper).
 ///
-/// S(v) = sum M |v . n| over the planes of local maxima; the best view has the greatest S. Views that differ in the
-/// signs of v . n only can have equal S: among those within 2 % of the best, the one from above is taken that hides
-/// fewest points.
+/// S(v) = sum M |v . n| over the planes of local maxima; the best view has the greatest S. Views that differ only in
+/// the signs of v . n can have equal S: among the views within 2 % of the best, the view from above that hides the
+/// fewest points is taken.
 ///
 /// \code
 /// pcl_symmetry::SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
 /// refinement.setInputCloud(cloud);
-/// refinement.setApproximate(true);  // all local maxima, not only the symmetries of the whole
+/// refinement.setApproximate(true);  // all local maxima, not only the symmetries of the whole object
 /// pcl_symmetry::ViewpointSelection selection;
 /// const std::vector<pcl_symmetry::SymmetryPlane> planes = refinement.compute();
 /// selection.setPlanes(planes, refinement.getAxes(), findLocalMaxima(refinement.getSymmetryMap()));
@@ -37,50 +38,62 @@ struct SelectedView : RankedView {
 /// \endcode
 class ViewpointSelection {
 public:
-  /// The local maxima of the transform, weighted by their score. An axis counts as a fan of planes that weighs as much
-  /// as two. \param planes of SymmetryMaximaRefinement, with setApproximate(true). \param maxima of the map: as long as
-  /// some direction has less than a fifth of the best score, the strongest one whose normal is more than 60 degrees
-  /// from all planes so far counts too. Refinement drops maxima that are no symmetry of any part, but a mug without the
-  /// weak one across its axis would be best seen level from the side.
+  /// Sets the planes of S, weighted by their score. An axis counts as a fan of planes that weighs as much as two
+  /// planes. \param planes of SymmetryMaximaRefinement with setApproximate(true). \param maxima of the map. As long as
+  /// some direction has less than a fifth of the best score, the strongest maximum whose normal is more than 60 degrees
+  /// from all planes so far counts too. (Refinement drops maxima that are no symmetry of any part, but without the weak
+  /// maximum across its axis a mug would be best seen level from the side.)
   void setPlanes(const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes = {},
                  const std::vector<LocalMaximum>& maxima = {});
 
-  /// The object, for the distance of the cameras and for what a view hides; points that are not finite are left out.
+  /// Sets the object: the cameras keep their distance from it, and views may hide some of its points.
+  /// \param cloud points that are not finite are left out. Null, or a cloud without extent: views are empty then.
   void setInputCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud);
 
-  /// About where up is, input frame, any length but zero; default z. Cameras stand upright along the principal symmetry
-  /// axis (the normal of the strongest plane, or of one across it) that is nearest to it.
+  /// Sets about where up is. Cameras stand upright along the nearest principal symmetry axis: the normal of the
+  /// strongest plane, or of a plane across it.
+  /// \param up input frame, finite, of any length but zero; default z.
+  /// \throws pcl::BadArgumentException for other values.
   void setUp(const Eigen::Vector3d& up);
 
-  /// Angle that good views keep from each other, radians, in [0, pi]; default 40 degrees.
+  /// \param separation angle that good views keep from each other, radians, in [0, pi]; default 0.7 (40 degrees).
+  /// \throws pcl::BadArgumentException for other values.
   void setSeparation(double separation);
 
-  /// \throws pcl::BadArgumentException without a finite point.
+  /// \return the view of the greatest S. Where the cloud has no extent: score 0 at direction 0, and PCL_WARN says so.
   SelectedView getBestView() const;
-  /// The view along the symmetries, which shows the least of the object. \throws as getBestView().
+  /// \return the view along the symmetries, which shows the least of the object; without extent as getBestView().
   SelectedView getWorstView() const;
-  /// At most \p num_views local maxima of S, best first, apart from each other and from each other's mirror images in
-  /// the symmetries of the whole, which would show the same again. \throws as getBestView().
+  /// \param num_views >= 1.
+  /// \return at most \p num_views local maxima of S, best first, apart from each other and from each other's mirror
+  /// images in the symmetries of the whole object, which would show the same again. Empty where the cloud has no
+  /// extent, and PCL_WARN says so.
+  /// \throws pcl::BadArgumentException where \p num_views is less than 1.
   std::vector<SelectedView> getGoodViews(int num_views) const;
 
-  /// A camera that sees the whole object from this direction. \param direction not zero. \throws as getBestView().
+  /// \param direction from the object to the camera, finite, of any length but zero.
+  /// \return the pose of a camera that sees the whole object from this direction, see SelectedView::pose.
+  /// \throws pcl::BadArgumentException for other directions.
   Eigen::Affine3f computePose(const Eigen::Vector3d& direction) const;
 
-  /// S at any direction (Figure 16). \param direction unit.
+  /// \param direction unit.
+  /// \return S(direction), see Figure 16 of the paper.
   double getScore(const Eigen::Vector3d& direction) const { return viewpointScore(planes_, direction); }
-  /// The principal symmetry axis that cameras stand upright along, unit.
+  /// \return the principal symmetry axis that cameras stand upright along, unit.
   Eigen::Vector3d getUpAxis() const;
 
 private:
-  /// The direction of least hidden points, of those from above where there are any.
+  /// \return whether the cloud has an extent. Prints a warning where it has none.
+  bool hasExtent() const;
+  /// The view that hides the fewest points, of those from above where there are any.
   RankedView leastHidden(const std::vector<RankedView>& views) const;
 
   std::vector<ViewPlane> planes_;
-  std::vector<Eigen::Vector3d> symmetries_;  // normals of the planes that are symmetries of the whole
-  Points points_;
+  std::vector<Eigen::Vector3d> symmetries_;  // normals of the planes that are symmetries of the whole object
+  Points points_ = Points(3, 0);
   BoundingBall ball_;
   Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
-  double separation_ = 0.7;
+  double separation_ = 0.7;  // radians. chosen: a smaller angle gives views that look alike, a larger one fewer views
 };
 
 }  // namespace pcl_symmetry

@@ -1,10 +1,43 @@
+#include "pcl_symmetry/features/prst.h"
+
 #include <pcl/point_types.h>
 
 #include <cmath>
 
-#include "pcl_symmetry/features/impl/prst.hpp"
+#include "core/base/check.h"
+#include "core/descriptors/shape_signature.h"
+#include "core/descriptors/symmetry_descriptor.h"
+#include "pcl_symmetry/core/frame/symmetry_frame.h"
 
 namespace pcl_symmetry {
+
+static_assert(PRSTSignature32768::descriptorSize() == kPRSTSize);
+static_assert(PRSDSignature1024::descriptorSize() == kPRSDSize);
+static_assert(GEDTSignature32768::descriptorSize() == kGEDTSize);
+static_assert(ShapeSignature20736::descriptorSize() == kSignatureSize);
+
+void detail::PRSTParameters::validate() const {
+  check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
+  checkNumThreads(num_threads);
+}
+
+std::vector<float> detail::describePRST(const Points& points, const PRSTParameters& parameters,
+                                        const Visibility* seen) {
+  DescriptorOptions options;
+  options.radius = parameters.radius;
+  options.seed = parameters.seed;
+  options.num_threads = parameters.num_threads;
+  Eigen::Isometry3d T_frame_input = Eigen::Isometry3d::Identity();
+  if (parameters.use_input_axes) {
+    T_frame_input.translation() = -centerOfMass(points);
+  } else {
+    FrameOptions frame;
+    frame.seed = parameters.seed;
+    frame.num_threads = frame.edt.num_threads = parameters.num_threads;
+    T_frame_input = symmetryFrame(points, frame, seen).T_canonical_input;
+  }
+  return symmetryDescriptors(points, T_frame_input, options).prst;
+}
 
 float descriptorDistance(const PRSTSignature32768& a, const PRSTSignature32768& b) {
   return planeDescriptorDistance(a.prst, b.prst, kPRSTSize);
@@ -23,11 +56,11 @@ float productDistance(const PRSTSignature32768& prst_a, const GEDTSignature32768
   return descriptorDistance(prst_a, prst_b) * descriptorDistance(gedt_a, gedt_b);
 }
 
-}  // namespace pcl_symmetry
+template class PRSTEstimation<pcl::PointXYZ>;
+template class PRSTEstimation<pcl::PointXYZI>;
+template class PRSTEstimation<pcl::PointXYZRGB>;
+template class PRSTEstimation<pcl::PointXYZRGBA>;
+template class PRSTEstimation<pcl::PointNormal>;
+template class PRSTEstimation<pcl::PointXYZRGBNormal>;
 
-PCL_INSTANTIATE_PRSTEstimation(pcl::PointXYZ, pcl_symmetry::PRSTSignature32768)
-    PCL_INSTANTIATE_PRSTEstimation(pcl::PointXYZI, pcl_symmetry::PRSTSignature32768)
-        PCL_INSTANTIATE_PRSTEstimation(pcl::PointXYZRGB, pcl_symmetry::PRSTSignature32768)
-            PCL_INSTANTIATE_PRSTEstimation(pcl::PointXYZRGBA, pcl_symmetry::PRSTSignature32768)
-                PCL_INSTANTIATE_PRSTEstimation(pcl::PointNormal, pcl_symmetry::PRSTSignature32768)
-                    PCL_INSTANTIATE_PRSTEstimation(pcl::PointXYZRGBNormal, pcl_symmetry::PRSTSignature32768)
+}  // namespace pcl_symmetry

@@ -1,4 +1,4 @@
-#include "database_files.h"
+#include "recognition/database_files.h"
 
 #include <pcl/exceptions.h>
 
@@ -6,19 +6,31 @@
 #include <filesystem>
 #include <fstream>
 
-namespace pcl_symmetry {
+namespace pcl_symmetry::detail {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-constexpr Eigen::Index kPoseSize = 12;                                  // of the upper rows of a transform
-constexpr Eigen::Index kViewSize = kViewSignatureSize + 1 + kPoseSize;  // of a view in its file
+// Values per view. derived: a pose is the upper 3 x 4 block of a transform; signature, radius and pose follow each
+// other.
+constexpr Eigen::Index kPoseSize = 12;
+constexpr Eigen::Index kViewSize = kViewSignatureSize + 1 + kPoseSize;  // derived: see above
+
+/// pcl::IOException puts " : " before its text.
+class PlainIOException : public pcl::IOException {
+public:
+  explicit PlainIOException(const std::string& message) : pcl::IOException(message), message_(message) {}
+  const char* what() const noexcept override { return message_.c_str(); }
+
+private:
+  std::string message_;
+};
 
 }  // namespace
 
-void failIO(const std::string& file, const std::string& why) {
-  PCL_THROW_EXCEPTION(pcl::IOException, file << ": " << why);
+void failIO(const std::string& file, const std::string& reason) {
+  throw PlainIOException(file + ": " + reason);
 }
 
 void writeFloats(const std::string& path, const std::vector<float>& values) {
@@ -39,7 +51,7 @@ std::vector<float> readFloats(const std::string& path) {
   return values;
 }
 
-// PCL's own writer is in a library that needs VTK and drivers of cameras.
+// pcl::PCDWriter is not used: the library pcl_io depends on VTK and on camera drivers.
 void writeCloud(const std::string& path, const PositionCloud& cloud) {
   std::ofstream file(path, std::ios::binary);
   file << "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << cloud.size()
@@ -55,7 +67,7 @@ PositionCloud readCloud(const std::string& path) {
   std::string line;
   while (std::getline(file, line) && line != "DATA binary")
     if (line.rfind("POINTS ", 0) == 0) size = std::strtoull(line.c_str() + 7, nullptr, 10);
-  if (!file || size == 0) failIO(path, "cannot be read, must be a PCD file of this database");
+  if (!file || size == 0) failIO(path, "cannot be read, must be a PCD file that this database wrote");
   PositionCloud cloud(static_cast<std::uint32_t>(size), 1);
   for (pcl::PointXYZ& point : cloud) file.read(reinterpret_cast<char*>(point.data), 3 * sizeof(float));
   if (!file) failIO(path, "is incomplete");
@@ -88,4 +100,4 @@ std::vector<View> readViews(const std::string& path) {
   return views;
 }
 
-}  // namespace pcl_symmetry
+}  // namespace pcl_symmetry::detail

@@ -1,82 +1,71 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/base/check.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "core/descriptors/shape_signature.h"
+#include "core/views/view_signature.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/recognition/symmetry_database.h"
+#include "recognition/database_parts.h"
+#include "recognition/posed_scan.h"
 #include "registration/pose_refinement.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kSeenRadius = 0.95;         // of a scan's bounding ball, of that of its whole object, typically
-constexpr double kMeritSharpness = 20.0;     // of the soft maximum of merits
-constexpr std::size_t kScanPoints = 10'000;  // that are brought to a model ...
-constexpr std::size_t kModelPoints = 5'000;  // ... of so many
+using detail::DatabaseParts;
+using detail::PosedScan;
 
-/// A scan from a viewpoint that is brought to many models: all are searched for poses, the best are refined.
-class PosedScan {
-public:
-  PosedScan(const Points& points, const Visibility& seen, const CloudRegistrationOptions& options)
-      : options_(options),
-        ball_(boundingBall(points)),
-        scale_(ball_.radius / kSeenRadius),
-        surface_(surfaceOf(points, ball_.center, seen.normalized(ball_.center, scale_))) {}
+// Exponent of the soft maximum of merits. chosen: a merit that is 0.05 lower counts 1 / e; half the value spreads the
+// confidence over similar models, twice gives it to the best one alone.
+constexpr double kMeritSharpness = 20.0;
+// Points of the scan and of a model that poses are judged by. chosen: time grows with them; half loses accuracy of the
+// pose, twice gains little as fine steps use a few hundred points.
+constexpr std::size_t kScanPoints = 10'000;
+constexpr std::size_t kModelPoints = 5'000;  // chosen: see above
 
-  /// \param poses T_model_scan to try.
-  void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses) {
-    const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
-    std::vector<Eigen::Isometry3d> hypotheses;
-    for (const Eigen::Isometry3d& pose : poses) hypotheses.push_back(frames.toSearch(pose));
-    PoseSearchOptions search = options_.search;
-    search.num_threads = options_.num_threads;
-    search.num_rotations = 0;
-    PosedSurface surface = surfaceOf(points, frames.target_center, std::nullopt);
-    std::vector<RankedPose> found = searchPoses(surface_, surface, hypotheses, search);
-    models_.push_back({name, frames, std::move(surface), std::move(found)});
+/// Models that look like the scan from some side, brought to it from the poses of these views.
+Recognition fitLikeViews(const DatabaseParts& database, const Points& points, const Points& scan_points,
+                         const Visibility& seen, const RecognitionOptions& options) {
+  ViewSearchOptions search;
+  search.num_nearest = options.num_candidates;
+  search.size_weight = options.size_weight;
+  search.num_threads = options.num_threads;
+  const View view = viewOf(points, boundingBall(points).center - seen.viewpoint());
+  PosedScan scan(scan_points, seen, options.registration);
+  for (const auto& [name, T_model_scan] : database.search.likeViews(view, search))
+    scan.bringTo(name, database.modelPoints(name, kModelPoints), T_model_scan);
+  return scan.refined(options.num_refined);
+}
+
+/// Models of like shape, registered to the scan.
+Recognition fitLikeShapes(const DatabaseParts& database, const Points& points, const Points& scan_points,
+                          const RecognitionOptions& options) {
+  Recognition found;
+  for (const ModelMatch& match : database.search.likeShapes(points, nullptr, options.num_candidates)) {
+    const Points model_points = database.modelPoints(match.name, kScanPoints);
+    const CloudRegistration posed = registerClouds(scan_points, std::nullopt, model_points, std::nullopt,
+                                                   Eigen::Isometry3d::Identity(), options.registration);
+    found.push_back({match.name, posed.T_target_source, posed.score, 0.0});
   }
+  return found;
+}
 
-  /// \return the \p num_refined models with the best poses, in any order.
-  Recognition refined(int num_refined) {
-    std::stable_sort(models_.begin(), models_.end(), [](const PosedModel& a, const PosedModel& b) {
-      return a.poses.front().score.merit() > b.poses.front().score.merit();
-    });
-    Recognition found;
-    for (const PosedModel& model : models_) {
-      if (found.size() == static_cast<std::size_t>(num_refined)) break;
-      const RankedPose best = refinePoses(surface_, model.surface, model.poses, options_);
-      found.push_back({model.name, model.frames.toInput(best.T_model_scan), best.score, 0.0});
-    }
-    return found;
-  }
-
-private:
-  struct PosedModel {
-    std::string name;
-    SearchFrames frames;
-    PosedSurface surface;
-    std::vector<RankedPose> poses;
-  };
-
-  PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, std::optional<Visibility> seen) const {
-    return {normalizePoints(points, center, scale_), std::move(seen), options_.seed, options_.num_threads};
-  }
-
-  CloudRegistrationOptions options_;
-  BoundingBall ball_;
-  double scale_;
-  PosedSurface surface_;
-  std::vector<PosedModel> models_;
-};
-
-/// Best first, with confidences.
-void rank(Recognition& found, double min_merit) {
+/// Drops poses whose merit is too low and sorts the others, best first.
+void keepFitting(Recognition& found, double min_merit) {
+  found.erase(std::remove_if(found.begin(), found.end(),
+                             [&](const RecognizedModel& model) { return model.score.merit() < min_merit; }),
+              found.end());
   std::stable_sort(found.begin(), found.end(), [](const RecognizedModel& a, const RecognizedModel& b) {
     return a.score.merit() > b.score.merit();
   });
+}
+
+/// See RecognizedModel::confidence.
+void fillConfidences(Recognition& found, double min_merit) {
   double sum = 0.0;
   for (const RecognizedModel& model : found) sum += std::exp(kMeritSharpness * model.score.merit());
   for (RecognizedModel& model : found) {
@@ -89,6 +78,8 @@ void rank(Recognition& found, double min_merit) {
 }  // namespace
 
 CloudRegistrationOptions RecognitionOptions::quickRegistration() {
+  // chosen: a fifth to a third of the defaults of the search, as candidates come with poses or frames of their own.
+  // Half misses poses, twice takes twice the time.
   CloudRegistrationOptions options;
   options.frame = signatureFrameOptions();
   options.search.num_rotations = 200;
@@ -103,58 +94,24 @@ void RecognitionOptions::validate() const {
   check(num_refined >= 1, "num_refined", num_refined, ">= 1");
   check(size_weight >= 0.0, "size_weight", size_weight, ">= 0");
   check(min_merit >= -1.0 && min_merit <= 1.0, "min_merit", min_merit, "in [-1, 1]");
-  check(num_threads >= 0, "num_threads", num_threads, ">= 0");
+  checkNumThreads(num_threads);
   registration.validate();
-}
-
-/// Candidates look like the scan from some side, and in some poses.
-Recognition SymmetryDatabase::recognizeView(const Points& points, const Points& scan, const Visibility& seen,
-                                            const RecognitionOptions& options,
-                                            const CloudRegistrationOptions& registration) const {
-  const BoundingBall ball = boundingBall(points);
-  if (!(ball.radius > 0.0)) throw std::invalid_argument("scan: no extent, must have different finite points");
-  ViewSearchOptions search;
-  search.num_nearest = options.num_candidates;
-  search.size_weight = options.size_weight;
-  search.num_threads = options.num_threads;
-  PosedScan posed(scan, seen, registration);
-  for (const ShapeOfView& shape : view_index_.nearest(viewOf(points, ball.center - seen.viewpoint()), search)) {
-    const std::string& name = indexed_[static_cast<std::size_t>(shape.shape)];
-    posed.bringTo(name, selectPoints(cloud(name), nullptr, kModelPoints, 1).points, shape.T_shape_scan);
-  }
-  return posed.refined(options.num_refined);
-}
-
-/// Candidates are of like shape.
-Recognition SymmetryDatabase::recognizeWhole(const Points& points, const Points& scan,
-                                             const RecognitionOptions& options,
-                                             const CloudRegistrationOptions& registration) const {
-  Recognition found;
-  for (const auto& [model, distance] : nearest(points, nullptr, options.num_candidates)) {
-    const std::string& name = indexed_[static_cast<std::size_t>(model)];
-    const CloudRegistration posed =
-        registerClouds(scan, std::nullopt, selectPoints(cloud(name), nullptr, kScanPoints, 1).points, std::nullopt,
-                       Eigen::Isometry3d::Identity(), registration);
-    found.push_back({name, posed.T_target_source, posed.score, 0.0});
-  }
-  return found;
 }
 
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
                                         const Viewpoint& viewpoint) const {
-  return withBadArguments([&] {
-    options.validate();
-    const Points points = selectPoints(scan, nullptr, options_.max_points, 1).points;
-    const Points scan_points = selectPoints(scan, nullptr, kScanPoints, 1).points;
-    const std::optional<Visibility> seen = seenSpace(scan, points, viewpoint);
-    CloudRegistrationOptions registration = options.registration;
-    registration.num_threads = options.num_threads;
-    Recognition found = seen ? recognizeView(points, scan_points, *seen, options, registration)
-                             : recognizeWhole(points, scan_points, options, registration);
-    found.erase(std::remove_if(found.begin(), found.end(),
-                               [&](const RecognizedModel& model) { return model.score.merit() < options.min_merit; }),
-                found.end());
-    rank(found, options.min_merit);
+  RecognitionOptions used = options;
+  used.registration.num_threads = options.num_threads;
+  detail::withBadArguments([&] { used.validate(); });
+  const Points points = detail::finitePoints(scan, parts_->options.max_points);
+  return detail::emptyWithoutAnswer(points, [&] {
+    const Points scan_points = detail::finitePoints(scan, kScanPoints);
+    const std::optional<Visibility> seen =
+        detail::withBadArguments([&] { return detail::seenSpace(scan, points, viewpoint); });
+    Recognition found = seen ? fitLikeViews(*parts_, points, scan_points, *seen, used)
+                             : fitLikeShapes(*parts_, points, scan_points, used);
+    keepFitting(found, options.min_merit);
+    fillConfidences(found, options.min_merit);
     return found;
   });
 }

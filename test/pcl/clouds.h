@@ -5,6 +5,9 @@
 #include <pcl/point_types.h>
 
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "shapes/shapes.h"
 
@@ -33,6 +36,25 @@ typename pcl::PointCloud<PointT>::Ptr withHoles(const pcl::PointCloud<PointT>& c
   }
   result->is_dense = false;
   return result;
+}
+
+/// Clouds that hold no answer, with what they are.
+inline std::vector<std::pair<std::string, pcl::PointCloud<pcl::PointXYZ>::Ptr>> cloudsWithoutAnswer() {
+  using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  std::vector<std::pair<std::string, Cloud::Ptr>> clouds{
+      {"no cloud", nullptr},
+      {"no point", pcl::make_shared<Cloud>()},
+      {"no finite point", pcl::make_shared<Cloud>(50, 1, pcl::PointXYZ(none, 0.0f, 0.0f))},
+      {"one point", pcl::make_shared<Cloud>(1, 1, pcl::PointXYZ(1.0f, 2.0f, 3.0f))},
+      {"one place", pcl::make_shared<Cloud>(50, 1, pcl::PointXYZ(1.0f, 2.0f, 3.0f))}};
+  const auto few = pcl::make_shared<Cloud>(), line = pcl::make_shared<Cloud>();
+  for (int i = 0; i < 19; ++i)
+    for (int copy = 0; copy < 3; ++copy) few->emplace_back(0.1f * i, 0.01f * (i * i % 7), 0.02f * (i * i % 5));
+  for (int i = 0; i < 200; ++i) line->emplace_back(1.0f + 0.3f * i, 0.2f * i, -0.1f * i);
+  clouds.emplace_back("19 distinct points", few);
+  clouds.emplace_back("a line", line);
+  return clouds;
 }
 
 }  // namespace pcl_symmetry::test

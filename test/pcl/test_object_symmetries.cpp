@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
-#include <pcl/exceptions.h>
 
 #include "clouds.h"
+#include "error_message.h"
 #include "shapes/turning_shapes.h"
 
 namespace pcl_symmetry {
@@ -47,14 +47,22 @@ TEST(DetectObjectSymmetries, OfAMeshDoNotDependOnItsVertices) {
   EXPECT_EQ(found.discrete.size(), 2u);
 }
 
-TEST(DetectObjectSymmetries, RefuseWhatHasNoSurface) {
-  EXPECT_THROW(detectObjectSymmetries(pcl::PointCloud<pcl::PointXYZ>()), pcl::BadArgumentException);
-  EXPECT_THROW(detectObjectSymmetries(pcl::PointCloud<pcl::PointXYZ>(50, 1, pcl::PointXYZ(NAN, 0.0f, 0.0f))),
-               pcl::BadArgumentException);
-  EXPECT_THROW(detectObjectSymmetries(pcl::PolygonMesh()), pcl::BadArgumentException);
+TEST(DetectObjectSymmetries, AreTheIdentityAloneWhereThereIsNoAnswer) {
+  for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
+    if (!cloud) continue;
+    const ObjectSymmetries none = detectObjectSymmetries(*cloud);
+    EXPECT_EQ(none.name(), "C1") << name;
+    EXPECT_EQ(none.confidence, 0.0) << name;
+    EXPECT_NE(none.reason, "") << name;
+  }
+  EXPECT_NE(detectObjectSymmetries(pcl::PolygonMesh()).reason, "");
+}
+
+TEST(DetectObjectSymmetries, RefuseWrongParameters) {
   ObjectSymmetryOptions options;
   options.max_fold = 0;
-  EXPECT_THROW(detectObjectSymmetries(*test::toCloud(test::sphere(500, 1)), options), pcl::BadArgumentException);
+  EXPECT_EQ(test::messageOf([&] { detectObjectSymmetries(*test::toCloud(test::sphere(500, 1)), options); }),
+            "max_fold = 0, must be >= 2");
 }
 
 }  // namespace

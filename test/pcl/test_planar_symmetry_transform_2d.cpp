@@ -64,15 +64,36 @@ TEST(PlanarSymmetryTransform2D, HonoursIndicesAndTheGivenWidth) {
 
 TEST(PlanarSymmetryTransform2D, NamesWhatIsWrong) {
   Transform transform;
-  EXPECT_NE(messageOf([&] { transform.compute(); }).find("not set"), std::string::npos);
   EXPECT_NE(messageOf([&] { transform.setSigma(-1.0); }).find("sigma = -1, must be"), std::string::npos);
   EXPECT_NE(messageOf([&] { transform.setGridSize(2); }).find("num_cells = 2"), std::string::npos);
   EXPECT_NE(messageOf([&] { transform.setNumberOfThreads(-2); }).find("num_threads = -2"), std::string::npos);
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  transform.setInputCloud(cloud);
-  EXPECT_NE(messageOf([&] { transform.compute(); }).find("no finite point"), std::string::npos);
-  cloud->resize(5);
-  EXPECT_NE(messageOf([&] { transform.compute(); }).find("extent"), std::string::npos);
+}
+
+TEST(PlanarSymmetryTransform2D, GivesAnEmptyMapWhereThereIsNoAnswer) {
+  for (const auto& [name, cloud] : cloudsWithoutAnswer()) {
+    Transform transform;
+    transform.setInputCloud(cloud);
+    EXPECT_TRUE(transform.compute().empty()) << name;
+    EXPECT_NE(transform.getReason(), "") << name;
+    EXPECT_TRUE(transform.getLines().empty()) << name;
+  }
+}
+
+TEST(PlanarSymmetryTransform2D, AUsedObjectIsAsGoodAsANewOne) {
+  const auto second = toSheet(rectangle(1.6, 0.9, 400), randomPose(5));
+  Transform used, fresh;
+  for (Transform* transform : {&used, &fresh}) transform->setGridSize(32);
+  used.setInputCloud(toSheet(regularPolygon(5), randomPose(6)));
+  used.compute();
+  used.setInputCloud(second);
+  EXPECT_TRUE(used.getLines().empty());
+  EXPECT_EQ(used.getSheetPoints().cols(), 0);
+  fresh.setInputCloud(second);
+  EXPECT_EQ(used.compute().values, fresh.compute().values);
+  EXPECT_EQ(used.getSheetPose().matrix(), fresh.getSheetPose().matrix());
+  ASSERT_EQ(used.getLines().size(), fresh.getLines().size());
+  for (std::size_t i = 0; i < fresh.getLines().size(); ++i)
+    EXPECT_EQ(used.getLines()[i].line.theta(), fresh.getLines()[i].line.theta());
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <pcl/common/point_tests.h>
-#include <pcl/exceptions.h>
 
 #include "clouds.h"
+#include "error_message.h"
 #include "shapes/scans.h"
 
 namespace pcl_symmetry {
@@ -83,15 +83,37 @@ TEST(SymmetryAlignment, DrawsFromLargeClouds) {
   EXPECT_LT((frame.center - test::randomPose(5).translation()).norm(), 0.05);
 }
 
-TEST(SymmetryAlignment, RefusesWhatHasNoExtent) {
+TEST(SymmetryAlignment, GivesAnEmptyFrameWhereThereIsNoAnswer) {
+  for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
+    SymmetryAlignment<pcl::PointXYZ> alignment;
+    alignment.setInputCloud(cloud);
+    EXPECT_TRUE(alignment.compute().equivalent.empty()) << name;
+    EXPECT_NE(alignment.getReason(), "") << name;
+  }
+}
+
+TEST(SymmetryAlignment, AUsedObjectIsAsGoodAsANewOne) {
+  const auto second = test::toCloud(test::box(1000, Sampling::Random, 6));
+  SymmetryAlignment<pcl::PointXYZ> used, fresh;
+  used.setInputCloud(organizedCloud(test::scan(test::blockBox(), {3.5, 4.2, 2.9})));
+  used.compute();
+  EXPECT_TRUE(used.usedViewpoint());
+  used.setInputCloud(second);
+  EXPECT_FALSE(used.usedViewpoint());
+  EXPECT_TRUE(used.getTiming().empty());
+  fresh.setInputCloud(second);
+  const SymmetryFrame a = used.compute(), b = fresh.compute();
+  EXPECT_EQ(a.T_canonical_input.matrix(), b.T_canonical_input.matrix());
+  EXPECT_EQ(a.scores, b.scores);
+  EXPECT_EQ(used.getUsedIndices(), fresh.getUsedIndices());
+}
+
+TEST(SymmetryAlignment, RefusesWrongParameters) {
   SymmetryAlignment<pcl::PointXYZ> alignment;
-  EXPECT_THROW(alignment.compute(), pcl::BadArgumentException);
-  EXPECT_THROW(alignment.setTie(-1.0), pcl::BadArgumentException);
-  EXPECT_THROW(alignment.setGridSize(2), pcl::BadArgumentException);
-  EXPECT_THROW(alignment.setNumberOfThreads(-1), pcl::BadArgumentException);
-  EXPECT_THROW(alignment.setMaxPoints(1), pcl::BadArgumentException);
-  alignment.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(4, 1, pcl::PointXYZ(NAN, NAN, NAN)));
-  EXPECT_THROW(alignment.compute(), pcl::BadArgumentException);
+  EXPECT_EQ(test::messageOf([&] { alignment.setTie(-1.0); }), "tie = -1, must be >= 0");
+  EXPECT_EQ(test::messageOf([&] { alignment.setGridSize(2); }), "num_cells = 2, must be in [8, 512]");
+  EXPECT_EQ(test::messageOf([&] { alignment.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
+  EXPECT_EQ(test::messageOf([&] { alignment.setMaxPoints(1); }), "max_points = 1, must be >= 2");
 }
 
 }  // namespace

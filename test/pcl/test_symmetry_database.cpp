@@ -6,8 +6,11 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/random.h"
+#include "error_message.h"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 
 namespace pcl_symmetry {
@@ -185,17 +188,86 @@ TEST_F(SymmetryDatabaseTest, KeepsCloudsAsPCDFiles) {
 
 TEST_F(SymmetryDatabaseTest, AnInterruptedChangeLeavesTheOldStateWhole) {
   fill();
-  // What a save leaves that ends before the manifest is renamed.
+  // A save that ends before the manifest is renamed leaves the new manifest and some of the files that it names.
+  std::ofstream(fs::path(folder_) / "manifest.txt.new") << "pcl_symmetry database 2\n79 2 78_all 2\n"
+                                                           "beam 1_beam\nnew 77_new\n";
   std::ofstream(fs::path(folder_) / "77_new.pcd") << "half a clou";
   std::ofstream(fs::path(folder_) / "78_all.compact") << "half";
-  std::ofstream(fs::path(folder_) / "manifest.txt.new") << "pcl_symmetry data";
   SymmetryDatabase database(folder_);
   EXPECT_EQ(database.size(), 4u);
   EXPECT_EQ(database.match(rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2), 1).at(0).name, "cube");
   database.remove("cube");
   database.save();
   EXPECT_EQ(SymmetryDatabase(folder_).size(), 3u);
+  // The manifest, three files of each model, and two files for all; nothing is left of the interrupted save.
+  EXPECT_EQ(files().size(), 1u + 3u * 3u + 2u);
+  EXPECT_EQ(files().count("1_beam.pcd"), 1u);
   EXPECT_EQ(files().count("77_new.pcd"), 0u);
+}
+
+TEST_F(SymmetryDatabaseTest, NeverTouchesFilesOfTheUser) {
+  fill();
+  // Names with the extensions of a database, also names that the next save would use, or that look like its own.
+  const std::vector<std::string> mine = {"mine.pcd",      "notes.views",    "a.signature",
+                                         "b.compact",     "c.projection",   "6_new.pcd",
+                                         "7_all.compact", "77_holiday.pcd", "78_all.projection"};
+  for (const std::string& name : mine) std::ofstream(fs::path(folder_) / name) << "mine";
+  // A new manifest that was being written when the program ended does not count: no file was written after it.
+  std::ofstream(fs::path(folder_) / "manifest.txt.new") << "pcl_symmetry database 2\n79 2 78_all 1\nholiday 77_holiday";
+  SymmetryDatabase database(folder_);
+  database.remove("cube");
+  database.add("new", rodOnBox({0.1, 0.1, 2.0}, 0.5, kHere, 3));
+  database.save();
+  database.remove("new");
+  database.save();
+  EXPECT_EQ(SymmetryDatabase(folder_).size(), 3u);
+  EXPECT_EQ(files().size(), 1u + 3u * 3u + 2u + mine.size());
+  for (const std::string& name : mine) {
+    std::string content;
+    std::ifstream(fs::path(folder_) / name) >> content;
+    EXPECT_EQ(content, "mine") << name;
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, ManifestsNameNoFilesElsewhere) {
+  fill();
+  for (const char* file : {"../1_beam", "beam", "1_../beam", "/1_beam", "x_beam"}) {
+    std::ofstream(fs::path(folder_) / "manifest.txt") << "pcl_symmetry database 2\n6 1 5_all 1\nbeam " << file << '\n';
+    EXPECT_THROW(SymmetryDatabase{folder_}, pcl::IOException) << file;
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, ModelsThatWereRemovedAreNotFound) {
+  fill();
+  SymmetryDatabase database(folder_);
+  const Cloud cube = rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2);
+  ASSERT_EQ(database.match(cube, 4).size(), 4u);
+  database.remove("cube");
+  for (const ModelMatch& match : database.match(cube, 4)) EXPECT_NE(match.name, "cube");
+  for (const RecognizedModel& model : database.recognize(cube, optionsForRandomPoints())) EXPECT_NE(model.name, "cube");
+}
+
+TEST_F(SymmetryDatabaseTest, CanBeMoved) {
+  SymmetryDatabase database(folder_);
+  database.add("cube", rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 1));
+  SymmetryDatabase moved = std::move(database);
+  EXPECT_TRUE(moved.contains("cube"));
+  database = std::move(moved);
+  EXPECT_EQ(database.cloud("cube").size(), 5000u);
+}
+
+TEST_F(SymmetryDatabaseTest, CloudsWithoutAnswerFindNothing) {
+  SymmetryDatabase database(folder_);
+  const Cloud same(100, 1, pcl::PointXYZ(1.0f, 1.0f, 1.0f));
+  Viewpoint given;
+  given.mode = Viewpoint::Mode::Given;
+  for (const Cloud& cloud : {Cloud(), same}) {
+    testing::internal::CaptureStderr();
+    EXPECT_TRUE(database.match(cloud, 3, given).empty());
+    EXPECT_TRUE(database.recognize(cloud, {}, given).empty());
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("[pcl_symmetry::SymmetryDatabase] input cloud: "),
+              std::string::npos);
+  }
 }
 
 TEST_F(SymmetryDatabaseTest, EmptyOnesFindNothing) {
@@ -212,19 +284,27 @@ TEST_F(SymmetryDatabaseTest, EmptyOnesFindNothing) {
 TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
   SymmetryDatabase database(folder_);
   const Cloud cloud = rodOnBox(kKinds[0].half, 0.5, kHere, 1);
-  EXPECT_THROW(database.add("../evil", cloud), pcl::BadArgumentException);
+  EXPECT_EQ(test::messageOf([&] { database.add("../evil", cloud); }),
+            "name = '../evil', must be 1 to 100 letters, digits, '_', '-' or '.', not '.' first");
   EXPECT_THROW(database.add("", cloud), pcl::BadArgumentException);
   EXPECT_THROW(database.add("flat", Cloud(10, 1, pcl::PointXYZ(1.0f, 1.0f, 1.0f))), pcl::BadArgumentException);
   EXPECT_THROW(database.remove("nobody"), pcl::BadArgumentException);
   EXPECT_THROW(database.cloud("nobody"), pcl::BadArgumentException);
   RecognitionOptions options;
   options.num_candidates = 0;
-  EXPECT_THROW(database.recognize(cloud, options), pcl::BadArgumentException);
+  EXPECT_EQ(test::messageOf([&] { database.recognize(cloud, options); }), "num_candidates = 0, must be >= 1");
+  EXPECT_EQ(test::messageOf([&] { database.match(cloud, -1); }), "num_nearest = -1, must be >= 0");
   fs::create_directories(folder_);
   std::ofstream(fs::path(folder_) / "holiday.jpg") << "x";
   EXPECT_THROW(SymmetryDatabase{folder_}, pcl::IOException);
   std::ofstream(fs::path(folder_) / "manifest.txt") << "something else\n";
-  EXPECT_THROW(SymmetryDatabase{folder_}, pcl::IOException);
+  try {
+    SymmetryDatabase{folder_};
+    ADD_FAILURE() << "no exception";
+  } catch (const pcl::IOException& error) {
+    EXPECT_EQ(std::string(error.what()),
+              (fs::path(folder_) / "manifest.txt").string() + ": must begin with 'pcl_symmetry database 2'");
+  }
 }
 
 }  // namespace pcl_symmetry

@@ -1,7 +1,6 @@
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 #include <gtest/gtest.h>
-#include <pcl/exceptions.h>
 #include <pcl/search/brute_force.h>
 #include <pcl/search/flann_search.h>
 #include <pcl/search/kdtree.h>
@@ -10,59 +9,17 @@
 #include <pcl/search/impl/flann_search.hpp>
 
 #include "clouds.h"
+#include "error_message.h"
+#include "found_planes.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
+#include "pcl_symmetry/symmetry_detection.h"
 
 namespace pcl_symmetry {
 namespace {
 
+using test::expectSamePlanes;
+using test::numFound;
 using test::Sampling;
-
-/// Number of the shape's planes that are among those found within an angle and an offset.
-int numFound(const test::Shape& shape, const std::vector<SymmetryPlane>& found, double angle, double offset) {
-  int count = 0;
-  const Eigen::Vector3d middle = shape.points.rowwise().mean();
-  for (const ReflectionPlane& plane : shape.planes) {
-    count += std::any_of(found.begin(), found.end(), [&](const SymmetryPlane& candidate) {
-      const auto error = test::planeError(plane, candidate, middle);
-      return error.angle <= angle && error.offset <= offset;
-    });
-  }
-  return count;
-}
-
-void expectSamePlanes(const std::vector<SymmetryPlane>& a, const std::vector<SymmetryPlane>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].coefficients(), b[i].coefficients());
-    EXPECT_EQ(a[i].support, b[i].support);
-    EXPECT_EQ(a[i].point_support, b[i].point_support);
-  }
-}
-
-TEST(DetectSymmetryPlanes, NeedsOneLine) {
-  const auto shape = test::moved(test::box(4000, Sampling::Mirrored, 1), test::randomPose(5));
-  const auto planes = detectSymmetryPlanes(*test::toCloud(shape));
-  EXPECT_EQ(planes.size(), 3u);
-  EXPECT_EQ(numFound(shape, planes, 0.001 * test::kDegree, 1e-5 * test::diagonal(shape.cloud())), 3);
-  for (const SymmetryPlane& plane : planes) {
-    EXPECT_GT(plane.support, 0.99);
-    EXPECT_GT(plane.score, 0.98);
-    EXPECT_TRUE(plane.converged);
-    EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
-  }
-}
-
-TEST(DetectSymmetryPlanes, SaysNoneWhereThereIsNone) {
-  EXPECT_TRUE(detectSymmetryPlanes(*test::toCloud(test::scaleneTetrahedron(4000, 2))).empty());
-  EXPECT_TRUE(detectSymmetryPlanes(*test::toCloud(test::asymmetricBlob(4000, 2))).empty());
-}
-
-TEST(SymmetryMaximaRefinement, WorksOnEveryPointTypeAlike) {
-  const auto shape = test::box(2000, Sampling::Random, 3);
-  const auto expected = detectSymmetryPlanes(*test::toCloud<pcl::PointXYZ>(shape));
-  expectSamePlanes(detectSymmetryPlanes(*test::toCloud<pcl::PointXYZRGB>(shape)), expected);
-  expectSamePlanes(detectSymmetryPlanes(*test::toCloud<pcl::PointNormal>(shape)), expected);
-}
 
 TEST(SymmetryMaximaRefinement, HonoursIndicesAndLeavesOutPointsThatAreNotFinite) {
   const auto cloud = test::toCloud(test::box(2000, Sampling::Random, 4));
@@ -156,17 +113,51 @@ TEST(SymmetryMaximaRefinement, MarksApproximateSymmetries) {
   EXPECT_EQ(refinement.compute().size(), 2u);
 }
 
-TEST(SymmetryMaximaRefinement, RefusesWhatHasNoExtent) {
+TEST(SymmetryMaximaRefinement, FindsNothingWhereThereIsNoAnswer) {
+  for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
+    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+    refinement.setApproximate(true);
+    refinement.setInputCloud(cloud);
+    EXPECT_TRUE(refinement.compute().empty()) << name;
+    EXPECT_NE(refinement.getReason(), "") << name;
+    EXPECT_TRUE(refinement.getAxes().empty()) << name;
+    for (const float support : refinement.computePointSupport(ReflectionPlane()))
+      EXPECT_TRUE(std::isnan(support)) << name;
+  }
+}
+
+TEST(SymmetryMaximaRefinement, AUsedObjectIsAsGoodAsANewOne) {
+  const auto first = test::toCloud(test::cylinder(1000, 3)),
+             second = test::toCloud(test::cube(1000, Sampling::Random, 6));
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  transform.setInputCloud(first);
+  transform.setGridSize(32);
+  SymmetryMaximaRefinement<pcl::PointXYZ> used, fresh;
+  used.setInputCloud(first);
+  used.setSymmetryMap(transform.compute(), transform.getDistanceTransform());
+  used.compute();
+  EXPECT_FALSE(used.getAxes().empty());
+  used.setInputCloud(second);
+  EXPECT_TRUE(used.getAxes().empty());
+  EXPECT_TRUE(used.getSymmetryMap().empty()) << "the map was that of another cloud";
+  fresh.setInputCloud(second);
+  const auto expected = fresh.compute();
+  EXPECT_FALSE(expected.empty());
+  expectSamePlanes(used.compute(), expected);
+  EXPECT_EQ(used.getSymmetryMap().values, fresh.getSymmetryMap().values);
+  used.setInputCloud(nullptr);
+  EXPECT_TRUE(used.compute().empty());
+  EXPECT_TRUE(used.getUsedIndices().empty());
+}
+
+TEST(SymmetryMaximaRefinement, RefusesWrongParameters) {
+  using test::messageOf;
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-  EXPECT_THROW(refinement.compute(), pcl::BadArgumentException);
-  EXPECT_THROW(refinement.computePointSupport(ReflectionPlane()), pcl::BadArgumentException);
-  EXPECT_THROW(refinement.setMinConfidence(1.5), pcl::BadArgumentException);
-  EXPECT_THROW(refinement.setMaxPlanes(0), pcl::BadArgumentException);
-  EXPECT_THROW(refinement.setNumberOfThreads(-1), pcl::BadArgumentException);
-  EXPECT_THROW(refinement.setSymmetryMap(SymmetryMap(), nullptr), pcl::BadArgumentException);
-  EXPECT_THROW(detectSymmetryPlanes(pcl::PointCloud<pcl::PointXYZ>()), pcl::BadArgumentException);
-  pcl::PointCloud<pcl::PointXYZ> nothing(4, 1, pcl::PointXYZ(NAN, NAN, NAN));
-  EXPECT_THROW(detectSymmetryPlanes(nothing), pcl::BadArgumentException);
+  EXPECT_EQ(messageOf([&] { refinement.setMinConfidence(1.5); }), "min_confidence = 1.5, must be in [0, 1]");
+  EXPECT_EQ(messageOf([&] { refinement.setMaxPlanes(0); }), "max_planes = 0, must be >= 1");
+  EXPECT_EQ(messageOf([&] { refinement.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
+  EXPECT_NE(messageOf([&] { refinement.setSymmetryMap(SymmetryMap(), nullptr); }).find("symmetry map: empty"),
+            std::string::npos);
 }
 
 }  // namespace

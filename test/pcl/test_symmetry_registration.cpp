@@ -1,11 +1,12 @@
+#include "pcl_symmetry/registration/symmetry_registration.h"
+
 #include <gtest/gtest.h>
 #include <pcl/common/transforms.h>
 #include <pcl/console/print.h>
 #include <pcl/registration/icp.h>
 
 #include "clouds.h"
-#include "pcl_symmetry/completion.h"
-#include "pcl_symmetry/registration/symmetry_registration.h"
+#include "error_message.h"
 #include "shapes/scans.h"
 
 namespace {
@@ -122,6 +123,13 @@ TEST_F(SymmetryRegistrationTest, FindsManyPoses) {
     EXPECT_GT(registration.getScore().support, 0.6);
     EXPECT_LT(registration.getScore().conflict, 0.1);
   }
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> fresh;
+  fresh.setInputTarget(chairModel());
+  fresh.setInputSource(chairScan(randomPose(105)));
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  fresh.align(aligned);
+  EXPECT_EQ(registration.getFinalTransformation(), fresh.getFinalTransformation());
+  EXPECT_EQ(registration.getReason(), "");
 }
 
 TEST_F(SymmetryRegistrationTest, BringsAModelToAScanToo) {
@@ -207,13 +215,18 @@ TEST_F(SymmetryRegistrationTest, SaysWhereNothingFits) {
     EXPECT_EQ(registration.getFinalTransformation(), Eigen::Matrix4f::Identity());
     ASSERT_EQ(aligned.size(), source->size());
     EXPECT_EQ(aligned[0].x, (*source)[0].x) << "the source as it was";
+    EXPECT_NE(registration.getReason(), "");
   };
   const auto chair = chairScan(randomPose(1)), model = chairModel();
   fails(chair, test::toCloud(sphere(4000, 1)));
   EXPECT_LT(registration.getScore().merit(), 0.4);
+  EXPECT_EQ(registration.getReason().rfind("nothing fits", 0), 0u);
   fails(toCloud(Points::Ones(3, 5)), model);
   fails(chair, toCloud(Points::Ones(3, 1)));
-  fails(toCloud(Points::Random(3, 2)), model);
+  EXPECT_EQ(registration.getReason().rfind("target: ", 0), 0u);
+  fails(toCloud(Points::Random(3, 19)), model);
+  EXPECT_EQ(registration.getReason().rfind("source: ", 0), 0u);
+  EXPECT_EQ(registration.getScore().support, 0.0) << "that of the last pair is gone";
 }
 
 TEST_F(SymmetryRegistrationTest, DoesNotDependOnThreadsAndUnits) {
@@ -242,64 +255,19 @@ TEST_F(SymmetryRegistrationTest, DoesNotDependOnThreadsAndUnits) {
   EXPECT_LT((scaled.topRightCorner<3, 1>() / kMillimetres - expected.topRightCorner<3, 1>()).norm(), 0.02);
 }
 
-TEST_F(SymmetryRegistrationTest, RefusesOptionsOutOfRange) {
+TEST_F(SymmetryRegistrationTest, RefusesWrongParameters) {
   SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  EXPECT_THROW(registration.setMinMerit(1.5), pcl::BadArgumentException);
-  EXPECT_THROW(registration.setMaxPoints(2), pcl::BadArgumentException);
-  EXPECT_THROW(registration.setNumberOfThreads(-1), pcl::BadArgumentException);
+  EXPECT_EQ(messageOf([&] { registration.setMinMerit(1.5); }), "min_merit = 1.5, must be in [-1, 1]");
+  EXPECT_EQ(messageOf([&] { registration.setMaxPoints(2); }), "max_points = 2, must be >= 3");
+  EXPECT_EQ(messageOf([&] { registration.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
   PoseSearchOptions options;
   options.max_poses = 0;
   EXPECT_THROW(registration.setSearchOptions(options), pcl::BadArgumentException);
-}
-
-TEST(CompleteBySymmetry, AddsReflectedPointsAndSaysWhichTheyAre) {
-  const Scan scan = test::scan(blockChair(), {6.0, -3.0, 3.0});
-  const auto cloud = toCloud<pcl::PointNormal>(scan.pixels);
-  for (pcl::PointNormal& point : *cloud) {
-    point.getNormalVector3fMap() = Eigen::Vector3f(0.6f, -0.8f, 0.0f);
-    point.curvature = 0.25f;
-  }
-  cloud->width = scan.width;
-  cloud->height = scan.height;
-  cloud->is_dense = false;
-  const ReflectionPlane middle(Eigen::Vector3d::UnitX(), 0.0);
-  const CompletedCloud<pcl::PointNormal> completed = completeBySymmetry(*cloud, middle);
-  ASSERT_GT(completed.added.size(), 100u);
-  ASSERT_EQ(completed.sources.size(), completed.added.size());
-  ASSERT_EQ(completed.cloud.size(), cloud->size() + completed.added.size());
-  EXPECT_EQ(completed.cloud.height, 1u);
-  EXPECT_EQ(completed.cloud.width, completed.cloud.size());
-  for (std::size_t k = 0; k < completed.added.size(); ++k) {
-    ASSERT_EQ(static_cast<std::size_t>(completed.added[k]), cloud->size() + k);
-    const pcl::PointNormal &added = completed.cloud[completed.added[k]], &source = (*cloud)[completed.sources[k]];
-    EXPECT_NEAR(added.x, -source.x, 1e-6f);
-    EXPECT_EQ(added.y, source.y);
-    EXPECT_EQ(added.z, source.z);
-    EXPECT_NEAR(added.normal_x, -0.6f, 1e-6f);
-    EXPECT_NEAR(added.normal_y, -0.8f, 1e-6f);
-    EXPECT_EQ(added.curvature, 0.25f);
-  }
-}
-
-TEST(CompleteBySymmetry, ReflectsTheViewpointThatAPointCarries) {
-  pcl::PointCloud<pcl::PointWithViewpoint> cloud;
-  pcl::PointWithViewpoint point;
-  point.x = 1.0f;
-  point.y = point.z = 0.0f;
-  point.vp_x = 5.0f;
-  point.vp_y = 6.0f;
-  point.vp_z = 7.0f;
-  cloud.push_back(point);
-  const auto completed =
-      completeBySymmetry(cloud, ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0), {}, {Viewpoint::Mode::None});
-  ASSERT_EQ(completed.cloud.size(), 2u);
-  EXPECT_EQ(completed.cloud[1].x, -1.0f);
-  EXPECT_EQ(completed.cloud[1].vp_x, -5.0f);
-  EXPECT_EQ(completed.cloud[1].vp_y, 6.0f);
-  EXPECT_TRUE(completeBySymmetry(pcl::PointCloud<pcl::PointXYZ>(), ReflectionPlane()).cloud.empty());
-  CompletionOptions options;
-  options.overlap = -1.0;
-  EXPECT_THROW(completeBySymmetry(cloud, ReflectionPlane(), options), pcl::BadArgumentException);
+  registration.setInputSource(chairModel());
+  registration.setInputTarget(chairModel());
+  registration.setSourceViewpoint({Viewpoint::Mode::Given, Eigen::Vector3d::Zero()});
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  EXPECT_THROW(registration.align(aligned), pcl::BadArgumentException) << "among the points";
 }
 
 }  // namespace

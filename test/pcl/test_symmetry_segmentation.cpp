@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "clouds.h"
 #include "error_message.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "shapes/meshes.h"
@@ -78,17 +79,39 @@ TEST_F(SymmetrySegmentationTest, PointsThatWereNotDrawnFollowTheClosest) {
                           [](int label) { return label >= 0; }));
 }
 
-TEST_F(SymmetrySegmentationTest, SaysWhyItGivesNothing) {
-  segments_.resize(3);
-  segmentation_.segment(segments_);
-  EXPECT_TRUE(segments_.empty()) << "no input";
-  segmentation_.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(5, 1, pcl::PointXYZ(1, 1, 1)));
-  segmentation_.segment(segments_);
-  EXPECT_TRUE(segments_.empty()) << "no extent";
+TEST_F(SymmetrySegmentationTest, GivesNoSegmentsWhereThereIsNoAnswer) {
+  for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
+    segments_.resize(3);
+    segmentation_.setInputCloud(cloud);
+    segmentation_.segment(segments_);
+    EXPECT_TRUE(segments_.empty()) << name;
+    EXPECT_TRUE(segmentation_.getLabels().empty()) << name;
+    EXPECT_NE(segmentation_.getReason(), "") << name;
+  }
   segmentation_.setInputMesh(pcl::make_shared<pcl::PolygonMesh>());
   segmentation_.segment(segments_);
-  EXPECT_TRUE(segments_.empty()) << "no faces";
+  EXPECT_TRUE(segments_.empty());
+  EXPECT_EQ(segmentation_.getReason(), "mesh: no polygon has an area");
+  mesh_->polygons[0].vertices[0] = 1'000'000;
+  segmentation_.setInputMesh(mesh_);
+  EXPECT_THAT(test::messageOf([&] { segmentation_.segment(segments_); }), testing::HasSubstr("must be one that"));
+}
+
+TEST_F(SymmetrySegmentationTest, AUsedObjectIsAsGoodAsANewOne) {
+  const auto cloud = sampleMesh(*mesh_, 1000);
+  SymmetrySegmentation<pcl::PointXYZ> fresh;
+  for (auto* segmentation : {&segmentation_, &fresh}) segmentation->setNumberOfParts(3);
+  segmentation_.setInputMesh(mesh_);
+  segmentation_.segment(segments_);
+  segmentation_.setInputCloud(cloud);
   EXPECT_TRUE(segmentation_.getLabels().empty());
+  segmentation_.extract(segments_);
+  std::vector<pcl::PointIndices> expected;
+  fresh.setInputCloud(cloud);
+  fresh.segment(expected);
+  EXPECT_EQ(segmentation_.getLabels(), fresh.getLabels()) << "the cloud was set last";
+  ASSERT_EQ(segments_.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(segments_[i].indices, expected[i].indices);
 }
 
 TEST_F(SymmetrySegmentationTest, SettersNameFieldValueAndRule) {

@@ -7,8 +7,9 @@
 #include <string>
 
 #include "clouds.h"
+#include "core/base/random.h"
 #include "error_message.h"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "shapes/scans.h"
@@ -50,7 +51,8 @@ void setOrigin(Cloud& cloud, const Eigen::Vector3d& origin) {
 }
 
 bool recognised(const Cloud::ConstPtr& cloud) {
-  return seenSpace(*cloud, selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{}).has_value();
+  return detail::seenSpace(*cloud, detail::selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{})
+      .has_value();
 }
 
 bool contains(const std::vector<SymmetryPlane>& planes, const ReflectionPlane& plane, const Eigen::Vector3d& about) {
@@ -65,7 +67,8 @@ TEST(Viewpoint, AnOrganizedCloudTellsByItsOwnRays) {
     const Scan scan = randomScan(seed);
     EXPECT_TRUE(recognised(organized(scan, scan.T_camera_object))) << seed << ": in the frame of the camera";
     const Eigen::Isometry3d away = test::randomPose(seed, 0.2) * scan.T_camera_object;
-    EXPECT_TRUE(seenByOrganizedCloud((away * scan.pixels.cast<double>()).cast<float>(), scan.width, scan.height))
+    EXPECT_TRUE(
+        detail::seenByOrganizedCloud((away * scan.pixels.cast<double>()).cast<float>(), scan.width, scan.height))
         << seed << ": from the rays alone";
     // Here sensor_origin_ = 0 lies in the middle of the box.
     EXPECT_TRUE(recognised(organized(scan))) << seed << ": in the frame of the object";
@@ -76,7 +79,7 @@ TEST(Viewpoint, AnOrganizedCloudTellsByItsOwnRays) {
 TEST(Viewpoint, TheRaysOfAnOrganizedCloudAreThoseOfItsCamera) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Scan scan = randomScan(seed);
-    const auto seen = seenByOrganizedCloud(scan.pixels, scan.width, scan.height);
+    const auto seen = detail::seenByOrganizedCloud(scan.pixels, scan.width, scan.height);
     EXPECT_TRUE(seen) << seed;
     if (!seen) continue;
     const Visibility truth = scan.visibility();
@@ -110,7 +113,7 @@ TEST(Viewpoint, RowsAndColumnsThatAreNoPictureAreNone) {
   RandomStream random(3);
   for (std::size_t i = shuffled->size() - 1; i > 0; --i) std::swap((*shuffled)[i], (*shuffled)[random.below(i + 1)]);
   EXPECT_FALSE(recognised(shuffled));
-  EXPECT_FALSE(seenByOrganizedCloud(Points::Constant(3, 200, NAN), 20, 10));
+  EXPECT_FALSE(detail::seenByOrganizedCloud(Points::Constant(3, 200, NAN), 20, 10));
 }
 
 TEST(Viewpoint, AnUnorganizedScanTellsByItsSensorOrigin) {

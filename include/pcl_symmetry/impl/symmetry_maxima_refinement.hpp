@@ -2,19 +2,24 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
-#include <algorithm>
 #include <limits>
 #include <mutex>
+#include <optional>
 
-#include "core/evidence/plane_support.h"
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// A pcl::search::Search seen from the normalised frame of the refinement.
+namespace detail {
+
+/// \param points 3 x M, finite.
+/// \param samples 3 x N, finite, the surface that reflected points are compared with, same frame.
+/// \return the support for the plane at each of the points, in [0, 1].
+std::vector<float> pointSupport(const Points& points, const Points& samples, const ReflectionPlane& plane,
+                                int num_threads);
+
+/// A pcl::search::Search that answers questions in the normalised frame of the refinement.
 ///
 /// It is given a cloud of just the points used: with indices, PCL's searches disagree on what the numbers that they
 /// return count (FlannSearch: positions among the indices; the others: points of the cloud).
@@ -53,88 +58,30 @@ private:
   mutable std::mutex mutex_;
 };
 
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setOptions(const DetectionOptions& options) {
-  withBadArguments([&] { options.validate(); });
-  options_ = options;
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setMinConfidence(double min_confidence) {
-  DetectionOptions options = options_;
-  options.min_confidence = min_confidence;
-  setOptions(options);
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setApproximate(bool approximate) {
-  options_.approximate = approximate;
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setMaxPlanes(int max_planes) {
-  DetectionOptions options = options_;
-  options.max_planes = max_planes;
-  setOptions(options);
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setGridSize(int num_cells) {
-  DetectionOptions options = options_;
-  options.edt.num_cells = num_cells;
-  setOptions(options);
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setSigma(double sigma) {
-  DetectionOptions options = options_;
-  options.edt.sigma = sigma;
-  setOptions(options);
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setRandomSeed(std::uint64_t seed) {
-  options_.seed = seed;
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setNumberOfThreads(int num_threads) {
-  DetectionOptions options = options_;
-  options.num_threads = options.edt.num_threads = num_threads;
-  setOptions(options);
-}
-
-template <typename PointT>
-void SymmetryMaximaRefinement<PointT>::setMaxPoints(std::size_t max_points) {
-  if (max_points < 2) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 2");
-  max_points_ = max_points;
-}
+}  // namespace detail
 
 template <typename PointT>
 void SymmetryMaximaRefinement<PointT>::setSymmetryMap(const SymmetryMap& map,
                                                       const std::shared_ptr<const GaussianEdt>& edt) {
-  if (map.empty() || !edt)
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "symmetry map: empty, must be made by PlanarSymmetryTransform");
+  if (map.empty() || !edt) detail::throwBadArgument("symmetry map: empty, must be made by PlanarSymmetryTransform");
   map_ = map;
   edt_ = edt;
 }
 
 template <typename PointT>
 std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
-  return withBadArguments([&] {
-    if (!input_) throw std::invalid_argument("input cloud: not set, must be given by setInputCloud");
-    SelectedPoints selected =
-        selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, options_.seed);
-    used_indices_ = std::move(selected.indices);
-    used_points_ = std::move(selected.points);
+  return detail::withBadArguments([&] {
+    Points points = this->selectInput(options_.seed);
+    if (points.cols() == 0) return std::vector<SymmetryPlane>();
     const auto search = [&](const GaussianEdt& edt) -> ClosestPointSearch::Ptr {
-      return search_ ? std::make_shared<PCLPointSearch<PointT>>(search_, *input_, used_indices_, edt) : nullptr;
+      if (!search_) return nullptr;
+      return std::make_shared<detail::PCLPointSearch<PointT>>(search_, *input_, this->getUsedIndices(), edt);
     };
-    const std::optional<Visibility> seen = seenSpace(*input_, used_points_, viewpoint_);
-    used_viewpoint_ = seen.has_value();
+    const std::optional<Visibility> seen = this->seenSpace(points);
     const Visibility* visibility = seen ? &*seen : nullptr;
-    Detection detection = edt_ ? refineMaxima(used_points_, *edt_, map_, options_, search(*edt_), visibility)
-                               : detectPlanes(used_points_, options_, search, visibility);
+    Detection detection = edt_ ? refineMaxima(points, *edt_, map_, options_, search(*edt_), visibility)
+                               : detectPlanes(points, options_, search, visibility);
+    used_points_ = std::move(points);
     own_map_ = std::move(detection.map);
     axes_ = std::move(detection.axes);
     centers_ = std::move(detection.centers);
@@ -145,28 +92,15 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
 
 template <typename PointT>
 std::vector<float> SymmetryMaximaRefinement<PointT>::computePointSupport(const ReflectionPlane& plane) const {
-  return withBadArguments([&] {
-    if (used_points_.cols() == 0) throw std::invalid_argument("input cloud: not analysed, must be by compute()");
-    const SelectedPoints all = selectPoints(*input_, nullptr, input_->size(), 0);
-    const std::vector<float> finite = planeSupport(all.points, used_points_, plane, options_.num_threads);
-    std::vector<float> support(input_->size(), std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t i = 0; i < finite.size(); ++i) support[all.indices[i]] = finite[i];
-    return support;
-  });
-}
-
-template <typename PointT>
-std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PointCloud<PointT>& cloud, const DetectionOptions& options) {
-  SymmetryMaximaRefinement<PointT> refinement;
-  refinement.setOptions(options);
-  // The cloud outlives this call: no copy.
-  refinement.setInputCloud(typename pcl::PointCloud<PointT>::ConstPtr(&cloud, [](const void*) {}));
-  return refinement.compute();
+  std::vector<float> support(input_ ? input_->size() : 0, std::numeric_limits<float>::quiet_NaN());
+  if (used_points_.cols() == 0) return support;
+  const detail::SelectedPoints all = detail::selectPoints(*input_, nullptr, input_->size(), 0);
+  const std::vector<float> finite = detail::pointSupport(all.points, used_points_, plane, options_.num_threads);
+  for (std::size_t i = 0; i < finite.size(); ++i) support[all.indices[i]] = finite[i];
+  return support;
 }
 
 }  // namespace pcl_symmetry
 
-#define PCL_INSTANTIATE_SymmetryMaximaRefinement(T)                                     \
-  template class pcl_symmetry::SymmetryMaximaRefinement<T>;                             \
-  template std::vector<pcl_symmetry::SymmetryPlane> pcl_symmetry::detectSymmetryPlanes( \
-      const pcl::PointCloud<T>&, const pcl_symmetry::DetectionOptions&);
+#define PCL_INSTANTIATE_SymmetryMaximaRefinement(T) \
+  template class PCL_SYMMETRY_EXPORTS pcl_symmetry::SymmetryMaximaRefinement<T>;

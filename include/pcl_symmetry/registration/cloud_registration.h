@@ -11,8 +11,9 @@
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/registration/pose_search.h"
 #include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 struct CloudRegistrationOptions {
   bool frames = true;        ///< tries the poses that bring symmetry frames together, beside evenly spread rotations

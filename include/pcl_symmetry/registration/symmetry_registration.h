@@ -4,26 +4,31 @@
 
 #include <cstdint>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/registration/cloud_registration.h"
-#include "pcl_symmetry/viewpoint.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// Brings a cloud to another one from any pose, by their symmetries (Section 5.1 of the paper): a partial scan to a
-/// model of its object, two wholes, or a whole to a scan.
+/// Registers a cloud to another one from any pose by their symmetries (Section 5.1 of the paper): a partial scan to a
+/// model of its object, two whole objects, or a whole object to a scan.
 ///
-/// A pcl::Registration that needs no guess: align() where PCL's classes stand. Candidates are the poses that bring the
-/// symmetry frames of both clouds together in one of the ways that symmetry leaves open, the guess, and rotations
-/// spread evenly; they are judged by the points of the one cloud that lie on the other, and by the points that lie
-/// where the scanner saw that there is nothing; the best are refined by PCL's point-to-plane ICP.
+/// This is a pcl::Registration that needs no guess: align() it like PCL's own classes. Candidates are the poses that
+/// bring the symmetry frames of both clouds together in one of the ways that symmetry leaves open, the guess, and
+/// rotations spread evenly. A candidate is judged by the points of one cloud that lie on the other, and by the points
+/// that lie where the scanner saw that there is nothing. The best candidates are refined by PCL's point-to-plane ICP.
 ///
 /// Honours setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
-/// epsilons of the refinement. Points that are not finite are left out. Where nothing fits, hasConverged() is false,
-/// the transformation the identity, and the output the source as it was.
+/// epsilons of the refinement. Points that are not finite are left out. Where nothing fits, or a cloud holds no answer,
+/// hasConverged() is false, the transformation is the identity, the output is the source as it was, and PCL_WARN prints
+/// getReason().
+///
+/// The library holds this class for PCL's point types with x, y and z. For other point types define PCL_NO_PRECOMPILE
+/// before the first include, as with PCL's own classes.
 ///
 /// \code
 /// pcl_symmetry::SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
@@ -43,33 +48,55 @@ public:
   SymmetryRegistration();
 
   using Base::getFitnessScore;
-  /// As that of the base class, which in PCL 1.13 aborts at points that are not finite: they are left out here.
-  /// \return mean squared distance of the source from the target, of the points within \p max_range squared units; the
-  /// greatest double where there is none.
+  /// Differs from the function of the base class, which in PCL 1.13 aborts at points that are not finite: here they are
+  /// left out.
+  /// \param max_range greatest squared distance of points that count, squared input units.
+  /// \return mean squared distance of the aligned source from the target; the greatest double where no point counts.
   double getFitnessScore(double max_range = std::numeric_limits<double>::max());
 
-  /// Where the scanners stood; by default the data decide, as in SymmetryMaximaRefinement.
+  /// Where the scanner of each cloud stood; by default the data decide, see ScanAnalysis.
   void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = viewpoint; }
   void setTargetViewpoint(const Viewpoint& viewpoint) { target_viewpoint_ = viewpoint; }
 
-  /// Says converged where getScore().merit() reaches this, in [-1, 1]; default 0.4: scans of benchmark models, also
-  /// noisy ones and such with holes, reach 0.5 at their own model, and stay below 0.32 at models of other kinds.
-  void setMinMerit(double min_merit);
-  /// Tries the frames of both clouds (default), or rotations spread evenly alone.
+  /// \param min_merit a pose of at least this getScore().merit() has converged, in [-1, 1]; default 0.4: scans of
+  /// benchmark models, also scans with noise and holes, reach 0.5 at their own model and stay below 0.32 at models of
+  /// other kinds.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  void setMinMerit(double min_merit) {
+    if (!(min_merit >= -1.0 && min_merit <= 1.0)) {
+      std::ostringstream message;
+      message << "min_merit = " << min_merit << ", must be in [-1, 1]";
+      detail::throwBadArgument(message.str());
+    }
+    min_merit_ = min_merit;
+  }
+  /// \param use_frames whether the symmetry frames of both clouds give candidates (default), or evenly spread rotations
+  /// alone.
   void setUseFrames(bool use_frames) { options_.frames = use_frames; }
-  /// Of the search for poses. \throws pcl::BadArgumentException naming field, value and rule.
-  void setSearchOptions(const PoseSearchOptions& options);
+  /// \param options of the search for poses.
+  void setSearchOptions(const PoseSearchOptions& options) {
+    detail::changeOptions(options_.search, [&](PoseSearchOptions& changed) { changed = options; });
+  }
   const PoseSearchOptions& getSearchOptions() const { return options_.search; }
-  /// Of larger clouds so many points are drawn, >= 3; default 10 000.
-  void setMaxPoints(std::size_t max_points);
+  /// Larger clouds are reduced to this number of points, see CloudAnalysis::setMaxPoints().
+  /// \param max_points >= 3; default 10 000.
+  void setMaxPoints(std::size_t max_points) {
+    detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 3);
+    max_points_ = max_points;
+  }
   void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }
-  /// 0 = one per core (default). The result does not depend on it.
-  void setNumberOfThreads(int num_threads);
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  void setNumberOfThreads(int num_threads) {
+    detail::checkAtLeast("num_threads", num_threads, 0);
+    options_.num_threads = num_threads;
+  }
 
-  /// Of the last align(): what the clouds say about the transformation, or about the best that was found where nothing
-  /// fits.
+  /// \return how well the clouds agree with the transformation of the last align(), or with the best pose that was
+  /// found where nothing fits.
   const PoseScore& getScore() const { return score_; }
-  /// Of the last align(): stages and their milliseconds, in order.
+  /// \return why the last align() did not converge, one sentence; empty where it did.
+  const std::string& getReason() const { return reason_; }
+  /// \return stages of the last align() and their milliseconds, in order.
   const std::vector<std::pair<std::string, double>>& getTiming() const { return timing_ms_; }
 
 protected:
@@ -87,15 +114,25 @@ protected:
   using Base::transformation_rotation_epsilon_;
   using Base::tree_;
 
+  /// \throws pcl::BadArgumentException where points surround the viewpoint that was given for them.
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
 private:
+  /// Sets the transformation, or the reason where nothing fits.
+  void findPose(const Points& source, const Points& target, const Matrix4& guess);
+
   Viewpoint source_viewpoint_, target_viewpoint_;
   CloudRegistrationOptions options_;
+  // chosen: a lower value calls models of other kinds a fit, a higher one refuses scans with noise and holes.
   double min_merit_ = 0.4;
   std::size_t max_points_ = 10'000;
   PoseScore score_;
+  std::string reason_;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };
 
 }  // namespace pcl_symmetry
+
+#ifdef PCL_NO_PRECOMPILE
+#include "pcl_symmetry/registration/impl/symmetry_registration.hpp"
+#endif

@@ -14,15 +14,23 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kSide = kSignatureCells, kNumCells = kSide * kSide * kSide;
-// Cells that the surface passes are counted on a finer grid, so that the density of the points does not matter.
-constexpr int kFineSide = 2 * kSide, kNumFineCells = kFineSide * kFineSide * kFineSide;
-constexpr double kReach = 2.5;    // half the side of a cube, in mean distances of the points from its middle
-constexpr int kNormalCells = 60;  // across the bounding ball
+constexpr int kSide = kSignatureCells;            // derived: short name
+constexpr int kNumCells = kSide * kSide * kSide;  // derived: cells of one cube
+// Finer cells, which count as surface or not: the density of the points does not matter. chosen: half the size of a
+// cell; at the full size walls fill whole cells, at a quarter gaps between points count as holes.
+constexpr int kFineSide = 2 * kSide;
+constexpr int kNumFineCells = kFineSide * kFineSide * kFineSide;  // derived: fine cells of one cube
+// Half the side of a cube, in mean distances of the points from the middle. chosen: half cuts away the outer parts of
+// most shapes, twice leaves most cells empty.
+constexpr double kReach = 2.5;
+// Cells across the bounding ball, one normal each. chosen: half rounds edges, twice leaves too few points in a cell.
+constexpr int kNormalCells = 60;
+// derived: rows and columns of the entries of n n^T, in the order of kNumOrientations.
 constexpr int kPairs[kNumOrientations][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
 
 using Orientation = Eigen::Matrix<float, kNumOrientations, 1>;
 
+/// The entries of n n^T.
 Orientation orientationOf(const Eigen::Vector3f& normal) {
   Orientation products;
   for (int c = 0; c < kNumOrientations; ++c) products[c] = normal[kPairs[c][0]] * normal[kPairs[c][1]];
@@ -34,7 +42,8 @@ struct FineCell {
   int count = 0;
 };
 
-/// Adds a value at a place in units of cells to the cells around it, by trilinear weights.
+/// Adds a value to the eight cells around a place, by trilinear weights.
+/// \param place in cells from the corner of the cube.
 void spread(const Orientation& value, const Eigen::Array3f& place, float* cells) {
   const Eigen::Array3f corner = (place - 0.5f).floor();
   const Eigen::Array3f t = place - 0.5f - corner;
@@ -49,10 +58,12 @@ void spread(const Orientation& value, const Eigen::Array3f& place, float* cells)
   }
 }
 
-/// One cube, of unit norm. \param points about its middle. \param normals of cells, in the same axes.
-void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::vector<int>& normal_of_points,
-              float* cube) {
-  const float reach = static_cast<float>(kReach) * points.colwise().norm().mean();
+/// Sums of n n^T over the points in each fine cell.
+/// \param points about their middle.
+/// \param normals of cells, in the axes of the points.
+/// \param reach half the side of the cube.
+std::vector<FineCell> fineCells(const Points& points, const Eigen::Matrix3Xf& normals,
+                                const std::vector<int>& normal_of_points, float reach) {
   std::vector<FineCell> fine(kNumFineCells);
   const float to_fine = kFineSide / (2.0f * reach);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -62,6 +73,17 @@ void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::
     cell.sum += orientationOf(normals.col(normal_of_points[static_cast<std::size_t>(i)]));
     ++cell.count;
   }
+  return fine;
+}
+
+/// One cube of a signature, of unit norm.
+/// \param points about their middle, in the axes.
+/// \param normals of cells, in the same axes.
+/// \param cube kNumOrientations * kNumCells values, 0 before.
+void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::vector<int>& normal_of_points,
+              float* cube) {
+  const float reach = static_cast<float>(kReach) * points.colwise().norm().mean();
+  const std::vector<FineCell> fine = fineCells(points, normals, normal_of_points, reach);
   for (int i = 0; i < kNumFineCells; ++i) {
     const FineCell& cell = fine[static_cast<std::size_t>(i)];
     if (cell.count == 0) continue;
@@ -75,18 +97,19 @@ void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::
   if (norm > 0.0f) values /= norm;
 }
 
-/// Where the values of a rotated cube come from.
+/// For each value of a rotated cube, the index and the sign of the value that moves there.
 struct CubeRotation {
   std::array<std::int32_t, kNumOrientations * kNumCells> source;
   std::array<float, kNumOrientations> sign;
 };
 
+/// Index of the product of components \p a and \p b in kPairs.
 int orientationIndex(int a, int b) {
   return a == b ? a : 6 - a - b;
 }
 
 CubeRotation makeCubeRotation(const Eigen::Matrix3i& rotation) {
-  // The value at cell x of the rotated cube was at R^T x, and n n^T becomes R n n^T R^T.
+  // The value at cell x of the rotated cube comes from R^T x, and n n^T becomes R n n^T R^T.
   int from_axis[3], axis_sign[3];
   for (int axis = 0; axis < 3; ++axis)
     axis_sign[axis] = rotation.row(axis).cwiseAbs().maxCoeff(&from_axis[axis]) * rotation.row(axis).sum();
@@ -126,7 +149,7 @@ std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d
   std::vector<float> signature(kSignatureSize, 0.0f);
   fillCube(turned, normals, surface.cell_of_points, signature.data());
   fillCube(stretched(turned), normals, surface.cell_of_points, signature.data() + kSignatureSize / 2);
-  for (float& value : signature) value *= static_cast<float>(M_SQRT1_2);
+  for (float& value : signature) value *= static_cast<float>(std::sqrt(0.5));
   return signature;
 }
 
@@ -146,7 +169,7 @@ std::vector<Eigen::Matrix3d> signatureFrames(const PointsRef& points, const Symm
 }
 
 FrameOptions signatureFrameOptions() {
-  FrameOptions options;
+  FrameOptions options;  // chosen: half the default resolution along theta, phi and r
   options.edt.num_cells = 32;
   options.num_theta = 16;
   options.num_phi = 64;

@@ -5,15 +5,22 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/constants.h"
 #include "core/base/simd.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
+// Cells along each side of the distance transform that planes are measured in. chosen: 2 cells to a sigma; half makes
+// steps of f visible in D, twice takes eight times the time and memory.
 constexpr int kTransformCells = 64;
-constexpr double kTransformSigma = 1.0 / 16.0;  // of the radius
-constexpr std::size_t kLanes = 32;              // sums that are kept apart: enough to hide the latency of additions
+// Radii of the ball. chosen: planes are told apart by a narrower Gaussian than places; half makes D sensitive to the
+// sampling, twice blurs neighbouring planes.
+constexpr double kTransformSigma = 1.0 / 16.0;
+// Partial sums. chosen: 32 floats are two AVX-512 or four AVX registers and hide the latency of additions; half waits
+// for it, twice gains nothing.
+constexpr std::size_t kLanes = 32;
 
 PCL_SYMMETRY_MULTIVERSION
 float sumOfSquares(const float* a, const float* b, std::size_t size) {
@@ -31,19 +38,21 @@ float sumOfSquares(const float* a, const float* b, std::size_t size) {
   return sum;
 }
 
-/// sin(theta) of each row of bins.
+/// sin(theta) at the centers of the bins of theta.
 const std::array<float, kDescriptorBins>& sines() {
   static const std::array<float, kDescriptorBins> values = [] {
     std::array<float, kDescriptorBins> made;
     for (int t = 0; t < kDescriptorBins; ++t)
-      made[static_cast<std::size_t>(t)] = static_cast<float>(std::sin((t + 0.5) * M_PI_2 / kDescriptorBins));
+      made[static_cast<std::size_t>(t)] = static_cast<float>(std::sin((t + 0.5) * (0.5 * kPi) / kDescriptorBins));
     return made;
   }();
   return values;
 }
 
-std::vector<float> prstOf(const GaussianEdt& edt, int num_radius, double radius, const DescriptorOptions& options) {
-  const PlaneGrid grid(kDescriptorBins, kDescriptorBins, num_radius, Eigen::Vector3d::Zero(), radius);
+/// sqrt(max(D, 0)) of the planes within distance 1 of the origin.
+/// \param num_radius bins of r.
+std::vector<float> prstOf(const GaussianEdt& edt, int num_radius, const DescriptorOptions& options) {
+  const PlaneGrid grid(kDescriptorBins, kDescriptorBins, num_radius, Eigen::Vector3d::Zero(), 1.0);
   SampledTransformOptions sampling;
   sampling.num_samples = options.num_samples;
   sampling.seed = options.seed;
@@ -76,13 +85,12 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
   edt_options.num_cells = kDescriptorBins;
   SymmetryDescriptors result;
   result.gedt = GaussianEdt(scaled, edt_options).values();
-  // Planes are told apart better by a narrower Gaussian than places are.
   edt_options.num_cells = kTransformCells;
   edt_options.sigma = kTransformSigma;
   const GaussianEdt edt(scaled, edt_options);
-  result.prst = prstOf(edt, kDescriptorBins, 1.0, options);
-  // One bin of r lies about the planes through the origin, whatever its width.
-  result.prsd = prstOf(edt, 1, 1.0, options);
+  result.prst = prstOf(edt, kDescriptorBins, options);
+  // A single bin of r is centered on the planes through the origin.
+  result.prsd = prstOf(edt, 1, options);
   return result;
 }
 

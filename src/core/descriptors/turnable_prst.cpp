@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/constants.h"
 #include "core/descriptors/signature_axes.h"
 #include "core/frame/plane_profiles.h"
 #include "core/geometry/axis_rotations.h"
@@ -13,26 +14,32 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kCells = 64;             // of the distance transform
-constexpr double kSigma = 1.0 / 16.0;  // of its radius
-constexpr int kNumSamples = 256;
-constexpr int kSide = 10;                                // normals along each side of a face of the cube
-constexpr int kFineOffsets = 2 * kTurnableOffsets;       // averaged in pairs
-constexpr double kRadius = 2.2, kStretchedRadius = 2.0;  // mean distances of the points from the middle
+constexpr int kCells = 64;             // chosen: as kTransformCells of symmetryDescriptors()
+constexpr double kSigma = 1.0 / 16.0;  // radii of the ball. chosen: as kTransformSigma of symmetryDescriptors()
+constexpr int kNumSamples = 256;       // chosen: as DescriptorOptions::num_samples
+constexpr int kSide = 10;              // normals along each side of a cube face. chosen: 9 degrees apart; half blurs
+                                       // planes, twice takes four times the time and size
+static_assert(kTurnableNormals == 3 * kSide * kSide);
+constexpr int kFineOffsets = 2 * kTurnableOffsets;  // chosen: D is averaged over two offsets; one is noisier
+// Radius of the ball in mean distances of the points from the middle. chosen: it holds nearly all points of compact
+// shapes; half cuts away the outer parts, twice leaves half of the offsets empty.
+constexpr double kRadius = 2.2;
+constexpr double kStretchedRadius = 2.0;  // chosen: as above; stretched shapes reach less far
 
 struct Normals {
   Eigen::Matrix<double, 3, kTurnableNormals> directions;
   Eigen::Matrix<float, kTurnableNormals, 1> weights;
 };
 
-/// Of each pair of opposite normals the one whose first coordinate that is not 0 is positive.
+/// Normals on three faces of a cube, at equal angles along its edges; each stands for itself and its opposite. A weight
+/// is the root of the solid angle around the normal, up to a common factor.
 const Normals& normals() {
   static const Normals values = [] {
     Normals made;
     Eigen::Index count = 0;
     for (int axis = 0; axis < 3; ++axis) {
       for (int i = 0; i < kSide * kSide; ++i) {
-        const auto place = [](int k) { return std::tan(((k + 0.5) / kSide - 0.5) * M_PI_2); };
+        const auto place = [](int k) { return std::tan(((k + 0.5) / kSide - 0.5) * (0.5 * kPi)); };
         const double u = place(i % kSide), v = place(i / kSide), sq = 1.0 + u * u + v * v;
         Eigen::Vector3d x;
         x[axis] = 1.0;
@@ -47,7 +54,7 @@ const Normals& normals() {
   return values;
 }
 
-/// Which normal each comes from, and whether it is that or its opposite.
+/// For each normal, the normal that the rotation maps to it or to its opposite.
 struct NormalRotation {
   std::array<int, kTurnableNormals> source;
   std::array<bool, kTurnableNormals> opposite;
@@ -76,7 +83,9 @@ const NormalRotation& normalRotation(int rotation) {
   return rotations[static_cast<std::size_t>(rotation)];
 }
 
-/// PRST at the normals, of unit norm. \param points about their middle, in the axes.
+/// sqrt(D) at the normals and offsets, of unit norm.
+/// \param points about their middle, in the axes.
+/// \param radius of the ball, in mean distances of the points from the middle.
 void fillPRST(const Points& points, double radius, float* prst) {
   GaussianEdtOptions options;
   options.num_cells = kCells;
@@ -86,7 +95,7 @@ void fillPRST(const Points& points, double radius, float* prst) {
   const double scale = radius * points.colwise().norm().mean();
   const GaussianEdt edt(points / static_cast<float>(scale), options);
   const PlaneProfiles profiles(edt, {}, kNumSamples, 1, 1);
-  // The middle of the points is not that of the grid.
+  // Profiles are in cells about the middle of the grid, which is not the middle of the points.
   const Eigen::Vector3d origin =
       -(edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize())) / edt.cellSize();
   const double reach = 1.0 / edt.cellSize(), step = 2.0 * reach / kFineOffsets;
@@ -109,7 +118,7 @@ std::vector<float> turnablePRST(const PointsRef& points, const Eigen::Matrix3d& 
   std::vector<float> prst(kTurnablePRSTSize);
   fillPRST(turned, kRadius, prst.data());
   fillPRST(stretched(turned), kStretchedRadius, prst.data() + kTurnablePRSTSize / 2);
-  for (float& value : prst) value *= static_cast<float>(M_SQRT1_2);
+  for (float& value : prst) value *= static_cast<float>(std::sqrt(0.5));
   return prst;
 }
 

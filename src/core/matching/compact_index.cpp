@@ -11,7 +11,27 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t kForms = 2048;  // of a block of the scan
+// Forms per block of work. chosen: the products of a block, 200 kB, stay in the cache; half costs overhead per block,
+// twice exceeds small caches.
+constexpr std::size_t kForms = 2048;
+
+/// The least distance of each shape among the forms.
+/// \param forms rising indices of forms.
+/// \param cosines greatest inner product of each form with a rotation of the query.
+std::vector<std::pair<int, float>> leastDistances(const std::vector<int>& forms, const Eigen::RowVectorXf& cosines,
+                                                  int forms_per_shape) {
+  std::vector<std::pair<int, float>> shapes;
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    const int shape = forms[i] / forms_per_shape;
+    const float sq_distance = 2.0f - 2.0f * cosines[static_cast<Eigen::Index>(i)];
+    const float distance = std::sqrt(std::max(0.0f, sq_distance));
+    if (shapes.empty() || shapes.back().first != shape)
+      shapes.emplace_back(shape, distance);
+    else
+      shapes.back().second = std::min(shapes.back().second, distance);
+  }
+  return shapes;
+}
 
 }  // namespace
 
@@ -37,7 +57,7 @@ Eigen::Index CompactIndex::numShapes() const {
   return compact_.cols() / forms_per_shape_;
 }
 
-/// The forms whose leading components are nearest to those of any rotation, in the order of the index.
+/// The forms whose leading components are nearest to those of any rotation of the query, by rising index.
 std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std::size_t count) const {
   std::vector<int> forms(static_cast<std::size_t>(compact_.cols()));
   std::iota(forms.begin(), forms.end(), 0);
@@ -47,7 +67,7 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
   queries.topRows(num_leading) = rotations.topRows(num_leading);
   queries.row(num_leading).setOnes();
   const Eigen::VectorXf sq_norms = 0.5f * rotations.topRows(num_leading).colwise().squaredNorm().transpose();
-  std::vector<float> nearness(forms.size());  // -1/2 squared distance
+  std::vector<float> nearness(forms.size());  // -1/2 of the squared distance to the nearest rotation
   parallelRanges(forms.size(), kForms, options_.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto first = static_cast<Eigen::Index>(begin), size = static_cast<Eigen::Index>(end - begin);
     Eigen::MatrixXf products = queries.transpose() * leading_.middleCols(first, size);
@@ -65,24 +85,14 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
 
 std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& rotations, int num_nearest) const {
   check(num_nearest >= 0, "num_nearest", num_nearest, ">= 0");
-  std::vector<std::pair<int, float>> found;
-  if (compact_.cols() == 0) return found;
+  if (compact_.cols() == 0) return {};
   check(rotations.rows() == compact_.rows(), "size of a compact form", rotations.rows(), "that of the index");
   const std::vector<int> forms = candidates(
       rotations, static_cast<std::size_t>(std::max(options_.num_candidates, 2 * num_nearest * forms_per_shape_)));
   Eigen::MatrixXf near(compact_.rows(), static_cast<Eigen::Index>(forms.size()));
   for (std::size_t i = 0; i < forms.size(); ++i) near.col(static_cast<Eigen::Index>(i)) = compact_.col(forms[i]);
   const Eigen::RowVectorXf cosines = (rotations.transpose() * near).colwise().maxCoeff();
-  // The nearest form of each shape, then the nearest shapes.
-  for (std::size_t i = 0; i < forms.size(); ++i) {
-    const int shape = forms[i] / forms_per_shape_;
-    const float sq_distance = 2.0f - 2.0f * cosines[static_cast<Eigen::Index>(i)];
-    const float distance = std::sqrt(std::max(0.0f, sq_distance));
-    if (found.empty() || found.back().first != shape)
-      found.emplace_back(shape, distance);
-    else
-      found.back().second = std::min(found.back().second, distance);
-  }
+  std::vector<std::pair<int, float>> found = leastDistances(forms, cosines, forms_per_shape_);
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   found.resize(std::min(found.size(), static_cast<std::size_t>(num_nearest)));
   return found;

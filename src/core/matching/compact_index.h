@@ -7,9 +7,12 @@
 namespace pcl_symmetry {
 
 struct CompactIndexOptions {
-  int num_leading = 24;      ///< components, which vary most, that candidates are chosen by, >= 1
-  int num_candidates = 512;  ///< compact forms, at least, that all components are compared of, >= 1
-  int num_threads = 0;       ///< >= 0; 0 = one per core
+  /// Leading components, those of greatest variance, by which candidates are chosen, >= 1. chosen: half loses true
+  /// neighbours of noisy queries, twice takes twice the time.
+  int num_leading = 24;
+  /// Compact forms, at least, whose components are all compared, >= 1. chosen: as num_leading.
+  int num_candidates = 512;
+  int num_threads = 0;  ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -17,28 +20,31 @@ struct CompactIndexOptions {
 
 /// Finds the nearest of many shapes by their compact forms, see SignatureProjection.
 ///
-/// All forms are scanned by their leading components, as one product of matrices: with 24 rotations to ask for in
-/// hundreds of dimensions, randomised k-d trees (FLANN) take longer for a lower recall.
+/// The leading components of all forms are compared as one product of matrices, then all components of the candidates.
+/// Randomised k-d trees (FLANN) take longer and find fewer of the true neighbours, as each query has 24 rotations in
+/// hundreds of dimensions.
 class CompactIndex {
 public:
   CompactIndex() = default;
 
   /// \param compact K x (forms_per_shape N), unit columns, those of one shape side by side.
-  /// \throws std::invalid_argument for bad options or a number of columns that does not fit.
+  /// \param forms_per_shape >= 1.
+  /// \throws std::invalid_argument for bad options or a number of columns that is no multiple of forms_per_shape.
   CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options = {});
 
   Eigen::Index numShapes() const;
 
-  /// \param rotations of the shape that is asked for, see SignatureProjection::rotations(). \param num_nearest >= 0.
-  /// \return shape and distance as of signatureDistance(), nearest first; fewer where there are no more. Exact where
-  /// there are no more forms than num_candidates.
+  /// \param rotations K x 24 M, all rotations of the query's compact forms, see SignatureProjection::rotations().
+  /// \param num_nearest >= 0.
+  /// \return shapes and their signatureDistance(), nearest first, at most \p num_nearest. Exact where the index holds
+  /// no more than num_candidates forms. \throws std::invalid_argument for another K or a negative \p num_nearest.
   std::vector<std::pair<int, float>> nearest(const Eigen::MatrixXf& rotations, int num_nearest) const;
 
 private:
   std::vector<int> candidates(const Eigen::MatrixXf& rotations, std::size_t count) const;
 
   Eigen::MatrixXf compact_;
-  Eigen::MatrixXf leading_;  // leading components of the forms, and -1/2 their squared norm
+  Eigen::MatrixXf leading_;  // leading components of the forms; last row: -1/2 of their squared norm
   int forms_per_shape_ = 1;
   CompactIndexOptions options_;
 };

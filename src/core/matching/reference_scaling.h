@@ -7,11 +7,12 @@
 
 namespace pcl_symmetry {
 
-/// How near the nearest of a fixed set of other shapes lie: the mean distance to the \p num_nearest of them.
+/// The mean distance of a shape to the nearest shapes of a fixed reference set.
 ///
-/// d(a, b) / sqrt(typical(a) typical(b)) compares shapes that many others resemble with shapes that stand apart; what
-/// the others are need not be known.
-/// \param distances to the shapes of the set; infinite ones (of the shape itself) do not count. \return > 0.
+/// d(a, b) / sqrt(typical(a) typical(b)) compares distances of shapes that many others resemble with distances of
+/// shapes that stand apart. The classes of the references need not be known. \param distances to the references;
+/// infinite ones, as to the shape itself, are left out. \param num_nearest chosen: half varies with single references,
+/// twice averages over shapes of other kinds. \return > 0; 1 where no distance is left.
 inline float typicalDistance(std::vector<float> distances, std::size_t num_nearest = 10) {
   distances.erase(std::remove(distances.begin(), distances.end(), std::numeric_limits<float>::infinity()),
                   distances.end());

@@ -6,7 +6,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Every so-many-th point, at most \p max_points of them.
+/// At most \p max_points points, at equal steps in the input.
 Points thinned(const PointsRef& points, int max_points) {
   if (points.cols() <= max_points) return points;
   Points kept(3, max_points);

@@ -15,11 +15,16 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kSpare = 16;               // dimensions that are searched besides
-constexpr float kLeastVariance = 1e-5f;  // of the greatest
-constexpr Eigen::Index kRows = 512;      // of a block of a product
+// Dimensions that are searched besides those that are kept. chosen: half slows convergence of the weakest components,
+// twice takes more time.
+constexpr int kSpare = 16;
+// Share of the greatest variance, below which components are rounding errors. chosen: 84 float epsilons; half or twice
+// changes the last components alone.
+constexpr float kLeastVariance = 1e-5f;
+// Rows per block of a product. chosen: at half the overhead per block grows, at twice threads idle.
+constexpr Eigen::Index kRows = 512;
 
-/// Index of a^T b.
+/// Index of the rotation a^T b.
 int quotient(int a, int b) {
   const auto& rotations = axisRotations();
   const Eigen::Matrix3i product =
@@ -27,7 +32,7 @@ int quotient(int a, int b) {
   return static_cast<int>(std::find(rotations.begin(), rotations.end(), product) - rotations.begin());
 }
 
-/// The product, by blocks of rows.
+/// a * b, computed by blocks of rows.
 Eigen::MatrixXf product(const Eigen::MatrixXf& a, const Eigen::Ref<const Eigen::MatrixXf>& b, int num_threads) {
   Eigen::MatrixXf result(a.rows(), b.cols());
   parallelRanges(static_cast<std::size_t>(a.rows()), kRows, num_threads, [&](std::size_t begin, std::size_t end) {
@@ -37,7 +42,7 @@ Eigen::MatrixXf product(const Eigen::MatrixXf& a, const Eigen::Ref<const Eigen::
   return result;
 }
 
-/// Inner products of all shapes in all rotations about their common mean; shape i in rotation g has index g N + i.
+/// Inner products of all N shapes in all rotations, about their common mean. Shape i in rotation g has index g N + i.
 Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, SignatureRotation rotate, int num_threads) {
   const Eigen::Index n = signatures.cols();
   std::vector<Eigen::MatrixXf> with_rotated(kNumAxisRotations);
@@ -59,7 +64,7 @@ Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, SignatureRotati
 
 struct Components {
   Eigen::MatrixXf vectors;    // orthonormal columns
-  Eigen::VectorXf variances;  // of the shapes along them, falling
+  Eigen::VectorXf variances;  // along the columns, falling
 };
 
 /// The greatest eigenvalues of a symmetric matrix by subspace iteration.
@@ -84,6 +89,53 @@ Components principalComponents(const Eigen::MatrixXf& products, const Projection
   return {space * solver.eigenvectors().rowwise().reverse().leftCols(kept), falling.head(kept)};
 }
 
+/// The mean of all shapes in all rotations.
+Eigen::VectorXf rotationMean(const Eigen::MatrixXf& signatures, SignatureRotation rotate) {
+  const Eigen::VectorXf mean = signatures.rowwise().mean();
+  Eigen::VectorXf result = Eigen::VectorXf::Zero(signatures.rows()), rotated(signatures.rows());
+  for (int r = 0; r < kNumAxisRotations; ++r) {
+    rotate(mean.data(), r, rotated.data());
+    result += rotated / kNumAxisRotations;
+  }
+  return result;
+}
+
+/// S x K: signatures times the basis are compact forms. Components sum to zero over the shapes, so that the mean need
+/// not be subtracted. The scale of the weights does not matter, as compact forms have unit norm.
+Eigen::MatrixXf whitenedBasis(const Eigen::MatrixXf& signatures, const Components& components, SignatureRotation rotate,
+                              const ProjectionOptions& options) {
+  const Eigen::Index n = signatures.cols(), k = components.variances.size();
+  Eigen::MatrixXf basis = Eigen::MatrixXf::Zero(signatures.rows(), k);
+  for (int r = 0; r < kNumAxisRotations; ++r) {
+    const Eigen::MatrixXf part = product(signatures, components.vectors.middleRows(r * n, n), options.num_threads);
+    parallelBlocks(static_cast<std::size_t>(k), options.num_threads, [&](std::size_t c) {
+      const auto column = static_cast<Eigen::Index>(c);
+      Eigen::VectorXf rotated(signatures.rows());
+      rotate(part.col(column).data(), r, rotated.data());
+      basis.col(column) += rotated;
+    });
+  }
+  const Eigen::ArrayXf deviations = components.variances.array().sqrt();
+  const Eigen::ArrayXf weights = deviations.pow(-static_cast<float>(options.whitening));
+  basis *= (weights / deviations).matrix().asDiagonal();
+  return basis;
+}
+
+/// K x K matrices that rotate compact forms. A rotated component is the same sum over shapes in other rotations.
+/// Components that a rotation maps to each other have the same variance, so that weights do not matter.
+std::vector<Eigen::MatrixXf> rotationsOfComponents(const Components& components, Eigen::Index num_shapes,
+                                                   int num_threads) {
+  const Eigen::Index n = num_shapes;
+  std::vector<Eigen::MatrixXf> turns(kNumAxisRotations);
+  parallelBlocks(kNumAxisRotations, num_threads, [&](std::size_t r) {
+    Eigen::MatrixXf moved(components.vectors.rows(), components.vectors.cols());
+    for (int g = 0; g < kNumAxisRotations; ++g)
+      moved.middleRows(g * n, n) = components.vectors.middleRows(quotient(static_cast<int>(r), g) * n, n);
+    turns[r].noalias() = components.vectors.transpose() * moved;
+  });
+  return turns;
+}
+
 }  // namespace
 
 void ProjectionOptions::validate() const {
@@ -99,41 +151,11 @@ SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, 
   check(rotate != rotateSignature || signatures.rows() == kSignatureSize, "size of a signature", signatures.rows(),
         "kSignatureSize");
   check(signatures.cols() >= 1, "number of shapes", signatures.cols(), ">= 1");
-  const Eigen::Index n = signatures.cols();
   const Components components = principalComponents(innerProducts(signatures, rotate, options.num_threads), options);
-  const Eigen::Index k = components.variances.size();
-  // Of values of unit norm, the scale of the weights does not matter.
-  const Eigen::ArrayXf deviations = components.variances.array().sqrt();
-  const Eigen::ArrayXf weights = deviations.pow(-static_cast<float>(options.whitening));
-
   SignatureProjection result;
-  result.mean_ = Eigen::VectorXf::Zero(signatures.rows());
-  result.basis_ = Eigen::MatrixXf::Zero(signatures.rows(), k);
-  const Eigen::VectorXf mean = signatures.rowwise().mean();
-  Eigen::VectorXf rotated_mean(signatures.rows());
-  for (int r = 0; r < kNumAxisRotations; ++r) {
-    rotate(mean.data(), r, rotated_mean.data());
-    result.mean_ += rotated_mean / kNumAxisRotations;
-    const Eigen::MatrixXf part = product(signatures, components.vectors.middleRows(r * n, n), options.num_threads);
-    parallelBlocks(static_cast<std::size_t>(k), options.num_threads, [&](std::size_t c) {
-      const auto column = static_cast<Eigen::Index>(c);
-      Eigen::VectorXf rotated(signatures.rows());
-      rotate(part.col(column).data(), r, rotated.data());
-      result.basis_.col(column) += rotated;
-    });
-  }
-  // Components sum to zero over the shapes, so that the mean needs not be taken off here.
-  result.basis_ *= (weights / deviations).matrix().asDiagonal();
-
-  // A rotation of a component is the same sum over other shapes. Components that turn into each other have the same
-  // variance, so that weights do not matter here.
-  result.turns_.resize(kNumAxisRotations);
-  parallelBlocks(kNumAxisRotations, options.num_threads, [&](std::size_t r) {
-    Eigen::MatrixXf moved(components.vectors.rows(), k);
-    for (int g = 0; g < kNumAxisRotations; ++g)
-      moved.middleRows(g * n, n) = components.vectors.middleRows(quotient(static_cast<int>(r), g) * n, n);
-    result.turns_[r].noalias() = components.vectors.transpose() * moved;
-  });
+  result.mean_ = rotationMean(signatures, rotate);
+  result.basis_ = whitenedBasis(signatures, components, rotate, options);
+  result.turns_ = rotationsOfComponents(components, signatures.cols(), options.num_threads);
   return result;
 }
 
@@ -161,7 +183,7 @@ std::vector<float> SignatureProjection::toValues() const {
 }
 
 SignatureProjection SignatureProjection::fromValues(const std::vector<float>& values) {
-  // S + S K + 24 K K values: the only K >= 0 that fits, if any does.
+  // S + S K + 24 K K values: solved for K.
   const double s = kSignatureSize, excess = static_cast<double>(values.size()) - s;
   const auto k = static_cast<Eigen::Index>(std::lround(
       (std::sqrt(s * s + 4.0 * kNumAxisRotations * std::max(0.0, excess)) - s) / (2.0 * kNumAxisRotations)));

@@ -9,11 +9,15 @@
 namespace pcl_symmetry {
 
 struct ProjectionOptions {
-  int num_dimensions = 256;  ///< of the compact form, >= 1; fewer where the shapes span no more
+  /// Dimensions of the compact form, >= 1; fewer where the references span fewer. chosen: half loses detail, twice
+  /// takes twice the memory.
+  int num_dimensions = 256;
   /// Coefficients are divided by their standard deviation to this power, in [0, 1]: what all shapes have in common
-  /// counts less.
+  /// counts less. chosen: 0 is the L2 distance of the signatures, 1 lets noise count as much as shape.
   double whitening = 0.4;
-  int num_iterations = 4;  ///< of the search for the greatest variances, >= 1
+  /// Iterations of the search for the components of greatest variance, >= 1. chosen: half leaves the weakest components
+  /// inexact, twice takes twice the time.
+  int num_iterations = 4;
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -21,37 +25,42 @@ struct ProjectionOptions {
   void validate() const;
 };
 
-/// Turns a signature or another descriptor by one of the axisRotations().
+/// Rotates a signature or another descriptor by one of the axisRotations().
 using SignatureRotation = void (*)(const float* values, int rotation, float* rotated);
 
-/// The compact form of signatures: their principal components, with all rotations of axes at the price of one.
+/// Compact forms of signatures (Section 5.2; not in the paper): their principal components, where a shape in all 24
+/// rotations of its axes is projected once.
 ///
-/// The components are those of the reference shapes in all 24 rotations of their axes. So the space that they span is
-/// mapped onto itself by these, and a signature is projected once and turned there. Distances of compact forms tell
-/// shapes of a kind from others better than those of the signatures; no kinds have to be known for that.
+/// The components are those of the reference shapes in all 24 rotations. The rotations therefore map the space of the
+/// components onto itself, and a compact form is rotated there. Distances of compact forms tell classes apart better
+/// than distances of signatures; the classes need not be known.
 class SignatureProjection {
 public:
   SignatureProjection() = default;
 
-  /// \param signatures S x N, one reference shape a column, N >= 1; 200 are enough for any number of shapes.
-  /// \param rotate turns such a column. \throws std::invalid_argument for bad options, too few shapes, or shapes that
-  /// are all alike.
+  /// \param signatures S x N, one reference shape per column, N >= 1; README measures 200 of 904 shapes.
+  /// \param rotate rotates such a column.
+  /// \throws std::invalid_argument for bad options, no shape, or shapes that are all alike.
   static SignatureProjection fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options = {},
                                  SignatureRotation rotate = rotateSignature);
 
   bool empty() const { return basis_.size() == 0; }
   int numDimensions() const { return static_cast<int>(basis_.cols()); }
 
-  /// \param signatures S x M, S as in fit(). \return numDimensions() x M, columns of unit norm.
+  /// \param signatures S x M, S as in fit().
+  /// \return compact forms, numDimensions() x M, columns of unit norm.
+  /// \throws std::invalid_argument for another S.
   Eigen::MatrixXf project(const Eigen::Ref<const Eigen::MatrixXf>& signatures) const;
 
-  /// \param compact numDimensions() x M, of project(). \return the compact forms of the 24 rotations of each,
-  /// numDimensions() x 24 M, those of the first signature first and its own before others; see rotateSignature().
+  /// \param compact numDimensions() x M, of project().
+  /// \return numDimensions() x 24 M: for each compact form its 24 rotations, the identity first, see rotateSignature().
+  /// \throws std::invalid_argument for another number of rows.
   Eigen::MatrixXf rotations(const Eigen::Ref<const Eigen::MatrixXf>& compact) const;
 
-  /// All numbers that make up the projection, to be stored. \return and their counterpart.
+  /// \return all numbers of the projection, to be stored: mean, basis, rotations.
   std::vector<float> toValues() const;
-  /// \throws std::invalid_argument where the values are not those of a projection of signatures.
+  /// \param values of toValues(), of a projection of shape signatures.
+  /// \throws std::invalid_argument for another number of values.
   static SignatureProjection fromValues(const std::vector<float>& values);
 
 private:
@@ -60,8 +69,10 @@ private:
   std::vector<Eigen::MatrixXf> turns_;  // 24, K x K
 };
 
-/// The least distance of a shape to another one in any of their frames and any rotation of axes.
-/// \param rotations of the one, see SignatureProjection::rotations(). \param compact of the other. \return in [0, 2].
+/// The least distance of two shapes over all of their frames and all rotations of axes.
+/// \param rotations of the one shape, see SignatureProjection::rotations().
+/// \param compact forms of the other shape.
+/// \return in [0, 2].
 float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::Ref<const Eigen::MatrixXf>& compact);
 
 }  // namespace pcl_symmetry

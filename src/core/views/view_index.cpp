@@ -11,7 +11,9 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t kShapes = 16;  // of a block
+// Shapes per block of work. chosen: at half the overhead per block grows, at twice threads idle at the end of few shapes.
+constexpr std::size_t kBlock = 16;
+constexpr double kLargestDistance = 2.0;  // derived: of two unit vectors
 
 struct NearView {
   double distance;
@@ -26,7 +28,7 @@ std::vector<NearView> nearestViews(const std::vector<View>& views, const View& s
   for (const View& view : views) {
     const double size = options.size_weight * std::abs(std::log(view.radius / scan.radius));
     const bool full = nearest.size() >= static_cast<std::size_t>(options.num_poses);
-    const double enough = full ? nearest.back().distance - size : 2.0;
+    const double enough = full ? nearest.back().distance - size : kLargestDistance;
     if (enough <= 0.0) continue;
     const ViewAgreement agreement = comparison.compare(view.values.data(), static_cast<float>(enough));
     if (agreement.distance >= enough) continue;
@@ -56,15 +58,17 @@ std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, const ViewSearchOp
   options.validate();
   const ViewComparison comparison(scan);
   std::vector<std::vector<NearView>> views(shapes_.size());
-  parallelRanges(shapes_.size(), kShapes, options.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(shapes_.size(), kBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) views[i] = nearestViews(shapes_[i], scan, comparison, options);
   });
+
   std::vector<int> order;
   for (std::size_t i = 0; i < views.size(); ++i)
     if (!views[i].empty()) order.push_back(static_cast<int>(i));
   const auto distance = [&](int shape) { return views[static_cast<std::size_t>(shape)].front().distance; };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
   order.resize(std::min(order.size(), static_cast<std::size_t>(options.num_nearest)));
+
   std::vector<ShapeOfView> found;
   for (const int shape : order) {
     found.push_back({shape, distance(shape), {}});

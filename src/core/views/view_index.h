@@ -8,9 +8,9 @@
 namespace pcl_symmetry {
 
 struct ViewSearchOptions {
-  int num_nearest = 10;  ///< shapes, >= 0
-  int num_poses = 6;     ///< of each, >= 1
-  /// What a factor of e between the radii of two views adds to their distance, >= 0.
+  int num_nearest = 10;  ///< shapes that are returned, >= 0. chosen: see RecognitionOptions::num_candidates
+  int num_poses = 6;     ///< poses of each shape, >= 1. chosen: half misses poses, twice takes twice the time to try
+  /// Added to the distance of two views if their radii differ by a factor of e, >= 0. chosen: see RecognitionOptions.
   double size_weight = 0.25;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -20,20 +20,22 @@ struct ViewSearchOptions {
 
 /// A shape that looks like a scan from some side.
 struct ShapeOfView {
-  int shape;                                    ///< in the order in which they were added
-  double distance;                              ///< least distance of views, difference of sizes included
+  int shape;                                    ///< number of the shape, in the order in which shapes were added
+  double distance;                              ///< least distance of its views, with the difference of sizes
   std::vector<Eigen::Isometry3d> T_shape_scan;  ///< poses of the nearest views, nearest first
 };
 
-/// Finds the shapes that a scan can be a view of, and in which poses.
+/// Finds the shapes that a scan can show, and their poses.
 class ViewIndex {
 public:
-  /// Adds a shape. \param views as of viewsAround().
+  /// Adds a shape.
+  /// \param views of viewsAround().
   void add(const std::vector<View>& views);
 
   int numShapes() const { return static_cast<int>(shapes_.size()); }
 
-  /// \return nearest first; fewer where there are no more. Shapes without views are never found.
+  /// \return nearest first, at most ViewSearchOptions::num_nearest. Shapes without views are never found.
+  /// \throws std::invalid_argument for bad options.
   std::vector<ShapeOfView> nearest(const View& scan, const ViewSearchOptions& options = {}) const;
 
 private:

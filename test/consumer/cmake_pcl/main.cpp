@@ -1,12 +1,14 @@
-/// A user's program with a point type of its own: the templates come from the impl headers.
+/// A user's program with a point type of its own: PCL_NO_PRECOMPILE brings the bodies of the templates, as in PCL.
+#define PCL_NO_PRECOMPILE
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+#include <pcl_symmetry/planar_symmetry_transform.h>
+#include <pcl_symmetry/symmetry_detection.h>
 
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <pcl_symmetry/impl/planar_symmetry_transform.hpp>
-#include <pcl_symmetry/impl/symmetry_maxima_refinement.hpp>
+#include <string>
 
 struct LidarPoint {
   PCL_ADD_POINT4D;
@@ -49,5 +51,14 @@ int main() {
     std::printf("[%.4f %.4f %.4f] offset %.4f support %.3f\n", n.x(), n.y(), n.z(), plane.offset(), plane.support);
     if (n.cwiseAbs().maxCoeff() < 0.9999 || std::abs(n.dot(center) - plane.offset()) > 0.001) return 1;
   }
-  return planes.size() == 3 && !map.empty() ? 0 : 1;
+  if (planes.size() != 3 || map.empty()) return 1;
+
+  // A cloud without an answer gives an empty result, a wrong parameter an exception that names it.
+  if (!pcl_symmetry::detectSymmetryPlanes(pcl::PointCloud<LidarPoint>()).empty()) return 1;
+  try {
+    transform.setSigma(-1.0);
+  } catch (const pcl::BadArgumentException& error) {
+    return std::string(error.what()).rfind("sigma = -1, must be", 0) == 0 ? 0 : 1;
+  }
+  return 1;
 }

@@ -1,9 +1,10 @@
 /// A user's program with one of PCL's point types: the templates come from the library.
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-
+#include <pcl_symmetry/model_coefficients.h>
 #include <pcl_symmetry/planar_symmetry_transform.h>
-#include <pcl_symmetry/symmetry_maxima_refinement.h>
+#include <pcl_symmetry/symmetry_detection.h>
+
 #include <cmath>
 #include <cstdio>
 
@@ -27,5 +28,5 @@ int main() {
   }
   const bool found = planes.size() == 1 && std::abs(planes[0].normal().y()) > 0.9999 &&
                      std::abs(std::abs(planes[0].offset()) - 0.5) < 0.001;
-  return found && !map.empty() ? 0 : 1;
+  return found && !map.empty() && pcl_symmetry::toModelCoefficients(planes[0]).values.size() == 4 ? 0 : 1;
 }

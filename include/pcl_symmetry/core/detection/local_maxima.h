@@ -3,8 +3,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/transform/symmetry_map.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The paper's thresholds on local maxima, each a share of the value at the strongest one (Section 4.4).
 struct LocalMaximaOptions {

@@ -11,8 +11,9 @@
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 #include "pcl_symmetry/core/transform/symmetry_map.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// What a plane is to the shape.
 enum class PlaneKind {

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Options of the Gaussian Euclidean distance transform. Zero means: choose from the data.
 struct GaussianEdtOptions {

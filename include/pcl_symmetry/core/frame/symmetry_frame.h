@@ -9,8 +9,9 @@
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 struct FrameOptions {
   GaussianEdtOptions edt;  ///< sigma = 0: 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more

@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/exports.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// 3 x N points, one a column, finite.
 using Points = Eigen::Matrix3Xf;

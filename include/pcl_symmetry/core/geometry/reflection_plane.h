@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/exports.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// A plane of reflection gamma = { x : n.x = r } with unit normal n and signed offset r (Section 3 of the paper).
 ///

@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Finds the closest points of one fixed point set, for many queries at a time.
 ///

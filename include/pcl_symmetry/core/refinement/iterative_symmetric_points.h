@@ -5,8 +5,9 @@
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// How Iterative Symmetric Points moves the plane.
 enum class IspUpdate {

@@ -5,8 +5,9 @@
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 struct CompletionOptions {
   /// Reflected points within this distance of a measured point add nothing; local spacings of the points, > 0. chosen:

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/exports.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The groups of rotations about a point that shapes can have: there are no others.
 enum class RotationGroupKind {

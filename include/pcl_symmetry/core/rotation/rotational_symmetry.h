@@ -8,8 +8,9 @@
 
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/rotation/rotation_group.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 struct ObjectSymmetryOptions {
   int num_cells = 64;         ///< cells of the distance transform along each side, in [8, 512]
@@ -49,6 +50,7 @@ struct ObjectSymmetries {
   double support = 1.0;
   double confidence = 1.0;  ///< probability that the rotations are symmetries, as for planes, in [0, 1]
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+  std::string reason;  ///< why there is no answer, set by detectObjectSymmetries() for clouds; empty where there is one
 
   std::string name() const { return nameOf(kind, fold); }
 };

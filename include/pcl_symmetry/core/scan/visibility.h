@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// What a range scanner saw: space in front of the surface on each ray is free, space behind it is unknown.
 ///

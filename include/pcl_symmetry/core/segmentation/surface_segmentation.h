@@ -6,8 +6,9 @@
 
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/surface/surface_graph.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// How a surface is cut into parts.
 enum class SegmentationMethod {

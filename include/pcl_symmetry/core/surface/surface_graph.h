@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// A surface as N elements with neighbours (Section 5.3): the faces of a mesh or the points of a cloud.
 struct SurfaceGraph {

@@ -6,8 +6,9 @@
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 #include "pcl_symmetry/core/transform/symmetry_map.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Instruction set of the inner loops. All give the same bytes.
 enum class Simd { Auto, Scalar, Avx2, Avx512 };

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The discrete space of planes (Section 4.2): theta in [0, pi/2], phi in [0, 2 pi) and r in [-radius, radius] about a
 /// center, each cut into equal bins. Bin (t, p, k) has its center at theta = (t + 1/2) dtheta, phi = (p + 1/2) dphi,

@@ -7,8 +7,9 @@
 
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/transform/plane_grid.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Estimators of the transform. All give the same normalised quantity.
 enum class TransformMethod {

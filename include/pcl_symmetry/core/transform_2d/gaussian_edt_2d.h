@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// 2 x N points of a contour or picture, one a column, finite.
 using Points2D = Eigen::Matrix2Xf;

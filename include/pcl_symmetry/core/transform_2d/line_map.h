@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/transform_2d/reflection_line.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The discrete space of lines (Section 4.2): theta in [0, pi) and r in [-radius, radius] about a center, each cut into
 /// equal bins. Bin (t, k) has its center at theta = (t + 1/2) dtheta, r = (k + 1/2) dr - radius.

@@ -5,8 +5,9 @@
 #include "pcl_symmetry/core/detection/local_maxima.h"
 #include "pcl_symmetry/core/transform_2d/gaussian_edt_2d.h"
 #include "pcl_symmetry/core/transform_2d/line_map.h"
+#include "pcl_symmetry/exports.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The reflective symmetry of a planar shape with respect to every line (Sections 3 and 4.2).
 ///

@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/exports.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// A line of reflection in the plane, { x : n.x = r } with unit normal n = (cos theta, sin theta) and signed offset r:
 /// the planar case of ReflectionPlane (Section 4.2).

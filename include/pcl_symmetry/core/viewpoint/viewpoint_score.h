@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/exports.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// A plane of symmetry as the viewpoint score sees it: u and M(u) of Section 5.4.
 struct ViewPlane {

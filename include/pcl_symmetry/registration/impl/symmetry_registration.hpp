@@ -6,46 +6,18 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+#include <sstream>
 
-#include "pcl_symmetry/impl/bad_argument.hpp"
-#include "pcl_symmetry/impl/point_selection.hpp"
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/registration/symmetry_registration.h"
 
-namespace pcl_symmetry {
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 SymmetryRegistration<PointSource, PointTarget, Scalar>::SymmetryRegistration() {
   reg_name_ = "SymmetryRegistration";
   max_iterations_ = options_.max_iterations;
   transformation_epsilon_ = options_.transformation_epsilon;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void SymmetryRegistration<PointSource, PointTarget, Scalar>::setMinMerit(double min_merit) {
-  if (!(min_merit >= -1.0 && min_merit <= 1.0))
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "min_merit = " << min_merit << ", must be in [-1, 1]");
-  min_merit_ = min_merit;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void SymmetryRegistration<PointSource, PointTarget, Scalar>::setSearchOptions(const PoseSearchOptions& options) {
-  withBadArguments([&] { options.validate(); });
-  options_.search = options;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void SymmetryRegistration<PointSource, PointTarget, Scalar>::setMaxPoints(std::size_t max_points) {
-  if (max_points < 3) PCL_THROW_EXCEPTION(pcl::BadArgumentException, "max_points = " << max_points << ", must be >= 3");
-  max_points_ = max_points;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void SymmetryRegistration<PointSource, PointTarget, Scalar>::setNumberOfThreads(int num_threads) {
-  if (num_threads < 0)
-    PCL_THROW_EXCEPTION(pcl::BadArgumentException, "num_threads = " << num_threads << ", must be >= 0");
-  options_.num_threads = num_threads;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -70,29 +42,13 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
                                                                                    const Matrix4& guess) {
   score_ = {};
   timing_ms_.clear();
-  try {
-    const SelectedPoints source = selectPoints(*input_, indices_.get(), max_points_, options_.seed);
-    const SelectedPoints target = selectPoints(*target_, nullptr, max_points_, options_.seed);
-    CloudRegistrationOptions options = options_;
-    options.max_iterations = max_iterations_;
-    options.transformation_epsilon = transformation_epsilon_;
-    options.rotation_epsilon = transformation_rotation_epsilon_;
-    if (corr_dist_threshold_ < std::sqrt(std::numeric_limits<double>::max()))
-      options.max_correspondence = corr_dist_threshold_;
-    const CloudRegistration result =
-        registerClouds(source.points, seenSpace(*input_, source.points, source_viewpoint_), target.points,
-                       seenSpace(*target_, target.points, target_viewpoint_),
-                       Eigen::Isometry3d(guess.template cast<double>()), options);
-    score_ = result.score;
-    timing_ms_ = result.timing_ms;
-    if (!(score_.merit() >= min_merit_)) {
-      PCL_ERROR("[pcl_symmetry::%s::computeTransformation] Nothing fits: support %g, conflict %g\n",
-                getClassName().c_str(), score_.support, score_.conflict);
-      return;
-    }
-    final_transformation_ = transformation_ = result.T_target_source.matrix().template cast<Scalar>();
-  } catch (const std::invalid_argument& error) {
-    PCL_ERROR("[pcl_symmetry::%s::computeTransformation] %s\n", getClassName().c_str(), error.what());
+  const detail::SelectedPoints source = detail::selectPoints(*input_, indices_.get(), max_points_, options_.seed);
+  const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
+  reason_ = detail::reasonForNoAnswer(source.points, "source");
+  if (reason_.empty()) reason_ = detail::reasonForNoAnswer(target.points, "target");
+  if (reason_.empty()) detail::withBadArguments([&] { findPose(source.points, target.points, guess); });
+  if (!reason_.empty()) {
+    detail::warnOfNoAnswer(getClassName(), reason_);
     return;
   }
   converged_ = true;
@@ -102,7 +58,30 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
     pcl::transformPointCloud(output, output, final_transformation_);
 }
 
+template <typename PointSource, typename PointTarget, typename Scalar>
+void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Points& source, const Points& target,
+                                                                      const Matrix4& guess) {
+  CloudRegistrationOptions options = options_;
+  options.max_iterations = max_iterations_;
+  options.transformation_epsilon = transformation_epsilon_;
+  options.rotation_epsilon = transformation_rotation_epsilon_;
+  if (corr_dist_threshold_ < std::sqrt(std::numeric_limits<double>::max()))
+    options.max_correspondence = corr_dist_threshold_;
+  const CloudRegistration result = registerClouds(source, detail::seenSpace(*input_, source, source_viewpoint_), target,
+                                                  detail::seenSpace(*target_, target, target_viewpoint_),
+                                                  Eigen::Isometry3d(guess.template cast<double>()), options);
+  score_ = result.score;
+  timing_ms_ = result.timing_ms;
+  if (score_.merit() >= min_merit_) {
+    final_transformation_ = transformation_ = result.T_target_source.matrix().template cast<Scalar>();
+    return;
+  }
+  std::ostringstream reason;
+  reason << "nothing fits: the best pose has support " << score_.support << " and conflict " << score_.conflict;
+  reason_ = reason.str();
+}
+
 }  // namespace pcl_symmetry
 
 #define PCL_INSTANTIATE_SymmetryRegistration(S, T, Scalar) \
-  template class pcl_symmetry::SymmetryRegistration<S, T, Scalar>;
+  template class PCL_SYMMETRY_EXPORTS pcl_symmetry::SymmetryRegistration<S, T, Scalar>;

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "core/base/random.h"
+#include "core/descriptors/symmetry_descriptor.h"
+#include "error_message.h"
 #include "pcl_symmetry/features/prst.h"
 
 namespace pcl_symmetry {
@@ -105,27 +107,69 @@ TEST(PRSTEstimation, SurvivesAFile) {
   std::remove(path.c_str());
 }
 
-TEST(PRSTEstimation, SaysWhyThereIsNoDescriptor) {
+TEST(PRSTEstimation, CloudsWithoutAnswerGiveAnEmptyOutputAndAWarning) {
   PRSTEstimation<pcl::PointXYZ> estimation;
   pcl::PointCloud<PRSTSignature32768> output;
-  auto same = pcl::make_shared<Cloud>(10, 1, pcl::PointXYZ(1.0f, 2.0f, 3.0f));
-  estimation.setInputCloud(same);
-  testing::internal::CaptureStderr();
+  const auto warningFor = [&](const Cloud::ConstPtr& cloud) {
+    if (cloud) estimation.setInputCloud(cloud);
+    output.resize(3);
+    testing::internal::CaptureStderr();
+    estimation.compute(output);
+    EXPECT_TRUE(output.empty());
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_NE(warningFor(nullptr).find("input cloud: not set"), std::string::npos);
+  EXPECT_NE(warningFor(pcl::make_shared<Cloud>()).find("no finite point"), std::string::npos);
+  const std::string same = warningFor(pcl::make_shared<Cloud>(10, 1, pcl::PointXYZ(1.0f, 2.0f, 3.0f)));
+  EXPECT_NE(same.find("1 distinct point"), std::string::npos) << same;
+  EXPECT_NE(same.find("[pcl_symmetry::PRSTEstimation]"), std::string::npos) << same;
+  // The object works again with another input.
+  estimation.setInputCloud(boxCloud());
+  estimation.setUseInputAxes(true);
   estimation.compute(output);
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("extent"), std::string::npos);
-  EXPECT_TRUE(output.empty());
-  EXPECT_THROW(estimation.setRadius(0.0), pcl::BadArgumentException);
-  EXPECT_THROW(estimation.setMaxPoints(1), pcl::BadArgumentException);
-  EXPECT_THROW(estimation.setNumberOfThreads(-1), pcl::BadArgumentException);
+  ASSERT_EQ(output.size(), 1u);
+  EXPECT_EQ(descriptorDistance(output[0], describe(boxCloud(), true)[0]), 0.0f);
 }
 
-TEST(DescriptorDistance, WeighsByTheSizeOfTheBins) {
-  std::vector<float> a(kPRSTSize, 1.0f), b(kPRSTSize, 0.0f);
-  double expected = 0.0;
-  for (int t = 0; t < kDescriptorBins; ++t) expected += 1024.0 * std::sin((t + 0.5) * M_PI_2 / kDescriptorBins);
-  EXPECT_NEAR(planeDescriptorDistance(a.data(), b.data(), kPRSTSize), std::sqrt(expected), 1e-2);
-  EXPECT_NEAR(planeDescriptorDistance(a.data(), b.data(), kPRSDSize), std::sqrt(expected / 32.0), 1e-3);
-  EXPECT_NEAR(sqDistance(a.data(), b.data(), 1001), 1001.0, 1e-3);
+TEST(PRSTEstimation, WrongParametersThrow) {
+  PRSTEstimation<pcl::PointXYZ> estimation;
+  EXPECT_EQ(test::messageOf([&] { estimation.setRadius(0.0); }), "radius = 0, must be finite and > 0");
+  EXPECT_EQ(test::messageOf([&] { estimation.setMaxPoints(1); }), "max_points = 1, must be >= 2");
+  EXPECT_EQ(test::messageOf([&] { estimation.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
+  estimation.setInputCloud(boxCloud());
+  Viewpoint inside;
+  inside.mode = Viewpoint::Mode::Given;
+  estimation.setViewpoint(inside);
+  pcl::PointCloud<PRSTSignature32768> output;
+  EXPECT_NE(test::messageOf([&] { estimation.compute(output); }).find("viewpoint"), std::string::npos);
+  EXPECT_DOUBLE_EQ(estimation.getRadius(), 2.0);
+}
+
+TEST(PRSTEstimation, SaysOnceThatASearchRadiusIsIgnored) {
+  PRSTEstimation<pcl::PointXYZ> estimation;
+  estimation.setUseInputAxes(true);
+  estimation.setInputCloud(boxCloud());
+  estimation.setRadiusSearch(0.1);
+  pcl::PointCloud<PRSTSignature32768> output;
+  testing::internal::CaptureStderr();
+  estimation.compute(output);
+  estimation.compute(output);
+  const std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("setRadiusSearch"), std::string::npos) << text;
+  EXPECT_EQ(text.find("setRadiusSearch"), text.rfind("setRadiusSearch")) << text;
+  EXPECT_EQ(descriptorDistance(output.at(0), describe(boxCloud(), true)[0]), 0.0f);
+}
+
+TEST(ProductDistance, MultipliesTheDistancesOfBothDescriptors) {
+  PRSTSignature32768 prst, no_prst;
+  GEDTSignature32768 gedt, no_gedt;
+  prst.prst[5] = 2.0f;
+  gedt.gedt[7] = 3.0f;
+  const float sine = std::sin(0.5f * static_cast<float>(M_PI_2) / 32.0f);  // of the first of 32 bins of theta
+  EXPECT_NEAR(descriptorDistance(prst, no_prst), 2.0f * std::sqrt(sine), 1e-5f);
+  EXPECT_NEAR(descriptorDistance(gedt, no_gedt), 3.0f, 1e-5f);
+  EXPECT_NEAR(productDistance(prst, gedt, no_prst, no_gedt), 6.0f * std::sqrt(sine), 1e-5f);
+  EXPECT_EQ(productDistance(prst, gedt, no_prst, gedt), 0.0f);
 }
 
 }  // namespace pcl_symmetry

@@ -1,24 +1,83 @@
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
+
 #include <pcl/common/projection_matrix.h>
+#include <pcl/console/print.h>
 #include <pcl/point_types.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
 
-#include "pcl_symmetry/impl/seen_space.hpp"
+#include "core/base/check.h"
+#include "core/base/random.h"
+#include "core/neighbours/answerable_points.h"
 
-namespace pcl_symmetry {
+namespace pcl_symmetry::detail {
 
 namespace {
 
-constexpr double kLargestError = 0.7;        // pixels, root mean square
-constexpr double kLargestSkew = 0.05;        // of the focal length; and difference of the two focal lengths
-constexpr std::size_t kFewestPoints = 50;    // that a projection is estimated from
-constexpr std::size_t kMostPoints = 20'000;  // more make it no better
-constexpr double kSmallHole = 0.01;          // of the picture: a larger one shows that there is nothing
+/// pcl::BadArgumentException puts " : " before its text.
+class PlainBadArgument : public pcl::BadArgumentException {
+public:
+  explicit PlainBadArgument(const std::string& message) : pcl::BadArgumentException(message), message_(message) {}
+  const char* what() const noexcept override { return message_.c_str(); }
 
-/// Depths without a point: large regions and those at the border are background, small ones are missing measurements.
+private:
+  std::string message_;
+};
+
+}  // namespace
+
+void throwBadArgument(const std::string& message) {
+  throw PlainBadArgument(message);
+}
+
+void checkAtLeast(const char* field, std::int64_t value, std::int64_t least) {
+  const std::string rule = ">= " + std::to_string(least);
+  withBadArguments([&] { check(value >= least, field, value, rule.c_str()); });
+}
+
+std::string reasonForNoAnswer(const Points& points, const std::string& input) {
+  const std::string reason = points.cols() == 0 ? "no finite point" : whyUnanswerable(points);
+  return reason.empty() ? reason : input + ": " + reason;
+}
+
+void warnOfNoAnswer(const std::string& source, const std::string& reason) {
+  PCL_WARN("[pcl_symmetry::%s] %s.\n", source.c_str(), reason.c_str());
+}
+
+std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t max_points, std::uint64_t seed) {
+  std::vector<std::size_t> drawn(max_points);
+  RandomStream random(seed);
+  const double run = static_cast<double>(num_points) / static_cast<double>(max_points);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < max_points; ++i) {
+    const double position = (static_cast<double>(i) + random.uniform()) * run;
+    drawn[i] = std::max(next, std::min(num_points - 1, static_cast<std::size_t>(position)));
+    next = drawn[i] + 1;
+  }
+  return drawn;
+}
+
+namespace {
+
+// Pixels, root mean square. chosen: a smaller value refuses cameras with lens distortion, a larger one accepts rows and
+// columns that are no picture.
+constexpr double kLargestError = 0.7;
+// Share of the focal length, for the skew and for the difference of the two focal lengths. chosen: a smaller value
+// refuses noisy pictures, a larger one accepts the cameras without square pixels that fit a flat cloud.
+constexpr double kLargestSkew = 0.05;
+// Points that a projection is estimated from. chosen: fewer leave its 11 parameters to noise, more refuse small
+// pictures.
+constexpr std::size_t kFewestPoints = 50;
+// Points. chosen: the estimate of 11 parameters gains nothing from more, at half it takes half the time.
+constexpr std::size_t kMostPoints = 20'000;
+// Share of the picture. chosen: a smaller value takes missing measurements for background, a larger one takes
+// background between the parts of an object for missing measurements.
+constexpr double kSmallHole = 0.01;
+
+/// Fills the pixels without a point: large regions and regions at the border are background, small regions are missing
+/// measurements.
 void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
   const std::size_t size = depths.size();
   std::vector<char> visited(size, 0);
@@ -49,6 +108,16 @@ void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
 
 }  // namespace
 
+std::optional<Visibility> seenFrom(const Points& points, const Viewpoint& viewpoint,
+                                   const Eigen::Vector3d& sensor_origin) {
+  if (viewpoint.mode == Viewpoint::Mode::None) return std::nullopt;
+  if (viewpoint.mode == Viewpoint::Mode::Auto) return spaceSeenFrom(points, sensor_origin);
+  std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);
+  if (!seen)
+    throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
+  return seen;
+}
+
 std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height) {
   pcl::Indices finite;
   for (Eigen::Index i = 0; i < pixels.cols(); ++i)
@@ -62,13 +131,13 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
   const BoundingBall ball = boundingBall(points);
   if (!(ball.radius > 0.0)) return std::nullopt;
 
-  // The estimate is a matter of the units: it is made of coordinates of about one.
+  // The estimate depends on the units: it is made from coordinates near 1.
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(width, height);
   const Points normalized = normalizePoints(points, ball.center, ball.radius);
   for (std::size_t i = 0; i < used.size(); ++i)
     (*cloud)[used[i]].getVector3fMap() = normalized.col(static_cast<Eigen::Index>(i));
   Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
-  // What it returns is a residual that may be a little below 0: the error in pixels below decides.
+  // The residual that it returns may be slightly negative. The error in pixels decides, below.
   pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used);
   if (!estimate.allFinite()) return std::nullopt;
   Visibility::Projection projection = estimate.cast<double>();
@@ -86,7 +155,7 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
     sq_error += (image.head<2>() / image.z() - pixel).squaredNorm();
   }
   if (!(sq_error <= kLargestError * kLargestError * static_cast<double>(used.size()))) return std::nullopt;
-  // A flat cloud fits cameras that do not exist: ours has square pixels.
+  // A flat cloud fits cameras that do not exist. The pixels of real ones are square.
   const Eigen::Vector3d across = projection.block<1, 3>(0, 0), down = projection.block<1, 3>(1, 0),
                         forward = projection.block<1, 3>(2, 0);
   const Eigen::Vector3d x = across - across.dot(forward) * forward, y = down - down.dot(forward) * forward;
@@ -94,7 +163,7 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
   if (!(std::abs(x.norm() - y.norm()) <= kLargestSkew * focal && std::abs(x.dot(y)) <= kLargestSkew * focal * focal))
     return std::nullopt;
 
-  // Back to the input frame, depths in its units.
+  // Back to the input frame; depths are in its units.
   projection.col(3) = projection.col(3) * ball.radius - projection.leftCols<3>() * ball.center;
   std::vector<float> depths(pixels.cols(), std::numeric_limits<float>::quiet_NaN());
   for (const pcl::index_t i : finite)
@@ -103,4 +172,4 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
   return Visibility(projection, width, height, std::move(depths));
 }
 
-}  // namespace pcl_symmetry
+}  // namespace pcl_symmetry::detail

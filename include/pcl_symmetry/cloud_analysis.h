@@ -1,0 +1,127 @@
+#pragma once
+
+#include <pcl/pcl_base.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// The input of every class that analyses a cloud: which points it uses, and why they may hold no answer.
+///
+/// setIndices() is honoured, and points that are not finite are left out. Data that hold no answer give an empty
+/// result: PCL_WARN prints the reason, and getReason() returns it. A used object that is given a new cloud gives the
+/// results of a new object with the same options.
+template <typename PointT>
+class CloudAnalysis : public pcl::PCLBase<PointT> {
+public:
+  using typename pcl::PCLBase<PointT>::PointCloudConstPtr;
+
+  /// Sets the cloud to analyse and clears the results of the last one.
+  void setInputCloud(const PointCloudConstPtr& cloud) override {
+    pcl::PCLBase<PointT>::setInputCloud(cloud);
+    clearResults();
+  }
+
+  /// Larger clouds are reduced to this number of points, one drawn from each of as many equal runs of the cloud.
+  /// \param max_points >= 2 (>= 10 in SymmetrySegmentation).
+  /// \throws pcl::BadArgumentException for other values.
+  void setMaxPoints(std::size_t max_points) {
+    detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), least_max_points_);
+    max_points_ = max_points;
+  }
+
+  /// \return the points that the last analysis used, as indices into the cloud.
+  const pcl::Indices& getUsedIndices() const { return used_indices_; }
+  /// \return why the last analysis gave no answer, one sentence; empty where it ran, whatever it found.
+  const std::string& getReason() const { return reason_; }
+
+protected:
+  using pcl::PCLBase<PointT>::input_;
+  using pcl::PCLBase<PointT>::indices_;
+  using pcl::PCLBase<PointT>::use_indices_;
+
+  /// \param name of the class, for messages.
+  CloudAnalysis(std::string name, std::size_t max_points, std::int64_t least_max_points = 2)
+      : name_(std::move(name)), max_points_(max_points), least_max_points_(least_max_points) {}
+
+  /// Forgets everything that was found in the cloud; options stay.
+  virtual void clearResults() {
+    used_indices_.clear();
+    reason_.clear();
+  }
+
+  /// Begins an analysis: clears the results of the last one and selects the points of the input.
+  /// \return 3 x N points; N = 0 where the input holds no answer.
+  Points selectInput(std::uint64_t seed) {
+    clearResults();
+    if (!input_) return giveNoAnswer("input cloud: not set");
+    detail::SelectedPoints selected =
+        detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, seed);
+    std::string reason = detail::reasonForNoAnswer(selected.points);
+    if (!reason.empty()) return giveNoAnswer(std::move(reason));
+    used_indices_ = std::move(selected.indices);
+    return std::move(selected.points);
+  }
+
+  /// Stores and prints the reason.
+  /// \return no points.
+  Points giveNoAnswer(std::string reason) {
+    detail::warnOfNoAnswer(name_, reason);
+    reason_ = std::move(reason);
+    return Points(3, 0);
+  }
+
+private:
+  std::string name_;
+  std::size_t max_points_;
+  std::int64_t least_max_points_;
+  pcl::Indices used_indices_;
+  std::string reason_;
+};
+
+/// The input of classes that also take into account what a scanner saw.
+///
+/// By default the data decide where the scanner stood: an organized cloud shows it by its own rays, any other cloud by
+/// its sensor_origin_ if the points can have been seen from there. Reflections that land in space that the scanner saw
+/// to be empty then speak against a plane; reflections that land behind the surface do not count.
+template <typename PointT>
+class ScanAnalysis : public CloudAnalysis<PointT> {
+public:
+  void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
+  /// \param position where the scanner stood, input frame; it must see the points within 75 degrees of one direction.
+  void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
+  const Viewpoint& getViewpoint() const { return viewpoint_; }
+
+  /// \return whether the last analysis used a viewpoint.
+  bool usedViewpoint() const { return used_viewpoint_; }
+
+protected:
+  using CloudAnalysis<PointT>::CloudAnalysis;
+
+  void clearResults() override {
+    CloudAnalysis<PointT>::clearResults();
+    used_viewpoint_ = false;
+  }
+
+  /// \param points selected from the input, 3 x N, N >= 1.
+  /// \return what the scanner saw; nothing without a viewpoint.
+  /// \throws std::invalid_argument where the points surround the viewpoint that was given.
+  std::optional<Visibility> seenSpace(const Points& points) {
+    std::optional<Visibility> seen = detail::seenSpace(*this->input_, points, viewpoint_);
+    used_viewpoint_ = seen.has_value();
+    return seen;
+  }
+
+private:
+  Viewpoint viewpoint_;
+  bool used_viewpoint_ = false;
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <pcl/common/point_tests.h>
+#include <pcl/exceptions.h>
+#include <pcl/point_cloud.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/exports.h"
+#include "pcl_symmetry/viewpoint.h"
+
+/// PCL clouds become points of the core, and errors of the core become errors of PCL.
+///
+/// All classes and functions for PCL users share one error policy:
+/// - Data that hold no answer give an empty result, and PCL_WARN prints the reason. Such data are: no input, no finite
+///   point, fewer than 20 distinct points, points at one place or on one line, a mesh without area.
+/// - Wrong parameters throw pcl::BadArgumentException with the message "field = value, must be rule". Indices that the
+///   cloud or mesh does not have, and a viewpoint among the points, are wrong parameters.
+/// - Messages name neither a C++ function nor a source file.
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+namespace detail {
+
+/// Throws pcl::BadArgumentException whose what() is \p message and nothing else. (PCL_THROW_EXCEPTION puts the
+/// function, the file and the line into the text.)
+[[noreturn]] void throwBadArgument(const std::string& message);
+
+/// Calls \p body. What the core refuses with std::invalid_argument reaches PCL users as pcl::BadArgumentException.
+/// \return what \p body returns.
+template <typename Body>
+auto withBadArguments(const Body& body) {
+  try {
+    return body();
+  } catch (const std::invalid_argument& error) {
+    throwBadArgument(error.what());
+  }
+}
+
+/// Changes some options if the result is valid.
+/// \param change sets fields of the options that it is given.
+/// \throws pcl::BadArgumentException "field = value, must be rule"; the options are as before then.
+template <typename Options, typename Change>
+void changeOptions(Options& options, const Change& change) {
+  Options changed = options;
+  change(changed);
+  withBadArguments([&] { changed.validate(); });
+  options = std::move(changed);
+}
+
+/// \throws pcl::BadArgumentException where \p value is below \p least.
+void checkAtLeast(const char* field, std::int64_t value, std::int64_t least);
+
+/// \param points 3 x N, finite.
+/// \param input what the points are called in the sentence.
+/// \return why the points hold no answer, one sentence; empty where they can be analysed.
+std::string reasonForNoAnswer(const Points& points, const std::string& input = "input cloud");
+
+/// Prints "[pcl_symmetry::SOURCE] REASON." by PCL_WARN.
+void warnOfNoAnswer(const std::string& source, const std::string& reason);
+
+/// The points of a cloud that an analysis uses.
+struct SelectedPoints {
+  Points points;         ///< 3 x N, finite
+  pcl::Indices indices;  ///< N indices into the cloud
+};
+
+/// Draws one of each of \p max_points equal runs of a sequence.
+/// \param num_points length of the sequence, more than \p max_points.
+/// \return max_points positions in the sequence, rising.
+std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t max_points, std::uint64_t seed);
+
+/// The finite points of a cloud. Of more than \p max_points, one of each of max_points equal runs is drawn, so that the
+/// time and memory of an analysis do not grow with the cloud.
+/// \param indices the points of the cloud to choose from; null: all.
+/// \throws pcl::BadArgumentException for an index that the cloud does not have.
+template <typename PointT>
+SelectedPoints selectPoints(const pcl::PointCloud<PointT>& cloud, const pcl::Indices* indices, std::size_t max_points,
+                            std::uint64_t seed) {
+  const std::size_t size = indices ? indices->size() : cloud.size();
+  const auto at = [&](std::size_t i) { return indices ? (*indices)[i] : static_cast<pcl::index_t>(i); };
+  std::size_t num_finite = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (indices && (at(i) < 0 || static_cast<std::size_t>(at(i)) >= cloud.size()))
+      throwBadArgument("indices[" + std::to_string(i) + "] = " + std::to_string(at(i)) + ", must be in [0, " +
+                       std::to_string(cloud.size()) + ")");
+    num_finite += pcl::isXYZFinite(cloud[at(i)]) ? 1 : 0;
+  }
+  std::vector<std::size_t> drawn;
+  if (num_finite > max_points) drawn = drawOneOfEachRun(num_finite, max_points, seed);
+  const std::size_t num_selected = std::min(num_finite, max_points);
+  SelectedPoints selected{Points(3, num_selected), pcl::Indices(num_selected)};
+  std::size_t slot = 0, finite = 0;
+  for (std::size_t i = 0; i < size && slot < num_selected; ++i) {
+    const PointT& point = cloud[at(i)];
+    if (!pcl::isXYZFinite(point)) continue;
+    const std::size_t position = finite++;
+    if (!drawn.empty() && position != drawn[slot]) continue;
+    selected.points.col(slot) = point.getVector3fMap();
+    selected.indices[slot++] = at(i);
+  }
+  return selected;
+}
+
+/// The rays of an organized cloud from a pinhole camera.
+/// \param pixels 3 x (width * height), row by row, NaN where there is no point.
+/// \return nothing where the rows and columns are not those of such a camera.
+std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height);
+
+/// Seen, free and unknown space of points without rows and columns.
+/// \param points 3 x N, finite, N >= 1.
+/// \param sensor_origin is used by Viewpoint::Mode::Auto where the points can be seen from there; frame of the points.
+/// \return nothing where there is no viewpoint.
+/// \throws std::invalid_argument where the points surround a viewpoint that was given.
+std::optional<Visibility> seenFrom(const Points& points, const Viewpoint& viewpoint,
+                                   const Eigen::Vector3d& sensor_origin);
+
+/// Seen, free and unknown space of a cloud.
+/// \param points the points of the cloud that are analysed, 3 x N, finite, N >= 1.
+/// \return nothing where there is no viewpoint.
+/// \throws std::invalid_argument where the points surround a viewpoint that was given.
+template <typename PointT>
+std::optional<Visibility> seenSpace(const pcl::PointCloud<PointT>& cloud, const Points& points,
+                                    const Viewpoint& viewpoint) {
+  if (viewpoint.mode == Viewpoint::Mode::Auto && cloud.isOrganized() && cloud.width > 1) {
+    Points pixels(3, static_cast<Eigen::Index>(cloud.size()));
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      pixels.col(static_cast<Eigen::Index>(i)) =
+          pcl::isXYZFinite(cloud[i])
+              ? Eigen::Vector3f(cloud[i].getVector3fMap())
+              : Eigen::Vector3f(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+    if (auto seen = seenByOrganizedCloud(pixels, static_cast<int>(cloud.width), static_cast<int>(cloud.height)))
+      return seen;
+  }
+  return seenFrom(points, viewpoint, cloud.sensor_origin_.template head<3>().template cast<double>());
+}
+
+}  // namespace detail
+}  // namespace pcl_symmetry

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <pcl/PolygonMesh.h>
+
+#include <vector>
+
+#include "pcl_symmetry/core/geometry/point_set.h"
+
+namespace pcl_symmetry {
+
+/// A polygon mesh of PCL as plain arrays.
+struct MeshArrays {
+  Points vertices;                         ///< 3 x V, input units; may be not finite
+  std::vector<std::vector<int>> polygons;  ///< indices of vertices, each valid
+};
+
+/// \throws std::invalid_argument where a polygon refers to a vertex that the mesh does not have.
+MeshArrays toArrays(const pcl::PolygonMesh& mesh);
+
+/// \return the polygons as triangles with their first corner in common.
+std::vector<Eigen::Vector3i> fansOf(const MeshArrays& mesh);
+
+/// \return whether any polygon with finite corners has an area.
+bool hasArea(const MeshArrays& mesh);
+
+}  // namespace pcl_symmetry

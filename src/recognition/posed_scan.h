@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/registration/pose_search.h"
+#include "pcl_symmetry/recognition/symmetry_database.h"
+
+namespace pcl_symmetry::detail {
+
+/// A scan from a viewpoint that is brought to many models: every model is searched for poses, the models with the best
+/// poses are refined.
+class PosedScan {
+public:
+  /// \param points 3 x N, finite, input units, not all equal.
+  /// \param seen what the scanner saw.
+  PosedScan(const Points& points, const Visibility& seen, const CloudRegistrationOptions& options);
+
+  /// Searches a model for poses of the scan.
+  /// \param points of the model, 3 x M, finite, units of the scan.
+  /// \param poses T_model_scan to try.
+  void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses);
+
+  /// \return the \p num_refined models with the best poses, these refined, in any order; confidences are 0.
+  Recognition refined(int num_refined);
+
+private:
+  struct PosedModel {
+    std::string name;
+    SearchFrames frames;
+    PosedSurface surface;
+    std::vector<RankedPose> poses;  // best first
+  };
+
+  PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, std::optional<Visibility> seen) const;
+
+  CloudRegistrationOptions options_;
+  BoundingBall ball_;
+  double scale_;  // input units: estimated radius of the whole object
+  PosedSurface surface_;
+  std::vector<PosedModel> models_;
+};
+
+}  // namespace pcl_symmetry::detail

@@ -1,0 +1,42 @@
+#include "pcl_symmetry/mesh_sampling.h"
+
+#include <gtest/gtest.h>
+
+#include "error_message.h"
+#include "pcl_meshes.h"
+
+namespace pcl_symmetry {
+namespace {
+
+TEST(MeshSampling, SpreadsPointsByArea) {
+  const auto samples = sampleMesh(test::boxMesh(), 40'000, 3);
+  ASSERT_EQ(samples->size(), 40'000u);
+  int top = 0;
+  for (const auto& point : *samples) top += std::abs(point.z) == 0.4f ? 1 : 0;
+  const double share = 1.0 * 0.7 / (1.0 * 0.7 + 1.0 * 0.4 + 0.7 * 0.4);
+  EXPECT_NEAR(top / 40'000.0, share, 0.001) << "stratified: far less scatter than sqrt(p (1 - p) / n) = 0.0025";
+}
+
+TEST(MeshSampling, DependsOnTheSeedAlone) {
+  const auto a = sampleMesh(test::boxMesh(), 100, 3), b = sampleMesh(test::boxMesh(), 100, 3);
+  const auto c = sampleMesh(test::boxMesh(), 100, 4);
+  EXPECT_EQ(a->getMatrixXfMap(), b->getMatrixXfMap());
+  EXPECT_NE(a->getMatrixXfMap(), c->getMatrixXfMap());
+}
+
+TEST(MeshSampling, AMeshWithoutAreaGivesNoPoints) {
+  EXPECT_TRUE(sampleMesh(pcl::PolygonMesh(), 10)->empty());
+  pcl::PolygonMesh flat = test::boxMesh();
+  for (pcl::Vertices& polygon : flat.polygons) polygon.vertices.resize(2);
+  EXPECT_TRUE(sampleMesh(flat, 10)->empty());
+}
+
+TEST(MeshSampling, RefusesWrongParameters) {
+  EXPECT_EQ(test::messageOf([] { sampleMesh(test::boxMesh(), 0); }), "num_points = 0, must be >= 1");
+  pcl::PolygonMesh mesh = test::boxMesh();
+  mesh.polygons[2].vertices[1] = 8;
+  EXPECT_EQ(test::messageOf([&] { sampleMesh(mesh, 10); }), "vertex of a polygon = 8, must be one that the mesh has");
+}
+
+}  // namespace
+}  // namespace pcl_symmetry

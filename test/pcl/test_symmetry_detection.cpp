@@ -1,0 +1,61 @@
+#include "pcl_symmetry/symmetry_detection.h"
+
+#include <gtest/gtest.h>
+
+#include "clouds.h"
+#include "error_message.h"
+#include "found_planes.h"
+#include "pcl_meshes.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using test::expectSamePlanes;
+using test::numFound;
+using test::Sampling;
+
+TEST(DetectSymmetryPlanes, NeedsOneLine) {
+  const auto shape = test::moved(test::box(4000, Sampling::Mirrored, 1), test::randomPose(5));
+  const auto planes = detectSymmetryPlanes(*test::toCloud(shape));
+  EXPECT_EQ(planes.size(), 3u);
+  EXPECT_EQ(numFound(shape, planes, 0.001 * test::kDegree, 1e-5 * test::diagonal(shape.cloud())), 3);
+  for (const SymmetryPlane& plane : planes) {
+    EXPECT_GT(plane.support, 0.99);
+    EXPECT_GT(plane.score, 0.98);
+    EXPECT_TRUE(plane.converged);
+    EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
+  }
+}
+
+TEST(DetectSymmetryPlanes, SaysNoneWhereThereIsNone) {
+  EXPECT_TRUE(detectSymmetryPlanes(*test::toCloud(test::scaleneTetrahedron(4000, 2))).empty());
+  EXPECT_TRUE(detectSymmetryPlanes(*test::toCloud(test::asymmetricBlob(4000, 2))).empty());
+}
+
+TEST(DetectSymmetryPlanes, WorksOnEveryPointTypeAlike) {
+  const auto shape = test::box(2000, Sampling::Random, 3);
+  const auto expected = detectSymmetryPlanes(*test::toCloud<pcl::PointXYZ>(shape));
+  expectSamePlanes(detectSymmetryPlanes(*test::toCloud<pcl::PointXYZRGB>(shape)), expected);
+  expectSamePlanes(detectSymmetryPlanes(*test::toCloud<pcl::PointNormal>(shape)), expected);
+}
+
+TEST(DetectSymmetryPlanes, TakesMeshes) {
+  const auto planes = detectSymmetryPlanes(test::boxMesh(), {}, 2000);
+  EXPECT_EQ(numFound(test::box(100, Sampling::Mirrored, 1), planes, 1.0 * test::kDegree, 0.02), 3);
+}
+
+TEST(DetectSymmetryPlanes, GivesNoPlanesWhereThereIsNoAnswer) {
+  for (const auto& [name, cloud] : test::cloudsWithoutAnswer())
+    if (cloud) EXPECT_TRUE(detectSymmetryPlanes(*cloud).empty()) << name;
+  EXPECT_TRUE(detectSymmetryPlanes(pcl::PolygonMesh()).empty());
+}
+
+TEST(DetectSymmetryPlanes, RefusesWrongParameters) {
+  DetectionOptions options;
+  options.min_confidence = -1.0;
+  EXPECT_EQ(test::messageOf([&] { detectSymmetryPlanes(pcl::PointCloud<pcl::PointXYZ>(), options); }),
+            "min_confidence = -1, must be in [0, 1]");
+}
+
+}  // namespace
+}  // namespace pcl_symmetry
