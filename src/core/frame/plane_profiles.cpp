@@ -22,8 +22,10 @@ PlaneProfiles::PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& f
   }
 }
 
+/// The image of a sample moves by twice the step of the offset along the normal: each profile is a walk through the
+/// grid along one straight line per sample.
 std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float first, float step, int count,
-                                         const CellPlane* across) const {
+                                         const CellPlane* completed_across) const {
   std::vector<int> surface(count, 0), free(count, 0);
   int own = 0;
   const Eigen::Vector3f move = 2.0f * step * normal;
@@ -33,8 +35,9 @@ std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float fi
     const float shift = 2.0f * (first - normal.dot(x));
     Eigen::Vector3f p = (x + shift * normal).array() + to_index;
     const Eigen::Vector3f here = x.array() + to_index;
-    if (across) {
-      const Eigen::Vector3f y = x - 2.0f * (across->normal.dot(x) - across->offset) * across->normal;
+    if (completed_across) {
+      const Eigen::Vector3f y =
+          x - 2.0f * (completed_across->normal.dot(x) - completed_across->offset) * completed_across->normal;
       Eigen::Vector3f q = (y + shift * normal).array() + to_index;
       const Eigen::Vector3f there = y.array() + to_index;
       own += std::max(at(here[0], here[1], here[2]).surface, at(there[0], there[1], there[2]).surface);
@@ -53,6 +56,7 @@ std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float fi
       }
     }
   }
+  // A plane that maps every sample onto the surface scores 1.
   std::vector<float> result(count);
   const double scale = 1.0 / std::max(own, 1);
   for (int k = 0; k < count; ++k)

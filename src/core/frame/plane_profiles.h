@@ -9,34 +9,43 @@
 
 namespace pcl_symmetry {
 
-/// A plane in the frame of a grid of cells: normal.x = offset, x in cells from the middle of the grid.
+/// A plane in the frame of a grid of cells: normal . x = offset, x in cells from the middle of the grid.
 struct CellPlane {
-  Eigen::Vector3f normal;
-  float offset;
+  Eigen::Vector3f normal;  ///< unit
+  float offset;            ///< cells
 };
 
-/// Scores of many planes of one normal: what the sampled transform tells at bin centers, for any plane, and of a scan
-/// that has been completed across a first plane.
+/// Scores of all planes of one normal, at any offsets: a profile along the normal.
+///
+/// The sampled transform (Section 4.3) answers at bin centers. Profiles answer for any plane, and for a scan that has
+/// been completed by its reflection across a first plane. Values are kept in 8 bits: D is exact to 0.002 before
+/// sampling.
 class PlaneProfiles {
 public:
-  /// \param free_space as of freeSpace(); empty: every point has been seen.
+  /// \param edt distance transform of the points.
+  /// \param free_space one value in [0, 1] per cell, from freeSpace(); empty: the points show the object from all
+  /// sides. \param num_samples points drawn from the distance transform, >= 1. \param seed of the samples. \param
+  /// num_threads >= 0; 0 = one per core.
   PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& free_space, int num_samples, std::uint64_t seed,
                 int num_threads);
 
-  /// D at, or of a scan seenSymmetry() of D and F at the planes with offsets first, first + step ..., \p count of them.
-  /// \param across of a scan: surface and free space are known on both sides of this plane as they are seen on one of
-  /// them; must be perpendicular to \p normal. Null: they are not.
+  /// Scores at evenly spaced offsets.
+  /// \param normal unit.
+  /// \param first first offset, cells from the middle of the grid.
+  /// \param step distance of two offsets, cells.
+  /// \param count number of offsets, >= 1.
+  /// \param completed_across a plane perpendicular to \p normal. The surface and the free space on each side of it then
+  /// also count on the other side: the completed cloud of a scan. Null: the points are taken as they are.
+  /// \return \p count values: D for a whole cloud, seenSymmetry() of D and F for a scan.
   std::vector<float> scores(const Eigen::Vector3f& normal, float first, float step, int count,
-                            const CellPlane* across = nullptr) const;
-  float score(const CellPlane& plane, const CellPlane* across = nullptr) const {
-    return scores(plane.normal, plane.offset, 0.0f, 1, across)[0];
-  }
+                            const CellPlane* completed_across = nullptr) const;
 
-  const Eigen::Matrix3Xf& samples() const { return samples_; }
+  /// The score of one plane.
+  float score(const CellPlane& plane) const { return scores(plane.normal, plane.offset, 0.0f, 1)[0]; }
 
 private:
   struct Cell {
-    std::uint8_t surface, free;
+    std::uint8_t surface, free;  // 255 times f and free space
   };
   Cell at(float x, float y, float z) const {
     const auto i = static_cast<std::uint32_t>(static_cast<int>(x));

@@ -8,18 +8,23 @@
 
 namespace pcl_symmetry {
 
-/// Which way the surface of a shape faces: one normal for each cell of a coarse grid that the surface passes, so that
-/// neither the density of the points nor noise below the size of a cell matters.
+/// The directions that the surface of a shape faces: one normal for each cell of a coarse grid that the surface passes.
+///
+/// One normal per cell makes the result independent of the density of the points and of noise below the size of a cell.
 class SurfaceDirections {
 public:
-  /// \param edt of the points: its cube is cut into half as many cells along each side.
+  /// \param points 3 x N, finite, input units.
+  /// \param edt distance transform of the points: its cube is cut into half as many cells along each side.
   SurfaceDirections(const PointsRef& points, const GaussianEdt& edt);
 
-  /// How far the surface agrees with an axis: mean over the cells of 1 where the normal is parallel or perpendicular to
-  /// it, falling to 0 within a few degrees. A box agrees with its own axes everywhere.
+  /// How well the surface agrees with an axis: the mean over the cells of 1 where the normal is parallel or
+  /// perpendicular to the axis, falling to 0 within 6 degrees. A box agrees with its own axes everywhere. \param axis
+  /// unit. \return in [0, 1].
   double agreement(const Eigen::Vector3f& axis) const;
 
-  /// Directions that many normals share, those of most first: the faces of a shape.
+  /// Directions that many normals share: the normals of the faces of a shape.
+  /// \param max_peaks greatest number of directions.
+  /// \return unit directions, those shared by most of the surface first.
   std::vector<Eigen::Vector3f> peaks(int max_peaks) const;
 
 private:

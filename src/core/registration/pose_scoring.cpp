@@ -3,32 +3,27 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-
-#include "core/base/median.h"
-#include "core/base/random.h"
-#include "core/neighbours/surface_normals.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr float kNormalShare = 0.7f;   // of a point's support that hangs on its normal
-constexpr double kPointShare = 0.1;    // of a residual that is not across the surface: keeps poses from sliding away
-constexpr double kLeastJudged = 0.05;  // of the model's points: fewer that the scan can judge say little
-constexpr double kRoughShare = 0.15;   // of the spacing: rougher surfaces take normals from more neighbours
-constexpr int kNumRoughNeighbours = 32;
-constexpr double kSilhouetteShare = 0.5;  // of a pull towards the scan on points in free space
+// Share of a point's support that depends on its normal. chosen: half lets thin walls meet their back, twice is
+// beyond 1.
+constexpr float kNormalShare = 0.7f;
+// Share of a residual along the surface. chosen: half lets poses slide away on plain surfaces, twice slows convergence.
+constexpr double kPointShare = 0.1;
+// Share of the model's points that the scan must be able to judge. chosen: half lets small scans condemn a pose by few
+// points, twice hides real conflicts.
+constexpr double kLeastJudged = 0.05;
+// Weight of a model point in free space against one of the scan. chosen: half lets silhouettes stick out, twice lets
+// holes of the scan pull the pose.
+constexpr double kSilhouetteShare = 0.5;
+// Inertia, added to the diagonal, relative to its greatest entry and absolute: directions that nothing fixes stay where
+// they are. derived: shortens steps along the best fixed direction by 1e-4 of their length.
+constexpr double kRelativeInertia = 1e-4, kInertia = 1e-6;
 
-std::vector<int> randomOrder(int size, std::uint64_t seed) {
-  std::vector<int> order(size);
-  std::iota(order.begin(), order.end(), 0);
-  RandomStream random(seed);
-  for (int i = size - 1; i > 0; --i) std::swap(order[i], order[random.below(static_cast<std::uint64_t>(i) + 1)]);
-  return order;
-}
-
-/// The first points of a surface in another frame, each with the closest point of another surface.
+/// The first points of a surface in the frame of another, each with its closest point there.
 struct Matches {
   Points places, normals;
   std::vector<int> closest;
@@ -53,53 +48,69 @@ Matches match(const PosedSurface& from, const PosedSurface& to, const Eigen::Iso
   return matches;
 }
 
-/// Sums of a least-squares problem in a small motion (rotation vector, translation).
-struct NormalEquations {
-  Eigen::Matrix<double, 6, 6> hessian = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+/// The Gaussian of the distance of a match from its closest point.
+float nearness(const Matches& matches, Eigen::Index i, const PosedSurface& to, double width) {
+  const float factor = static_cast<float>(-1.0 / (width * width));
+  return std::exp(factor * (to.points.col(matches.closest[i]) - matches.places.col(i)).squaredNorm());
+}
 
+/// Share of a point's support that its normal leaves it: 1 where it is parallel to that of the closest point.
+float normalFactor(const Matches& matches, Eigen::Index i, const PosedSurface& to) {
+  const float cosine = matches.normals.col(i).dot(to.normals.col(matches.closest[i]));
+  return 1.0f - kNormalShare + kNormalShare * cosine * cosine;
+}
+
+/// Whether a scanner looked through the place of a match.
+bool isInFreeSpace(const Matches& matches, Eigen::Index i, const PosedSurface& to) {
+  return to.seen->depthBehind(matches.places.col(i).cast<double>()) < 0.0;
+}
+
+/// Least squares in a small motion (rotation vector, translation).
+class MotionEquations {
+public:
   /// w (n . (x + rotation x x + translation) - n . y)^2.
-  void add(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& n, double weight) {
-    Eigen::Matrix<double, 6, 1> row;
+  void addPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& n, double weight) {
+    Vector6d row;
     row << x.cross(n), n;
-    hessian.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-    gradient += weight * n.dot(y - x) * row;
+    hessian_.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+    gradient_ += weight * n.dot(y - x) * row;
   }
 
+  /// w |x + rotation x x + translation - y|^2.
   void addPoint(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double weight) {
-    for (int k = 0; k < 3; ++k) add(x, y, Eigen::Vector3d::Unit(k), weight);
+    for (int k = 0; k < 3; ++k) addPlane(x, y, Eigen::Vector3d::Unit(k), weight);
   }
+
+  /// The motion of least squares; no motion where the points fix none.
+  Eigen::Isometry3d motion() const {
+    Eigen::Matrix<double, 6, 6> hessian = hessian_;
+    hessian.diagonal().array() += kInertia + kRelativeInertia * hessian.diagonal().maxCoeff();
+    const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient_);
+    Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+    if (!motion.allFinite()) return moved;
+    const double angle = motion.head<3>().norm();
+    if (angle > 0.0) moved.linear() = Eigen::AngleAxisd(angle, motion.head<3>() / angle).toRotationMatrix();
+    moved.translation() = motion.tail<3>();
+    return moved;
+  }
+
+private:
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+  Eigen::Matrix<double, 6, 6> hessian_ = Eigen::Matrix<double, 6, 6>::Zero();
+  Vector6d gradient_ = Vector6d::Zero();
 };
 
 }  // namespace
 
-PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> seen_space, std::uint64_t seed,
-                           int num_threads)
-    : points(input),
-      order(randomOrder(static_cast<int>(input.cols()), seed)),
-      seen(std::move(seen_space)),
-      grid(input),
-      search(makeFlannSearch(input)) {
-  LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, num_threads);
-  const double spacing = median(geometry.spacing);
-  if (median(geometry.roughness) > kRoughShare * spacing)
-    geometry = localGeometry(points, *search, kNumRoughNeighbours, num_threads);
-  normals = std::move(geometry.normals);
-  accuracy = spacing + 2.0 * median(std::move(geometry.roughness));
-}
-
 PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const {
-  const float factor = static_cast<float>(-1.0 / (detail.width * detail.width));
   PoseScore score;
   const Matches on_model = match(scan_, model_, T_model_scan, detail);
   double unexplained = 0.0;
   for (Eigen::Index i = 0; i < on_model.places.cols(); ++i) {
-    const int j = on_model.closest[i];
-    const float near = std::exp(factor * (model_.points.col(j) - on_model.places.col(i)).squaredNorm());
-    const float cosine = on_model.normals.col(i).dot(model_.normals.col(j));
-    const float support = near * (1.0f - kNormalShare + kNormalShare * cosine * cosine);
-    score.support += support;
-    if (model_.seen && model_.seen->depthBehind(on_model.places.col(i).cast<double>()) < 0.0) unexplained += 1.0 - near;
+    const float near = nearness(on_model, i, model_, detail.width);
+    score.support += near * normalFactor(on_model, i, model_);
+    if (model_.seen && isInFreeSpace(on_model, i, model_)) unexplained += 1.0 - near;
   }
   score.support /= static_cast<double>(on_model.places.cols());
   score.conflict = unexplained / static_cast<double>(on_model.places.cols());
@@ -107,8 +118,8 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   const Matches on_scan = match(model_, scan_, T_model_scan.inverse(), detail);
   double conflict = 0.0, judged = kLeastJudged * static_cast<double>(on_scan.places.cols());
   for (Eigen::Index i = 0; i < on_scan.places.cols(); ++i) {
-    const float near = std::exp(factor * (scan_.points.col(on_scan.closest[i]) - on_scan.places.col(i)).squaredNorm());
-    const bool in_front = scan_.seen->depthBehind(on_scan.places.col(i).cast<double>()) < 0.0;
+    const float near = nearness(on_scan, i, scan_, detail.width);
+    const bool in_front = isInFreeSpace(on_scan, i, scan_);
     conflict += in_front ? 1.0f - near : 0.0f;
     judged += in_front ? 1.0f : near;
   }
@@ -117,39 +128,26 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
 }
 
 Eigen::Isometry3d PoseScorer::step(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const {
-  const float factor = static_cast<float>(-1.0 / (detail.width * detail.width));
-  NormalEquations equations;
+  MotionEquations equations;
   const Matches on_model = match(scan_, model_, T_model_scan, detail);
   for (Eigen::Index i = 0; i < on_model.places.cols(); ++i) {
     const int j = on_model.closest[i];
-    const float cosine = on_model.normals.col(i).dot(model_.normals.col(j));
-    const double weight = std::exp(factor * (model_.points.col(j) - on_model.places.col(i)).squaredNorm()) *
-                          (1.0f - kNormalShare + kNormalShare * cosine * cosine);
+    const double weight = nearness(on_model, i, model_, detail.width) * normalFactor(on_model, i, model_);
     const Eigen::Vector3d x = on_model.places.col(i).cast<double>(), y = model_.points.col(j).cast<double>();
-    equations.add(x, y, model_.normals.col(j).cast<double>(), (1.0 - kPointShare) * weight);
+    equations.addPlane(x, y, model_.normals.col(j).cast<double>(), (1.0 - kPointShare) * weight);
     equations.addPoint(x, y, kPointShare * weight);
   }
   if (scan_.seen) {
     const Matches on_scan = match(model_, scan_, T_model_scan.inverse(), detail);
     const double share = kSilhouetteShare * static_cast<double>(on_model.places.cols()) / on_scan.places.cols();
     for (Eigen::Index i = 0; i < on_scan.places.cols(); ++i) {
-      if (!(scan_.seen->depthBehind(on_scan.places.col(i).cast<double>()) < 0.0)) continue;
-      const Eigen::Vector3f target = scan_.points.col(on_scan.closest[i]);
-      const double weight = std::exp(factor * (target - on_scan.places.col(i)).squaredNorm());
-      const Eigen::Vector3d moving = T_model_scan * target.cast<double>();
+      if (!isInFreeSpace(on_scan, i, scan_)) continue;
+      const double weight = nearness(on_scan, i, scan_, detail.width);
+      const Eigen::Vector3d moving = T_model_scan * scan_.points.col(on_scan.closest[i]).cast<double>();
       equations.addPoint(moving, model_.points.col(model_.order[i]).cast<double>(), share * weight);
     }
   }
-  // A little inertia keeps what nothing fixes where it is.
-  equations.hessian.diagonal().array() += 1e-6 + 1e-4 * equations.hessian.diagonal().maxCoeff();
-  const Eigen::Matrix<double, 6, 1> motion =
-      equations.hessian.selfadjointView<Eigen::Lower>().ldlt().solve(equations.gradient);
-  if (!motion.allFinite()) return T_model_scan;
-  const double angle = motion.head<3>().norm();
-  Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
-  if (angle > 0.0) moved.linear() = Eigen::AngleAxisd(angle, motion.head<3>() / angle).toRotationMatrix();
-  moved.translation() = motion.tail<3>();
-  return moved * T_model_scan;
+  return equations.motion() * T_model_scan;
 }
 
 }  // namespace pcl_symmetry

@@ -20,15 +20,38 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr int kOverlapSamples = 256, kFewSamples = 150, kSomeSamples = 1000, kManySamples = 3000;
-constexpr double kFinalSigmaInSpacings = 3.0;  // as of planes
+// Points of overlap(). chosen: half lets chance hide axes, twice takes twice the time of the search.
+constexpr int kOverlapSamples = 256;
+// Points of rough fits, rough support and close fits. chosen: half makes the fits less exact and drops true axes by
+// chance, twice takes twice the time.
+constexpr int kFewSamples = 150, kSomeSamples = 1000, kManySamples = 3000;
+// Spacings, width of the weights at the end. chosen: as for planes; half leaves too few pairs, twice is less exact.
+constexpr double kFinalSigmaInSpacings = 3.0;
+// Iterations of the two fits. chosen: half cuts fits short, twice changes little as settled fits end early.
 constexpr int kRoughIterations = 8, kCloseIterations = 12;
-constexpr double kLeastStiffness = 1e-3;  // of the greatest: what is softer is free, as turns of a cylinder are
-constexpr int kMostWitnesses = 3;         // of four neighbours
-constexpr double kLongestStep = 0.2;      // radians and radii together
-constexpr double kRest = 0.1;             // sigmas: steps that count as rest
-constexpr double kSettled = 1e-4;         // radians and radii together
-constexpr std::size_t kMostFitted = 6;    // of a large group, spread over it
+// Share of the greatest eigenvalue below which a direction is free, as turns of a cylinder about its axis are. chosen:
+// half lets sampling move free directions, twice freezes slender shapes.
+constexpr double kLeastStiffness = 1e-3;
+// Neighbours of four that have to be off the surface for a sample to belong to a feature. chosen: with 2 sampling alone
+// makes features, with 4 small features vanish.
+constexpr int kMostWitnesses = 3;
+// Radians and radii together, longest step. chosen: half takes more iterations, twice may leave the basin.
+constexpr double kLongestStep = 0.2;
+// Sigmas, a shorter step halves the width of the weights. chosen: half waits longer, twice narrows before the set
+// rests.
+constexpr double kRest = 0.1;
+// Radians and radii together, a shorter step ends the fit. chosen: a hundredth of the tolerance of 1 %; half takes an
+// iteration more, twice ends earlier.
+constexpr double kSettled = 1e-4;
+// Rotations of a large group that are fitted, spread over it. chosen: half may leave an axis free, twice takes twice
+// the time.
+constexpr std::size_t kMostFitted = 6;
+// Least overlap and support of a surface with itself. derived: guards the divisions for isolated points only.
+constexpr double kLeastOwn = 1e-3;
+// Radii, least spacing. derived: the rounding of float coordinates.
+constexpr double kLeastSpacing = 1e-6;
+// Sigmas, reach of the search for closest points. derived: beyond, weights exp(-9) are below 1.3e-4.
+constexpr double kReach = 3.0;
 
 double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -40,7 +63,7 @@ Eigen::Matrix3d turnBy(const Eigen::Vector3d& rotation_vector) {
   return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
 }
 
-/// Indices of at most \p most of \p size things, evenly spread.
+/// Indices of at most \p most of \p size items, evenly spread.
 std::vector<std::size_t> spreadOver(std::size_t size, std::size_t most) {
   std::vector<std::size_t> chosen(std::min(size, most));
   for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = i * size / chosen.size();
@@ -49,7 +72,8 @@ std::vector<std::size_t> spreadOver(std::size_t size, std::size_t most) {
 
 }  // namespace
 
-/// Sums of the squared distances m . (x' - y) for small turns omega of the axes and moves t of the center.
+/// Least squares of the distances m . (x' - y) in small turns omega of all axes and moves t of the center: unknowns
+/// (omega, t).
 struct RotationFit::NormalEquations {
   Matrix6d h = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
@@ -59,7 +83,7 @@ struct RotationFit::NormalEquations {
     g += other.g;
   }
 
-  /// Directions that the surface says nothing about are left alone.
+  /// The Gauss-Newton step, at most kLongestStep long. Directions that the surface does not fix stay as they are.
   Vector6d step() const {
     const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(h);
     Vector6d result = Vector6d::Zero();
@@ -80,33 +104,33 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, std::uint64_t se
       search_(makeFlannSearch(points_)),
       geometry_(localGeometry(points_, *search_, kNumSupportNeighbours, num_threads)),
       spacing_(median(geometry_.spacing)),
-      roughness_(median(geometry_.roughness) / std::max(spacing_, 1e-6)),
-      baseline_(std::max(mean(ownSupport(points_, geometry_)), 1e-3)),
+      roughness_(median(geometry_.roughness) / std::max(spacing_, kLeastSpacing)),
+      baseline_(std::max(mean(ownSupport(points_, geometry_)), kLeastOwn)),
       sigma_(edt.sigma()),
-      final_sigma_(std::min(sigma_, std::max(1e-6, kFinalSigmaInSpacings * spacing_))),
+      final_sigma_(std::min(sigma_, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing_))),
       few_(drawSamples(points_.cols(), kFewSamples, seed)),
       some_(drawSamples(points_.cols(), kSomeSamples, seed + 1)),
       many_(drawSamples(points_.cols(), kManySamples, seed + 3)),
       all_(allOf(points_.cols())),
-      scattered_(pointsAt(points_, drawSamples(points_.cols(), kOverlapSamples, seed + 2))),
+      overlap_points_(pointsAt(points_, drawSamples(points_.cols(), kOverlapSamples, seed + 2))),
       own_overlap_(1.0),
       own_feature_(featureShare(ownSupport(points_, geometry_))) {
-  // A rotated sample finds another one as far away as the closest other one of a sample is.
+  // Under a symmetry the closest sample of a rotated sample is as far away as the closest other sample of a sample.
   double sum = 0.0;
   for (Eigen::Index i = 0; i < points_.cols(); ++i) {
     const double sq_distance = (points_.col(i) - points_.col(geometry_.nearest[i][0])).squaredNorm();
     sum += std::exp(-sq_distance / (sigma_ * sigma_));
   }
-  own_overlap_ = std::max(sum / static_cast<double>(points_.cols()), 1e-3);
+  own_overlap_ = std::max(sum / static_cast<double>(points_.cols()), kLeastOwn);
 }
 
 double RotationFit::overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const {
   const Eigen::Matrix3d turn = rotation / edt_.cellSize();
   const Eigen::Vector3d shift = (center - rotation * center - edt_.origin()) / edt_.cellSize();
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < scattered_.cols(); ++i)
-    sum += edt_.atCell(turn * scattered_.col(i).cast<double>() + shift);
-  return sum / (own_overlap_ * static_cast<double>(scattered_.cols()));
+  for (Eigen::Index i = 0; i < overlap_points_.cols(); ++i)
+    sum += edt_.atCell(turn * overlap_points_.col(i).cast<double>() + shift);
+  return sum / (own_overlap_ * static_cast<double>(overlap_points_.cols()));
 }
 
 double RotationFit::overlap(const RotationSet& set) const {
@@ -125,11 +149,10 @@ RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
   return fitted(set, used, many_, {final_sigma_, final_sigma_, kCloseIterations});
 }
 
-/// With R' = exp(omega) R exp(-omega) and c' = c + t, x' = R (x - c) + c moves by ((1 - R) omega) x (x' - c) + (1 - R)
-/// t.
+/// x' = R (x - c) + c moves with R' = exp(omega) R exp(-omega) and c' = c + t
+/// by ((1 - R) omega) x (x' - c) + (1 - R) t.
 RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std::size_t i,
                                                     const std::vector<int>& samples, double sigma) const {
-  constexpr double kReach = 3.0;  // sigmas: beyond, weights are below 1.3e-4
   const Eigen::Matrix3d& rotation = set.rotations[i];
   const Eigen::Matrix3d moves = (Eigen::Matrix3d::Identity() - rotation).transpose();
   const auto size = static_cast<Eigen::Index>(samples.size());
@@ -157,11 +180,11 @@ RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std:
 }
 
 RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>& used, const std::vector<int>& samples,
-                                Weights weights) const {
+                                Annealing annealing) const {
   std::vector<NormalEquations> parts(used.size());
-  for (int iteration = 0; iteration < weights.max_iterations; ++iteration) {
+  for (int iteration = 0; iteration < annealing.max_iterations; ++iteration) {
     parallelBlocks(used.size(), num_threads_,
-                   [&](std::size_t k) { parts[k] = equations(set, used[k], samples, weights.sigma); });
+                   [&](std::size_t k) { parts[k] = equations(set, used[k], samples, annealing.sigma); });
     NormalEquations sums;
     for (const NormalEquations& part : parts) sums.add(part);
     const Vector6d step = sums.step();
@@ -170,8 +193,8 @@ RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>&
     for (Eigen::Matrix3d& rotation : set.rotations) rotation = turn * rotation * turn.transpose();
     set.center += step.tail<3>();
     const double length = step.norm();
-    if (weights.sigma == weights.final_sigma && length <= kSettled) break;
-    if (length <= kRest * weights.sigma) weights.sigma = std::max(weights.final_sigma, 0.5 * weights.sigma);
+    if (annealing.sigma == annealing.final_sigma && length <= kSettled) break;
+    if (length <= kRest * annealing.sigma) annealing.sigma = std::max(annealing.final_sigma, 0.5 * annealing.sigma);
   }
   return set;
 }
@@ -185,11 +208,13 @@ std::vector<float> RotationFit::support(const RotationSet& set, std::size_t i, c
   }
   std::vector<int> closest(samples.size(), -1);
   std::vector<float> sq_distances;
-  search_->searchWithin(rotated, static_cast<float>(9.0 * final_sigma_ * final_sigma_), closest, sq_distances);
+  search_->searchWithin(rotated, static_cast<float>(kReach * kReach * final_sigma_ * final_sigma_), closest,
+                        sq_distances);
   return pointEvidence(rotated, normals, closest, points_, geometry_, nullptr).support;
 }
 
-/// Sampling leaves single points off the surface; a feature that the rotation does not keep leaves most neighbours off.
+/// The share of samples that are off the surface together with most of their neighbours: the pieces of all features
+/// together. Sampling leaves single samples off the surface.
 double RotationFit::featureShare(const std::vector<float>& support) const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < support.size(); ++i) {

@@ -5,18 +5,24 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/constants.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kSameRotation = 1e-6;  // of matrices: elements of one group differ by 0.2 and more for n <= 60
+// Frobenius norm of the difference of equal matrices. derived: far above rounding; elements of C_n differ by
+// 2 sqrt(2) sin(pi / n), 0.15 for n = 60.
+constexpr double kSameRotation = 1e-6;
+// Cosine of the angle between equal axes. derived: rounding leaves 1e-15; axes of one group are degrees apart.
+constexpr double kParallel = 1.0 - 1e-9;
 
 bool holds(const std::vector<Eigen::Matrix3d>& rotations, const Eigen::Matrix3d& rotation) {
   return std::any_of(rotations.begin(), rotations.end(),
                      [&](const Eigen::Matrix3d& other) { return (other - rotation).norm() < kSameRotation; });
 }
 
+/// All products of the generators, the identity first.
 std::vector<Eigen::Matrix3d> closureOf(const std::vector<Eigen::Matrix3d>& generators) {
   std::vector<Eigen::Matrix3d> elements{Eigen::Matrix3d::Identity()};
   for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -42,20 +48,20 @@ Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction) {
 
 std::vector<Eigen::Matrix3d> RotationGroup::generators() const {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
-  const Eigen::Matrix3d cyclic = rotationAbout(z, 2.0 * M_PI / fold);
-  const Eigen::Matrix3d diagonal = rotationAbout(Eigen::Vector3d::Ones().normalized(), 2.0 * M_PI / 3.0);
+  const Eigen::Matrix3d cyclic = rotationAbout(z, 2.0 * kPi / fold);
+  const Eigen::Matrix3d diagonal = rotationAbout(Eigen::Vector3d::Ones().normalized(), 2.0 * kPi / 3.0);
   const double golden_ratio = 0.5 * (1.0 + std::sqrt(5.0));
   switch (kind) {
     case RotationGroupKind::Cyclic:
       return fold == 1 ? std::vector<Eigen::Matrix3d>{} : std::vector{cyclic};
     case RotationGroupKind::Dihedral:
-      return fold == 1 ? std::vector{rotationAbout(x, M_PI)} : std::vector{cyclic, rotationAbout(x, M_PI)};
+      return fold == 1 ? std::vector{rotationAbout(x, kPi)} : std::vector{cyclic, rotationAbout(x, kPi)};
     case RotationGroupKind::Tetrahedral:
-      return {rotationAbout(z, M_PI), diagonal};
+      return {rotationAbout(z, kPi), diagonal};
     case RotationGroupKind::Octahedral:
-      return {rotationAbout(z, 0.5 * M_PI), diagonal};
+      return {rotationAbout(z, 0.5 * kPi), diagonal};
     case RotationGroupKind::Icosahedral:
-      return {rotationAbout(Eigen::Vector3d(0.0, 1.0, golden_ratio).normalized(), 0.4 * M_PI), diagonal};
+      return {rotationAbout(Eigen::Vector3d(0.0, 1.0, golden_ratio).normalized(), 0.4 * kPi), diagonal};
     default:
       check(false, "kind", nameOf(kind, fold), "a finite group");
       return {};
@@ -68,7 +74,6 @@ std::vector<Eigen::Matrix3d> RotationGroup::elements() const {
 }
 
 std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements) {
-  constexpr double kParallel = 1.0 - 1e-9;
   std::vector<RotationAxis> axes;
   for (const Eigen::Matrix3d& element : elements) {
     const Eigen::AngleAxisd turn(element);

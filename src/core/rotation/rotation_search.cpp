@@ -5,23 +5,37 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/geometry/directions.h"
+#include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/rotation/rotation_group.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kPrimes[] = {2, 3, 5, 7};  // axes of greater ones alone are principal axes
-constexpr std::size_t kKept = 6;         // of the directions of each order
-constexpr double kApart = 0.17;          // radians between them
-constexpr double kLeastOverlap = 0.5;    // of a candidate
-constexpr double kGoldenAngle = 2.39996322972865332;
+// Orders of the turns that axes are searched by. derived: a rotation of any order has a power of prime order. An axis
+// whose only primes are greater ones is the single axis of its shape, hence a principal axis of the points.
+constexpr int kPrimes[] = {2, 3, 5, 7};
+// Directions kept for each order. derived: the icosahedron has six axes of order 5; those of lower order follow from
+// them.
+constexpr std::size_t kKept = 6;
+// Radians, least angle between kept directions. chosen: half keeps one axis twice, twice merges axes of large groups.
+constexpr double kApart = 0.17;
+// Least overlap of a line. chosen: half tries lines in vain, at twice (1) none is left.
+constexpr double kLeastOverlap = 0.5;
+// Overlap behind that of the best turn at which folds are still likely. chosen: half loses folds by chance, twice takes
+// time.
+constexpr double kBehind = 0.1;
+// Radians and radii, lines closer than this are one. chosen: half fits one axis twice, twice merges two axes.
+constexpr double kSameLine = 0.05;
+// Directions in one block of a thread. chosen: half adds overhead, twice leaves threads idle; results do not depend on
+// it.
+constexpr std::size_t kBlockSize = 100;
 
-/// A Fibonacci half sphere.
 Eigen::Vector3d directionAt(int k, int count) {
-  const double z = (k + 0.5) / count, ring = std::sqrt(1.0 - z * z), angle = kGoldenAngle * k;
-  return {ring * std::cos(angle), ring * std::sin(angle), z};
+  return spiralDirection(k, count, kGoldenAngle * k);
 }
 
 /// The directions of the greatest values, apart from each other.
@@ -40,19 +54,17 @@ std::vector<int> peaks(const std::vector<double>& values) {
   return kept;
 }
 
-/// Of the turns by 2 pi / n, at n.
+/// Overlaps of the turns by 2 pi / n about a line, at index n.
 std::vector<double> turnOverlaps(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
   std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
   for (int n = 2; n <= max_fold; ++n)
-    overlaps[n] = fit.overlap(rotationAbout(line.direction, 2.0 * M_PI / n), line.center);
+    overlaps[n] = fit.overlap(rotationAbout(line.direction, 2.0 * kPi / n), line.center);
   return overlaps;
 }
 
-}  // namespace
-
-std::vector<AxisLineCandidate> searchAxes(const RotationFit& fit, const Eigen::Vector3d& center, int num_directions,
-                                          int max_fold, int num_threads) {
-  constexpr std::size_t kBlockSize = 100;
+/// Lines through one center about which a turn of prime order overlaps most.
+std::vector<AxisLineCandidate> linesThrough(const Eigen::Vector3d& center, const RotationFit& fit, int num_directions,
+                                            int max_fold, int num_threads) {
   std::vector<AxisLineCandidate> lines;
   for (const int prime : kPrimes) {
     if (prime > max_fold) break;
@@ -60,11 +72,41 @@ std::vector<AxisLineCandidate> searchAxes(const RotationFit& fit, const Eigen::V
     parallelRanges(overlaps.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
         overlaps[k] =
-            fit.overlap(rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * M_PI / prime), center);
+            fit.overlap(rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * kPi / prime), center);
     });
     for (const int k : peaks(overlaps)) lines.push_back({directionAt(k, num_directions), center});
   }
   return lines;
+}
+
+}  // namespace
+
+std::vector<AxisLineCandidate> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold,
+                                                  int num_threads) {
+  const PrincipalAxes principal = principalAxes(fit.points());
+  std::vector<AxisLineCandidate> lines;
+  std::vector<Eigen::Vector3d> centers{principal.center};
+  if (principal.center.norm() > kSameLine) {
+    lines.push_back({principal.center.normalized(), principal.center});
+    centers.push_back(Eigen::Vector3d::Zero());
+  }
+  for (const Eigen::Vector3d& center : centers) {
+    for (int k = 0; k < 3; ++k) lines.push_back({principal.axes.col(k), center});
+    const auto found = linesThrough(center, fit, num_directions, max_fold, num_threads);
+    lines.insert(lines.end(), found.begin(), found.end());
+  }
+  return lines;
+}
+
+bool isKnown(const std::vector<AxisLineCandidate>& lines, const AxisLineCandidate& line) {
+  return std::any_of(lines.begin(), lines.end(), [&](const AxisLineCandidate& other) {
+    return angleBetweenLines(other.direction, line.direction) < kSameLine &&
+           (line.center - other.center).cross(other.direction).norm() < kSameLine;
+  });
+}
+
+double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
 int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
@@ -73,7 +115,6 @@ int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max
 }
 
 std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
-  constexpr double kBehind = 0.1;
   const std::vector<double> overlaps = turnOverlaps(fit, line, max_fold);
   const double best = *std::max_element(overlaps.begin(), overlaps.end());
   std::vector<int> folds;
@@ -92,7 +133,7 @@ AxisLineCandidate bestAcross(const RotationFit& fit, const AxisLineCandidate& li
     for (int k = 0; k < num_angles; ++k) {
       const double angle = width * k / num_angles;
       const Eigen::Vector3d direction = std::cos(angle) * u + std::sin(angle) * v;
-      const double overlap = fit.overlap(rotationAbout(direction, M_PI), center);
+      const double overlap = fit.overlap(rotationAbout(direction, kPi), center);
       if (overlap <= best_overlap) continue;
       best_overlap = overlap;
       best = {direction, center};

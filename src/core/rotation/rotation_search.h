@@ -6,25 +6,38 @@
 
 namespace pcl_symmetry {
 
-/// A line that a shape may turn about.
+/// A line that a shape may turn about, in the normalised frame.
 struct AxisLineCandidate {
   Eigen::Vector3d direction;  ///< unit
-  Eigen::Vector3d center;     ///< on the line
+  Eigen::Vector3d center;     ///< a point of the line
 };
 
-/// Lines through \p center, in all directions, about which a turn of prime order overlaps most with the surface; a
-/// symmetry of any order has one of prime order. \param num_directions on a half sphere.
-std::vector<AxisLineCandidate> searchAxes(const RotationFit& fit, const Eigen::Vector3d& center, int num_directions,
-                                          int max_fold, int num_threads);
+/// Lines in all directions about which a turn of prime order overlaps most with the surface. The center of mass and the
+/// center of the bounding ball lie on every axis of a shape. The lines pass through the center of mass and, where the
+/// points are unevenly dense, through the center of the bounding ball, which is 0.
+/// \param num_directions of lines through each center, on a half sphere.
+/// \param max_fold greatest order of a rotation.
+/// \param num_threads >= 0; 0 = one per core.
+/// \return lines, the principal axes of the points first.
+std::vector<AxisLineCandidate> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold,
+                                                  int num_threads);
 
-/// The n of 2 to \p max_fold whose turn by 2 pi / n overlaps best with the surface.
+/// \return whether a line is one of \p lines: closer than 0.05 radians and radii.
+bool isKnown(const std::vector<AxisLineCandidate>& lines, const AxisLineCandidate& line);
+
+/// Angle between two lines, in [0, pi/2].
+double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+/// The n in [2, \p max_fold] whose turn by 2 pi / n overlaps best with the surface.
 int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
 
-/// Those whose turns overlap nearly as well, the least first.
+/// All n in [2, \p max_fold] whose turns overlap nearly as well as the best.
+/// \return rising.
 std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
 
-/// Of the turns by pi about axes across a line, at \p num_angles in [0, width), the one that overlaps most.
-/// \param offsets of the axis along the line, from its center.
+/// The half turn, among those about axes perpendicular to a line, that overlaps most with the surface.
+/// \param width the axes have \p num_angles angles in [0, width), radians.
+/// \param offsets places of the axis along the line, from its center.
 AxisLineCandidate bestAcross(const RotationFit& fit, const AxisLineCandidate& line, double width, int num_angles,
                              const std::vector<double>& offsets);
 

@@ -43,41 +43,6 @@ void expectGroup(const std::vector<Eigen::Isometry3d>& motions, double size) {
   }
 }
 
-TEST(RotationGroup, HasItsElementsAndNoOthers) {
-  using Kind = RotationGroupKind;
-  const std::vector<std::pair<RotationGroup, std::size_t>> groups{
-      {{Kind::Cyclic, 1}, 1},       {{Kind::Cyclic, 2}, 2},      {{Kind::Cyclic, 7}, 7},
-      {{Kind::Dihedral, 1}, 2},     {{Kind::Dihedral, 2}, 4},    {{Kind::Dihedral, 5}, 10},
-      {{Kind::Tetrahedral, 3}, 12}, {{Kind::Octahedral, 4}, 24}, {{Kind::Icosahedral, 5}, 60}};
-  for (const auto& [group, size] : groups) {
-    SCOPED_TRACE(nameOf(group.kind, group.fold));
-    std::vector<Eigen::Isometry3d> motions;
-    for (const Eigen::Matrix3d& element : group.elements()) motions.emplace_back(element);
-    ASSERT_EQ(motions.size(), size);
-    EXPECT_TRUE(motions[0].linear().isIdentity());
-    expectGroup({motions.begin() + 1, motions.end()}, 1.0);
-  }
-  EXPECT_THROW((RotationGroup{Kind::Revolution, 0}.elements()), std::invalid_argument);
-  EXPECT_THROW((RotationGroup{Kind::Cyclic, 0}.elements()), std::invalid_argument);
-}
-
-TEST(RotationGroup, HasTheAxesOfItsSolid) {
-  const auto count = [](RotationGroupKind kind, int fold, int order) {
-    const std::vector<RotationAxis> axes = axesOf(RotationGroup{kind, fold}.elements());
-    return std::count_if(axes.begin(), axes.end(), [&](const RotationAxis& axis) { return axis.order == order; });
-  };
-  EXPECT_EQ(count(RotationGroupKind::Tetrahedral, 3, 3), 4);
-  EXPECT_EQ(count(RotationGroupKind::Tetrahedral, 3, 2), 3);
-  EXPECT_EQ(count(RotationGroupKind::Octahedral, 4, 4), 3);
-  EXPECT_EQ(count(RotationGroupKind::Octahedral, 4, 3), 4);
-  EXPECT_EQ(count(RotationGroupKind::Octahedral, 4, 2), 6);
-  EXPECT_EQ(count(RotationGroupKind::Icosahedral, 5, 5), 6);
-  EXPECT_EQ(count(RotationGroupKind::Icosahedral, 5, 3), 10);
-  EXPECT_EQ(count(RotationGroupKind::Icosahedral, 5, 2), 15);
-  EXPECT_EQ(count(RotationGroupKind::Dihedral, 6, 6), 1);
-  EXPECT_EQ(count(RotationGroupKind::Dihedral, 6, 2), 6);
-}
-
 class KnownGroup : public testing::TestWithParam<TurningShape> {
 protected:
   static constexpr double kAngleError = 0.5 * kDegree;
@@ -123,13 +88,12 @@ protected:
 };
 
 TEST_P(KnownGroup, IsFoundInAnyPoseAndSize) {
-  expectFound(GetParam(), randomPose(1), 1.0, 10'000, 1);
   expectFound(GetParam(), randomPose(2), 1e3, 2000, 2);
   expectFound(GetParam(), randomPose(3), 1e-3, 4000, 3);
 }
 
 TEST_P(KnownGroup, IsFoundAsTheShapeStands) {
-  expectFound(GetParam(), Eigen::Isometry3d::Identity(), 1.0, 5000, 4);
+  expectFound(GetParam(), Eigen::Isometry3d::Identity(), 1.0, 3000, 4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, KnownGroup, testing::ValuesIn(turningShapes()), [](const auto& instance) {

@@ -14,15 +14,16 @@ namespace pcl_symmetry {
 
 struct FrameOptions {
   GaussianEdtOptions edt;  ///< sigma = 0: 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more
-  int num_theta = 32;      ///< of the map that candidates come from, >= 1
+  int num_theta = 32;      ///< bins of the map that candidates for the first plane come from, >= 1
   int num_phi = 128;       ///< even, >= 2
   int num_radius = 64;     ///< >= 1
-  int num_samples = 64;    ///< of the sampled transform, >= 1
-  /// Scores, D of whole clouds, that differ by no more than this are equal, >= 0. The sampled D of a symmetry varies by
-  /// 0.02 to 0.03 with the angle of the plane.
+  int num_samples = 64;    ///< samples of that map's transform, >= 1
+  /// Scores that differ by no more than this are equal, >= 0. The scores are D of whole clouds. measured: the sampled D
+  /// of a symmetry varies by 0.02 to 0.03 with the angle of the plane; half separates equal planes, twice makes planes
+  /// of different symmetry equal.
   double tie = 0.06;
-  /// The paper's own method: greedily by D alone, through bin centers of the map and, within the plane across the first
-  /// axis, at num_phi angles; what a scanner saw does not count, and nothing is tied.
+  /// The paper's own method: three planes picked greedily by D, through bin centers of the map and at num_phi angles
+  /// within the plane across the first axis. It ignores what a scanner saw, and no scores tie.
   bool as_published = false;
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
@@ -31,43 +32,53 @@ struct FrameOptions {
   void validate() const;
 };
 
-/// Center of symmetry and principal symmetry axes of a shape: its canonical frame (Section 5.1).
+/// The canonical frame of a shape: center of symmetry (COS) and principal symmetry axes (PSA, Section 5.1).
 struct SymmetryFrame {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< where the three planes meet, input frame
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: normals of the planes, right-handed, best first
-  /// Of the plane across each axis, in [0, 1]: D, of a scan seenSymmetry() of D and free space; of the second and third
-  /// plane of a scan as if it had been seen from both sides of the first.
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of symmetry: where the three planes meet, input frame
+  /// Principal symmetry axes in columns: normals of the planes, orthonormal, right-handed, best first.
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  /// Score of the plane across each axis, in [0, 1]. For a whole cloud it is D; for a scan it is seenSymmetry() of D
+  /// and free space, for the second and third plane on the scan completed by its reflection across the first.
   Eigen::Vector3d scores = Eigen::Vector3d::Zero();
-  int revolution_axis = -1;  ///< column that is an axis of revolution; -1: none, 3: every line through the center is
+  int revolution_axis =
+      -1;  ///< column that is an axis of revolution; -1: none, 3: every line through the center is one
   Eigen::Isometry3d T_canonical_input = Eigen::Isometry3d::Identity();  ///< center to 0, axes to x, y, z
-  /// T_canonical_input of all frames that symmetry leaves equally good, this one first. A plane has no sign: every
-  /// choice of signs that is a rotation is here; where scores tie, other orders and other axes too, first those that
-  /// are maxima, then in steps of 6 degrees those between. About an axis of revolution any angle is as good, in
-  /// addition.
+  /// T_canonical_input of all frames that symmetry leaves equally good, this one first. A plane has no sign, so every
+  /// choice of signs that is a rotation is listed. Where scores tie, other orders and other axes are listed too: first
+  /// those that are maxima, then the angles between them in steps of 6 degrees. Turns about an axis of revolution are
+  /// equally good as well and not listed.
   std::vector<Eigen::Isometry3d> equivalent;
-  std::size_t num_maxima = 0;                             ///< how many of them come before those between
+  std::size_t num_maxima = 0;                             ///< frames at the front of equivalent that are maxima
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
-/// The plane of greatest symmetry, the greatest among those perpendicular to it, and the plane perpendicular to both;
-/// the center is where they meet.
+/// Finds the canonical frame: the plane of greatest symmetry, the greatest among those perpendicular to it, and the
+/// plane perpendicular to both (Section 5.1). The center of symmetry is where the three meet.
 ///
-/// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken; the
-/// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points.
-/// Order: the first plane is the best of the frame that is best as a whole; the second scores more than the third or,
-/// where they tie, the points spread more along it.
-/// Signs: along the second and third axis the third central moment of the points is positive: they point to the side
-/// where less of the shape reaches further. The first makes the frame right-handed, as it is the one most free of a
-/// direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan shows the moments of
-/// the side that was seen. All signs are in SymmetryFrame::equivalent.
-/// \param points 3 x N, finite, input units; at least two different ones.
-/// \param visibility what a scanner saw; null = the points show the object from all sides.
-/// \throws std::invalid_argument for bad options or points without extent.
+/// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. The
+/// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points. A scan is
+/// completed by its reflection across the first plane before the other two are searched, and free space speaks against
+/// planes.
+///
+/// Order: the first plane is that of the frame that is best as a whole. The second scores more than the third or, where
+/// the two tie, the points spread more along it.
+///
+/// Signs: the third central moment of the points along the second and third axis is positive: these axes point to the
+/// side where less of the shape reaches further. The sign of the first makes the frame right-handed, because the first
+/// axis has the least direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan
+/// has the moments of the side that was seen. SymmetryFrame::equivalent lists all signs. \param points 3 x N, finite,
+/// input units; at least two different ones. \param options numbers of bins and samples, tie, threads. \param
+/// visibility what a scanner saw, input frame; null = the points show the object from all sides. \return the frame, in
+/// the input frame. \throws std::invalid_argument for bad options or points without extent.
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options = {},
                             const Visibility* visibility = nullptr);
 
-/// For each frame (unit axes in columns) the greatest D of the planes across each of its axes, whatever their offset:
-/// is another frame as symmetric as the one that was found? \param points as in symmetryFrame().
+/// Judges given frames: is another frame as symmetric as the one that was found?
+/// \param points 3 x N, finite, input units; at least two different ones, that show the object from all sides.
+/// \param frames each with unit axes in its columns.
+/// \param options as for symmetryFrame().
+/// \return for each frame the greatest D of the planes across each of its axes, whatever their offset.
+/// \throws std::invalid_argument for bad options or points without extent.
 std::vector<Eigen::Vector3d> axisScores(const PointsRef& points, const std::vector<Eigen::Matrix3d>& frames,
                                         const FrameOptions& options = {});
 

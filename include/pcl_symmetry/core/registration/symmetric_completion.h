@@ -9,9 +9,11 @@
 namespace pcl_symmetry {
 
 struct CompletionOptions {
-  /// A reflected point this close to a point that was measured, in spacings of the points there, adds nothing; > 0.
+  /// Reflected points within this distance of a measured point add nothing; local spacings of the points, > 0. chosen:
+  /// half doubles parts of the surface, twice leaves gaps beside it.
   double overlap = 1.5;
-  /// A reflected point more than this in front of what was seen lies in free space; in spacings of the points, >= 0.
+  /// Reflected points more than this in front of what was seen lie in free space; local spacings of the points, >= 0.
+  /// chosen: half drops points next to the surface, twice keeps points in front of it.
   double margin = 3.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -19,10 +21,14 @@ struct CompletionOptions {
   void validate() const;
 };
 
-/// Which points of a partial scan show, reflected, what the scanner did not see of a symmetric object: those whose
-/// reflections fall neither onto the surface that was measured nor into space that was seen to be empty.
-/// \param points 3 x N, finite, input units. \param visibility what the scanner saw; null = nothing is known of it.
-/// \return indices of the points, rising.
+/// The points of a partial scan whose reflections show what the scanner did not see of a symmetric object: they fall
+/// neither onto the measured surface nor into space that was seen to be empty.
+/// \param points 3 x N, finite, input units.
+/// \param plane a symmetry plane of the object, input frame.
+/// \param options tolerances in spacings of the points.
+/// \param visibility what the scanner saw, input frame; null = nothing is known about it.
+/// \return indices of these points, rising.
+/// \throws std::invalid_argument for bad options.
 std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane& plane,
                                   const CompletionOptions& options = {}, const Visibility* visibility = nullptr);
 

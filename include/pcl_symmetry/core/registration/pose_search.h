@@ -1,0 +1,37 @@
+#pragma once
+
+namespace pcl_symmetry {
+
+/// Options of the search for poses that bring a scan, or a whole object, to a model of it (Section 5.1). Lengths are in
+/// radii of the model.
+struct PoseSearchOptions {
+  int num_rotations = 1000;     ///< spread evenly over all rotations, tried beside the given poses, >= 0
+  int num_screened = 60;        ///< the best of these that are improved coarsely, with all given poses, >= 1
+  int num_refined = 20;         ///< the best of those that are improved finely, >= 1
+  int max_poses = 4;            ///< the best of those that are returned, >= 1
+  double coarse_width = 0.25;   ///< width of the Gaussian at the start, radii, > 0
+  double fine_width = 0.05;     ///< width of the Gaussian at the end, radii, > 0
+  double merge_angle = 0.2;     ///< radians, >= 0: poses closer than this and than merge_distance are one
+  double merge_distance = 0.1;  ///< radii, >= 0
+  int num_threads = 0;          ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// What two clouds say about a pose.
+struct PoseScore {
+  double support = 0.0;  ///< share of the scan's points that lie on the model, in [0, 1]
+  /// Sum of two shares, in [0, 2]: of the model's points that the scanner could judge, those that lie in space it saw
+  /// to be empty; and of the scan's points, those that lie in space that the model's scanner saw to be empty.
+  double conflict = 0.0;
+
+  /// Merit of a pose, by which poses are compared: support minus half the conflict, in [-1, 1]. A perfect pose has
+  /// merit
+  /// 1. measured: scans of benchmark models, also noisy ones and ones with holes, reach 0.5 at their own model and stay
+  /// below 0.32 at models of other kinds. Conflict counts half, because holes in a scan look like space that the
+  /// scanner saw through.
+  double merit() const { return support - 0.5 * conflict; }
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,129 @@
+#include "core/frame/canonical_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/constants.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Radians, frames closer than this are one. derived: less than two steps of 3 degrees in the angle of the second plane.
+constexpr double kSameFrame = 5.0 * kDegree;
+// Weight exp(kSharpness s) of an offset of score s. chosen: half lets poor offsets pull the center, twice follows the
+// noise of flat profiles.
+constexpr double kSharpness = 15.0;
+// Radii, standard deviation of the offsets of second and third planes about the middle of the extent. chosen: half
+// follows the extent alone, twice lets flat profiles drift.
+constexpr double kOffsetWidth = 0.07;
+// Angles at which a revolution is tested, in the half-turn. chosen: half takes square prisms for round ones, twice
+// takes twice the time.
+constexpr int kNumRevolutionAngles = 8;
+
+/// Exactly orthonormal, and right-handed.
+Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
+  Eigen::Matrix3d result = axes.cast<double>();
+  result.col(0).normalize();
+  result.col(1) = (result.col(1) - result.col(0).dot(result.col(1)) * result.col(0)).normalized();
+  result.col(2) = result.col(0).cross(result.col(1));
+  return result;
+}
+
+}  // namespace
+
+Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matrix3f& axes) {
+  Eigen::Matrix3d result = orthonormal(axes);
+  const Eigen::Vector3d mean = centerOfMass(points);
+  Eigen::Vector3d moments = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    moments.array() += (result.transpose() * (points.col(i).cast<double>() - mean)).array().cube();
+  for (int k = 1; k < 3; ++k)
+    if (moments[k] < 0.0) result.col(k) *= -1.0;
+  result.col(0) = result.col(1).cross(result.col(2));
+  return result;
+}
+
+Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame) {
+  const CellPlane first{frame.axes.col(0), frame.offsets[0]};
+  Eigen::Vector3f center = first.offset * first.normal;
+  for (int k = 1; k < 3; ++k) {
+    const Eigen::Vector3f axis = frame.axes.col(k);
+    const std::vector<float> s = evidence.profile(axis, evidence.completedAcross(first));
+    const float top = *std::max_element(s.begin(), s.end());
+    const double middle = evidence.middleAlong(axis);
+    double sum = 0.0, moment = 0.0;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const double r = static_cast<double>(i) - std::floor(evidence.reach());
+      const double away = (r - middle) / (kOffsetWidth * evidence.reach());
+      const double weight = std::exp(kSharpness * (s[i] - top) - 0.5 * away * away);
+      sum += weight;
+      moment += weight * r;
+    }
+    center += static_cast<float>(sum > 0.0 ? moment / sum : middle) * axis;
+  }
+  return evidence.toInput(center);
+}
+
+int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, double tie) {
+  const Eigen::Vector3f center = frame.axes * frame.offsets;
+  int axis = -1, count = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3f u = frame.axes.col((k + 1) % 3), v = frame.axes.col((k + 2) % 3);
+    float lowest = std::numeric_limits<float>::infinity(), highest = 0.0f;
+    for (int a = 0; a < kNumRevolutionAngles; ++a) {
+      const float angle = static_cast<float>(kPi * a / kNumRevolutionAngles);
+      const Eigen::Vector3f normal = std::cos(angle) * u + std::sin(angle) * v;
+      const float score = evidence.nearbyOffset(normal, normal.dot(center)).score;
+      lowest = std::min(lowest, score);
+      highest = std::max(highest, score);
+    }
+    if (lowest < highest - tie) continue;
+    axis = k;
+    ++count;
+  }
+  return count >= 2 ? 3 : axis;
+}
+
+Eigen::Isometry3d canonicalPose(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center) {
+  Eigen::Isometry3d T_canonical_input = Eigen::Isometry3d::Identity();
+  T_canonical_input.linear() = axes.transpose();
+  T_canonical_input.translation() = -axes.transpose() * center;
+  return T_canonical_input;
+}
+
+void EquivalentFrames::addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center) {
+  for (int kept = -1; kept < 3; ++kept) {
+    Eigen::Vector3d signs = Eigen::Vector3d::Constant(kept < 0 ? 1.0 : -1.0);
+    if (kept >= 0) signs[kept] = 1.0;
+    const Eigen::Isometry3d T = canonicalPose(axes * signs.asDiagonal(), center);
+    const bool known = std::any_of(poses_.begin(), poses_.end(), [&](const Eigen::Isometry3d& other) {
+      return Eigen::AngleAxisd(T.linear() * other.linear().transpose()).angle() < kSameFrame;
+    });
+    if (!known) poses_.push_back(T);
+  }
+}
+
+void EquivalentFrames::addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, double tie,
+                               const Eigen::Vector3d& center) {
+  constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};  // derived: all
+  for (const auto& order : kOrders) {
+    bool tied = true;
+    Eigen::Matrix3f axes;
+    for (int k = 0; k < 3; ++k) {
+      tied &= frame.scores[order[k]] >= scores[k] - tie;
+      axes.col(k) = frame.axes.col(order[k]);
+    }
+    if (tied) addWithSigns(orthonormal(axes), center);
+  }
+}
+
+bool isTurnAboutRevolution(const SymmetryFrame& result, const FrameCandidate& frame) {
+  if (result.revolution_axis < 0) return false;
+  if (result.revolution_axis == 3) return true;
+  const Eigen::Vector3f axis = result.axes.col(result.revolution_axis).cast<float>();
+  return (frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kSameFrame);
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "core/frame/frame_search.h"
+
+namespace pcl_symmetry {
+
+/// From the three planes that were found to the canonical frame (Section 5.1).
+
+/// The principal symmetry axes (PSA): the normals of the three planes, exactly orthonormal and right-handed. Signs come
+/// from the third central moments of the points.
+/// \param axes columns: unit normals, perpendicular to within rounding.
+Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matrix3f& axes);
+
+/// The center of symmetry (COS): where the three planes meet.
+///
+/// Departure from the paper: the profiles of the second and third plane are often flat, so each offset is the mean over
+/// all offsets, weighted by score and by closeness to the middle of the extent of the points.
+/// \return input frame.
+Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame);
+
+/// The axis of revolution among the axes of a frame: planes at all angles about it have equal scores.
+/// \param tie scores that differ by no more than this are equal.
+/// \return column of the axis; -1 for none, 3 where two axes are axes of revolution: a sphere.
+int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, double tie);
+
+/// The pose that takes the center to the origin and the axes to x, y and z.
+/// \param axes orthonormal columns.
+/// \return T_canonical_input.
+Eigen::Isometry3d canonicalPose(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center);
+
+/// The frames that symmetry leaves equally good. Frames closer than 5 degrees are one.
+class EquivalentFrames {
+public:
+  /// Adds a frame with all four choices of signs that are rotations: a plane has no sign.
+  /// \param axes orthonormal columns, right-handed.
+  void addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center);
+
+  /// Adds a frame in all orders of its axes in which none of its planes scores less than the one it replaces.
+  /// \param scores those of the best frame.
+  /// \param tie scores that differ by no more than this are equal.
+  void addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, double tie, const Eigen::Vector3d& center);
+
+  /// Each T_canonical_input, in the order in which they were added.
+  const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }
+
+private:
+  std::vector<Eigen::Isometry3d> poses_;
+};
+
+/// Whether a frame is a turn of the result about its axis of revolution: all of these are equally good and not listed.
+bool isTurnAboutRevolution(const SymmetryFrame& result, const FrameCandidate& frame);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/frame/frame_evidence.h"
+
+namespace pcl_symmetry {
+
+/// Three perpendicular planes that may be those of the frame. Offsets in cells from the middle of the grid.
+struct FrameCandidate {
+  Eigen::Matrix3f axes;     ///< columns: unit normals of the first, second and third plane
+  Eigen::Vector3f offsets;  ///< of these planes
+  Eigen::Vector3f scores;   ///< of these planes
+  /// Scans: the axis, 1 or 2, about which the first plane turns best to another symmetry; -1 for whole clouds. A body
+  /// of revolution hides half of itself from each of its planes, but none of them is in conflict with what was seen. So
+  /// the plane half-way between the first plane and the other one about this axis adds to the value.
+  int turning_axis = -1;
+  float half_way_offset = 0.0f;  ///< of that plane
+  double value = 0.0;            ///< the greater, the better
+};
+
+/// The steps of the search for principal symmetry axes (Section 5.1). The paper picks the three planes greedily by D;
+/// here the first plane is chosen with regard to the frame that it leads to.
+
+/// Candidates for the first plane: maxima of the map, planes across the principal axes of the points and planes across
+/// faces of the surface, each moved to the nearest maximum of quality().
+std::vector<CellPlane> firstPlaneCandidates(const FrameEvidence& evidence, const SymmetryMap& map, int num_threads);
+
+/// The candidates of the greatest quality, each direction once, best first.
+std::vector<CellPlane> bestFirstPlanes(const FrameEvidence& evidence, const std::vector<CellPlane>& candidates);
+
+/// Angles of the second plane about the normal of the first one, within a quarter turn: one third plane belongs to
+/// each. chosen: steps of 3 degrees; half skips narrow maxima, twice takes twice the time.
+constexpr std::size_t kNumFrameAngles = 30;
+
+/// Second and third planes of each first plane, on the completed cloud.
+/// \return kNumFrameAngles frames for each first plane, in order of the angle.
+std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std::vector<CellPlane>& first_planes,
+                                        int num_threads);
+
+/// The frames whose value is a local maximum over the angle about their first axis, best first; at least one.
+/// \param turned result of framesAbout() for at least one first plane.
+std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& turned);
+
+/// Moves each frame to the nearest maximum of its value, all three planes together. Then orders the second and third
+/// axis by score, or where scores tie by the spread of the points. \param tie scores that differ by no more than this
+/// are equal, >= 0. \return the frames, best first.
+std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames, double tie,
+                                          int num_threads);
+
+}  // namespace pcl_symmetry

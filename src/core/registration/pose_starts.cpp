@@ -1,0 +1,70 @@
+#include "core/registration/pose_starts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/constants.h"
+#include "core/geometry/viewing_frame.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Points of the model whose outline is taken. chosen: half cuts off thin parts, twice takes twice the time.
+constexpr int kOutlinePoints = 200;
+
+/// The place by which both clouds are held together, along three directions of the scanner: the middle of the outline
+/// in the picture plane, and the front along the view.
+Eigen::Vector3d anchorOf(const Eigen::Matrix3Xd& in_scanner) {
+  const Eigen::Vector3d low = in_scanner.rowwise().minCoeff(), high = in_scanner.rowwise().maxCoeff();
+  return {0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), low.z()};
+}
+
+Eigen::Matrix3Xd sampleOf(const PosedSurface& surface) {
+  const auto size = std::min<Eigen::Index>(kOutlinePoints, surface.points.cols());
+  Eigen::Matrix3Xd sample(3, size);
+  for (Eigen::Index i = 0; i < size; ++i) sample.col(i) = surface.points.col(surface.order[i]).cast<double>();
+  return sample;
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix3d> uniformRotations(int num_rotations) {
+  // Second irrational of the spirals beside sqrt(2). derived: the positive root of psi^4 = psi + 4.
+  constexpr double kPsi = 1.533751168755204288118041;
+  std::vector<Eigen::Matrix3d> rotations;
+  for (int i = 0; i < num_rotations; ++i) {
+    const double s = i + 0.5, share = s / num_rotations;
+    const double a = 2.0 * kPi * s / std::sqrt(2.0), b = 2.0 * kPi * s / kPsi;
+    const double inner = std::sqrt(share), outer = std::sqrt(1.0 - share);
+    rotations.push_back(
+        Eigen::Quaterniond(outer * std::cos(b), inner * std::sin(a), inner * std::cos(a), outer * std::sin(b))
+            .toRotationMatrix());
+  }
+  return rotations;
+}
+
+PoseStarts::PoseStarts(const PosedSurface& scan, const PosedSurface& model)
+    : from_outline_(scan.seen.has_value()), model_(sampleOf(model)) {
+  if (!from_outline_) {
+    scan_anchor_ = centerOfMass(scan.points);
+    model_anchor_ = centerOfMass(model.points);
+    return;
+  }
+  R_scanner_scan_ = viewingFrame((centerOfMass(scan.points) - scan.seen->viewpoint()).normalized());
+  scan_anchor_ = R_scanner_scan_.transpose() * anchorOf(R_scanner_scan_ * scan.points.cast<double>());
+}
+
+Eigen::Isometry3d PoseStarts::pose(const Eigen::Matrix3d& R_model_scan) const {
+  Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();
+  T_model_scan.linear() = R_model_scan;
+  Eigen::Vector3d anchor = model_anchor_;
+  if (from_outline_) {
+    const Eigen::Matrix3d R_scanner_model = R_scanner_scan_ * R_model_scan.transpose();
+    anchor = R_scanner_model.transpose() * anchorOf(R_scanner_model * model_);
+  }
+  T_model_scan.translation() = anchor - R_model_scan * scan_anchor_;
+  return T_model_scan;
+}
+
+}  // namespace pcl_symmetry

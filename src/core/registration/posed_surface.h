@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/neighbours/closest_point_grid.h"
+#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/core/scan/visibility.h"
+
+namespace pcl_symmetry {
+
+/// One of two clouds that are brought together, with everything that judging a pose needs.
+struct PosedSurface {
+  Points points;                   ///< 3 x N
+  Points normals;                  ///< 3 x N, unit, of any sign
+  std::vector<int> order;          ///< N, the points in random order: the first k are an even sample of the surface
+  double accuracy = 0.0;           ///< distance within which samples of one surface meet: their spacing and their noise
+  std::optional<Visibility> seen;  ///< what the scanner saw; nothing = the cloud shows its object from all sides
+  ClosestPointGrid grid;
+  ClosestPointSearch::Ptr search;
+
+  /// \param points 3 x N, finite, N >= 1.
+  /// \param seen what the scanner saw, in the frame of the points.
+  /// \param seed of the order.
+  /// \param num_threads >= 0; 0 = one per core.
+  PosedSurface(const PointsRef& points, std::optional<Visibility> seen, std::uint64_t seed, int num_threads);
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,115 @@
+#include "core/rotation/greatest_group.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/base/constants.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Radians, angles between two axes of a group and between two that were found agree within this. chosen: half misses
+// groups whose axes were found roughly, twice tries groups in vain.
+constexpr double kMeets = 0.1;
+// Radii, radians: steps of the search for half turns across an axis. chosen: half takes twice the time, twice may leave
+// the basin of the fit.
+constexpr double kStepAcross = 0.02;
+// Steps to each side along the axis of a cylinder. derived: up to half the radius, as its center may lie off the center
+// of mass where the points are unevenly dense.
+constexpr int kNumStepsAlong = 25;
+
+std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                                          const std::vector<TurningAxis>& axes) {
+  if (axes.size() < 2) return std::nullopt;
+  RotationSet set = turnsAbout(axes[0].line);
+  const RotationSet others = turnsAbout(axes[1].line);
+  set.rotations.insert(set.rotations.end(), others.rotations.begin(), others.rotations.end());
+  set.num_judged = set.rotations.size();
+  return placedGroup(fit, options, RotationGroupKind::Spherical, 0, set);
+}
+
+std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                                            const TurningAxis& main) {
+  std::vector<double> offsets;
+  for (int k = -kNumStepsAlong; k <= kNumStepsAlong; ++k) offsets.push_back(kStepAcross * k);
+  const AxisLineCandidate across = bestAcross(fit, main.line, kPi, 1, offsets);
+  RotationSet set = turnsAbout({main.line.direction, across.center});
+  set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction, kPi));
+  set.num_judged = 2;
+  return placedGroup(fit, options, RotationGroupKind::Cylindrical, 0, set);
+}
+
+std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                                         const TurningAxis& main) {
+  const RotationGroup group{RotationGroupKind::Dihedral, main.fold};
+  const double width = kPi / main.fold;
+  const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kStepAcross)));
+  const AxisLineCandidate across =
+      bestAcross(fit, main.line, width, num_angles, {0.0, -0.04, 0.04, -0.08, 0.08, -0.12, 0.12});
+  const Eigen::Matrix3d frame = frameAlong(main.line.direction, across.direction);
+  return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.center));
+}
+
+/// Two axes that are not parallel place a group, up to itself.
+/// \param first,second axes that were found.
+/// \param a,b axes of the group that these are taken for.
+std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                                        const RotationGroup& group, const TurningAxis& first, const TurningAxis& second,
+                                        const RotationAxis& a, const RotationAxis& b) {
+  if (a.order % first.fold != 0 || b.order % second.fold != 0) return std::nullopt;
+  const double cosine = a.direction.dot(b.direction);
+  const Eigen::Vector3d direction =
+      first.line.direction.dot(second.line.direction) * cosine < 0.0 ? -second.line.direction : second.line.direction;
+  const double expected = angleBetweenLines(a.direction, b.direction);
+  if (expected < kMeets || std::abs(angleBetweenLines(first.line.direction, direction) - expected) > kMeets)
+    return std::nullopt;
+  const Eigen::Matrix3d frame =
+      frameAlong(first.line.direction, direction) * frameAlong(a.direction, b.direction).transpose();
+  return placedGroup(fit, options, group.kind, group.fold, elementsOf(group, frame, first.line.center));
+}
+
+std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                                           const RotationGroup& group, const std::vector<TurningAxis>& axes) {
+  const std::vector<RotationAxis> own = axesOf(group.elements());
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    for (std::size_t j = i + 1; j < axes.size(); ++j)
+      for (const RotationAxis& a : own)
+        for (const RotationAxis& b : own)
+          if (auto found = groupThrough(fit, options, group, axes[i], axes[j], a, b)) return found;
+  return std::nullopt;
+}
+
+/// The greatest group of a body of revolution.
+PlacedGroup continuousGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                            const std::vector<TurningAxis>& axes) {
+  if (auto sphere = sphericalGroup(fit, options, axes)) return *sphere;
+  if (auto cylinder = cylindricalGroup(fit, options, axes.front())) return *cylinder;
+  return axes.front().group;
+}
+
+/// The greatest group with axes of finite order: the regular solids, then prisms, then the turns about one axis.
+PlacedGroup finiteGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                        const std::vector<TurningAxis>& axes) {
+  for (const RotationGroup& group :
+       {RotationGroup{RotationGroupKind::Icosahedral, 5}, RotationGroup{RotationGroupKind::Octahedral, 4},
+        RotationGroup{RotationGroupKind::Tetrahedral, 3}})
+    if (auto solid = polyhedralGroup(fit, options, group, axes)) return *solid;
+  for (const TurningAxis& axis : axes) {
+    // A dihedral group about this axis would have no more elements than the turns about the main one.
+    if (2 * axis.fold <= axes.front().fold) break;
+    if (auto prism = dihedralGroup(fit, options, axis)) return *prism;
+  }
+  return axes.front().group;
+}
+
+}  // namespace
+
+PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                          const std::vector<TurningAxis>& axes) {
+  if (axes.empty()) return {};
+  return axes.front().fold == 0 ? continuousGroup(fit, options, axes) : finiteGroup(fit, options, axes);
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+
+#include "core/rotation/rotation_search.h"
+#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+
+namespace pcl_symmetry {
+
+/// A group of rotations in place, in the normalised frame.
+struct PlacedGroup {
+  RotationGroupKind kind = RotationGroupKind::Cyclic;
+  int fold = 1;
+  RotationSet set;  ///< all elements but the identity; for continuous groups, turns that stand for all
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the first rotation
+  RotationEvidence evidence;
+};
+
+/// Overlap with the surface that a set of rotations has to reach before its fit. chosen: half fits many sets in vain,
+/// at 4/3 (1) sampling drops true ones.
+constexpr double kRoughOverlap = 0.75;
+/// Overlap after its rough fit. chosen: half fits closely in vain, beyond 1 nothing passes.
+constexpr double kFairOverlap = 0.85;
+/// Rough support of a set that goes on to be judged. chosen: half judges sets in vain, beyond 1 nothing passes.
+constexpr double kFairSupport = 0.85;
+
+/// Whether the surface supports rotations: confident enough, and no feature too large is mapped off the surface.
+bool holds(const RotationEvidence& evidence, const ObjectSymmetryOptions& options);
+
+/// The set moved to where it fits the surface best; nothing if the surface does not support it there.
+std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                                       RotationGroupKind kind, int fold, RotationSet set);
+
+/// The rotation that takes z to \p z, and x as near as can be to \p x.
+/// \param z,x not parallel.
+Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x);
+
+/// Axis of a rotation, unit.
+Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
+
+/// All elements of a group but the identity, placed by \p frame. The generators are judged and, about a main axis, the
+/// turns of about a quarter and a half: where there are many folds, one step cannot be told from that of one fold more
+/// or less. \param frame rotation from the frame of the group to that of the points.
+RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame, const Eigen::Vector3d& center);
+
+/// The turns by multiples of 2 pi / \p fold about a line.
+RotationSet cyclicSet(const AxisLineCandidate& line, int fold);
+
+/// The turn by 2 pi / \p fold about a line.
+RotationSet singleTurn(const AxisLineCandidate& line, int fold);
+
+/// Turns about a line that stand for all turns about it: their angles fit no polygon.
+RotationSet turnsAbout(const AxisLineCandidate& line);
+
+}  // namespace pcl_symmetry

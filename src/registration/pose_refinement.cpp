@@ -1,0 +1,108 @@
+#include "registration/pose_refinement.h"
+
+#include <pcl/point_types.h>
+#include <pcl/registration/icp.h>
+#include <pcl/search/kdtree.h>
+
+#include <algorithm>
+
+#include "core/registration/pose_scoring.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
+
+// Points of the scan that ICP uses. chosen: half is less exact, twice takes twice the time.
+constexpr int kRefinedPoints = 1000;
+// Points of each cloud in the last comparison. chosen: half ranks close poses by chance, twice takes twice the time.
+constexpr int kJudgedPoints = 3000;
+// Accuracies, and radii at least: distance in which ICP looks for its first pairs. chosen: half finds too few pairs
+// from coarse poses, twice pairs different parts.
+constexpr double kReach = 4.0, kLeastReach = 0.08;
+// Radii, least width of the last comparison; otherwise it is the accuracy. chosen: half takes sampling for differences,
+// twice does not tell close poses apart.
+constexpr double kLeastFinalWidth = 0.015;
+// Merit behind the best pose at which poses are not refined. chosen: half drops poses that refinement would bring to
+// the front, twice takes more time.
+constexpr double kHopeless = 0.2;
+
+NormalCloud::Ptr cloudOf(const PosedSurface& surface, int max_points) {
+  const auto size = std::min<std::size_t>(surface.order.size(), max_points);
+  auto cloud = pcl::make_shared<NormalCloud>();
+  cloud->resize(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    (*cloud)[i].getVector3fMap() = surface.points.col(surface.order[i]);
+    (*cloud)[i].getNormalVector3fMap() = surface.normals.col(surface.order[i]);
+  }
+  return cloud;
+}
+
+/// Point-to-plane ICP from several poses.
+class PoseRefinement {
+public:
+  PoseRefinement(const PosedSurface& scan, const PosedSurface& model, double reach,
+                 const CloudRegistrationOptions& options) {
+    const auto target = cloudOf(model, static_cast<int>(model.order.size()));
+    auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>();
+    tree->setInputCloud(target);
+    icp_.setSearchMethodTarget(tree, true);
+    icp_.setInputTarget(target);
+    icp_.setInputSource(cloudOf(scan, kRefinedPoints));
+    icp_.setUseSymmetricObjective(true);
+    icp_.setEnforceSameDirectionNormals(true);
+    icp_.setMaximumIterations(options.max_iterations);
+    icp_.setMaxCorrespondenceDistance(reach);
+    icp_.setTransformationEpsilon(options.transformation_epsilon);
+    icp_.setTransformationRotationEpsilon(options.rotation_epsilon);
+  }
+
+  /// \return the refined T_model_scan; \p start where ICP fails.
+  Eigen::Isometry3d refined(const Eigen::Isometry3d& start) {
+    NormalCloud aligned;
+    icp_.align(aligned, start.matrix());
+    const Eigen::Isometry3d pose(icp_.getFinalTransformation());
+    return pose.matrix().allFinite() ? pose : start;
+  }
+
+private:
+  pcl::IterativeClosestPointWithNormals<pcl::PointNormal, pcl::PointNormal, double> icp_;
+};
+
+}  // namespace
+
+Eigen::Isometry3d SearchFrames::toSearch(const Eigen::Isometry3d& T_target_source) const {
+  Eigen::Isometry3d pose = T_target_source;
+  pose.translation() = (T_target_source * source_center - target_center) / scale;
+  return pose;
+}
+
+Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source) const {
+  Eigen::Isometry3d pose = T_target_source;
+  pose.translation() = target_center + scale * T_target_source.translation() - T_target_source.linear() * source_center;
+  return pose;
+}
+
+RankedPose refinePoses(const PosedSurface& scan, const PosedSurface& model, const std::vector<RankedPose>& poses,
+                       const CloudRegistrationOptions& options) {
+  const double accuracy = std::max(scan.accuracy, model.accuracy);
+  const double reach = options.max_correspondence.value_or(std::max(kLeastReach, kReach * accuracy));
+  PoseRefinement icp(scan, model, reach, options);
+  const PoseScorer scorer(scan, model);
+  const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, accuracy), true};
+  RankedPose best;
+  best.score.conflict = 1.0;
+  const auto offer = [&](const Eigen::Isometry3d& pose) {
+    const PoseScore score = scorer.score(pose, detail);
+    if (score.merit() > best.score.merit()) best = {pose, score};
+  };
+  for (const RankedPose& pose : poses) {
+    if (pose.score.merit() < poses.front().score.merit() - kHopeless) break;
+    offer(pose.T_model_scan);
+    offer(icp.refined(pose.T_model_scan));
+  }
+  return best;
+}
+
+}  // namespace pcl_symmetry

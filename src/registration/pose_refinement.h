@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "core/registration/ranked_poses.h"
+#include "pcl_symmetry/registration/cloud_registration.h"
+
+namespace pcl_symmetry {
+
+/// The frames of a search for poses: about the center of each cloud, in units of one scale.
+struct SearchFrames {
+  Eigen::Vector3d source_center, target_center;  ///< input frames
+  double scale;                                  ///< input units, > 0
+
+  /// A pose T_target_source between input frames as a pose between search frames.
+  Eigen::Isometry3d toSearch(const Eigen::Isometry3d& T_target_source) const;
+  /// A pose T_target_source between search frames as a pose between input frames.
+  Eigen::Isometry3d toInput(const Eigen::Isometry3d& T_target_source) const;
+};
+
+/// The pose of greatest merit among some poses and their refinements by PCL's point-to-plane ICP.
+/// \param scan,model in search frames.
+/// \param poses from searchPoses(), best first, at least one. Poses far behind the best are left out.
+/// \param options of the refinement; max_correspondence in units of the search.
+/// \return T_model_scan between search frames.
+RankedPose refinePoses(const PosedSurface& scan, const PosedSurface& model, const std::vector<RankedPose>& poses,
+                       const CloudRegistrationOptions& options);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,190 @@
+/// The finite groups of rotations: their orders, generators and axes are those of the textbooks.
+#include "pcl_symmetry/core/rotation/rotation_group.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace pcl_symmetry;
+using Kind = RotationGroupKind;
+using Matrices = std::vector<Eigen::Matrix3d>;
+
+constexpr double kSame = 1e-9;
+
+bool holds(const Matrices& elements, const Eigen::Matrix3d& rotation) {
+  return std::any_of(elements.begin(), elements.end(),
+                     [&](const Eigen::Matrix3d& element) { return (element - rotation).norm() < kSame; });
+}
+
+/// The least n with R^n = 1.
+int orderOf(const Eigen::Matrix3d& rotation) {
+  Eigen::Matrix3d power = rotation;
+  int order = 1;
+  while (!power.isIdentity(kSame) && order < 100) {
+    power = rotation * power;
+    ++order;
+  }
+  return order;
+}
+
+/// How many elements there are of each order.
+std::map<int, int> ordersOf(const RotationGroup& group) {
+  std::map<int, int> orders;
+  for (const Eigen::Matrix3d& element : group.elements()) ++orders[orderOf(element)];
+  return orders;
+}
+
+/// All products of some rotations, by multiplying each pair until nothing new comes.
+Matrices productsOf(const Matrices& generators) {
+  Matrices all{Eigen::Matrix3d::Identity()};
+  all.insert(all.end(), generators.begin(), generators.end());
+  for (bool grows = true; grows;) {
+    grows = false;
+    const Matrices before = all;
+    for (const Eigen::Matrix3d& a : before) {
+      for (const Eigen::Matrix3d& b : generators) {
+        if (holds(all, a * b)) continue;
+        all.push_back(a * b);
+        grows = true;
+      }
+    }
+  }
+  return all;
+}
+
+struct Expected {
+  RotationGroup group;
+  std::size_t size;
+  std::string name;
+};
+
+std::vector<Expected> finiteGroups() {
+  std::vector<Expected> groups{
+      {{Kind::Tetrahedral, 3}, 12, "T"}, {{Kind::Octahedral, 4}, 24, "O"}, {{Kind::Icosahedral, 5}, 60, "I"}};
+  for (const int n : {1, 2, 3, 5, 7, 12, 24}) {
+    groups.push_back({{Kind::Cyclic, n}, static_cast<std::size_t>(n), "C" + std::to_string(n)});
+    groups.push_back({{Kind::Dihedral, n}, static_cast<std::size_t>(2 * n), "D" + std::to_string(n)});
+  }
+  return groups;
+}
+
+TEST(RotationGroup, ElementsAreRotationsAndTheIdentityIsFirst) {
+  for (const auto& [group, size, name] : finiteGroups()) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(nameOf(group.kind, group.fold), name);
+    const Matrices elements = group.elements();
+    ASSERT_EQ(elements.size(), size);
+    EXPECT_TRUE(elements.front().isIdentity());
+    for (const Eigen::Matrix3d& element : elements) {
+      EXPECT_NEAR(element.determinant(), 1.0, kSame);
+      EXPECT_LT((element * element.transpose() - Eigen::Matrix3d::Identity()).norm(), kSame);
+    }
+  }
+}
+
+TEST(RotationGroup, IsClosedUnderProductsAndInverses) {
+  for (const auto& [group, size, name] : finiteGroups()) {
+    SCOPED_TRACE(name);
+    const Matrices elements = group.elements();
+    for (std::size_t i = 0; i < size; ++i) {
+      EXPECT_TRUE(holds(elements, elements[i].transpose()));
+      for (const Eigen::Matrix3d& other : elements) EXPECT_TRUE(holds(elements, elements[i] * other));
+      for (std::size_t j = 0; j < i; ++j) EXPECT_GT((elements[i] - elements[j]).norm(), 0.1) << "each once";
+    }
+  }
+}
+
+TEST(RotationGroup, GeneratorsGenerateTheGroupAndNoMore) {
+  for (const auto& [group, size, name] : finiteGroups()) {
+    SCOPED_TRACE(name);
+    const Matrices generators = group.generators(), elements = group.elements();
+    EXPECT_LE(generators.size(), 2u);
+    EXPECT_EQ(generators.empty(), size == 1);
+    const Matrices products = productsOf(generators);
+    EXPECT_EQ(products.size(), size);
+    for (const Eigen::Matrix3d& product : products) EXPECT_TRUE(holds(elements, product));
+  }
+}
+
+/// The class equations: how many rotations of each order a solid has.
+TEST(RotationGroup, HasItsNumberOfRotationsOfEachOrder) {
+  using Orders = std::map<int, int>;
+  EXPECT_EQ(ordersOf({Kind::Tetrahedral, 3}), (Orders{{1, 1}, {2, 3}, {3, 8}}));
+  EXPECT_EQ(ordersOf({Kind::Octahedral, 4}), (Orders{{1, 1}, {2, 9}, {3, 8}, {4, 6}}));
+  EXPECT_EQ(ordersOf({Kind::Icosahedral, 5}), (Orders{{1, 1}, {2, 15}, {3, 20}, {5, 24}}));
+  EXPECT_EQ(ordersOf({Kind::Cyclic, 12}), (Orders{{1, 1}, {2, 1}, {3, 2}, {4, 2}, {6, 2}, {12, 4}}));
+  EXPECT_EQ(ordersOf({Kind::Dihedral, 5}), (Orders{{1, 1}, {2, 5}, {5, 4}}));
+}
+
+TEST(RotationGroup, HasTheAxesOfItsSolid) {
+  const auto orders = [](Kind kind, int fold) {
+    std::map<int, int> count;
+    for (const RotationAxis& axis : axesOf(RotationGroup{kind, fold}.elements())) {
+      ++count[axis.order];
+      EXPECT_NEAR(axis.direction.norm(), 1.0, kSame);
+      EXPECT_EQ(axis.direction, signedDirection(axis.direction));
+    }
+    return count;
+  };
+  using Orders = std::map<int, int>;
+  EXPECT_EQ(orders(Kind::Tetrahedral, 3), (Orders{{2, 3}, {3, 4}}));
+  EXPECT_EQ(orders(Kind::Octahedral, 4), (Orders{{2, 6}, {3, 4}, {4, 3}}));
+  EXPECT_EQ(orders(Kind::Icosahedral, 5), (Orders{{2, 15}, {3, 10}, {5, 6}}));
+  EXPECT_EQ(orders(Kind::Dihedral, 6), (Orders{{2, 6}, {6, 1}}));
+  EXPECT_EQ(orders(Kind::Cyclic, 7), (Orders{{7, 1}}));
+  EXPECT_EQ(orders(Kind::Cyclic, 1), Orders{});
+}
+
+TEST(RotationGroup, StandsInItsFrame) {
+  const auto hasAxis = [](const RotationGroup& group, const Eigen::Vector3d& direction, int order) {
+    const std::vector<RotationAxis> axes = axesOf(group.elements());
+    return std::any_of(axes.begin(), axes.end(), [&](const RotationAxis& axis) {
+      return axis.order == order && (axis.direction - direction).norm() < kSame;
+    });
+  };
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_TRUE(hasAxis({Kind::Tetrahedral, 3}, Eigen::Vector3d::Unit(k), 2));
+    EXPECT_TRUE(hasAxis({Kind::Octahedral, 4}, Eigen::Vector3d::Unit(k), 4));
+    EXPECT_TRUE(hasAxis({Kind::Icosahedral, 5}, Eigen::Vector3d::Unit(k), 2));
+  }
+  EXPECT_TRUE(hasAxis({Kind::Cyclic, 5}, Eigen::Vector3d::UnitZ(), 5));
+  EXPECT_TRUE(hasAxis({Kind::Dihedral, 5}, Eigen::Vector3d::UnitZ(), 5));
+  EXPECT_TRUE(hasAxis({Kind::Dihedral, 5}, Eigen::Vector3d::UnitX(), 2));
+}
+
+TEST(RotationGroup, RefusesContinuousGroupsAndNoFold) {
+  for (const Kind kind : {Kind::Revolution, Kind::Cylindrical, Kind::Spherical}) {
+    EXPECT_TRUE(isContinuous(kind));
+    EXPECT_THROW((RotationGroup{kind, 1}.elements()), std::invalid_argument);
+    EXPECT_THROW((RotationGroup{kind, 1}.generators()), std::invalid_argument);
+  }
+  EXPECT_FALSE(isContinuous(Kind::Icosahedral));
+  EXPECT_THROW((RotationGroup{Kind::Cyclic, 0}.elements()), std::invalid_argument);
+  EXPECT_EQ(nameOf(Kind::Revolution, 0), "Cinf");
+  EXPECT_EQ(nameOf(Kind::Cylindrical, 0), "Dinf");
+  EXPECT_EQ(nameOf(Kind::Spherical, 0), "SO3");
+}
+
+TEST(RotationAbout, TurnsByTheRightHandRule) {
+  const double quarter = std::acos(0.0);
+  EXPECT_LT(
+      (rotationAbout(Eigen::Vector3d::UnitZ(), quarter) * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(),
+      kSame);
+}
+
+TEST(SignedDirection, IsOneOfTwo) {
+  const Eigen::Vector3d direction(0.3, -0.9, 0.1);
+  EXPECT_EQ(signedDirection(direction), -direction);
+  EXPECT_EQ(signedDirection(-direction), -direction);
+}
+
+}  // namespace
