@@ -1,4 +1,5 @@
-/// Descriptors as PCL point types (Section 5.2): PCD files hold them, and PCL's search trees compare all their values.
+/// Descriptors as PCL point types (Section 5.2): PCD files hold them, and search trees compare all their values. As for
+/// all point types that PCL does not know, search trees need pcl/kdtree/impl/kdtree_flann.hpp.
 #pragma once
 
 #include <pcl/point_representation.h>

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/registration/pose_search.h"
+#include "core/registration/posed_surface.h"
+#include "core/registration/ranked_poses.h"
 #include "pcl_symmetry/recognition/symmetry_database.h"
+#include "registration/pose_refinement.h"
 
 namespace pcl_symmetry::detail {
 

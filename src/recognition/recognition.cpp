@@ -10,7 +10,6 @@
 #include "pcl_symmetry/recognition/symmetry_database.h"
 #include "recognition/database_parts.h"
 #include "recognition/posed_scan.h"
-#include "registration/pose_refinement.h"
 
 namespace pcl_symmetry {
 

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/descriptors/shape_signature.h"
+#include "core/descriptors/symmetry_descriptor.h"
 #include "lathe_mesh.h"
 #include "pcl_symmetry/point_types.h"
 #include "temporary_folder.h"

@@ -94,6 +94,22 @@ TEST(PRSTEstimation, HonoursIndicesAndWorksThroughTheBaseClass) {
   ASSERT_EQ(output.size(), 1u);
 }
 
+TEST(PRSTEstimation, WorksWithPointTypesThatAreNotPrecompiled) {
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointWithRange>>();
+  const Cloud::Ptr box = boxCloud();
+  for (const pcl::PointXYZ& point : *box) {
+    cloud->push_back({});
+    cloud->back().getVector3fMap() = point.getVector3fMap();
+  }
+  PRSTEstimation<pcl::PointWithRange> estimation;
+  estimation.setUseInputAxes(true);
+  estimation.setInputCloud(cloud);
+  pcl::PointCloud<PRSTSignature32768> output;
+  estimation.compute(output);
+  ASSERT_EQ(output.size(), 1u);
+  EXPECT_EQ(descriptorDistance(output[0], describe(box, true)[0]), 0.0f);
+}
+
 TEST(PRSTEstimation, SurvivesAFile) {
   const auto output = describe(boxCloud(), true);
   const std::string path = testing::TempDir() + "prst_estimation.pcd";

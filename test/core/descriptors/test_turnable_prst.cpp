@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "core/base/random.h"
 #include "core/geometry/axis_rotations.h"
@@ -37,18 +39,35 @@ TEST(TurnablePRST, HasUnitNorm) {
   EXPECT_NEAR(asVector(prst).norm(), 1.0, 1e-5);
 }
 
-TEST(TurnablePRST, RotationsAreWhatTurnedAxesGive) {
+TEST(TurnablePRST, QuarterTurnsAreWhatTurnedAxesGive) {
   const Points points = corner();
   const std::vector<float> prst = turnablePRST(points, Eigen::Matrix3d::Identity());
   std::vector<float> rotated(prst.size());
   for (int r = 0; r < kNumAxisRotations; ++r) {
-    const Eigen::Matrix3d axes = axisRotations()[static_cast<std::size_t>(r)].transpose().cast<double>();
-    const std::vector<float> expected = turnablePRST(points, axes);
+    const Eigen::Matrix3i& rotation = axisRotations()[static_cast<std::size_t>(r)];
+    if (rotation.trace() != 1) continue;  // 1 + 2 cos(90 degrees)
+    const std::vector<float> expected = turnablePRST(points, rotation.transpose().cast<double>());
     rotateTurnablePRST(prst.data(), r, rotated.data());
     // Samples of the transform are drawn anew: the error of PRST is 1 to 2 %.
     EXPECT_LT((asVector(rotated) - asVector(expected)).norm(), 0.06) << r;
-    if (r > 0) {
-      EXPECT_GT((asVector(rotated) - asVector(prst)).norm(), 0.12) << r;
+    EXPECT_GT((asVector(rotated) - asVector(prst)).norm(), 0.12) << r;
+  }
+}
+
+/// Quarter turns generate all rotations: with the test above, all of them are right.
+TEST(TurnablePRST, RotationsFollowEachOther) {
+  std::vector<float> prst(kTurnablePRSTSize), once(prst.size()), twice(prst.size()), product(prst.size());
+  std::iota(prst.begin(), prst.end(), 0.0f);
+  const auto& rotations = axisRotations();
+  for (int a = 0; a < kNumAxisRotations; ++a) {
+    rotateTurnablePRST(prst.data(), a, once.data());
+    EXPECT_TRUE(a == 0 || once != prst) << a;
+    for (int b = 0; b < kNumAxisRotations; ++b) {
+      rotateTurnablePRST(once.data(), b, twice.data());
+      const Eigen::Matrix3i both = rotations[static_cast<std::size_t>(b)] * rotations[static_cast<std::size_t>(a)];
+      const auto at = std::find(rotations.begin(), rotations.end(), both);
+      rotateTurnablePRST(prst.data(), static_cast<int>(at - rotations.begin()), product.data());
+      EXPECT_EQ(twice, product) << a << ' ' << b;
     }
   }
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 namespace pcl_symmetry {
 
 TEST(AxisRotations, AreTheDifferentRotationsOfTheAxes) {

@@ -27,10 +27,10 @@ Eigen::MatrixXf boxSignatures(int count) {
 }  // namespace
 
 TEST(SignatureProjection, RotatesAsSignaturesDo) {
-  const Eigen::MatrixXf signatures = boxSignatures(12);
-  // All there is to know of 12 shapes: then the space of the components is closed.
+  const Eigen::MatrixXf signatures = boxSignatures(6);
+  // All there is to know of 6 shapes: then the space of the components is closed.
   ProjectionOptions options;
-  options.num_dimensions = 12 * kNumAxisRotations;
+  options.num_dimensions = 6 * kNumAxisRotations;
   const SignatureProjection projection = SignatureProjection::fit(signatures, options);
   Eigen::VectorXf rotated(kSignatureSize);
   const Eigen::VectorXf compact = projection.project(signatures.col(3));
