@@ -1,4 +1,4 @@
-#include "viewer_window.h"
+#include "viewer/viewer_window.h"
 
 #include <pcl/conversions.h>
 #include <pcl/visualization/interactor_style.h>
@@ -23,10 +23,11 @@
 #include <map>
 #include <optional>
 
-#include "isp_frames.h"
+#include "common/pictures/picture_actors.h"
+#include "common/shape_output/shape_output.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
-#include "picture_actors.h"
-#include "shape_output.h"
+#include "viewer/isp_frames.h"
+#include "core/base/constants.h"
 
 namespace pcl_symmetry::apps {
 
@@ -34,11 +35,11 @@ namespace {
 
 const Eigen::Vector3d kBlue(0.00, 0.45, 0.70), kVermilion(0.84, 0.37, 0.00), kGreen(0.00, 0.62, 0.45),
     kPlain(0.40, 0.47, 0.60), kFaint(0.78, 0.78, 0.80), kInk(0.1, 0.1, 0.1);
-constexpr double kViewAngle = 25.0 * M_PI / 180.0;
-constexpr float kRoom = 1.2f;         // of the camera's distance, for planes that reach beyond the shape
-constexpr double kFaintSize = 2.0;    // pixels: larger ones would cover the samples
-constexpr double kInFront = -4000.0;  // steps of the depth buffer
-constexpr int kFontSize = 15;
+constexpr double kViewAngle = 25.0 * kPi / 180.0;  // derived: that of ViewpointSelection's cameras
+constexpr float kRoom = 1.2f;  // of the camera's distance; chosen: planes that reach beyond the shape are seen whole
+constexpr double kFaintSize = 2.0;    // pixels; chosen: twice covers the samples, half is invisible
+constexpr double kInFront = -4000.0;  // steps of the depth buffer; chosen: markers stay in front of the points
+constexpr int kFontSize = 15;         // pixels; chosen: half cannot be read, twice covers the shape
 
 /// Hands keys to the viewer in place of PCL's own; the mouse works as PCL users know it.
 class KeyStyle : public pcl::visualization::PCLVisualizerInteractorStyle {
@@ -97,7 +98,7 @@ public:
     state_.num_planes = static_cast<int>(model.planes.size());
     state_.has_mesh = model.mesh.has_value();
     // Support on a mesh of few vertices would be lost between them.
-    constexpr std::size_t kFineMesh = 2'000;
+    constexpr std::size_t kFineMesh = 2'000;  // vertices; chosen: half shows gradients between far vertices
     state_.mesh = state_.has_mesh && model.mesh->cloud.width * model.mesh->cloud.height >= kFineMesh;
     window_->SetOffScreenRendering(off_screen);
     window_->SetMultiSamples(0);
@@ -250,7 +251,7 @@ private:
 
   /// Of the current plane, at the vertices of the mesh: the mean over the closest points.
   std::vector<double> vertexSupport() {
-    constexpr int kNumClosest = 4;
+    constexpr int kNumClosest = 4;  // points; chosen: half is noisy, twice blurs
     if (closest_to_vertices_.empty()) {
       pcl::PointCloud<pcl::PointXYZ> vertices;
       pcl::fromPCLPointCloud2(model_.mesh->cloud, vertices);

@@ -1,0 +1,49 @@
+#include "common/command_line/run_tool.h"
+
+#include <pcl/console/print.h>
+#include <pcl/exceptions.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <boost/filesystem/path.hpp>
+#include <iostream>
+#include <new>
+
+#include "common/command_line/tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+std::string oneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  boost::algorithm::trim(text);
+  return text;
+}
+
+}  // namespace
+
+int runTool(int argc, char** argv, const std::function<int(int, char**)>& body) {
+  const std::string tool = argc > 0 ? boost::filesystem::path(argv[0]).filename().string() : "pcl_symmetry";
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  const auto fail = [&tool](const std::string& message, int code) {
+    std::cerr << tool << ": " << oneLine(message) << std::endl;
+    return code;
+  };
+  try {
+    return body(argc, argv);
+  } catch (const UsageError& error) {
+    return fail(std::string(error.what()) + " (see " + tool + " -h)", 2);
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory", 1);
+  } catch (const pcl::PCLException& error) {
+    return fail(error.detailedMessage(), 1);  // what() names a function and a source file
+  } catch (const std::exception& error) {
+    return fail(error.what(), 1);
+  } catch (...) {
+    return fail("stopped by an error of unknown type", 1);
+  }
+}
+
+}  // namespace pcl_symmetry::apps
