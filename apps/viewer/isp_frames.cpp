@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/constants.h"
 #include "core/neighbours/surface_normals.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
-#include "core/base/constants.h"
 
 namespace pcl_symmetry::apps {
 
@@ -15,7 +15,8 @@ namespace {
 // Where the shown refinement starts, radians and radii from the plane. chosen: far enough to be seen, near enough to
 // come back.
 constexpr double kTurn = 12.0 * kPi / 180.0, kShift = 0.05;
-// Width of the weights and the step that ends the refinement, radii. chosen: half and twice change the number of frames.
+// Width of the weights and the step that ends the refinement, radii. chosen: half and twice change the number of
+// frames.
 constexpr double kSigma = 0.12, kResting = 1e-3;
 constexpr int kMaxFrames = 20, kNumSamples = 5'000, kNumShown = 120;  // chosen: more markers hide each other
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluate/references/plane_difference.h"
+#include "evaluate/shared/plane_difference.h"
 #include "evaluate/references/reference_symmetries.h"
 
 namespace pcl_symmetry::apps {

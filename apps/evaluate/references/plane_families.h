@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "evaluate/references/plane_difference.h"
+#include "evaluate/shared/plane_difference.h"
 
 namespace pcl_symmetry::apps {
 

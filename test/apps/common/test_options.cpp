@@ -1,19 +1,25 @@
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <new>
+#include <stdexcept>
 
 #include "common/command_line/command_line.h"
+#include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
+#include "pcl_symmetry/core/detection/plane_detection.h"
 
 namespace {
 
 using namespace pcl_symmetry::apps;
+using pcl_symmetry::DetectionOptions;
 using pcl_symmetry::Viewpoint;
 
 struct Values {
   std::string input;
   std::optional<std::string> output;
-  std::optional<Eigen::Vector3d> direction;
+  std::optional<Eigen::Vector3d> direction, up;
+  std::optional<std::string> png;
   double ratio = 0.5;
   bool all = false;
   std::string format = "binary";
@@ -28,7 +34,9 @@ bool parse(Values& values, std::vector<const char*> arguments) {
       .number("ratio", values.ratio, Range{0, 1, true, false}, "a ratio")
       .flag("all", values.all, "everything")
       .choice("format", values.format, {"ascii", "binary"}, "encoding")
-      .common(values.common);
+      .picture("png", values.png, "a picture")
+      .direction("up", values.up, "a direction")
+      .common(values.common, kShapeFlags | kSigma);
   arguments.insert(arguments.begin(), "tool");
   return line.parse(static_cast<int>(arguments.size()), arguments.data());
 }
@@ -92,6 +100,53 @@ TEST(Options, ValuesOutOfRangeAreNamedWithTheirRule) {
   EXPECT_EQ(complaintAbout({"a", "-seed", "99999999999999999999"}), "-seed = 99999999999999999999, is too large");
   EXPECT_EQ(complaintAbout({"a", "-direction", "1,nan,0"}), "-direction = 1,nan,0, must be three finite numbers X,Y,Z");
   EXPECT_EQ(complaintAbout({"a", "-format", "zip"}), "-format = zip, must be ascii|binary");
+}
+
+TEST(Options, PicturesArePNGAndDirectionsAreNotZero) {
+  EXPECT_EQ(complaintAbout({"a", "-png", "out.jpg"}), "-png = out.jpg, must end in .png");
+  EXPECT_EQ(complaintAbout({"a", "-png", "OUT.PNG"}), "");
+  EXPECT_EQ(complaintAbout({"a", "-up", "0,0,0"}), "-up = 0,0,0, must not be zero");
+}
+
+TEST(Options, CommonFlagsReachTheOptionsOfTheLibrary) {
+  Values values;
+  ASSERT_TRUE(parse(values, {"a", "-seed", "4", "-threads", "3", "-grid", "32", "-sigma", "0.5", "-points", "500"}));
+  DetectionOptions options;
+  values.common.applyTo(options);
+  EXPECT_EQ(options.seed, 5u) << "the library starts at 1, the flag at 0";
+  EXPECT_EQ(options.num_threads, 3);
+  EXPECT_EQ(options.edt.num_threads, 3);
+  EXPECT_EQ(options.edt.num_cells, 32);
+  EXPECT_EQ(options.edt.sigma, 0.5);
+  EXPECT_EQ(values.common.mesh_points, 500);
+}
+
+TEST(Options, VersionIsPrintedAndEndsTheTool) {
+  for (const char* flag : {"-version", "--version"}) {
+    Values values;
+    testing::internal::CaptureStdout();
+    EXPECT_FALSE(parse(values, {flag}));
+    const std::string text = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(text.rfind("tool ", 0), 0u) << text;
+    EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(text.at(5)))) << text;
+  }
+}
+
+TEST(FileErrors, NameTheFileAndNoFunction) {
+  const auto complaint = [](const auto& body) -> std::string {
+    try {
+      namingFile("a.pcd", body);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint([] { throw pcl::BadArgumentException("points: all at one place", "file.cpp", "f()", 7); }),
+            "a.pcd: points: all at one place");
+  EXPECT_EQ(complaint([] { throw std::invalid_argument("sigma = -1, must be > 0"); }),
+            "a.pcd: sigma = -1, must be > 0");
+  EXPECT_EQ(complaint([] { throw InputError("b.pcd: is empty"); }), "b.pcd: is empty") << "named already";
+  EXPECT_EQ(namingFile("a.pcd", [] { return 3; }), 3);
 }
 
 TEST(Options, UnknownFlagsAndMissingOnesAreErrors) {

@@ -108,10 +108,13 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"huge.off", "OFF\n2000000000 1 0\n0 0 0\n", "too short"},
       {"garbage.obj", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
       {"empty.obj", "", "is empty"},
-      {"no_faces.obj", "v 0 0 0\nv 1 0 0\n", ""},
+      {"letters.obj", "v 0 0 0\nv 1 zero 0\n", "y of vertex 1 = zero, must be a number"},
+      {"short.xyz", "1 2 3\n4 5\n6 7 8\n", "z of point 1 is missing on its line"},
+      {"letters.xyz", "x y z\n1 2 3\n", "x of point 0 = x, must be a number"},
+      {"comments.xyz", "# nothing\n", "has no points"},
       {"garbage.stl", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
       {"cut.stl", std::string(80, ' ') + std::string("\xff\xff\xff\x7f", 4) + raw, "cannot be read"},
-      {"unknown.xyz", "1 2 3\n", "unknown extension '.xyz'"},
+      {"unknown.abc", "1 2 3\n", "unknown extension '.abc', must be .pcd"},
       {"none", "1 2 3\n", "unknown extension ''"}};
   const TemporaryFolder folder;
   for (const BadFile& file : files) {
@@ -214,6 +217,55 @@ TEST(LoadShape, ReadsDoublesAndNonFinitePoints) {
   EXPECT_FALSE(shape.points->is_dense);
   EXPECT_EQ(shape.cloud.fields.size(), 4u);
   EXPECT_FALSE(shape.mesh);
+}
+
+TEST(LoadShape, ReadsPointsOfColumnsAndOfFilesWithoutFaces) {
+  const TemporaryFolder folder;
+  folder.write("a.xyz", "# x y z red\n0 0 0 255\n\n2 1 0.5 0 0\n");
+  folder.write("a.obj", "# points\nv 0 0 0\n  v 2 1 0.5\n");
+  folder.write("a.off", "OFF\n2 0 0\n0 0 0\n2 1 0.5\n");
+  for (const char* name : {"a.xyz", "a.obj", "a.off"}) {
+    const Shape shape = loadShape(folder / name);
+    EXPECT_FALSE(shape.mesh) << name;
+    ASSERT_EQ(shape.points->size(), 2u) << name;
+    EXPECT_EQ((*shape.points)[1].getVector3fMap(), Eigen::Vector3f(2, 1, 0.5f)) << name;
+    EXPECT_TRUE(shape.shift.isZero(0.0)) << name;
+  }
+}
+
+/// Map coordinates of a square of one metre, which float cannot tell apart: its spacing there is half a metre.
+TEST(LoadShape, ShiftsCoordinatesThatFloatCannotHold) {
+  const TemporaryFolder folder;
+  const std::string a = "500000.25 5000000.125 100", b = "500001.25 5000000.125 100", c = "500001.25 5000001.125 100";
+  const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+  folder.write("a.off", "OFF\n3 1 0\n" + a + "\n" + b + "\n" + c + "\n3 0 1 2\n");
+  folder.write("a.obj", "v " + a + "\nv " + b + "\nv " + c + "\nf 1 2 3\n");
+  folder.write("a.xyz", a + "\n" + b + "\n" + c + "\n");
+  folder.write("a.pcd", pcd("x y z", "8 8 8", "F F F", 3, 1, 3, "ascii\n" + a + "\n" + b + "\n" + c + "\n"));
+  folder.write("a.ply",
+               ply("ascii", "element vertex 3\nproperty double x\nproperty double y\nproperty double z\n" + faces,
+                   a + "\n" + b + "\n" + c + "\n3 0 1 2\n"));
+  for (const char* name : {"a.off", "a.obj", "a.xyz", "a.pcd", "a.ply"}) {
+    const Shape shape = loadShape(folder / name);
+    EXPECT_FALSE(shape.shift.isZero(0.0)) << name;
+    ASSERT_EQ(shape.points->size(), 3u) << name;
+    const Eigen::Vector3d expected[3] = {
+        {500000.25, 5000000.125, 100.0}, {500001.25, 5000000.125, 100.0}, {500001.25, 5000001.125, 100.0}};
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d point = (*shape.points)[i].getVector3fMap().cast<double>() + shape.shift;
+      EXPECT_EQ(point, expected[i]) << name << ": the shift is exact";
+      Eigen::Vector3d field;
+      for (int k = 0; k < 3; ++k)
+        std::memcpy(&field[k], &shape.cloud.data[i * shape.cloud.point_step + shape.cloud.fields[k].offset], 8);
+      EXPECT_EQ(field, expected[i]) << name << ": fields stay in the input frame";
+    }
+    if (!shape.mesh) continue;
+    pcl::PointCloud<pcl::PointXYZ> vertices;
+    pcl::fromPCLPointCloud2(shape.mesh->cloud, vertices);
+    EXPECT_EQ(vertices.at(2).getVector3fMap(), (*shape.points)[2].getVector3fMap()) << name;
+  }
+  const Shape near = loadShape(folder.write("near.off", "OFF\n3 1 0\n7 7 7\n8 7 7\n8 8 7\n3 0 1 2\n"));
+  EXPECT_TRUE(near.shift.isZero(0.0)) << "float is precise enough";
 }
 
 }  // namespace

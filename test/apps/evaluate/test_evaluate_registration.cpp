@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "apps/support/tool_run.h"
+#include "core/base/constants.h"
 #include "evaluate/registration/motion_error.h"
 #include "evaluate/segmentation/patches.h"
 
@@ -12,8 +17,6 @@ namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
-
-constexpr double kDegree = M_PI / 180.0;
 
 Eigen::Isometry3d turned(double degrees, const Eigen::Vector3d& axis, const Eigen::Vector3d& moved = {0, 0, 0}) {
   Eigen::Isometry3d motion(Eigen::AngleAxisd(degrees * kDegree, axis));
@@ -109,8 +112,20 @@ TEST_F(EvaluateRegistration, TellsHowOftenEachMethodIsRight) {
   for (const char* name : {"symmetry", "pca", "features"}) {
     const auto& method = report["methods"][name];
     EXPECT_EQ(method["scans"], 4) << name;
-    EXPECT_GE(method["right_rate"].get<double>(), 0.0);
-    EXPECT_LE(method["right_rate"].get<double>(), 1.0);
+    // A row of the table for each scan; the rate is what the rows say.
+    int num_right = 0, num_rows = 0;
+    std::istringstream rows(contentOf(folder_ / "r.csv"));
+    for (std::string row; std::getline(rows, row);) {
+      std::vector<std::string> cells;
+      boost::algorithm::split(cells, row, boost::is_any_of(","));
+      if (cells.at(3) != name || cells.at(2) != "0") continue;
+      ++num_rows;
+      num_right += cells.at(4) == "1" ? 1 : 0;
+      const bool within = std::stod(cells.at(6)) <= 5.0 && std::stod(cells.at(7)) <= 0.02;
+      EXPECT_EQ(cells.at(4) == "1", within) << "right is within the limits: " << row;
+    }
+    EXPECT_EQ(num_rows, 4) << name;
+    EXPECT_DOUBLE_EQ(method["right_rate"].get<double>(), num_right / 4.0) << name;
     EXPECT_GT(method["median_ms"].get<double>(), 0.0);
   }
   EXPECT_EQ(report["methods"]["symmetry"]["right_rate"], 1.0);

@@ -7,7 +7,7 @@
 #include "apps/support/temporary_folder.h"
 #include "common/shape_input/shape_input.h"
 #include "evaluate/references/mesh_distance.h"
-#include "evaluate/references/plane_difference.h"
+#include "evaluate/shared/plane_difference.h"
 #include "evaluate/references/reference_cache.h"
 
 namespace {

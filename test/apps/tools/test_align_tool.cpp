@@ -99,6 +99,21 @@ TEST_F(AlignTool, TurnsAWholeIntoItsFrame) {
   EXPECT_NE(output_.find("center"), std::string::npos);
 }
 
+TEST_F(AlignTool, KeepsCoordinatesBeyondFloatPrecision) {
+  const std::string far =
+      folder_.write("far.off",
+                    "OFF\n8 6 12\n500000 5000000 100\n500001 5000000 100\n500001 5000000.8 100\n500000 5000000.8 100\n"
+                    "500000 5000000 100.6\n500001 5000000 100.6\n500001 5000000.8 100.6\n500000 5000000.8 100.6\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+  ASSERT_EQ(run(far + " " + (folder_ / "out.pcd") + " -json " + (folder_ / "r.json")), 0) << error_;
+  const Eigen::Vector3d center(500000.5, 5000000.4, 100.3);
+  const auto found = report()["center"].get<std::vector<double>>();
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(found.at(k), center[k], 0.01);
+  EXPECT_LT((transformOf(report()) * center).norm(), 0.02) << "of the input frame";
+  for (const pcl::PointXYZ& point : *loadShape(folder_ / "out.pcd").points)
+    ASSERT_LT(point.getVector3fMap().norm(), 0.75f) << "half of the diagonal is 0.71";
+}
+
 TEST_F(AlignTool, BringsAScanToItsModel) {
   Eigen::Isometry3d T_scan_model;
   const std::string scan = scanOfChair(T_scan_model);
@@ -168,7 +183,7 @@ TEST_F(AlignTool, GivesTheSameBytesForAnyNumberOfThreads) {
   Eigen::Isometry3d T_scan_model;
   const std::string scan = scanOfChair(T_scan_model);
   std::string expected;
-  for (const char* threads : {"1", "2", "8"}) {
+  for (const char* threads : {"1", "3"}) {
     ASSERT_EQ(run(scan + " -target " + chair_ + " -threads " + threads + " -json " + (folder_ / "r.json")), 0);
     nlohmann::json json = report();
     json.erase("timing_ms");

@@ -128,21 +128,25 @@ TEST_F(BopTool, TakesClouds) {
 
 TEST_F(BopTool, GivesTheSameBytesForAnyNumberOfThreads) {
   std::string expected;
-  for (const char* threads : {"1", "2", "8"}) {
-    ASSERT_EQ(run(box_ + " " + vase_ + " -points 2000 -threads " + threads + " -json " + json_), 0) << error_;
+  for (const char* threads : {"1", "3"}) {
+    ASSERT_EQ(run(box_ + " " + vase_ + " -points 1000 -threads " + threads + " -json " + json_), 0) << error_;
     if (expected.empty()) expected = contentOf(json_);
     EXPECT_EQ(contentOf(json_), expected) << threads << " threads";
   }
 }
 
-TEST_F(BopTool, AnswersBadInputWithOneLineAndAnExitCodeAndNoFile) {
+TEST_F(BopTool, AnswersBadInputWithOneLineAndAnExitCodeAndDoesTheRest) {
   const std::string point = folder_.write("point.pcd",
                                           "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
                                           "HEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3\n1 2 3\n");
-  EXPECT_EQ(run(box_ + " " + point + " -quiet -json " + json_), 1);
+  EXPECT_EQ(run(point + " " + box_ + " -points 1000 -quiet -json " + json_), 1);
   EXPECT_NE(error_.find("point.pcd: "), std::string::npos) << error_;
   EXPECT_NE(error_.find("number of different points = 1, must be >= 20"), std::string::npos) << error_;
   EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
+  const json rest = json::parse(contentOf(json_));
+  EXPECT_EQ(rest.size(), 1u);
+  EXPECT_TRUE(rest.contains("3")) << "the box is written all the same";
+  boost::filesystem::remove(json_);
   const std::string flat = folder_.write("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
   EXPECT_EQ(run(flat + " -quiet -json " + json_), 1);
   EXPECT_NE(error_.find("flat.off: "), std::string::npos) << error_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/support/lathe_mesh.h"
 #include "apps/support/tool_run.h"
 #include "common/pictures/contour_input.h"
 
@@ -65,6 +66,8 @@ TEST_F(LinesTool, RefusesWhatItCannotUse) {
   writeImage(RasterImage(8, 8), folder_ / "empty.png");
   EXPECT_EQ(run(folder_ / "empty.png"), 1);
   EXPECT_NE(error_.find("shows nothing"), std::string::npos);
+  EXPECT_EQ(run(folder_.write("box.off", boxOFF())), 1);
+  EXPECT_NE(error_.find("off a plane"), std::string::npos) << error_;
 }
 
 TEST(RasterImage, SmallDisksAreSeen) {

@@ -52,8 +52,8 @@ TEST_F(DescribeTool, WritesThePapersDescriptors) {
 TEST_F(DescribeTool, SaysWhatIsWrongAndDoesTheRest) {
   const std::string out = folder_ / "out";
   folder_.write("broken.off", "OFF\n3 1 0\n0 0 0\n");
-  EXPECT_EQ(run(out + " " + (folder_ / "broken.off") + " " + (folder_ / "box.off") + " -points 2000"), 1);
-  EXPECT_NE(error_.find("broken.off"), std::string::npos) << error_;
+  EXPECT_EQ(run(out + " " + (folder_ / "broken.off") + " " + (folder_ / "box.off") + " -points 2000 -quiet"), 1);
+  EXPECT_NE(error_.find("broken.off"), std::string::npos) << "-quiet hides no failure: " << error_;
   EXPECT_TRUE(boost::filesystem::exists(out + "/box.pcd"));
   boost::filesystem::create_directories(folder_ / "other");
   folder_.write("other/box.off", boxOFF());
@@ -102,6 +102,8 @@ TEST_F(DatabaseTools, SayWhatIsWrong) {
   EXPECT_EQ(database("burn " + models_), 2);
   EXPECT_EQ(database("add " + models_), 2);
   EXPECT_EQ(database("list " + models_ + " more"), 2);
+  EXPECT_EQ(database("list " + models_), 1);
+  EXPECT_NE(error_.find("there is no such folder"), std::string::npos) << error_;
   EXPECT_EQ(database("remove " + models_ + " nobody"), 1);
   EXPECT_NE(error_.find("nobody"), std::string::npos) << error_;
   EXPECT_EQ(database("build " + models_ + " " + (folder_ / "nothing.off")), 1);

@@ -78,6 +78,34 @@ TEST_F(ScanTool, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(contentOf(folder_ / "1.pcd"), contentOf(folder_ / "2.pcd"));
 }
 
+TEST_F(ScanTool, TakesTheFieldOfViewInDegrees) {
+  ASSERT_EQ(run(mesh_ + " " + (folder_ / "a.pcd") + " -points 500 -fov 3"), 0) << error_;
+  EXPECT_NE(error_.find("a larger -fov or -distance shows all of it"), std::string::npos)
+      << "3 degrees see 0.1 of two diagonals away: " << error_;
+  ASSERT_EQ(run(mesh_ + " " + (folder_ / "a.pcd") + " -points 500 -fov 40"), 0) << error_;
+  EXPECT_EQ(error_.find("larger -fov"), std::string::npos) << error_;
+  EXPECT_EQ(run(mesh_ + " " + (folder_ / "a.pcd") + " -fov 180"), 2);
+}
+
+TEST_F(ScanTool, KeepsCoordinatesBeyondFloatPrecision) {
+  const std::string far = folder_.write("far.off",
+                                        "OFF\n4 4 0\n500000 5000000 100\n500001 5000000 100\n500000 5000001 100\n"
+                                        "500000 5000000 101\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  ASSERT_EQ(run(far + " " + (folder_ / "a.pcd") + " -points 500 -json " + (folder_ / "a.json")), 0) << error_;
+  const Shape scan = loadShape(folder_ / "a.pcd");
+  int num_points = 0;
+  for (const pcl::PointXYZ& point : *scan.points) {
+    if (!std::isfinite(point.x)) continue;
+    ++num_points;
+    const Eigen::Vector3d x =
+        point.getVector3fMap().cast<double>() + scan.shift - Eigen::Vector3d(500000, 5000000, 100);
+    EXPECT_NEAR(x.sum(), 1.0, 1e-5) << "on the face that looks to the scanner";
+  }
+  EXPECT_GT(num_points, 400);
+  const auto viewpoint = nlohmann::json::parse(contentOf(folder_ / "a.json"))["scans"][0]["viewpoint"];
+  EXPECT_NEAR(viewpoint[0].get<double>(), 500000.5 + 2.0, 1e-6) << "two diagonals of sqrt(3) along (1, 1, 1)";
+}
+
 TEST_F(ScanTool, ExitsWithTwoForWrongUsage) {
   const std::string files = mesh_ + " " + (folder_ / "a.pcd");
   for (const std::string& arguments :

@@ -1,4 +1,4 @@
-#include "evaluate/references/plane_difference.h"
+#include "evaluate/shared/plane_difference.h"
 
 #include <algorithm>
 #include <cmath>
