@@ -78,7 +78,7 @@ public:
     }
     step.done(std::to_string(errors_.size() / std::size(kAlignmentMethods)) + " clouds");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
-    if (errors_.empty()) throw InputError("no mesh could be used");
+    if (errors_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
     report();
   }
 

@@ -129,7 +129,7 @@ public:
     cache_.save();
     step.done(std::to_string(num_used) + " models, " + std::to_string(num_clouds_) + " clouds");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
-    if (num_used == 0) throw InputError("no mesh could be used");
+    if (num_used == 0) throw InputError(options_.folders.front() + ": no mesh could be used");
     if (options_.export_folder) {
       const auto path = boost::filesystem::path(*options_.export_folder) / "ground_truth.json";
       writeText(path.string(), nlohmann::json{{"clouds", ground_truth_}}.dump(1) + "\n");

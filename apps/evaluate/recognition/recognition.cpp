@@ -81,7 +81,7 @@ public:
     }
     step.done(std::to_string(queries_.size()) + " scans");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
-    if (queries_.empty()) throw InputError("no mesh could be used");
+    if (queries_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
     report();
   }
 

@@ -164,7 +164,7 @@ public:
     cache_.save();
     step.done(std::to_string(trials_.size()) + " trials");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
-    if (trials_.empty()) throw InputError("no mesh could be used");
+    if (trials_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
     report();
   }
 
