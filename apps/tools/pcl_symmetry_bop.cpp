@@ -82,6 +82,7 @@ struct ModelInfo {
   std::string key, file;
   Eigen::Vector3d low, size;  ///< of the bounding box, input frame
   double diameter;
+  int digits;                   ///< significant ones of lengths that are printed
   ObjectSymmetries symmetries;  ///< input frame
 };
 
@@ -109,6 +110,7 @@ ModelInfo analyse(const Console& console, const std::string& path, const BopOpti
   loading.done(std::to_string(vertices.cols()) + (shape.mesh ? " vertices" : " points"));
   ModelInfo info;
   info.file = path;
+  info.digits = lengthDigits(shape.shift);
   info.low = vertices.rowwise().minCoeff().cast<double>();
   info.size = vertices.rowwise().maxCoeff().cast<double>() - info.low;
   info.low = shiftedBack(info.low, shape.shift);
@@ -157,8 +159,8 @@ void printInfo(const ModelInfo& info) {
               found.confidence);
   std::printf("  diameter %.6g  size %.6g x %.6g x %.6g\n", info.diameter, info.size.x(), info.size.y(), info.size.z());
   const auto print_axis = [&](const Eigen::Vector3d& direction, const std::string& turns) {
-    std::printf("  axis %9.6f %9.6f %9.6f through %.6g %.6g %.6g  %s\n", direction.x(), direction.y(), direction.z(),
-                found.center.x(), found.center.y(), found.center.z(), turns.c_str());
+    std::printf("  axis %9.6f %9.6f %9.6f through %s  %s\n", direction.x(), direction.y(), direction.z(),
+                spelled(found.center, info.digits).c_str(), turns.c_str());
   };
   for (const ContinuousSymmetry& symmetry : found.continuous) print_axis(symmetry.axis, "any angle");
   std::vector<Eigen::Matrix3d> rotations;

@@ -8,8 +8,9 @@
 #include <boost/filesystem/path.hpp>
 #include <iostream>
 #include <new>
+#include <sstream>
 
-#include "common/command_line/tool_errors.h"
+#include "common/command_line/file_errors.h"
 
 namespace pcl_symmetry::apps {
 
@@ -23,6 +24,19 @@ std::string oneLine(std::string text) {
 }
 
 }  // namespace
+
+std::string plainMessage(const pcl::PCLException& error) {
+  const std::string text = error.what();
+  // As PCLException::createDetailedMessage() puts it together.
+  std::ostringstream prefix;
+  if (error.getFunctionName()) prefix << error.getFunctionName() << " ";
+  if (error.getFileName()) {
+    prefix << "in " << error.getFileName() << " ";
+    if (error.getLineNumber() != 0) prefix << "@ " << error.getLineNumber() << " ";
+  }
+  prefix << ": ";
+  return boost::algorithm::starts_with(text, prefix.str()) ? text.substr(prefix.str().size()) : text;
+}
 
 int runTool(int argc, char** argv, const std::function<int(int, char**)>& body) {
   const std::string tool = argc > 0 ? boost::filesystem::path(argv[0]).filename().string() : "pcl_symmetry";
@@ -38,7 +52,7 @@ int runTool(int argc, char** argv, const std::function<int(int, char**)>& body) 
   } catch (const std::bad_alloc&) {
     return fail("not enough memory", 1);
   } catch (const pcl::PCLException& error) {
-    return fail(error.detailedMessage(), 1);  // what() names a function and a source file
+    return fail(plainMessage(error), 1);
   } catch (const std::exception& error) {
     return fail(error.what(), 1);
   } catch (...) {
