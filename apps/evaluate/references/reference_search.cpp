@@ -234,8 +234,8 @@ private:
 
   /// Axes are looked for along the principal axes and where two planes meet.
   void findFamilies(const std::vector<ReferencePlane>& planes) {
-    constexpr std::size_t kMaxMeetingPlanes =
-        24;                              // chosen: 276 lines; half misses axes, twice takes four times as long
+    // chosen: 276 lines; half misses axes, twice takes four times as long.
+    constexpr std::size_t kMaxMeetingPlanes = 24;
     constexpr double kLeastSine = 0.17;  // derived: of ten degrees; closer planes meet in an uncertain line
     std::vector<Line3d> tested;
     const auto consider = [&](const Line3d& line) {
