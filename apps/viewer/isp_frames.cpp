@@ -1,9 +1,10 @@
-#include "isp_frames.h"
+#include "viewer/isp_frames.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/constants.h"
 #include "core/neighbours/surface_normals.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
 
@@ -11,9 +12,13 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr double kTurn = 12.0 * M_PI / 180.0, kShift = 0.05;
+// Where the shown refinement starts, radians and radii from the plane. chosen: far enough to be seen, near enough to
+// come back.
+constexpr double kTurn = 12.0 * kPi / 180.0, kShift = 0.05;
+// Width of the weights and the step that ends the refinement, radii. chosen: half and twice change the number of
+// frames.
 constexpr double kSigma = 0.12, kResting = 1e-3;
-constexpr int kMaxFrames = 20, kNumSamples = 5'000, kNumShown = 120;
+constexpr int kMaxFrames = 20, kNumSamples = 5'000, kNumShown = 120;  // chosen: more markers hide each other
 
 IspFrame frameOf(const Points& points, const std::vector<int>& samples, const ReflectionPlane& plane,
                  const IspStep& step) {

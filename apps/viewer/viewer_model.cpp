@@ -1,4 +1,4 @@
-#include "viewer_model.h"
+#include "viewer/viewer_model.h"
 
 #include <pcl/common/point_tests.h>
 #include <pcl/conversions.h>

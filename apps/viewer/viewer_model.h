@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "options.h"
+#include "common/command_line/command_line.h"
+#include "common/shape_input/shape_input.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
 #include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 #include "pcl_symmetry/viewpoint_selection.h"
-#include "shape_input.h"
 
 namespace pcl_symmetry::apps {
 

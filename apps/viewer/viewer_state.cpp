@@ -1,4 +1,4 @@
-#include "viewer_state.h"
+#include "viewer/viewer_state.h"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "viewer_model.h"
-#include "viewer_state.h"
+#include "viewer/viewer_model.h"
+#include "viewer/viewer_state.h"
 
 namespace pcl_symmetry::apps {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tool_run.h"
+#include "apps/support/tool_run.h"
 
 namespace {
 

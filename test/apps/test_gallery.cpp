@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
-#include "raster_image.h"
-#include "shape_input.h"
-#include "tool_run.h"
+#include "common/pictures/raster_image.h"
+#include "common/shape_input/shape_input.h"
+#include "apps/support/tool_run.h"
 
 namespace {
 

@@ -1,0 +1,316 @@
+#include "common/pictures/picture_actors.h"
+
+#include <pcl/common/point_tests.h>
+#include <pcl/conversions.h>
+#include <pcl/features/normal_3d.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkLookupTable.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+/// More points shade themselves by their density. chosen: half leaves medium clouds flat, twice takes twice the time.
+constexpr std::size_t kMaxShadedPoints = 200000;
+const Eigen::Vector3d kPlainColor(0.30, 0.38, 0.52);
+
+/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
+std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
+  const double length = plane.normal.norm();
+  const Eigen::Vector3d normal = plane.normal / length;
+  const Eigen::Vector3d center = plane.center - (normal.dot(plane.center) - plane.offset / length) * normal;
+  Eigen::Vector3d v = up.normalized() - normal.dot(up.normalized()) * normal;
+  if (v.norm() < 0.1) v = normal.unitOrthogonal();
+  v.normalize();
+  const Eigen::Vector3d u = normal.cross(v);
+  const double h = plane.half_size;
+  return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
+}
+
+/// How far the points reach along the axis to either side of its point, and a tenth more.
+std::pair<double, double> reachAlong(const AxisLine& axis, const PictureScene& scene) {
+  const Eigen::Vector3d direction = axis.direction.normalized();
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const pcl::PointXYZ& point : *scene.points) {
+    if (!pcl::isXYZFinite(point)) continue;
+    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
+    low = std::min(low, along);
+    high = std::max(high, along);
+  }
+  const double margin = 0.1 * (high - low);
+  return {low - margin, high + margin};
+}
+
+void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
+  for (int k = 0; k < 3; ++k)
+    colors.InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
+}
+
+}  // namespace
+
+/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
+std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
+  const Eigen::Vector3d normal = plane.normal.normalized(), s = normal.unitOrthogonal(), t = normal.cross(s);
+  std::vector<Eigen::Vector2d> projections;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d second_moment = Eigen::Matrix2d::Zero();
+  for (const pcl::PointXYZ& point : points) {
+    const Eigen::Vector3d position = point.getVector3fMap().cast<double>();
+    if (!position.allFinite()) continue;
+    projections.emplace_back(s.dot(position), t.dot(position));
+    mean += projections.back();
+  }
+  mean /= static_cast<double>(projections.size());
+  for (const Eigen::Vector2d& q : projections) second_moment += (q - mean) * (q - mean).transpose();
+  const Eigen::Matrix2d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(second_moment).eigenvectors();
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& q : projections) box.extend(axes.transpose() * q);
+  const double margin = 0.06 * box.diagonal().norm();
+  box.extend(box.min() - Eigen::Vector2d::Constant(margin)).extend(box.max() + Eigen::Vector2d::Constant(margin));
+  const auto corner = [&](double u, double v) -> Eigen::Vector3d {
+    const Eigen::Vector2d q = axes * Eigen::Vector2d(u, v);
+    return plane.offset / plane.normal.norm() * normal + q.x() * s + q.y() * t;
+  };
+  return {corner(box.min().x(), box.min().y()), corner(box.max().x(), box.min().y()),
+          corner(box.max().x(), box.max().y()), corner(box.min().x(), box.max().y())};
+}
+
+Normalization normalizationOf(const PictureScene& scene) {
+  Eigen::AlignedBox3d box;
+  for (const pcl::PointXYZ& point : *scene.points) {
+    const Eigen::Vector3d position = point.getVector3fMap().cast<double>();
+    if (position.allFinite()) box.extend(position);
+  }
+  if (box.isEmpty()) throw InputError("nothing to draw, no point is finite");
+  const double diagonal = box.diagonal().norm();
+  return {box.center(), diagonal > 0 ? 1.0 / diagonal : 1.0};
+}
+
+std::vector<double> shading(const PictureScene& scene, const Normalization& normalize) {
+  std::vector<double> brightness(scene.points->size(), 1.0);
+  pcl::PointCloud<pcl::PointXYZ>::Ptr finite(new pcl::PointCloud<pcl::PointXYZ>);
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < scene.points->size(); ++i) {
+    const Eigen::Vector3d position = (*scene.points)[i].getVector3fMap().cast<double>();
+    if (!position.allFinite()) continue;
+    const Eigen::Vector3f q = normalize(position).cast<float>();
+    finite->emplace_back(q.x(), q.y(), q.z());
+    index.push_back(i);
+  }
+  if (finite->size() < 16 || finite->size() > kMaxShadedPoints) return brightness;
+  pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+  pcl::PointCloud<pcl::Normal> normals;
+  estimation.setInputCloud(finite);
+  estimation.setKSearch(12);
+  estimation.compute(normals);
+  const Eigen::Vector3f view = scene.view.normalized().cast<float>();
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const float cosine = std::abs(normals[i].getNormalVector3fMap().dot(view));
+    if (std::isfinite(cosine)) brightness[index[i]] = cosine;
+  }
+  return brightness;
+}
+
+vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePanel& panel,
+                                     const Normalization& normalize, const std::vector<double>& brightness,
+                                     double panel_pixels) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToFloat();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
+  for (std::size_t i = 0; i < scene.points->size(); ++i) {
+    const Eigen::Vector3d position = (*scene.points)[i].getVector3fMap().cast<double>();
+    if (!position.allFinite()) continue;
+    const vtkIdType id = points->InsertNextPoint(normalize(position).data());
+    cells->InsertNextCell(1, &id);
+    const bool plain = panel.support.empty() && panel.segments.empty();
+    Eigen::Vector3d base = kPlainColor;
+    if (!panel.segments.empty()) base = segmentColor(panel.segments[i]);
+    if (!panel.support.empty()) base = cividis(panel.support[i]);
+    addColor(*colors, (plain ? 0.45 + 0.75 * brightness[i] : 0.65 + 0.35 * brightness[i]) * base);
+  }
+  const double num_points = static_cast<double>(points->GetNumberOfPoints());
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetVerts(cells);
+  data->GetPointData()->SetScalars(colors);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  mapper->SetColorModeToDirectScalars();
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetPointSize(
+      static_cast<float>(std::clamp(0.9 * panel_pixels / std::sqrt(num_points), 1.5, panel_pixels / 60)));
+  actor->GetProperty()->LightingOff();
+  return actor;
+}
+
+vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
+                                    const Normalization& normalize) {
+  pcl::PointCloud<pcl::PointXYZ> vertices;
+  pcl::fromPCLPointCloud2(mesh.cloud, vertices);
+  vtkNew<vtkPoints> points;
+  for (const pcl::PointXYZ& vertex : vertices) {
+    points->InsertNextPoint(normalize(vertex.getVector3fMap().cast<double>()).data());
+  }
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
+  for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
+    const pcl::Vertices& polygon = mesh.polygons[f];
+    const bool drawable = std::all_of(polygon.vertices.begin(), polygon.vertices.end(), [&](pcl::index_t corner) {
+      return corner >= 0 && static_cast<std::size_t>(corner) < vertices.size() &&
+             vertices[static_cast<std::size_t>(corner)].getVector3fMap().allFinite();
+    });
+    if (!drawable) continue;
+    cells->InsertNextCell(static_cast<vtkIdType>(polygon.vertices.size()));
+    for (const pcl::index_t corner : polygon.vertices) cells->InsertCellPoint(corner);
+    if (!panel.segments.empty()) addColor(*colors, segmentColor(panel.segments[f]));
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetPolys(cells);
+  if (!panel.segments.empty()) data->GetCellData()->SetScalars(colors);
+  const bool colored = !panel.show_points && panel.support.size() == vertices.size();
+  if (colored) {
+    vtkNew<vtkUnsignedCharArray> shades;
+    shades->SetNumberOfComponents(3);
+    for (const double value : panel.support) addColor(*shades, cividis(value));
+    data->GetPointData()->SetScalars(shades);
+  }
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  mapper->SetResolveCoincidentTopologyToPolygonOffset();
+  mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2.0, 2.0);
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(0.86, 0.86, 0.88);
+  actor->GetProperty()->SetAmbient(0.25);
+  actor->GetProperty()->SetDiffuse(0.75);
+  if (!colored) actor->GetProperty()->SetInterpolationToFlat();
+  return actor;
+}
+
+void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
+             double line_width) {
+  const Eigen::Vector3d direction = axis.direction.normalized();
+  const bool is_short = axis.half_length > 0.0;
+  const auto [low, high] = is_short ? std::pair(-axis.half_length, axis.half_length) : reachAlong(axis, scene);
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(normalize(axis.point + low * direction).data());
+  points->InsertNextPoint(normalize(axis.point + high * direction).data());
+  const vtkIdType ends[] = {0, 1};
+  vtkNew<vtkCellArray> line;
+  line->InsertNextCell(2, ends);
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetLines(line);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  if (is_short) {
+    // Steps of the depth buffer. chosen: lines stay in front of all of the scene; half lets them sink into it.
+    constexpr double kInFront = -66'000.0;
+    mapper->SetResolveCoincidentTopologyToPolygonOffset();
+    mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, kInFront);
+  }
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(axis.color.x(), axis.color.y(), axis.color.z());
+  actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
+  actor->GetProperty()->LightingOff();
+  renderer.AddActor(actor);
+}
+
+void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,
+              double line_width) {
+  vtkNew<vtkPoints> points;
+  const auto corners = plane.half_size > 0 ? squareCorners(plane, scene.up) : fittedCorners(plane, *scene.points);
+  for (const Eigen::Vector3d& corner : corners) points->InsertNextPoint(normalize(corner).data());
+  const vtkIdType loop[] = {0, 1, 2, 3, 0};
+  vtkNew<vtkCellArray> quad, outline;
+  quad->InsertNextCell(4, loop);
+  outline->InsertNextCell(5, loop);
+  for (const bool filled : {true, false}) {
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    if (filled) {
+      data->SetPolys(quad);
+    } else {
+      data->SetLines(outline);
+    }
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(data);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(plane.color.x(), plane.color.y(), plane.color.z());
+    actor->GetProperty()->SetOpacity(filled ? 0.25 : 1.0);
+    actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
+    actor->GetProperty()->LightingOff();
+    renderer.AddActor(actor);
+  }
+}
+
+vtkSmartPointer<vtkTextActor> labelActor(const std::string& text, int font_size) {
+  vtkNew<vtkTextActor> actor;
+  actor->SetInput(text.c_str());
+  actor->GetTextProperty()->SetFontFamilyToArial();
+  actor->GetTextProperty()->SetFontSize(font_size);
+  actor->GetTextProperty()->SetColor(0.1, 0.1, 0.1);
+  actor->GetTextProperty()->SetJustificationToCentered();
+  actor->GetTextProperty()->SetVerticalJustificationToTop();
+  actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  actor->GetPositionCoordinate()->SetValue(0.5, 0.98);
+  return actor;
+}
+
+vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, int font_size) {
+  vtkNew<vtkLookupTable> table;
+  table->SetNumberOfTableValues(128);
+  table->SetTableRange(0, 1);
+  for (int i = 0; i < 128; ++i) {
+    const Eigen::Vector3d color = cividis(i / 127.0);
+    table->SetTableValue(i, color.x(), color.y(), color.z(), 1);
+  }
+  vtkNew<vtkScalarBarActor> bar;
+  bar->SetLookupTable(table);
+  bar->SetTitle("support");
+  bar->SetNumberOfLabels(3);
+  bar->SetLabelFormat(" %.1f");
+  bar->UnconstrainedFontSizeOn();
+  for (vtkTextProperty* text : {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
+    text->SetFontFamilyToArial();
+    text->SetFontSize(font_size);
+    text->SetColor(0.1, 0.1, 0.1);
+    text->BoldOff();
+    text->ItalicOff();
+    text->ShadowOff();
+  }
+  const double height = 0.28, width = std::min(0.25, 4.5 * font_size / panel_width);
+  bar->SetMaximumHeightInPixels(static_cast<int>(height * panel_height));
+  bar->SetMaximumWidthInPixels(static_cast<int>(width * panel_width));
+  bar->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  bar->SetPosition(0.98 - width, 0.03);
+  bar->SetWidth(width);
+  bar->SetHeight(height);
+  return bar;
+}
+
+}  // namespace pcl_symmetry::apps

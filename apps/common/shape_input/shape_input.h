@@ -1,0 +1,38 @@
+/// Reads clouds and meshes from files, and refuses what it cannot trust with one clear line.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/PolygonMesh.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "common/command_line/tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+/// What a file holds. Points may be non-finite, as scanners write them.
+struct Shape {
+  pcl::PCLPointCloud2 cloud;                   ///< all fields of the file, input frame; the vertices of a mesh
+  pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< the coordinates minus the shift, same order and organization
+  std::optional<pcl::PolygonMesh> mesh;        ///< polygons of any size >= 3, indices checked; minus the shift
+  /// Subtracted from points and mesh; zero unless the file's coordinates have more digits than float holds.
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();  ///< input frame
+  Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
+};
+
+/// The endings of files that loadShape() reads, for help and messages.
+inline const char* const kShapeFiles = ".pcd, .ply, .obj, .stl, .off or .xyz";
+
+/// \param path a file of kShapeFiles, in capitals or not
+/// \throws InputError naming the file, what is wrong and the rule
+Shape loadShape(const std::string& path);
+
+/// \return a shape made of a mesh, as if it had been loaded.
+Shape shapeFromMesh(const pcl::PolygonMesh& mesh);
+
+}  // namespace pcl_symmetry::apps

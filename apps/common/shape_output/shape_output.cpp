@@ -1,0 +1,198 @@
+#include "common/shape_output/shape_output.h"
+
+#include <fcntl.h>
+#include <pcl/common/io.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/io/ply_io.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <boost/algorithm/string.hpp>
+#include <boost/filesystem.hpp>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+namespace pcl_symmetry::apps {
+
+namespace fs = boost::filesystem;
+
+namespace {
+
+/// Names of the files being written, in storage that a signal handler may read.
+struct PendingFile {
+  std::atomic<bool> used{false};
+  std::atomic<bool> ready{false};
+  std::array<char, PATH_MAX> name;
+};
+std::array<PendingFile, 16> pending_files;
+
+extern "C" void removePendingFiles(int signal) {
+  for (PendingFile& file : pending_files) {
+    if (file.ready) unlink(file.name.data());
+  }
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void installSignalHandlers() {
+  static const bool installed = [] {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      struct sigaction old {};
+      sigaction(signal, nullptr, &old);
+      if (old.sa_handler == SIG_DFL) std::signal(signal, removePendingFiles);
+    }
+    return true;
+  }();
+  static_cast<void>(installed);
+}
+
+/// Removes the file when it goes out of scope, or when a signal ends the program.
+class TemporaryFile {
+public:
+  explicit TemporaryFile(const std::string& name) : name_(name) {
+    installSignalHandlers();
+    for (PendingFile& file : pending_files) {
+      bool expected = false;
+      if (name.size() < PATH_MAX && file.used.compare_exchange_strong(expected, true)) {
+        std::memcpy(file.name.data(), name.c_str(), name.size() + 1);
+        file.ready = true;
+        slot_ = &file;
+        break;
+      }
+    }
+  }
+  ~TemporaryFile() {
+    unlink(name_.c_str());
+    if (slot_) {
+      slot_->ready = false;
+      slot_->used = false;
+    }
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+private:
+  std::string name_;
+  PendingFile* slot_ = nullptr;
+};
+
+[[noreturn]] void failToWrite(const std::string& path, const std::string& why) {
+  throw InputError(path + ": cannot be written, " + why);
+}
+
+/// \return the cloud without padding, its fields one after the other: PCL's PCD writer derives padding from the order
+/// of the fields, and writes negative counts for types such as PointXYZRGBNormal whose order is not that in memory.
+pcl::PCLPointCloud2 packed(const pcl::PCLPointCloud2& cloud) {
+  pcl::PCLPointCloud2 result;
+  result.header = cloud.header;
+  result.width = cloud.width;
+  result.height = cloud.height;
+  result.is_dense = cloud.is_dense;
+  result.is_bigendian = cloud.is_bigendian;
+  std::vector<std::size_t> sources;
+  for (pcl::PCLPointField field : cloud.fields) {
+    if (field.name == "_") continue;
+    sources.push_back(field.offset);
+    field.count = std::max<pcl::uindex_t>(field.count, 1);
+    field.offset = result.point_step;
+    result.point_step += field.count * static_cast<pcl::uindex_t>(pcl::getFieldSize(field.datatype));
+    result.fields.push_back(field);
+  }
+  result.row_step = result.point_step * result.width;
+  const std::size_t num_points = std::size_t{cloud.width} * cloud.height;
+  result.data.resize(num_points * result.point_step);
+  for (std::size_t i = 0; i < num_points; ++i) {
+    for (std::size_t k = 0; k < sources.size(); ++k) {
+      const pcl::PCLPointField& field = result.fields[k];
+      std::memcpy(&result.data[i * result.point_step + field.offset], &cloud.data[i * cloud.point_step + sources[k]],
+                  field.count * static_cast<std::size_t>(pcl::getFieldSize(field.datatype)));
+    }
+  }
+  return result;
+}
+
+std::string lowerExtension(const std::string& path) {
+  return boost::algorithm::to_lower_copy(fs::path(path).extension().string());
+}
+
+}  // namespace
+
+void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& writer) {
+  const fs::path target(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  boost::system::error_code ignored;
+  if (path.empty()) throw InputError("output name is empty");
+  if (fs::is_directory(target, ignored)) failToWrite(path, "it is a directory");
+  if (!fs::is_directory(folder, ignored)) failToWrite(path, "there is no directory " + folder.string());
+
+  const bool special = fs::exists(target, ignored) && !fs::is_regular_file(target, ignored);
+  if (special) failToWrite(path, "it is not a regular file");
+  const fs::path final_name = fs::is_symlink(target, ignored) ? fs::canonical(target, ignored) : target;
+
+  const std::string temporary = (final_name.parent_path() / fs::unique_path("." + target.stem().string() + ".%%%%%%%%" +
+                                                                            target.extension().string()))
+                                    .string();
+  const int descriptor = open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0) failToWrite(path, std::strerror(errno));
+  close(descriptor);
+  const TemporaryFile guard(temporary);
+
+  writer(temporary);
+  struct stat status {};
+  if (stat(temporary.c_str(), &status) != 0 || status.st_size == 0) failToWrite(path, "nothing was written");
+  if (std::rename(temporary.c_str(), final_name.c_str()) != 0) failToWrite(path, std::strerror(errno));
+}
+
+void writeText(const std::string& path, const std::string& text) {
+  writeAtomically(path, [&](const std::string& temporary) {
+    std::ofstream file(temporary, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) failToWrite(path, std::strerror(errno));
+  });
+}
+
+void checkCloudExtension(const std::string& path) {
+  const std::string extension = lowerExtension(path);
+  if (extension != ".pcd" && extension != ".ply") throw UsageError(path + ": unknown extension, must be .pcd or .ply");
+}
+
+void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
+               const Eigen::Quaternionf& sensor_orientation, PCDEncoding encoding) {
+  const std::string extension = lowerExtension(path);
+  if (extension != ".pcd" && extension != ".ply") throw InputError(path + ": unknown extension, must be .pcd or .ply");
+  if (cloud.width == 0 || cloud.height == 0) throw InputError(path + ": not written, the cloud has no points");
+  if (cloud.data.size() < std::size_t{cloud.width} * cloud.height * cloud.point_step) {
+    throw InputError(path + ": not written, the cloud holds fewer points than width * height");
+  }
+  const pcl::PCLPointCloud2 fields = packed(cloud);
+  writeAtomically(path, [&](const std::string& temporary) {
+    int status = -1;
+    try {
+      if (extension == ".ply") {
+        status = pcl::PLYWriter().writeBinary(temporary, fields, sensor_origin, sensor_orientation);
+      } else {
+        pcl::PCDWriter writer;
+        if (encoding == PCDEncoding::Ascii)
+          status = writer.writeASCII(temporary, fields, sensor_origin, sensor_orientation, 9);
+        if (encoding == PCDEncoding::Binary)
+          status = writer.writeBinary(temporary, fields, sensor_origin, sensor_orientation);
+        if (encoding == PCDEncoding::BinaryCompressed) {
+          status = writer.writeBinaryCompressed(temporary, fields, sensor_origin, sensor_orientation);
+        }
+      }
+    } catch (const std::exception& error) {
+      failToWrite(path, error.what());
+    }
+    if (status != 0) failToWrite(path, "the disk may be full");
+  });
+}
+
+}  // namespace pcl_symmetry::apps

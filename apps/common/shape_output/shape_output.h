@@ -1,0 +1,32 @@
+/// Results appear under their final name whole, or not at all.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <string>
+
+#include "common/command_line/tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+/// Calls the writer with a temporary name beside `path` (same extension) and renames what it wrote. The temporary file
+/// is removed if the writer throws and if the program is interrupted or terminated by a signal.
+/// \throws InputError if the folder is missing or not writable, or the writer made no file; whatever the writer throws.
+void writeAtomically(const std::string& path, const std::function<void(const std::string& temporary_path)>& writer);
+
+/// Writes text, e.g. JSON, as it is.
+void writeText(const std::string& path, const std::string& text);
+
+enum class PCDEncoding { Ascii, Binary, BinaryCompressed };
+
+/// Writes a cloud with all its fields and the pose of the sensor; PCD or (binary) PLY by the extension of the name.
+/// \throws InputError for another extension, an empty cloud, or a file that cannot be written.
+void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
+               const Eigen::Quaternionf& sensor_orientation, PCDEncoding encoding = PCDEncoding::BinaryCompressed);
+
+/// \throws UsageError unless saveCloud() knows the extension; lets a tool refuse before the long work.
+void checkCloudExtension(const std::string& path);
+
+}  // namespace pcl_symmetry::apps

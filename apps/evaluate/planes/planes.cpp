@@ -1,0 +1,285 @@
+#include "evaluate/planes/planes.h"
+
+#include <pcl/conversions.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "common/command_line/command_line.h"
+#include "core/base/constants.h"
+#include "common/command_line/console.h"
+#include "common/shape_input/shape_input.h"
+#include "common/shape_output/shape_output.h"
+#include "evaluate/planes/plane_report.h"
+#include "evaluate/references/reference_cache.h"
+#include "evaluate/shared/model_flags.h"
+#include "evaluate/shared/model_list.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+// Milliseconds between two savings of the references. chosen: an interrupted run loses no more; half writes more often,
+// twice loses more.
+constexpr double kSaveEvery = 10'000.0;
+
+struct EvaluatePlanesOptions {
+  std::vector<std::string> folders;
+  ModelSelection selection;
+  ReferenceOptions references;
+  std::optional<std::string> references_path;
+  TestCloudOptions clouds;
+  std::string sweep = "none", views = "corners";
+  MatchLimits limits;
+  bool no_detect = false;
+  std::optional<std::string> export_folder, planes_folder;
+  std::optional<std::string> cloud_csv, model_csv, curve_csv, png;
+  CommonOptions common;
+};
+
+CommandLine commandLine(EvaluatePlanesOptions& o) {
+  CommandLine line(
+      "pcl_symmetry_evaluate planes",
+      "Makes whole clouds and single-view scans of meshes and measures how well their planes are found.",
+      "pcl_symmetry_evaluate planes psb/train -every 4 -max 200 -references references.json -csv clouds.csv");
+  addModelFlags(line, o.folders, o.selection);
+  line.text("references", "FILE", o.references_path,
+            "reference planes: read for the meshes in it, extended by the others")
+      .number("tolerance", o.references.tolerance, Range::open(0, 1),
+              "largest distance of a reflected point from the mesh, in diagonals")
+      .number("min_share", o.references.min_share, Range::closed(0.5, 1), "least share of the area that a reference plane maps to the mesh")
+      .number("near_share", o.references.near_share, Range::closed(0.5, 1),
+              "least share of a near plane, which is neither right nor wrong")
+      .choice("sweep", o.sweep, {"none", "noise", "points", "missing", "views"},
+              "vary one thing; none: whole clouds at all noise levels, and scans")
+      .number("points", o.clouds.num_points, Range::closed(100, 10'000'000), "number of points per cloud")
+      .numbers("noise", o.clouds.noise, Range::closed(0, 1), "standard deviations of the noise of whole clouds, in diagonals")
+      .numbers("scan_noise", o.clouds.scan_noise, Range::closed(0, 1), "standard deviations of the depth of scans, in diagonals")
+      .numbers("missing", o.clouds.missing, Range{0, 1, false, true}, "shares of the points that are cut off, for -sweep missing")
+      .numbers("point_counts", o.clouds.point_counts, Range::closed(10, 10'000'000), "numbers of points, for -sweep points")
+      .choice("views", o.views, {"corners", "random", "none"}, "scans from corners of a cube or random directions")
+      .number("num_views", o.clouds.num_views, Range::closed(1, 1000), "number of scans of each mesh, at most 8 from corners")
+      .number("max_angle", o.limits.max_angle, Range::open(0, 90), "largest angle between a found plane and its reference, degrees")
+      .number("max_axis_angle", o.limits.max_axis_angle, Range::open(0, 90), "largest angle between a found axis and its reference, degrees")
+      .number("max_offset", o.limits.max_offset, Range::open(0, 1), "largest offset between a finding and its reference, in diagonals")
+      .text("export", "DIR", o.export_folder, "write every cloud as PCD, and ground_truth.json")
+      .flag("no_detect", o.no_detect, "only find references and export")
+      .text("planes", "DIR", o.planes_folder,
+            "judge NAME.json ({\"planes\": [{\"coefficients\": [a,b,c,d], \"score\": s}]}) or NAME.txt (lines a b c d "
+            "[score]) of each cloud instead of detecting; NAME as -export has it")
+      .text("csv", "FILE", o.cloud_csv, "a row for each cloud")
+      .text("model_csv", "FILE", o.model_csv, "a row for each model")
+      .text("curve_csv", "FILE", o.curve_csv, "precision and recall at every score")
+      .picture("png", o.png, "chart: precision against recall, or the rates of a sweep")
+      .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  return line;
+}
+
+Sweep sweepNamed(const std::string& name) {
+  static const std::map<std::string, Sweep> sweeps = {{"none", Sweep::None},
+                                                      {"noise", Sweep::Noise},
+                                                      {"points", Sweep::Points},
+                                                      {"missing", Sweep::Missing},
+                                                      {"views", Sweep::Views}};
+  return sweeps.at(name);
+}
+
+void completeOptions(EvaluatePlanesOptions& o, const CommandLine& line) {
+  if (o.references.near_share > o.references.min_share) throw UsageError("-near_share must be <= -min_share");
+  if (o.no_detect && o.planes_folder) throw UsageError("only one of -no_detect and -planes may be given");
+  if (o.planes_folder && !boost::filesystem::is_directory(*o.planes_folder))
+    throw InputError(*o.planes_folder + ": must be a folder");
+  o.clouds.sweep = sweepNamed(o.sweep);
+  if (o.clouds.sweep == Sweep::Views && !line.given("views")) o.views = "random";
+  if (o.clouds.sweep == Sweep::Views && o.views == "none") throw UsageError("-sweep views needs -views");
+  o.clouds.random_views = o.views == "random";
+  if (o.views == "none") o.clouds.num_views = 0;
+  o.clouds.seed = o.common.seed;
+  o.references.num_threads = o.common.threads;
+}
+
+/// Degrees between the view direction and the normal of the best reference plane, as lines.
+std::optional<double> viewAngle(const TestCloud& cloud, const ReferenceSymmetries& references) {
+  if (!cloud.view_direction || references.planes.empty()) return std::nullopt;
+  const double cosine = std::abs(cloud.view_direction->dot(references.planes.front().plane.normal()));
+  return std::acos(std::min(1.0, cosine)) * 180.0 / kPi;
+}
+
+class PlanesEvaluation {
+public:
+  explicit PlanesEvaluation(const EvaluatePlanesOptions& options)
+      : options_(options),
+        console_(options.common.quiet),
+        recipes_(recipesFor(options.clouds)),
+        cache_(options.references_path.value_or(""), options.references) {}
+
+  void run() {
+    const std::vector<Model> models = listModels(options_.folders, options_.selection);
+    if (options_.export_folder) boost::filesystem::create_directories(*options_.export_folder);
+    Step step(console_, "Evaluating " + std::to_string(models.size()) + " models");
+    int num_used = 0;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
+      num_used += evaluate(models[i]) ? 1 : 0;
+    }
+    cache_.save();
+    step.done(std::to_string(num_used) + " models, " + std::to_string(num_clouds_) + " clouds");
+    for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
+    if (num_used == 0) throw InputError(options_.folders.front() + ": no mesh could be used");
+    if (options_.export_folder) {
+      const auto path = boost::filesystem::path(*options_.export_folder) / "ground_truth.json";
+      writeText(path.string(), nlohmann::json{{"clouds", ground_truth_}}.dump(1) + "\n");
+    }
+    report();
+  }
+
+private:
+  struct Prepared {
+    ReferenceSymmetries references;
+    TestCloudMaker maker;
+  };
+
+  /// \return what it gives; none where it throws, and the reason is kept.
+  template <typename Function>
+  auto attempt(const std::string& what, const Function& function) -> std::optional<decltype(function())> {
+    try {
+      return function();
+    } catch (const InputError& error) {
+      left_out_.push_back(error.what());
+    } catch (const std::exception& error) {
+      left_out_.push_back(what + ": " + error.what());
+    }
+    return std::nullopt;
+  }
+
+  /// \return whether the model could be used.
+  bool evaluate(const Model& model) {
+    const auto prepared = attempt(model.path, [&] {
+      const Shape shape = loadShape(model.path);
+      if (!shape.mesh) throw InputError(model.path + ": has no faces");
+      return Prepared{referencesOf(model, *shape.mesh), TestCloudMaker(*shape.mesh, model.key, options_.clouds)};
+    });
+    if (!prepared) return false;
+    ++num_models_[prepared->references.kind];
+    if (options_.no_detect && !options_.export_folder) return true;
+    for (const CloudRecipe& recipe : recipes_) {
+      const std::string name = model.name + "_" + recipe.name;
+      if (const auto cloud = attempt(name, [&] { return prepared->maker.make(recipe); }))
+        evaluate(name, model, recipe, *cloud, prepared->references.transformed(cloud->T_cloud_model));
+    }
+    return true;
+  }
+
+  ReferenceSymmetries referencesOf(const Model& model, const pcl::PolygonMesh& mesh) {
+    if (const auto cached = cache_.find(model.key, mesh.polygons.size())) return *cached;
+    const ReferenceSymmetries references = findReferenceSymmetries(mesh, options_.references);
+    cache_.add(model.key, mesh.polygons.size(), references);
+    unsaved_ms_ += since_save_.lap();
+    if (unsaved_ms_ > kSaveEvery) {
+      cache_.save();
+      unsaved_ms_ = 0.0;
+    }
+    return references;
+  }
+
+  void evaluate(const std::string& name, const Model& model, const CloudRecipe& recipe, const TestCloud& cloud,
+                const ReferenceSymmetries& references) {
+    ++num_clouds_;
+    if (options_.export_folder) exportCloud(name, model, recipe, cloud, references);
+    if (options_.no_detect) return;
+    CloudResult result;
+    result.model = model.name;
+    result.cloud = name;
+    result.recipe = recipe;
+    for (const pcl::PointXYZ& point : *cloud.cloud) result.num_points += point.getVector3fMap().allFinite() ? 1 : 0;
+    result.view_angle = viewAngle(cloud, references);
+    result.kind = references.kind;
+    result.best_share = references.best_share;
+    result.num_reference_axes = static_cast<int>(references.axes.size());
+    result.answers = answersFor(name, cloud);
+    result.match = matchAnswers(result.answers.answers, references, options_.limits);
+    results_.push_back(std::move(result));
+  }
+
+  PlaneAnswers answersFor(const std::string& name, const TestCloud& cloud) {
+    if (options_.planes_folder) return readAnswers(*options_.planes_folder, name);
+    const auto detect = [&] { return detectAnswers(cloud.cloud, options_.common.seed + 1, options_.common.threads); };
+    if (!warm_) detect();  // threads, tables and pages are there from the second call on
+    warm_ = true;
+    return detect();
+  }
+
+  void exportCloud(const std::string& name, const Model& model, const CloudRecipe& recipe, const TestCloud& cloud,
+                   const ReferenceSymmetries& references) {
+    const auto path = boost::filesystem::path(*options_.export_folder) / (name + ".pcd");
+    pcl::PCLPointCloud2 blob;
+    pcl::toPCLPointCloud2(*cloud.cloud, blob);
+    saveCloud(path.string(), blob, cloud.cloud->sensor_origin_, cloud.cloud->sensor_orientation_);
+    nlohmann::json truth = toJson(references);
+    truth["file"] = name + ".pcd";
+    truth["model"] = model.name;
+    truth["group"] = recipe.group;
+    ground_truth_[name] = std::move(truth);
+  }
+
+  void report() {
+    std::printf("%d symmetric, %d nearly symmetric, %d asymmetric models\n", num_models_[SymmetryKind::Symmetric],
+                num_models_[SymmetryKind::NearlySymmetric], num_models_[SymmetryKind::Asymmetric]);
+    const std::vector<CloudGroup> groups = groupResults(results_, options_.clouds.sweep);
+    if (!results_.empty()) printTable(groups);
+    std::vector<std::string> failed;
+    for (const CloudResult& result : results_)
+      if (result.answers.failed) failed.push_back(result.cloud);
+    for (const std::string& name : failed) console_.warn("no answer: " + name);
+    if (options_.cloud_csv) writeText(*options_.cloud_csv, cloudCSV(results_));
+    if (options_.model_csv) writeText(*options_.model_csv, modelCSV(results_));
+    if (options_.curve_csv) writeText(*options_.curve_csv, precisionRecallCSV(groups));
+    if (options_.common.json_path) {
+      const nlohmann::json summary{{"num_models",
+                                    {{"symmetric", num_models_[SymmetryKind::Symmetric]},
+                                     {"nearly_symmetric", num_models_[SymmetryKind::NearlySymmetric]},
+                                     {"asymmetric", num_models_[SymmetryKind::Asymmetric]}}},
+                                   {"left_out", left_out_},
+                                   {"failed", failed},
+                                   {"sweep", options_.sweep},
+                                   {"seed", options_.common.seed},
+                                   {"limits",
+                                    {{"max_angle_deg", options_.limits.max_angle},
+                                     {"max_axis_angle_deg", options_.limits.max_axis_angle},
+                                     {"max_offset", options_.limits.max_offset}}},
+                                   {"groups", toJson(groups)}};
+      writeText(*options_.common.json_path, summary.dump(2) + "\n");
+    }
+    if (options_.png && !results_.empty()) drawChart(groups, options_.clouds.sweep, *options_.png);
+  }
+
+  const EvaluatePlanesOptions& options_;
+  const Console console_;
+  const std::vector<CloudRecipe> recipes_;
+  ReferenceCache cache_;
+  Stopwatch since_save_;
+  double unsaved_ms_ = 0.0;  ///< since the references were last saved
+  bool warm_ = false;
+  int num_clouds_ = 0;
+  std::map<SymmetryKind, int> num_models_;
+  std::vector<std::string> left_out_;
+  std::vector<CloudResult> results_;
+  nlohmann::json ground_truth_ = nlohmann::json::object();
+};
+
+}  // namespace
+
+int evaluatePlanes(int argc, char** argv) {
+  EvaluatePlanesOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  completeOptions(options, line);
+  PlanesEvaluation(options).run();
+  return 0;
+}
+
+}  // namespace pcl_symmetry::apps

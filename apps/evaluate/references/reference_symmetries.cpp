@@ -1,0 +1,84 @@
+#include "evaluate/references/reference_symmetries.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "evaluate/references/reference_search.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+template <typename Map>
+void mapAll(ReferenceSymmetries& symmetries, const Map& map) {
+  for (auto* planes : {&symmetries.planes, &symmetries.near_planes})
+    for (ReferencePlane& plane : *planes) plane.plane = map.plane(plane.plane);
+  for (auto* axes : {&symmetries.axes, &symmetries.near_axes}) {
+    for (ReferenceAxis& axis : *axes) {
+      axis.point = map.point(axis.point);
+      axis.direction = map.direction(axis.direction);
+    }
+  }
+  for (ReferenceCenter& center : symmetries.centers) center.point = map.point(center.point);
+  symmetries.center = map.point(symmetries.center);
+}
+
+struct RigidMap {
+  const Eigen::Isometry3d& motion;
+  ReflectionPlane plane(const ReflectionPlane& p) const { return p.transformed(motion).canonical(); }
+  Eigen::Vector3d point(const Eigen::Vector3d& p) const { return motion * p; }
+  Eigen::Vector3d direction(const Eigen::Vector3d& d) const { return motion.linear() * d; }
+};
+
+/// From the frame of the scene to that of its mesh.
+struct SceneToMesh {
+  const TriangleScene& scene;
+  ReflectionPlane plane(const ReflectionPlane& p) const {
+    return ReflectionPlane(p.normal(), scene.diagonal() * p.offset() + p.normal().dot(scene.center())).canonical();
+  }
+  Eigen::Vector3d point(const Eigen::Vector3d& p) const { return scene.center() + scene.diagonal() * p; }
+  Eigen::Vector3d direction(const Eigen::Vector3d& d) const { return d; }
+};
+
+[[noreturn]] void reject(const char* field, double value, const char* rule) {
+  throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + ", " + rule);
+}
+
+}  // namespace
+
+void ReferenceOptions::validate() const {
+  if (!(tolerance > 0.0 && tolerance < 1.0)) reject("tolerance", tolerance, "must be > 0 and < 1");
+  if (!(min_share > 0.0 && min_share <= 1.0)) reject("min_share", min_share, "must be > 0 and <= 1");
+  if (!(near_share > 0.0 && near_share <= min_share)) reject("near_share", near_share, "must be > 0 and <= min_share");
+  if (!(merge_angle >= 0.0)) reject("merge_angle", merge_angle, "must be >= 0");
+  if (!(merge_offset >= 0.0)) reject("merge_offset", merge_offset, "must be >= 0");
+  if (num_samples < 1000) reject("num_samples", num_samples, "must be >= 1000");
+}
+
+const char* toString(SymmetryKind kind) {
+  switch (kind) {
+    case SymmetryKind::Symmetric:
+      return "symmetric";
+    case SymmetryKind::NearlySymmetric:
+      return "nearly symmetric";
+    default:
+      return "asymmetric";
+  }
+}
+
+ReferenceSymmetries ReferenceSymmetries::transformed(const Eigen::Isometry3d& motion) const {
+  ReferenceSymmetries moved = *this;
+  mapAll(moved, RigidMap{motion});
+  return moved;
+}
+
+ReferenceSymmetries findReferenceSymmetries(const pcl::PolygonMesh& mesh, const ReferenceOptions& options) {
+  options.validate();
+  const TriangleScene scene(mesh);
+  ReferenceSymmetries symmetries = searchReferences(scene, options);
+  mapAll(symmetries, SceneToMesh{scene});
+  symmetries.diagonal = scene.diagonal();
+  return symmetries;
+}
+
+}  // namespace pcl_symmetry::apps

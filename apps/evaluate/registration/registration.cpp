@@ -1,0 +1,285 @@
+#include "evaluate/registration/registration.h"
+
+#include <pcl/console/print.h>
+
+#include <boost/algorithm/string.hpp>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/console.h"
+#include "common/shape_input/shape_input.h"
+#include "common/shape_output/shape_output.h"
+#include "evaluate/planes/plane_statistics.h"
+#include "evaluate/references/reference_cache.h"
+#include "evaluate/registration/motion_error.h"
+#include "evaluate/registration/registration_methods.h"
+#include "evaluate/segmentation/patches.h"
+#include "evaluate/shared/model_flags.h"
+#include "evaluate/shared/model_list.h"
+#include "evaluate/shared/test_clouds.h"
+#include "core/base/constants.h"
+#include "pcl_symmetry/mesh_sampling.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+constexpr int kNumPatches = 10;  // chosen: half removes whole parts, twice small spots everywhere
+
+struct EvaluateRegistrationOptions {
+  std::vector<std::string> folders;
+  ModelSelection selection;
+  std::optional<std::string> references_path;
+  int num_points = 10'000, num_views = 8;
+  double noise = 0.0, missing = 0.0;
+  double max_angle = 5.0, max_distance = 0.02;
+  std::optional<std::string> methods;
+  bool impostors = false;
+  std::optional<std::string> csv;
+  CommonOptions common;
+};
+
+CommandLine commandLine(EvaluateRegistrationOptions& o) {
+  CommandLine line("pcl_symmetry_evaluate registration",
+                   "Scans meshes from one side, in random poses, and measures how well the scans are brought back to "
+                   "whole clouds of the meshes.",
+                   "pcl_symmetry_evaluate registration psb/train -every 8 -first 2 -csv registration.csv");
+  addModelFlags(line, o.folders, o.selection);
+  line.text("references", "FILE", o.references_path,
+            "symmetries of the meshes: read for the meshes in it, extended by the others")
+      .number("points", o.num_points, Range::closed(100, 10'000'000), "number of points of a model, and wanted number for a scan")
+      .number("num_views", o.num_views, Range::closed(1, 8), "number of scans of each mesh, from the corners of a cube")
+      .number("noise", o.noise, Range::closed(0, 1), "standard deviation of the depth in scans, in diagonals")
+      .number("missing", o.missing, Range{0, 1, false, true}, "share of a scan that is removed, in patches")
+      .number("max_angle", o.max_angle, Range::open(0, 180), "largest rotation error of a right registration, degrees")
+      .number("max_distance", o.max_distance, Range::open(0, 1), "largest error at the center of the model of a right registration, in diagonals")
+      .text("methods", "A,B,...", o.methods,
+            "methods: symmetry, frames, rotations, pca, features (symmetry,pca,features)")
+      .flag("impostors", o.impostors, "also try each scan with the mesh before its own, where nothing should fit")
+      .text("csv", "FILE", o.csv, "a row for each scan and method")
+      .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  return line;
+}
+
+std::vector<RegistrationMethod> chosenMethods(const std::string& names) {
+  std::vector<std::string> wanted;
+  boost::algorithm::split(wanted, names, boost::algorithm::is_any_of(","));
+  std::vector<RegistrationMethod> chosen;
+  for (const std::string& name : wanted) {
+    bool known = false;
+    for (const RegistrationMethod& method : registrationMethods()) {
+      if (name != method.name) continue;
+      chosen.push_back(method);
+      known = true;
+    }
+    if (!known) throw UsageError("-methods = " + names + ", must be of symmetry, frames, rotations, pca, features");
+  }
+  return chosen;
+}
+
+/// One scan brought to one model by one method.
+struct Trial {
+  std::string scan, model;
+  std::size_t method = 0;  ///< index
+  bool impostor = false;   ///< the model is not of the scan's object
+  RegistrationAnswer answer;
+  MotionError error;  ///< radians and diagonals; of impostors without meaning
+  bool right = false;
+};
+
+/// What the trials of one method add up to. Rates in [0, 1], NaN where there is nothing to count.
+struct Summary {
+  int num_scans = 0;
+  double right_rate = 0.0;                           ///< whether the method says converged or not
+  double converged_rate = 0.0;                       ///< says that it fits
+  double trusted_rate = 0.0;                         ///< of those that say so, right
+  double impostor_rate = 0.0;                        ///< impostors that are said to fit
+  double median_angle = 0.0, median_distance = 0.0;  ///< of the right ones, degrees and diagonals
+  double median_ms = 0.0, p95_ms = 0.0;
+};
+
+double share(int part, int whole) {
+  return whole > 0 ? static_cast<double>(part) / whole : std::numeric_limits<double>::quiet_NaN();
+}
+
+Summary summarize(const std::vector<Trial>& trials, std::size_t method) {
+  Summary summary;
+  int num_right = 0, num_converged = 0, num_trusted = 0, num_impostors = 0, num_taken_in = 0;
+  std::vector<double> angles, distances, times;
+  for (const Trial& trial : trials) {
+    if (trial.method != method) continue;
+    if (trial.impostor) {
+      ++num_impostors;
+      num_taken_in += trial.answer.converged ? 1 : 0;
+      continue;
+    }
+    ++summary.num_scans;
+    times.push_back(trial.answer.milliseconds);
+    num_converged += trial.answer.converged ? 1 : 0;
+    if (!trial.right) continue;
+    ++num_right;
+    num_trusted += trial.answer.converged ? 1 : 0;
+    angles.push_back(trial.error.angle / kDegree);
+    distances.push_back(trial.error.distance);
+  }
+  summary.right_rate = share(num_right, summary.num_scans);
+  summary.converged_rate = share(num_converged, summary.num_scans);
+  summary.trusted_rate = share(num_trusted, num_converged);
+  summary.impostor_rate = share(num_taken_in, num_impostors);
+  summary.median_angle = quantile(angles, 0.5);
+  summary.median_distance = quantile(distances, 0.5);
+  summary.median_ms = quantile(times, 0.5);
+  summary.p95_ms = quantile(times, 0.95);
+  return summary;
+}
+
+class RegistrationEvaluation {
+public:
+  explicit RegistrationEvaluation(const EvaluateRegistrationOptions& options)
+      : options_(options),
+        console_(options.common.quiet),
+        methods_(chosenMethods(options.methods.value_or("symmetry,pca,features"))),
+        cache_(options.references_path.value_or(""), ReferenceOptions()) {
+    clouds_.num_points = options.num_points;
+    clouds_.noise.clear();
+    clouds_.scan_noise = {options.noise};
+    clouds_.num_views = options.num_views;
+    clouds_.seed = options.common.seed;
+  }
+
+  void run() {
+    const std::vector<Model> models = listModels(options_.folders, options_.selection);
+    Step step(console_, "Registering scans of " + std::to_string(models.size()) + " models");
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
+      try {
+        evaluate(models[i]);
+      } catch (const std::exception& error) {
+        left_out_.push_back(models[i].path + ": " + error.what());
+      }
+    }
+    cache_.save();
+    step.done(std::to_string(trials_.size()) + " trials");
+    for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
+    if (trials_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
+    report();
+  }
+
+private:
+  struct Target {
+    std::string name;
+    pcl::PointCloud<pcl::PointXYZ>::Ptr cloud;
+  };
+
+  void evaluate(const Model& model) {
+    const Shape shape = loadShape(model.path);
+    if (!shape.mesh) throw InputError("has no faces");
+    const ReferenceSymmetries references = referencesOf(model, *shape.mesh);
+    const TestCloudMaker maker(*shape.mesh, model.key, clouds_);
+    const Target target{model.name, sampleMesh(*shape.mesh, options_.num_points, options_.common.seed + 1)};
+    for (const CloudRecipe& recipe : recipesFor(clouds_)) {
+      const TestCloud scan = maker.make(recipe);
+      removePatches(*scan.cloud, options_.missing, kNumPatches,
+                    options_.common.seed + static_cast<std::uint64_t>(recipe.view) + 1);
+      const std::string name = model.name + "_" + recipe.name;
+      tryAll(name, scan, target, &references);
+      if (options_.impostors && before_) tryAll(name, scan, *before_, nullptr);
+    }
+    before_ = target;
+  }
+
+  ReferenceSymmetries referencesOf(const Model& model, const pcl::PolygonMesh& mesh) {
+    if (const auto cached = cache_.find(model.key, mesh.polygons.size())) return *cached;
+    ReferenceOptions options;
+    options.num_threads = options_.common.threads;
+    const ReferenceSymmetries references = findReferenceSymmetries(mesh, options);
+    cache_.add(model.key, mesh.polygons.size(), references);
+    return references;
+  }
+
+  /// \param references of the target; null where it is an impostor.
+  void tryAll(const std::string& name, const TestCloud& scan, const Target& target,
+              const ReferenceSymmetries* references) {
+    for (std::size_t k = 0; k < methods_.size(); ++k) {
+      const auto run = [&] {
+        return methods_[k].run(scan.cloud, target.cloud, options_.common.seed + 1, options_.common.threads);
+      };
+      if (trials_.size() < methods_.size()) run();  // threads, tables and pages are there from the second call on
+      Trial trial{name, target.name, k, !references, run(), {}, false};
+      if (references) {
+        trial.error = motionError(trial.answer.T_target_source, scan.T_cloud_model.inverse(), *references);
+        trial.right = trial.error.within(options_.max_angle * kDegree, options_.max_distance * references->diagonal);
+        trial.error.distance /= references->diagonal;
+      }
+      trials_.push_back(trial);
+    }
+  }
+
+  void report() const {
+    std::printf("%-10s %6s %8s %10s %8s %10s %8s %9s %9s %9s\n", "method", "scans", "right %", "converged", "of these",
+                "impostors", "deg", "diagonal", "median ms", "95 % ms");
+    nlohmann::json methods = nlohmann::json::object();
+    for (std::size_t k = 0; k < methods_.size(); ++k) {
+      const Summary s = summarize(trials_, k);
+      std::printf("%-10s %6d %8.1f %10.1f %8.1f %10.1f %8.2f %9.4f %9.0f %9.0f\n", methods_[k].name, s.num_scans,
+                  100.0 * s.right_rate, 100.0 * s.converged_rate, 100.0 * s.trusted_rate, 100.0 * s.impostor_rate,
+                  s.median_angle, s.median_distance, s.median_ms, s.p95_ms);
+      methods[methods_[k].name] = {{"scans", s.num_scans},
+                                   {"right_rate", s.right_rate},
+                                   {"converged_rate", s.converged_rate},
+                                   {"right_rate_of_converged", s.trusted_rate},
+                                   {"impostor_rate", s.impostor_rate},
+                                   {"median_angle_deg", s.median_angle},
+                                   {"median_distance", s.median_distance},
+                                   {"median_ms", s.median_ms},
+                                   {"p95_ms", s.p95_ms}};
+    }
+    if (options_.csv) writeText(*options_.csv, csv());
+    if (!options_.common.json_path) return;
+    const nlohmann::json summary{
+        {"noise", options_.noise},
+        {"missing", options_.missing},
+        {"seed", options_.common.seed},
+        {"limits", {{"max_angle_deg", options_.max_angle}, {"max_distance", options_.max_distance}}},
+        {"left_out", left_out_},
+        {"methods", methods}};
+    writeText(*options_.common.json_path, summary.dump(2) + "\n");
+  }
+
+  std::string csv() const {
+    std::ostringstream text;
+    text << "scan,model,impostor,method,right,converged,angle_deg,distance,support,conflict,milliseconds\n";
+    for (const Trial& trial : trials_) {
+      text << trial.scan << ',' << trial.model << ',' << trial.impostor << ',' << methods_[trial.method].name << ','
+           << trial.right << ',' << trial.answer.converged << ',' << trial.error.angle / kDegree << ','
+           << trial.error.distance << ',' << trial.answer.support << ',' << trial.answer.conflict << ','
+           << trial.answer.milliseconds << '\n';
+    }
+    return text.str();
+  }
+
+  const EvaluateRegistrationOptions& options_;
+  const Console console_;
+  const std::vector<RegistrationMethod> methods_;
+  TestCloudOptions clouds_;
+  ReferenceCache cache_;
+  std::optional<Target> before_;
+  std::vector<std::string> left_out_;
+  std::vector<Trial> trials_;
+};
+
+}  // namespace
+
+int evaluateRegistration(int argc, char** argv) {
+  EvaluateRegistrationOptions options;
+  if (!commandLine(options).parse(argc, argv)) return 0;
+  // Classes that find nothing say so once a scan; the table counts them.
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  RegistrationEvaluation(options).run();
+  return 0;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,40 @@
+#include "evaluate/shared/class_file.h"
+
+#include "common/command_line/tool_errors.h"
+#include "common/files/file_text.h"
+
+namespace pcl_symmetry::apps {
+
+std::map<std::string, std::string> readClassFile(const std::string& path) {
+  const std::string text = readWholeFile(path);
+  TokenReader reader(text, path);
+  if (reader.next() != "PSB") throw InputError(path + ": must begin with PSB");
+  reader.count("version", 1, 1);
+  constexpr std::uint64_t kMost = 1'000'000;  // chosen: beyond any benchmark; keeps a damaged file from taking all memory
+  const std::uint64_t num_classes = reader.count("number of classes", 1, kMost);
+  const std::uint64_t num_models = reader.count("number of models", 1, kMost);
+  std::map<std::string, std::string> class_of_models, full_names;
+  for (std::uint64_t c = 1; c <= num_classes; ++c) {
+    const std::string name(reader.next()), parent(reader.next());
+    if (name.empty() || parent.empty())
+      throw InputError(path + ": class " + std::to_string(c) + ", must have a name and a parent");
+    const auto known = full_names.find(parent);
+    const std::string full_name = known == full_names.end() ? name : known->second + "/" + name;
+    full_names[name] = full_name;
+    const std::uint64_t size = reader.count("size of class", c, kMost);
+    for (std::uint64_t i = 1; i <= size; ++i)
+      class_of_models["m" + std::to_string(reader.count("model of class", c, kMost))] = full_name;
+  }
+  if (class_of_models.size() != num_models)
+    throw InputError(path + ": names " + std::to_string(class_of_models.size()) + " models, must be " +
+                     std::to_string(num_models));
+  return class_of_models;
+}
+
+std::set<std::string> modelsOfClassFile(const std::string& path) {
+  std::set<std::string> names;
+  for (const auto& [model, name] : readClassFile(path)) names.insert(model);
+  return names;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,143 @@
+/// Descriptors of many shapes, a PCD file each.
+#include <pcl/conversions.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/console.h"
+#include "common/command_line/file_errors.h"
+#include "common/command_line/run_tool.h"
+#include "common/shape_input/exact_coordinates.h"
+#include "common/shape_input/input_shape.h"
+#include "common/shape_output/shape_output.h"
+#include "core/base/parallel.h"
+#include "core/descriptors/symmetry_descriptor.h"
+#include "core/matching/shape_description.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
+#include "pcl_symmetry/point_types.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+namespace fs = boost::filesystem;
+
+/// The points spread over a mesh are the same for all seeds: -seed draws what is computed from them.
+constexpr std::uint64_t kMeshSeed = 1;  // chosen: the default of sampleMesh(); any other gives other points
+
+struct DescribeOptions {
+  std::string output;
+  std::vector<std::string> inputs;
+  std::string type = "signature";
+  bool input_axes = false;
+  int num_points = 20'000;
+  CommonOptions common;
+};
+
+CommandLine commandLine(DescribeOptions& options) {
+  CommandLine line("pcl_symmetry_describe",
+                   "Describes shapes by their symmetry, to tell how alike they are: one PCD file of descriptors each.",
+                   "pcl_symmetry_describe descriptors models/*.off");
+  line.positional("folder", options.output, "folder of the descriptors; made if it is not there")
+      .positionals("inputs", options.inputs, std::string(kShapeFiles) + ", of names that differ")
+      .choice("type", options.type, {"signature", "prst", "prsd", "gedt"},
+              "signatures in two frames, or one of the paper's descriptors")
+      .flag("input_axes", options.input_axes,
+            "compute the paper's descriptors in the axes of the input, not of its symmetry")
+      .number("points", options.num_points, Range::closed(100, 10'000'000), "number of points that describe a shape")
+      .common(options.common, kSeed | kThreads | kViewpoint | kQuiet);
+  return line;
+}
+
+template <typename PointT>
+pcl::PCLPointCloud2 toBlob(const std::vector<const float*>& values, float (PointT::*field)[PointT::descriptorSize()]) {
+  pcl::PointCloud<PointT> cloud;
+  for (const float* descriptor : values) {
+    cloud.emplace_back();
+    std::copy(descriptor, descriptor + PointT::descriptorSize(), cloud.back().*field);
+  }
+  pcl::PCLPointCloud2 blob;
+  pcl::toPCLPointCloud2(cloud, blob);
+  return blob;
+}
+
+pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& options) {
+  const pcl::PointCloud<pcl::PointXYZ>& cloud = *input.points;
+  const auto max_points = static_cast<std::size_t>(options.num_points);
+  const detail::SelectedPoints selected = detail::selectPoints(cloud, nullptr, max_points, options.common.librarySeed());
+  const std::optional<Visibility> seen =
+      detail::seenSpace(cloud, selected.points, shifted(options.common.viewpoint, input.shift()));
+  DescriptionOptions description;
+  description.seed = options.common.librarySeed();
+  description.num_threads = 1;
+  description.max_points = options.num_points;
+  Eigen::Isometry3d T_frame_input = Eigen::Isometry3d::Identity();
+  if (options.type == "signature" || !options.input_axes) {
+    const ShapeDescription shape = describeShape(selected.points, description, seen ? &*seen : nullptr);
+    if (options.type == "signature")
+      return toBlob({shape.signatures.col(0).data(), shape.signatures.col(1).data()}, &ShapeSignature20736::signature);
+    T_frame_input = shape.frame.T_canonical_input;
+  } else {
+    T_frame_input.translation() = -centerOfMass(selected.points);
+  }
+  DescriptorOptions descriptor;
+  descriptor.seed = options.common.librarySeed();
+  descriptor.num_threads = 1;
+  const SymmetryDescriptors all = symmetryDescriptors(selected.points, T_frame_input, descriptor);
+  if (options.type == "prst") return toBlob({all.prst.data()}, &PRSTSignature32768::prst);
+  if (options.type == "prsd") return toBlob({all.prsd.data()}, &PRSDSignature1024::prsd);
+  return toBlob({all.gedt.data()}, &GEDTSignature32768::gedt);
+}
+
+std::vector<std::string> outputPaths(const DescribeOptions& options) {
+  std::map<std::string, std::string> input_of_outputs;
+  std::vector<std::string> paths;
+  for (const std::string& input : options.inputs) {
+    paths.push_back((fs::path(options.output) / (fs::path(input).stem().string() + ".pcd")).string());
+    const auto [known, added] = input_of_outputs.emplace(paths.back(), input);
+    if (!added) throw InputError(input + ": has the name of " + known->second + ", names must differ");
+  }
+  boost::system::error_code error;
+  fs::create_directories(options.output, error);
+  if (!fs::is_directory(options.output)) throw InputError(options.output + ": cannot be made, must be a folder");
+  return paths;
+}
+
+int run(int argc, char** argv) {
+  DescribeOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  const Console console(options.common.quiet);
+  const std::vector<std::string> outputs = outputPaths(options);
+  std::vector<std::string> failures(options.inputs.size());
+  std::mutex mutex;
+  std::size_t num_done = 0;
+  Step step(console, "Describing " + std::to_string(options.inputs.size()) + " shapes");
+  parallelBlocks(options.inputs.size(), options.common.threads, [&](std::size_t i) {
+    const std::string& input = options.inputs[i];
+    try {
+      const pcl::PCLPointCloud2 blob =
+          namingFile(input, [&] { return describe(loadInput(input, options.num_points, kMeshSeed), options); });
+      saveCloud(outputs[i], blob, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity(), PCDEncoding::Binary);
+    } catch (const InputError& error) {
+      failures[i] = error.what();
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    step.progress(static_cast<double>(++num_done) / static_cast<double>(options.inputs.size()));
+  });
+  failures.erase(std::remove(failures.begin(), failures.end(), ""), failures.end());
+  step.done(std::to_string(options.inputs.size() - failures.size()) + " descriptors");
+  for (const std::string& failure : failures) console.error(failure);
+  return failures.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}

@@ -1,0 +1,276 @@
+/// The transform mapped back to space: for each point of a cloud and each cell of a volume the greatest symmetry of any
+/// plane through it.
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkXMLImageDataWriter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/console.h"
+#include "common/command_line/file_errors.h"
+#include "common/command_line/run_tool.h"
+#include "common/pictures/picture.h"
+#include "common/pictures/raster_image.h"
+#include "common/shape_input/exact_coordinates.h"
+#include "common/shape_input/input_shape.h"
+#include "common/shape_output/cloud_fields.h"
+#include "common/shape_output/shape_output.h"
+#include "pcl_symmetry/core/transform/symmetry_map.h"
+#include "pcl_symmetry/planar_symmetry_transform.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+const Eigen::Vector3d kSurfaceColor(0.84, 0.37, 0.0);  // vermilion: apart from every grey, for all eyes
+
+struct MapOptions {
+  std::string input;
+  std::optional<std::string> output, volume_path, slices_path, png_path;
+  int cells = 96, size = 300;
+  CommonOptions common;
+};
+
+CommandLine commandLine(MapOptions& options) {
+  CommandLine line("pcl_symmetry_map", "Writes the greatest symmetry of any plane through each point.",
+                   "pcl_symmetry_map bull.off bull_symmetry.pcd -volume bull.vti -slices bull_slices.png");
+  line.positional("input", options.input, kShapeFiles)
+      .positional("output", options.output, ".pcd or .ply: the points with one more field, intensity, about 0 to 1")
+      .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
+      .picture("slices", options.slices_path,
+               "picture: three slices through the middle, the darker the greater, the shape on top")
+      .picture("png", options.png_path, "picture: the points in the colours of their symmetry")
+      .number("cells", options.cells, Range::closed(8, 512), "cells of the volume along its longest edge")
+      .number("size", options.size, Range::closed(16, 4096), "edge of each picture, pixels")
+      .common(options.common, kShapeFlags | kSigma);
+  return line;
+}
+
+/// The finite points, and where each stands in the cloud.
+struct FinitePoints {
+  Points points;
+  std::vector<std::size_t> indices;
+
+  explicit FinitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) : points(3, cloud.size()) {
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!cloud[i].getVector3fMap().allFinite()) continue;
+      points.col(indices.size()) = cloud[i].getVector3fMap();
+      indices.push_back(i);
+    }
+    points.conservativeResize(3, indices.size());
+  }
+};
+
+/// The cloud with a field intensity; its own gets another name.
+pcl::PCLPointCloud2 withIntensity(pcl::PCLPointCloud2 cloud, const std::vector<float>& intensity) {
+  for (pcl::PCLPointField& field : cloud.fields)
+    if (field.name == "intensity") field.name = "input_intensity";
+  return withFields(cloud, {"intensity"}, {intensity});
+}
+
+/// A box of cells around the shape.
+struct Volume {
+  Eigen::Vector3d origin;  ///< center of cell (0, 0, 0), input frame
+  double cell_size;
+  Eigen::Array3i size;
+
+  Volume(const Points& points, int num_cells) {
+    constexpr double kMargin = 0.1;  // of the longest edge, on each side; chosen: twice wastes cells, half cuts planes
+    const Eigen::Vector3d low = points.rowwise().minCoeff().cast<double>(),
+                          high = points.rowwise().maxCoeff().cast<double>();
+    const double edge = (high - low).maxCoeff();
+    cell_size = (1.0 + 2.0 * kMargin) * edge / num_cells;
+    size = (((high - low).array() + 2.0 * kMargin * edge) / cell_size).ceil().cast<int>().max(1);
+    origin = 0.5 * (low + high) - 0.5 * cell_size * (size.cast<double>() - 1.0).matrix();
+  }
+
+  Eigen::Vector3d center(int x, int y, int z) const { return origin + cell_size * Eigen::Vector3d(x, y, z); }
+};
+
+void writeVolume(const SymmetryMap& map, const Volume& volume, const Eigen::Vector3d& shift, int threads,
+                 const std::string& path) {
+  Points centers(3, static_cast<Eigen::Index>(volume.size.cast<std::int64_t>().prod()));
+  Eigen::Index i = 0;
+  for (int z = 0; z < volume.size.z(); ++z)
+    for (int y = 0; y < volume.size.y(); ++y)
+      for (int x = 0; x < volume.size.x(); ++x) centers.col(i++) = volume.center(x, y, z).cast<float>();
+  const std::vector<float> values = pointSymmetry(map, centers, threads);
+  vtkNew<vtkFloatArray> array;
+  array->SetName("symmetry");
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(volume.size.x(), volume.size.y(), volume.size.z());
+  const Eigen::Vector3d origin = shiftedBack(volume.origin, shift);
+  image->SetOrigin(origin.data());
+  image->SetSpacing(volume.cell_size, volume.cell_size, volume.cell_size);
+  image->GetPointData()->SetScalars(array);
+  writeAtomically(path, [&](const std::string& temporary) {
+    vtkNew<vtkXMLImageDataWriter> writer;
+    writer->SetInputData(image);
+    writer->SetFileName(temporary.c_str());
+    if (!writer->Write()) throw InputError(path + ": cannot be written");
+  });
+}
+
+/// A slice through the middle of the volume across one axis, seen along it.
+struct Slice {
+  int across, up, axis, size;  // of the picture: to the right, upwards, along the view; pixels
+  Eigen::Vector3d middle;
+  double step;  ///< edge of a pixel, input units
+
+  Slice(const Volume& volume, int axis_seen_along, int num_pixels)
+      : across((axis_seen_along + 1) % 3), up((axis_seen_along + 2) % 3), axis(axis_seen_along), size(num_pixels) {
+    const Eigen::Vector3d extent = volume.cell_size * volume.size.cast<double>();
+    middle = volume.origin + 0.5 * (extent.array() - volume.cell_size).matrix();
+    step = std::max(extent[across], extent[up]) / size;
+  }
+
+  Points places() const {
+    Points result(3, size * size);
+    for (int i = 0; i < size * size; ++i) {
+      Eigen::Vector3d place = middle;
+      place[across] += (i % size + 0.5 - 0.5 * size) * step;
+      place[up] -= (i / size + 0.5 - 0.5 * size) * step;
+      result.col(i) = place.cast<float>();
+    }
+    return result;
+  }
+
+  /// White for the least value of all slices, black for the greatest; the shape where it meets the slice.
+  RasterImage draw(const std::vector<float>& symmetry, float least, float greatest, const Points& points,
+                   double thickness) const {
+    RasterImage image(size, size);
+    const double range = std::max(1e-9f, greatest - least);
+    for (int i = 0; i < size * size; ++i)
+      image.set(i % size, i / size, Eigen::Vector3d::Constant((greatest - symmetry[i]) / range));
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Eigen::Vector3d offset = points.col(i).cast<double>() - middle;
+      if (std::abs(offset[axis]) > thickness) continue;
+      image.drawDisk({offset[across] / step + 0.5 * size - 0.5, 0.5 * size - offset[up] / step - 0.5}, size / 250.0,
+                     kSurfaceColor);
+    }
+    return image;
+  }
+};
+
+RasterImage drawSlices(const SymmetryMap& map, const Volume& volume, const Points& points, int size, int threads) {
+  std::vector<Slice> slices;
+  std::vector<std::vector<float>> symmetry;
+  float least = std::numeric_limits<float>::max(), greatest = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    slices.emplace_back(volume, axis, size);
+    symmetry.push_back(pointSymmetry(map, slices[axis].places(), threads));
+    least = std::min(least, *std::min_element(symmetry[axis].begin(), symmetry[axis].end()));
+    greatest = std::max(greatest, *std::max_element(symmetry[axis].begin(), symmetry[axis].end()));
+  }
+  std::vector<RasterImage> images;
+  for (int axis = 0; axis < 3; ++axis)
+    images.push_back(slices[axis].draw(symmetry[axis], least, greatest, points, volume.cell_size));
+  return sideBySide(images);
+}
+
+SymmetryMap transformOf(const InputShape& input, const CommonOptions& common) {
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  return namingFile(input.path, [&] {
+    transform.setGridSize(common.grid);
+    if (common.sigma) transform.setSigma(*common.sigma);
+    transform.setRandomSeed(common.librarySeed());
+    transform.setNumberOfThreads(common.threads);
+    transform.setViewpoint(shifted(common.viewpoint, input.shift()));
+    transform.setInputCloud(input.points);
+    const SymmetryMap map = transform.compute();
+    if (!transform.getReason().empty()) throw InputError(input.path + ": " + transform.getReason());
+    return map;
+  });
+}
+
+/// What was found at the points of a cloud.
+struct MappedCloud {
+  pcl::PointCloud<pcl::PointXYZ>::ConstPtr cloud;
+  FinitePoints finite;
+  std::vector<float> symmetry;  ///< of the finite points
+  float least, greatest;
+
+  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& points, const SymmetryMap& map, int threads)
+      : cloud(points), finite(*points), symmetry(pointSymmetry(map, finite.points, threads)) {
+    const auto [low, high] = std::minmax_element(symmetry.begin(), symmetry.end());
+    least = *low;
+    greatest = *high;
+  }
+};
+
+void savePoints(const InputShape& input, const MappedCloud& mapped, const std::string& path) {
+  std::vector<float> intensity(mapped.cloud->size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < mapped.symmetry.size(); ++i) intensity[mapped.finite.indices[i]] = mapped.symmetry[i];
+  saveCloud(path, withIntensity(input.fields(), intensity), input.shape.sensor_origin, input.shape.sensor_orientation);
+}
+
+void drawPoints(const MappedCloud& mapped, const std::string& path, int size) {
+  PicturePanel panel;
+  panel.label = "symmetry of the best plane through each point";
+  panel.support.assign(mapped.cloud->size(), 0.0);
+  const double range = std::max(1e-9f, mapped.greatest - mapped.least);
+  for (std::size_t i = 0; i < mapped.symmetry.size(); ++i)
+    panel.support[mapped.finite.indices[i]] = (mapped.symmetry[i] - mapped.least) / range;
+  PictureScene scene;
+  scene.points = mapped.cloud;
+  scene.panels.push_back(panel);
+  scene.show_color_bar = false;
+  renderPicture(scene, path, size, size);
+}
+
+int run(int argc, char** argv) {
+  MapOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  if (options.output) checkCloudExtension(*options.output);
+  const Console console(options.common.quiet);
+  const int threads = options.common.threads;
+
+  const InputShape input = loadInput(console, options.input, options.common);
+  Step transforming(console, "Transforming");
+  const SymmetryMap map = transformOf(input, options.common);
+  const double transforming_ms = transforming.done(std::to_string(map.values.size()) + " planes");
+
+  Step mapping(console, "Mapping back to points");
+  const MappedCloud mapped(input.points, map, threads);
+  const double mapping_ms = mapping.done(std::to_string(mapped.symmetry.size()) + " points");
+
+  std::printf("symmetry of the planes through the points: %.3f to %.3f\n", mapped.least, mapped.greatest);
+  if (options.common.json_path) {
+    const nlohmann::json json{{"file", options.input},
+                              {"num_points", mapped.symmetry.size()},
+                              {"least", mapped.least},
+                              {"greatest", mapped.greatest},
+                              {"timing_ms", {{"transform", transforming_ms}, {"points", mapping_ms}}}};
+    writeText(*options.common.json_path, json.dump(2) + "\n");
+  }
+  if (options.output) savePoints(input, mapped, *options.output);
+  const Volume volume(mapped.finite.points, options.cells);
+  if (options.volume_path) {
+    Step writing(console, "Writing " + *options.volume_path);
+    writeVolume(map, volume, input.shift(), threads, *options.volume_path);
+    writing.done(std::to_string(volume.size.prod()) + " cells");
+  }
+  if (options.slices_path)
+    writeImage(drawSlices(map, volume, mapped.finite.points, options.size, threads), *options.slices_path);
+  if (options.png_path) drawPoints(mapped, *options.png_path, options.size);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}

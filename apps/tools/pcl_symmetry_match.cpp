@@ -1,0 +1,110 @@
+/// Which models of a database a cloud is like, or shows.
+#include <pcl/exceptions.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/console.h"
+#include "common/command_line/file_errors.h"
+#include "common/command_line/run_tool.h"
+#include "common/files/json_values.h"
+#include "common/shape_input/exact_coordinates.h"
+#include "common/shape_input/input_shape.h"
+#include "common/shape_output/shape_output.h"
+#include "pcl_symmetry/recognition/symmetry_database.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+struct MatchOptions {
+  std::string folder, input;
+  int num_matches = 10;
+  bool recognize = false;
+  RecognitionOptions recognition;
+  CommonOptions common;
+
+  MatchOptions() { common.mesh_points = kDatabaseMeshPoints; }
+};
+
+CommandLine commandLine(MatchOptions& options) {
+  CommandLine line("pcl_symmetry_match",
+                   "Finds the models of a database that are most like a cloud or mesh, in any pose and of any size. "
+                   "With -recognize, the model that a scan shows, with its pose, or 'unknown object'.",
+                   "pcl_symmetry_match models.db scan.pcd -recognize -json found.json");
+  line.positional("database", options.folder, "folder of pcl_symmetry_database")
+      .positional("input", options.input, kShapeFiles)
+      .number("max", options.num_matches, Range::closed(1, 1'000'000), "largest number of models shown")
+      .flag("recognize", options.recognize, "bring the models to the scan and keep those that fit")
+      .number("candidates", options.recognition.num_candidates, Range::closed(1, 1'000'000),
+              "number of models that are brought to the scan")
+      .number("min_merit", options.recognition.min_merit, Range::closed(-1, 1),
+              "least merit of the pose of a known model")
+      .common(options.common, kMeshPoints | kJson | kThreads | kViewpoint | kQuiet);
+  return line;
+}
+
+nlohmann::json match(const Console& console, const SymmetryDatabase& database, const InputShape& input,
+                     const MatchOptions& options) {
+  Step step(console, "Matching");
+  const std::vector<ModelMatch> matches =
+      database.match(*input.points, options.num_matches, shifted(options.common.viewpoint, input.shift()));
+  step.done(std::to_string(matches.size()) + " of " + std::to_string(database.size()) + " models");
+  nlohmann::json json{{"matches", nlohmann::json::array()}};
+  for (const ModelMatch& found : matches) {
+    std::printf("%8.4f %s\n", found.distance, found.name.c_str());
+    json["matches"].push_back({{"name", found.name}, {"distance", found.distance}});
+  }
+  return json;
+}
+
+nlohmann::json recognize(const Console& console, const SymmetryDatabase& database, const InputShape& input,
+                         const MatchOptions& options) {
+  RecognitionOptions recognition = options.recognition;
+  recognition.num_threads = options.common.threads;
+  Step step(console, "Recognizing");
+  Recognition found = database.recognize(*input.points, recognition, shifted(options.common.viewpoint, input.shift()));
+  found.resize(std::min(found.size(), static_cast<std::size_t>(options.num_matches)));
+  step.done(found.empty() ? "unknown object" : found.front().name);
+  nlohmann::json json{{"known", !found.empty()}, {"models", nlohmann::json::array()}};
+  if (found.empty()) std::printf("unknown object\n");
+  for (const RecognizedModel& model : found) {
+    std::printf("%s  confidence %.3f  support %.3f  conflict %.3f\n", model.name.c_str(), model.confidence,
+                model.score.support, model.score.conflict);
+    json["models"].push_back(
+        {{"name", model.name},
+         {"confidence", model.confidence},
+         {"support", model.score.support},
+         {"conflict", model.score.conflict},
+         {"transform", rowMajor(shiftedBack(model.T_model_scan, input.shift(), Eigen::Vector3d::Zero()))}});
+  }
+  return json;
+}
+
+int run(int argc, char** argv) {
+  MatchOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  const Console console(options.common.quiet);
+  const InputShape input = loadInput(options.input, options.common.mesh_points, options.common.librarySeed());
+  DatabaseOptions database_options;
+  database_options.num_threads = options.common.threads;
+  const SymmetryDatabase database(options.folder, database_options);
+  if (database.size() == 0) throw InputError(options.folder + ": holds no models");
+  const nlohmann::json json = namingFile(options.input, [&] {
+    return options.recognize ? recognize(console, database, input, options) : match(console, database, input, options);
+  });
+  if (options.common.json_path) writeText(*options.common.json_path, json.dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}

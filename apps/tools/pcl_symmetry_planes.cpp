@@ -1,0 +1,256 @@
+/// Symmetry planes of a cloud or mesh: a table, JSON, the support of every point, a picture.
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/console.h"
+#include "common/command_line/file_errors.h"
+#include "common/command_line/run_tool.h"
+#include "common/files/json_values.h"
+#include "common/pictures/picture.h"
+#include "common/shape_input/exact_coordinates.h"
+#include "common/shape_input/input_shape.h"
+#include "common/shape_output/cloud_fields.h"
+#include "common/shape_output/shape_output.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+constexpr std::size_t kMaxPanels = 9;  // of a picture; chosen: twice makes panels too small to read, half hides planes
+
+struct PlanesOptions {
+  std::string input;
+  std::optional<std::string> png_path, support_path;
+  DetectionOptions detection;
+  CommonOptions common;
+};
+
+CommandLine commandLine(PlanesOptions& options) {
+  CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of a cloud or mesh.",
+                   "pcl_symmetry_planes chair.pcd -json planes.json -png planes.png");
+  line.positional("input", options.input, kShapeFiles)
+      .picture("png", options.png_path, "picture: cloud, planes and support, best planes first")
+      .text("support", "FILE", options.support_path,
+            "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane")
+      .flag("approximate", options.detection.approximate,
+            "also report approximate symmetries and symmetries of parts, marked as such")
+      .number("min_confidence", options.detection.min_confidence, Range::closed(0, 1),
+              "least probability of a plane that is called a symmetry")
+      .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "largest number of planes reported")
+      .common(options.common, kShapeFlags | kSigma);
+  return line;
+}
+
+/// What was found, best first, in the frame of the shifted points.
+struct Findings {
+  std::vector<SymmetryPlane> planes;
+  std::vector<SymmetryAxis> axes;
+  std::vector<SymmetryCenter> centers;
+  bool used_viewpoint = false;
+  std::size_t num_points = 0;  ///< that were used
+  std::vector<std::pair<std::string, double>> timing_ms;
+  std::vector<std::vector<float>> support;  ///< of each plane, by every point; empty where no output shows it
+
+  bool empty() const { return planes.empty() && axes.empty() && centers.empty(); }
+};
+
+const char* toString(PlaneKind kind) {
+  switch (kind) {
+    case PlaneKind::Symmetry:
+      return "symmetry";
+    case PlaneKind::Possible:
+      return "possible";
+    case PlaneKind::Local:
+      return "local";
+    case PlaneKind::Approximate:
+      break;
+  }
+  return "approximate";
+}
+
+void printTable(const Findings& findings, const Eigen::Vector3d& shift) {
+  if (findings.empty()) {
+    std::printf("no symmetry plane\n");
+    return;
+  }
+  const int digits = lengthDigits(shift);
+  const auto place = [&](const Eigen::Vector3d& point) { return spelled(shiftedBack(point, shift), digits); };
+  for (const SymmetryCenter& center : findings.centers)
+    std::printf("center of all planes: %s, confidence %.3f\n", place(center.point).c_str(), center.confidence);
+  for (const SymmetryAxis& axis : findings.axes)
+    std::printf("axis of revolution: through %s along %.6f %.6f %.6f, confidence %.3f\n", place(axis.point).c_str(),
+                axis.direction.x(), axis.direction.y(), axis.direction.z(), axis.confidence);
+  const std::vector<SymmetryPlane>& planes = findings.planes;
+  if (planes.empty()) return;
+  std::printf("%5s %10s %10s %10s %12s %10s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence", "support",
+              "score", "seen", "kind");
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const Eigen::Vector4d c = shiftedBack(planes[i], shift).coefficients();
+    std::printf("%5zu %10.6f %10.6f %10.6f %12.*g %10.3f %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2], digits,
+                c[3], planes[i].confidence, planes[i].support, planes[i].score, planes[i].seen,
+                toString(planes[i].kind));
+  }
+}
+
+nlohmann::json describe(const InputShape& input, const Findings& findings) {
+  const Eigen::Vector3d& shift = input.shift();
+  nlohmann::json json{{"file", input.path},
+                      {"num_points", findings.num_points},
+                      {"partial", findings.used_viewpoint},
+                      {"planes", nlohmann::json::array()},
+                      {"axes", nlohmann::json::array()},
+                      {"centers", nlohmann::json::array()},
+                      {"timing_ms", timingJson(findings.timing_ms)}};
+  for (const SymmetryPlane& plane : findings.planes) {
+    json["planes"].push_back({{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
+                              {"kind", toString(plane.kind)},
+                              {"confidence", plane.confidence},
+                              {"score", plane.score},
+                              {"support", plane.support},
+                              {"seen", plane.seen},
+                              {"residual", plane.residual},
+                              {"iterations", plane.iterations},
+                              {"converged", plane.converged}});
+  }
+  for (const SymmetryAxis& axis : findings.axes) {
+    json["axes"].push_back({{"point", numbersOf(shiftedBack(axis.point, shift))},
+                            {"direction", numbersOf(axis.direction)},
+                            {"confidence", axis.confidence},
+                            {"score", axis.score},
+                            {"support", axis.support}});
+  }
+  for (const SymmetryCenter& center : findings.centers) {
+    json["centers"].push_back({{"point", numbersOf(shiftedBack(center.point, shift))},
+                               {"confidence", center.confidence},
+                               {"score", center.score},
+                               {"support", center.support}});
+  }
+  return json;
+}
+
+template <typename... Values>
+std::string labelOf(const char* format, Values... values) {
+  char label[96];
+  std::snprintf(label, sizeof(label), format, values...);
+  return label;
+}
+
+std::vector<PicturePanel> panelsOf(const Findings& findings) {
+  std::vector<PicturePanel> panels;
+  for (const SymmetryAxis& axis : findings.axes) {
+    PicturePanel panel;
+    panel.label = labelOf("axis of revolution: confidence %.2f", axis.confidence);
+    panel.axes = {{axis.point, axis.direction}};
+    panels.push_back(panel);
+  }
+  for (const SymmetryCenter& center : findings.centers) {
+    PicturePanel panel;
+    panel.label = labelOf("every plane through the center: confidence %.2f", center.confidence);
+    for (int k = 0; k < 3; ++k) panel.axes.push_back({center.point, Eigen::Vector3d::Unit(k)});
+    panels.push_back(panel);
+  }
+  for (std::size_t k = 0; k < findings.planes.size() && panels.size() < kMaxPanels; ++k) {
+    const SymmetryPlane& plane = findings.planes[k];
+    PicturePanel panel;
+    panel.label = labelOf("plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(plane.kind),
+                          plane.confidence, plane.support);
+    panel.support.assign(findings.support[k].begin(), findings.support[k].end());
+    PlanePatch patch;
+    patch.normal = plane.normal();
+    patch.offset = plane.offset();
+    patch.color = distinctColor(k);
+    panel.planes = {patch};
+    panels.push_back(panel);
+  }
+  if (panels.empty()) panels.push_back({"no symmetry plane"});
+  return panels;
+}
+
+PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const Findings& findings) {
+  PictureScene scene;
+  scene.points = cloud;
+  scene.panels = panelsOf(findings);
+  if (findings.planes.empty()) return scene;
+  // Off the normals of the planes shown, so that none is seen edge on or face on; see ViewpointSelection for more.
+  const Eigen::Vector3d n = findings.planes[0].normal();
+  Eigen::Vector3d across = Eigen::Vector3d::UnitZ() - n.z() * n;
+  if (across.norm() < 0.3) across = Eigen::Vector3d::UnitX() - n.x() * n;
+  across.normalize();
+  const Eigen::Vector3d along = n.cross(across);
+  scene.view = 0.75 * n + along + 0.55 * across;
+  scene.up = across;
+  return scene;
+}
+
+Findings search(const Console& console, const InputShape& input, const PlanesOptions& options) {
+  Step searching(console, "Searching planes");
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  Findings findings;
+  namingFile(input.path, [&] {
+    DetectionOptions detection = options.detection;
+    options.common.applyTo(detection);
+    refinement.setOptions(detection);
+    refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
+    refinement.setInputCloud(input.points);
+    findings.planes = refinement.compute();
+    if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
+  });
+  findings.axes = refinement.getAxes();
+  findings.centers = refinement.getCenters();
+  findings.used_viewpoint = refinement.usedViewpoint();
+  findings.num_points = refinement.getUsedIndices().size();
+  findings.timing_ms = refinement.getTiming();
+  const std::size_t num_planes = findings.planes.size();
+  std::string summary = std::to_string(num_planes) + (num_planes == 1 ? " plane" : " planes");
+  if (!findings.axes.empty()) summary += ", " + std::to_string(findings.axes.size()) + " axes";
+  if (findings.used_viewpoint) summary += ", seen from one side";
+  const double searching_ms = searching.done(summary);
+  findings.timing_ms.emplace_back("load", input.loading_ms);
+  findings.timing_ms.emplace_back("total", searching_ms);
+  if (options.support_path || options.png_path)
+    for (const SymmetryPlane& plane : findings.planes)
+      findings.support.push_back(refinement.computePointSupport(plane));
+  return findings;
+}
+
+void saveSupport(const InputShape& input, const Findings& findings, const std::string& path) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < findings.support.size(); ++k) names.push_back("support_" + std::to_string(k + 1));
+  saveCloud(path, withFields(input.fields(), names, findings.support), input.shape.sensor_origin,
+            input.shape.sensor_orientation);
+}
+
+void draw(const Console& console, const InputShape& input, const Findings& findings, const std::string& path) {
+  Step drawing(console, "Drawing " + path);
+  const PictureScene scene = makeScene(input.points, findings);
+  renderPicture(scene, path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
+  drawing.done();
+}
+
+int run(int argc, char** argv) {
+  PlanesOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  if (options.support_path) checkCloudExtension(*options.support_path);
+  const Console console(options.common.quiet);
+  const InputShape input = loadInput(console, options.input, options.common);
+  const Findings findings = search(console, input, options);
+  printTable(findings, input.shift());
+  if (options.common.json_path) writeText(*options.common.json_path, describe(input, findings).dump(2) + "\n");
+  if (options.support_path) saveSupport(input, findings, *options.support_path);
+  if (options.png_path) draw(console, input, findings, *options.png_path);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}

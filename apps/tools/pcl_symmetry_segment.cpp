@@ -1,0 +1,178 @@
+/// Parts of a cloud or mesh: labels of points or faces, the tree of parts, a picture.
+#include <pcl/common/io.h>
+#include <pcl/conversions.h>
+
+#include <boost/algorithm/string.hpp>
+#include <boost/filesystem/path.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/console.h"
+#include "common/command_line/file_errors.h"
+#include "common/command_line/run_tool.h"
+#include "common/pictures/picture.h"
+#include "common/shape_input/exact_coordinates.h"
+#include "common/shape_input/shape_input.h"
+#include "common/shape_output/face_labels.h"
+#include "common/shape_output/labelled_shape.h"
+#include "common/shape_output/shape_output.h"
+#include "pcl_symmetry/symmetry_segmentation.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+struct SegmentOptions {
+  std::string input;
+  std::optional<std::string> output, png_path;
+  std::optional<Eigen::Vector3d> up;
+  std::string method = "merging", evidence = "all";
+  int depth = SplittingOptions().depth, num_parts = 0, size = 800;
+  double concavity = 0.0;
+  CommonOptions common;
+};
+
+CommandLine commandLine(SegmentOptions& o) {
+  CommandLine line("pcl_symmetry_segment", "Cuts a cloud or mesh into parts by its symmetries.",
+                   "pcl_symmetry_segment bull.off bull.seg -json tree.json -png parts.png");
+  line.positional("input", o.input, kShapeFiles)
+      .positional(
+          "output", o.output,
+          ".pcd or .ply: points with their segment in the field label; .ply of a mesh: with its faces coloured; "
+          ".seg: the segment of each face, one a line")
+      .picture("png", o.png_path, "picture: parts in colours")
+      .direction("up", o.up, "direction that is up in the picture, input frame (0,0,1)")
+      .number("size", o.size, Range::closed(16, 4096), "edge of the picture, pixels")
+      .choice("method", o.method, {"merging", "splitting"},
+              "merging: small patches grow to parts; splitting: as in the paper, by support for symmetry planes")
+      .choice("evidence", o.evidence, {"all", "concavity", "symmetry"},
+              "for merging: symmetry alone, with concavity, or with thickness and line of sight too")
+      .number("parts", o.num_parts, Range::closed(0, 10'000), "number of parts; 0: as many as the shape has")
+      .number("depth", o.depth, Range::closed(0, 30),
+              "for splitting: largest number of splits from the whole to a part")
+      .number("concavity", o.concavity, Range::closed(0, 100),
+              "for splitting: weight of concave edges, which attract the cut")
+      .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  return line;
+}
+
+SegmentationOptions segmentationOptions(const SegmentOptions& o) {
+  SegmentationOptions options;
+  options.method = o.method == "splitting" ? SegmentationMethod::Splitting : SegmentationMethod::Merging;
+  options.merging.evidence = o.evidence == "symmetry"    ? MergingEvidence::Symmetry
+                             : o.evidence == "concavity" ? MergingEvidence::SymmetryAndConcavity
+                                                         : MergingEvidence::All;
+  options.splitting.depth = o.depth;
+  options.splitting.concavity_weight = o.concavity;
+  options.num_parts = o.num_parts;
+  options.seed = o.common.librarySeed();
+  options.num_threads = o.common.threads;
+  return options;
+}
+
+void checkOutput(const SegmentOptions& o, const CommandLine& line) {
+  if (o.method == "merging" && (line.given("depth") || line.given("concavity")))
+    throw UsageError("-depth and -concavity need -method splitting");
+  if (o.method == "splitting" && line.given("evidence")) throw UsageError("-evidence needs -method merging");
+  if (!o.output) return;
+  const std::string extension =
+      boost::algorithm::to_lower_copy(boost::filesystem::path(*o.output).extension().string());
+  if (extension != ".seg") checkCloudExtension(*o.output);
+}
+
+nlohmann::json describe(const SegmentOptions& o, const Shape& shape, const std::vector<pcl::PointIndices>& segments,
+                        const std::vector<SegmentNode>& tree, const std::vector<std::vector<int>>& images, double ms) {
+  nlohmann::json json{{"file", o.input},
+                      {"elements", shape.mesh ? "faces" : "points"},
+                      {"segments", nlohmann::json::array()},
+                      {"tree", nlohmann::json::array()},
+                      {"timing_ms", {{"total", ms}}}};
+  for (const pcl::PointIndices& segment : segments) json["segments"].push_back({{"size", segment.indices.size()}});
+  for (const SegmentNode& node : tree) {
+    nlohmann::json entry{{"parent", node.parent}, {"planes", nlohmann::json::array()}};
+    if (node.segment >= 0)
+      entry["segment"] = node.segment;
+    else
+      entry["children"] = node.children;
+    for (const PartPlane& plane : node.planes) {
+      const Eigen::Vector4d c = shiftedBack(plane.plane, shape.shift).coefficients();
+      entry["planes"].push_back({{"coefficients", {c[0], c[1], c[2], c[3]}}, {"share", plane.share}});
+    }
+    json["tree"].push_back(entry);
+  }
+  json["images"] = images;
+  return json;
+}
+
+void drawParts(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels) {
+  PictureScene scene;
+  scene.points = shape.points;
+  scene.mesh = shape.mesh;
+  PicturePanel panel;
+  panel.segments = labels;
+  scene.panels = {panel};
+  if (o.up) standUpright(scene, *o.up);
+  renderPicture(scene, *o.png_path, o.size, o.size);
+}
+
+Shape load(const Console& console, const SegmentOptions& o) {
+  Step loading(console, "Loading " + o.input);
+  Shape shape = loadShape(o.input);
+  if (o.output && boost::algorithm::iends_with(*o.output, ".seg") && !shape.mesh)
+    throw InputError(o.input + ": has no faces, must have for " + *o.output);
+  loading.done(shape.mesh ? std::to_string(shape.mesh->polygons.size()) + " faces"
+                          : std::to_string(shape.points->size()) + " points");
+  return shape;
+}
+
+/// \return the parts, which the segmentation labels; \p ms is the time.
+std::vector<pcl::PointIndices> cut(const Console& console, const SegmentOptions& o, const Shape& shape,
+                                   SymmetrySegmentation<pcl::PointXYZ>& segmentation, double& ms) {
+  Step cutting(console, "Cutting into parts");
+  SegmentationOptions how = segmentationOptions(o);
+  how.progress = [&](double share) { cutting.progress(share); };
+  std::vector<pcl::PointIndices> segments;
+  namingFile(o.input, [&] {
+    segmentation.setOptions(how);
+    if (shape.mesh)
+      segmentation.setInputMesh(pcl::make_shared<pcl::PolygonMesh>(*shape.mesh));
+    else
+      segmentation.setInputCloud(shape.points);
+    segmentation.segment(segments);
+  });
+  if (segments.empty()) throw InputError(o.input + ": has no surface to cut");
+  ms = cutting.done(std::to_string(segments.size()) + (segments.size() == 1 ? " part" : " parts"));
+  return segments;
+}
+
+int run(int argc, char** argv) {
+  SegmentOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  checkOutput(options, line);
+  const Console console(options.common.quiet);
+  const Shape shape = load(console, options);
+  SymmetrySegmentation<pcl::PointXYZ> segmentation;
+  double ms = 0.0;
+  const std::vector<pcl::PointIndices> segments = cut(console, options, shape, segmentation, ms);
+  const std::vector<int>& labels = segmentation.getLabels();
+  if (options.output) saveLabelled(*options.output, shape, labels);
+  if (options.common.json_path)
+    writeText(*options.common.json_path,
+              describe(options, shape, segments, segmentation.getTree(), segmentation.getImages(), ms).dump(2) + "\n");
+  if (options.png_path) {
+    Step drawing(console, "Drawing " + *options.png_path);
+    drawParts(options, shape, labels);
+    drawing.done();
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}

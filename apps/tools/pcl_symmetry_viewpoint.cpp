@@ -1,0 +1,205 @@
+/// Good and bad views of a cloud or mesh, by the symmetries that they show: a table, JSON with camera poses, pictures.
+#include <pcl/conversions.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/console.h"
+#include "common/command_line/file_errors.h"
+#include "common/command_line/run_tool.h"
+#include "common/files/json_values.h"
+#include "common/pictures/picture.h"
+#include "common/shape_input/exact_coordinates.h"
+#include "common/shape_input/input_shape.h"
+#include "common/shape_output/shape_output.h"
+#include "core/base/constants.h"
+#include "pcl_symmetry/core/detection/local_maxima.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "pcl_symmetry/viewpoint_selection.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+struct ViewpointToolOptions {
+  std::string input;
+  std::optional<std::string> png_path, icon_path;
+  std::optional<Eigen::Vector3d> up;
+  int num_views = 4, size = 400;
+  double separation = 40.0;  // degrees
+  CommonOptions common;
+};
+
+CommandLine commandLine(ViewpointToolOptions& options) {
+  CommandLine line("pcl_symmetry_viewpoint", "Chooses views of a cloud or mesh that show little symmetry.",
+                   "pcl_symmetry_viewpoint chair.off -up 0,1,0 -png chair_views.png -json chair_views.json");
+  line.positional("input", options.input, kShapeFiles)
+      .picture("png", options.png_path, "picture: score of all directions, best view, worst view")
+      .picture("icon", options.icon_path, "picture of the best view alone")
+      .direction("up", options.up, "direction that is about up, input frame (0,0,1)")
+      .number("views", options.num_views, Range::closed(1, 100), "largest number of good views")
+      .number("separation", options.separation, Range::closed(0, 180), "least angle between good views, degrees")
+      .number("size", options.size, Range::closed(16, 4096), "edge of each view, pixels")
+      .common(options.common, kShapeFlags);
+  return line;
+}
+
+nlohmann::json toJson(const SelectedView& view, const Eigen::Vector3d& shift) {
+  Eigen::Matrix4d pose = view.pose.matrix().cast<double>();
+  pose.block<3, 1>(0, 3) = shiftedBack(Eigen::Vector3d(pose.block<3, 1>(0, 3)), shift);
+  return {{"direction", numbersOf(view.direction)}, {"score", view.score}, {"pose", rowMajor(pose)}};
+}
+
+void printView(const char* name, const SelectedView& view) {
+  std::printf("%-6s %9.6f %9.6f %9.6f %7.3f\n", name, view.direction.x(), view.direction.y(), view.direction.z(),
+              view.score);
+}
+
+PictureScene sceneOf(const InputShape& input, const SelectedView& view, const std::string& label) {
+  PictureScene scene;
+  scene.points = input.points;
+  scene.mesh = input.shape.mesh;
+  PicturePanel panel;
+  panel.label = label;
+  panel.show_points = !input.shape.mesh;
+  scene.panels.push_back(panel);
+  scene.view = view.direction;
+  scene.up = -view.pose.linear().col(1).cast<double>();
+  return scene;
+}
+
+/// The score as a spherical function (Figure 16): directions scaled and coloured by it.
+PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView& best, const SelectedView& worst) {
+  constexpr int kRings = 120, kAround = 240;  // derived: 1.5 degrees; chosen: half shows facets
+  const Eigen::Vector3d up = selection.getUpAxis(), side = up.unitOrthogonal(), front = up.cross(side);
+  pcl::PointCloud<pcl::PointXYZ>::Ptr surface(new pcl::PointCloud<pcl::PointXYZ>);
+  PicturePanel panel;
+  panel.label = "score of each direction";
+  panel.show_points = false;
+  const double range = std::max(best.score - worst.score, 1e-9);
+  for (int ring = 0; ring <= kRings; ++ring) {
+    for (int k = 0; k < kAround; ++k) {
+      const double theta = kPi * ring / kRings, phi = 2.0 * kPi * k / kAround;
+      const Eigen::Vector3d v = std::cos(theta) * up + std::sin(theta) * (std::cos(phi) * side + std::sin(phi) * front);
+      const double score = selection.getScore(v);
+      const Eigen::Vector3f p = (std::max(score, 1e-3 * range) * v).cast<float>();
+      surface->emplace_back(p.x(), p.y(), p.z());
+      panel.support.push_back((score - worst.score) / range);
+    }
+  }
+  pcl::PolygonMesh mesh;
+  pcl::toPCLPointCloud2(*surface, mesh.cloud);
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int k = 0; k < kAround; ++k) {
+      const int next = (k + 1) % kAround;
+      pcl::Vertices quad;
+      quad.vertices = {ring * kAround + k, (ring + 1) * kAround + k, (ring + 1) * kAround + next,
+                       ring * kAround + next};
+      mesh.polygons.push_back(quad);
+    }
+  }
+  PictureScene scene;
+  scene.points = surface;
+  scene.mesh = mesh;
+  scene.panels.push_back(panel);
+  scene.show_color_bar = false;
+  // Beside the best view, so that its peak is seen in profile.
+  scene.view = Eigen::AngleAxisd(0.3 * kPi, up) * best.direction + 0.2 * up;
+  scene.up = up;
+  if (scene.view.normalized().cross(up).norm() < 0.2) scene.view = side + 0.5 * up;
+  return scene;
+}
+
+/// Chooses by the local maxima of the transform of the cloud. \return milliseconds.
+double choose(ViewpointSelection& selection, const InputShape& input, const ViewpointToolOptions& options,
+              const Console& console) {
+  DetectionOptions detection;
+  detection.approximate = true;
+  options.common.applyTo(detection);
+  Step searching(console, "Searching planes");
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  const std::vector<SymmetryPlane> planes = namingFile(input.path, [&] {
+    refinement.setOptions(detection);
+    refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
+    refinement.setInputCloud(input.points);
+    std::vector<SymmetryPlane> found = refinement.compute();
+    if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
+    return found;
+  });
+  selection.setPlanes(planes, refinement.getAxes(), findLocalMaxima(refinement.getSymmetryMap(), detection.maxima));
+  selection.setInputCloud(input.points);
+  if (options.up) selection.setUp(*options.up);
+  selection.setSeparation(options.separation * kPi / 180.0);
+  const std::size_t num_axes = refinement.getAxes().size();
+  return searching.done(std::to_string(planes.size()) + " planes, " + std::to_string(num_axes) +
+                        (num_axes == 1 ? " axis" : " axes"));
+}
+
+struct ChosenViews {
+  std::vector<SelectedView> good;
+  SelectedView worst;
+};
+
+void print(const ChosenViews& views) {
+  std::printf("%-6s %9s %9s %9s %7s\n", "view", "x", "y", "z", "score");
+  for (std::size_t i = 0; i < views.good.size(); ++i) printView(i == 0 ? "best" : "good", views.good[i]);
+  printView("worst", views.worst);
+}
+
+nlohmann::json describe(const InputShape& input, const ViewpointSelection& selection, const ChosenViews& views) {
+  nlohmann::json json{{"file", input.path},
+                      {"up", numbersOf(selection.getUpAxis())},
+                      {"best", toJson(views.good[0], input.shift())},
+                      {"worst", toJson(views.worst, input.shift())},
+                      {"good", nlohmann::json::array()}};
+  for (const SelectedView& view : views.good) json["good"].push_back(toJson(view, input.shift()));
+  return json;
+}
+
+void draw(const Console& console, const ViewpointToolOptions& options, const InputShape& input,
+          const ViewpointSelection& selection, const ChosenViews& views) {
+  const SelectedView& best = views.good[0];
+  if (options.icon_path) renderPicture(sceneOf(input, best, ""), *options.icon_path, options.size, options.size);
+  if (!options.png_path) return;
+  Step drawing(console, "Drawing " + *options.png_path);
+  renderPicture({scoreSphere(selection, best, views.worst), sceneOf(input, best, "best view"),
+                 sceneOf(input, views.worst, "worst view")},
+                *options.png_path, 3 * options.size, options.size, 3);
+  drawing.done();
+}
+
+int run(int argc, char** argv) {
+  ViewpointToolOptions options;
+  CommandLine line = commandLine(options);
+  if (!line.parse(argc, argv)) return 0;
+  const Console console(options.common.quiet);
+  const InputShape input = loadInput(console, options.input, options.common);
+
+  ViewpointSelection selection;
+  const double searching_ms = choose(selection, input, options, console);
+  Step choosing(console, "Choosing views");
+  const ChosenViews views{selection.getGoodViews(options.num_views), selection.getWorstView()};
+  const double choosing_ms =
+      choosing.done(std::to_string(views.good.size()) + (views.good.size() == 1 ? " view" : " views"));
+
+  print(views);
+  if (options.common.json_path) {
+    nlohmann::json json = describe(input, selection, views);
+    json["timing_ms"] = {{"load", input.loading_ms}, {"planes", searching_ms}, {"views", choosing_ms}};
+    writeText(*options.common.json_path, json.dump(2) + "\n");
+  }
+  draw(console, options, input, selection, views);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(argc, argv, run);
+}

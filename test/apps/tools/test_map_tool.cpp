@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+#include <pcl/common/io.h>
+#include <pcl/conversions.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/support/tool_run.h"
+#include "common/pictures/raster_image.h"
+#include "common/shape_input/shape_input.h"
+
+namespace {
+
+using namespace pcl_symmetry::apps;
+
+class MapTool : public ToolTest {
+protected:
+  MapTool() : ToolTest(toolPath("map")) {}
+
+  const std::string mesh_ =
+      folder_.write("box.off",
+                    "OFF\n8 6 12\n-1 -1.4 -2\n1 -1.4 -2\n1 1.4 -2\n-1 1.4 -2\n-1 -1.4 2\n1 -1.4 2\n1 1.4 2\n-1 1.4 2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+};
+
+TEST_F(MapTool, PointsOnThePlanesOfABoxAreTheMostSymmetric) {
+  ASSERT_EQ(run(mesh_ + " " + (folder_ / "box.pcd") + " -quiet -json " + (folder_ / "a.json")), 0) << error_;
+  pcl::PointCloud<pcl::PointXYZI> points;
+  pcl::fromPCLPointCloud2(loadShape(folder_ / "box.pcd").cloud, points);
+  ASSERT_EQ(points.size(), 10000u);
+  double near = 0.0, far = 0.0;
+  int num_near = 0, num_far = 0;
+  for (const pcl::PointXYZI& point : points) {
+    const float distance = point.getVector3fMap().cwiseAbs().minCoeff();
+    if (distance < 0.05f) {
+      near += point.intensity;
+      ++num_near;
+    } else if (distance > 0.5f) {
+      far += point.intensity;
+      ++num_far;
+    }
+  }
+  EXPECT_GT(near / num_near, 0.85);
+  EXPECT_LT(far / num_far, 0.75);
+  EXPECT_EQ(nlohmann::json::parse(contentOf(folder_ / "a.json"))["num_points"], 10000);
+}
+
+TEST_F(MapTool, KeepsFieldsAndPointsThatAreNotFinite) {
+  std::string cloud =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 40\n"
+      "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 40\nDATA ascii\nnan nan nan 7\n";
+  for (int i = 1; i < 40; ++i)
+    cloud += std::to_string(i % 5) + " " + std::to_string(i % 7) + " " + std::to_string(i % 3) + " 7\n";
+  ASSERT_EQ(run(folder_.write("a.pcd", cloud) + " " + (folder_ / "b.pcd") + " -quiet -viewpoint none"), 0) << error_;
+  const Shape shape = loadShape(folder_ / "b.pcd");
+  ASSERT_EQ(shape.points->size(), 40u);
+  EXPECT_GE(pcl::getFieldIndex(shape.cloud, "input_intensity"), 0);
+  pcl::PointCloud<pcl::PointXYZI> points;
+  pcl::fromPCLPointCloud2(shape.cloud, points);
+  EXPECT_TRUE(std::isnan(points[0].intensity));
+  EXPECT_TRUE(std::isfinite(points[1].intensity));
+}
+
+TEST_F(MapTool, WritesAVTKImageAndSlices) {
+  ASSERT_EQ(
+      run(mesh_ + " -quiet -cells 20 -size 50 -volume " + (folder_ / "a.vti") + " -slices " + (folder_ / "a.png")), 0)
+      << error_;
+  const std::string vti = contentOf(folder_ / "a.vti");
+  EXPECT_NE(vti.find("WholeExtent=\"0 11 0 14 0 19\""), std::string::npos) << vti.substr(0, 400);
+  EXPECT_NE(vti.find("Name=\"symmetry\""), std::string::npos);
+  const RasterImage slices = readImage(folder_ / "a.png");
+  EXPECT_EQ(slices.width, 158);
+  EXPECT_EQ(slices.height, 50);
+}
+
+}  // namespace

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+#include <pcl/io/pcd_io.h>
+
+#include <boost/filesystem.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/support/lathe_mesh.h"
+#include "apps/support/temporary_folder.h"
+#include "apps/support/tool_run.h"
+#include "core/descriptors/shape_signature.h"
+#include "core/descriptors/symmetry_descriptor.h"
+#include "pcl_symmetry/point_types.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using nlohmann::json;
+
+class DescribeTool : public ToolTest {
+protected:
+  DescribeTool() : ToolTest(toolPath("describe")) {
+    folder_.write("vase.off", vaseOFF());
+    folder_.write("box.off", boxOFF());
+  }
+};
+
+TEST_F(DescribeTool, WritesSignaturesThatPCLReads) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(run(out + " " + (folder_ / "vase.off") + " " + (folder_ / "box.off") + " -points 2000"), 0) << error_;
+  pcl::PointCloud<ShapeSignature20736> signatures;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/vase.pcd", signatures), 0);
+  ASSERT_EQ(signatures.size(), 2u);
+  EXPECT_NEAR(sqDistance(signatures[0].signature, ShapeSignature20736().signature, kSignatureSize), 1.0, 1e-4);
+  const std::string once = contentOf(out + "/box.pcd");
+  ASSERT_EQ(run(out + " " + (folder_ / "box.off") + " -points 2000 -threads 1"), 0);
+  EXPECT_EQ(contentOf(out + "/box.pcd"), once);
+}
+
+TEST_F(DescribeTool, WritesThePapersDescriptors) {
+  const std::string out = folder_ / "out", box = folder_ / "box.off";
+  ASSERT_EQ(run(out + " " + box + " -type prst -input_axes -points 2000"), 0) << error_;
+  pcl::PointCloud<PRSTSignature32768> prst;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prst), 0);
+  EXPECT_EQ(prst.size(), 1u);
+  ASSERT_EQ(run(out + " " + box + " -type gedt -points 2000"), 0) << error_;
+  pcl::PointCloud<GEDTSignature32768> gedt;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", gedt), 0);
+  ASSERT_EQ(run(out + " " + box + " -type prsd -points 2000"), 0) << error_;
+  pcl::PointCloud<PRSDSignature1024> prsd;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prsd), 0);
+}
+
+TEST_F(DescribeTool, SaysWhatIsWrongAndDoesTheRest) {
+  const std::string out = folder_ / "out";
+  folder_.write("broken.off", "OFF\n3 1 0\n0 0 0\n");
+  EXPECT_EQ(run(out + " " + (folder_ / "broken.off") + " " + (folder_ / "box.off") + " -points 2000 -quiet"), 1);
+  EXPECT_NE(error_.find("broken.off"), std::string::npos) << "-quiet hides no failure: " << error_;
+  EXPECT_TRUE(boost::filesystem::exists(out + "/box.pcd"));
+  boost::filesystem::create_directories(folder_ / "other");
+  folder_.write("other/box.off", boxOFF());
+  EXPECT_EQ(run(out + " " + (folder_ / "box.off") + " " + (folder_ / "other/box.off")), 1);
+  EXPECT_NE(error_.find("names must differ"), std::string::npos) << error_;
+  EXPECT_EQ(run(out + " " + (folder_ / "box.off") + " -type nonsense"), 2);
+}
+
+class DatabaseTools : public ToolTest {
+protected:
+  DatabaseTools() : ToolTest("cd " TOOLS_FOLDER " &&") {
+    folder_.write("vase.off", vaseOFF());
+    folder_.write("box.off", boxOFF());
+    folder_.write("tetrahedron.off", tetrahedronOFF());
+  }
+
+  int database(const std::string& arguments) { return run("./pcl_symmetry_database " + arguments); }
+  int match(const std::string& arguments) { return run("./pcl_symmetry_match " + arguments); }
+
+  const std::string models_ = folder_ / "models";
+};
+
+TEST_F(DatabaseTools, BuildAskAndChange) {
+  const std::string vase = folder_ / "vase.off", box = folder_ / "box.off", other = folder_ / "tetrahedron.off";
+  ASSERT_EQ(database("build " + models_ + " " + vase + " " + box), 0) << error_;
+  ASSERT_EQ(database("add " + models_ + " " + other), 0) << error_;
+  ASSERT_EQ(database("list " + models_), 0);
+  EXPECT_EQ(output_, "box\ntetrahedron\nvase\n");
+  const std::string found = folder_ / "found.json";
+  ASSERT_EQ(match(models_ + " " + vase + " -max 2 -json " + found), 0) << error_;
+  json answer = json::parse(contentOf(found));
+  ASSERT_EQ(answer["matches"].size(), 2u);
+  EXPECT_EQ(answer["matches"][0]["name"], "vase");
+  ASSERT_EQ(match(models_ + " " + box + " -recognize -json " + found), 0) << error_;
+  answer = json::parse(contentOf(found));
+  EXPECT_TRUE(answer["known"]);
+  EXPECT_EQ(answer["models"][0]["name"], "box");
+  EXPECT_EQ(answer["models"][0]["transform"].size(), 16u);
+  ASSERT_EQ(database("remove " + models_ + " box vase"), 0) << error_;
+  ASSERT_EQ(database("rebuild " + models_), 0) << error_;
+  ASSERT_EQ(match(models_ + " " + box + " -recognize -min_merit 1"), 0) << error_;
+  EXPECT_EQ(output_, "unknown object\n");
+}
+
+TEST_F(DatabaseTools, SayWhatIsWrong) {
+  EXPECT_EQ(database("burn " + models_), 2);
+  EXPECT_EQ(database("add " + models_), 2);
+  EXPECT_EQ(database("list " + models_ + " more"), 2);
+  EXPECT_EQ(database("list " + models_), 1);
+  EXPECT_NE(error_.find("there is no such folder"), std::string::npos) << error_;
+  EXPECT_EQ(database("remove " + models_ + " nobody"), 1);
+  EXPECT_NE(error_.find("nobody"), std::string::npos) << error_;
+  EXPECT_EQ(database("build " + models_ + " " + (folder_ / "nothing.off")), 1);
+  EXPECT_EQ(match(models_ + " " + (folder_ / "box.off")), 1);
+  EXPECT_NE(error_.find("holds no models"), std::string::npos) << error_;
+}
+
+}  // namespace
