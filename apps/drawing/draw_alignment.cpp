@@ -26,7 +26,7 @@ constexpr int kNumPoints = 10'000;  // chosen: the default of the tools
 /// A box with a round roof. \param stand the boxes that it stands on, corner to corner.
 pcl::PolygonMesh mailbox(const std::vector<Eigen::AlignedBox3d>& stand) {
   constexpr double kLength = 3.0, kHalfWidth = 0.8, kWall = 0.9;  // chosen: the look of a mailbox
-  const auto outline = [&](double u) -> Eigen::Vector2d {  // once around: floor, wall, roof, wall
+  const auto outline = [&](double u) -> Eigen::Vector2d {         // once around: floor, wall, roof, wall
     if (u < 0.25) return {kHalfWidth * (1.0 - 8.0 * u), 0.0};
     if (u < 0.4) return {-kHalfWidth, kWall * (u - 0.25) / 0.15};
     if (u > 0.85) return {kHalfWidth, kWall * (1.0 - u) / 0.15};

@@ -31,7 +31,7 @@ Eigen::Vector3d centerOfSymmetry(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr&
 int run(int argc, char** argv) {
   if (argc != 3) throw UsageError("usage: draw_scan_centers PNG MODEL");
   constexpr int kNumPoints = 10'000, kPanel = 160;  // chosen: the default of the tools; pixels for ten panels on a page
-  constexpr double kCross = 0.04;  // diagonals; chosen: half is hard to see, twice hides the shape
+  constexpr double kCross = 0.04;                   // diagonals; chosen: half is hard to see, twice hides the shape
   const Eigen::Vector3d vermilion(0.84, 0.37, 0.0), green(0.0, 0.62, 0.45);
   const Shape shape = loadShape(argv[2]);
   if (!shape.mesh) throw InputError(std::string(argv[2]) + ": has no faces to scan");

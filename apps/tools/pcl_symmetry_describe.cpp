@@ -69,7 +69,8 @@ pcl::PCLPointCloud2 toBlob(const std::vector<const float*>& values, float (Point
 pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& options) {
   const pcl::PointCloud<pcl::PointXYZ>& cloud = *input.points;
   const auto max_points = static_cast<std::size_t>(options.num_points);
-  const detail::SelectedPoints selected = detail::selectPoints(cloud, nullptr, max_points, options.common.librarySeed());
+  const detail::SelectedPoints selected =
+      detail::selectPoints(cloud, nullptr, max_points, options.common.librarySeed());
   const std::optional<Visibility> seen =
       detail::seenSpace(cloud, selected.points, shifted(options.common.viewpoint, input.shift()));
   DescriptionOptions description;

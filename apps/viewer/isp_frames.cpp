@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
 
 namespace pcl_symmetry::apps {

@@ -2,10 +2,10 @@
 
 #include <sstream>
 
-#include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "apps/support/tool_run.h"
 #include "common/pictures/raster_image.h"
 #include "common/shape_input/shape_input.h"
-#include "apps/support/tool_run.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace {
 

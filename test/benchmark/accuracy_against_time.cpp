@@ -8,12 +8,12 @@
 #include <functional>
 #include <optional>
 
+#include "common/command_line/command_line.h"
+#include "common/command_line/run_tool.h"
 #include "common/pictures/chart.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "models.h"
-#include "common/command_line/command_line.h"
-#include "common/command_line/run_tool.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
 

@@ -32,8 +32,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Pictures up to this edge, pixels, are drawn at twice their size. chosen: half leaves steps in large pictures, twice is
-/// more than the graphics memory of small machines.
+/// Pictures up to this edge, pixels, are drawn at twice their size. chosen: half leaves steps in large pictures, twice
+/// is more than the graphics memory of small machines.
 constexpr int kMaxSuperSampled = 4096;
 constexpr double kViewAngle = 25.0;  ///< degrees; chosen: half looks flat, twice distorts the edges
 

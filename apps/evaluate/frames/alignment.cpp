@@ -8,6 +8,7 @@
 #include "common/command_line/console.h"
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
+#include "core/base/constants.h"
 #include "evaluate/frames/alignment_report.h"
 #include "evaluate/frames/frame_difference.h"
 #include "evaluate/segmentation/patches.h"
@@ -16,14 +17,13 @@
 #include "evaluate/shared/model_list.h"
 #include "evaluate/shared/test_clouds.h"
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
-#include "core/base/constants.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr int kNumPatches = 10;  // chosen: half removes whole parts, twice small spots everywhere
+constexpr int kNumPatches = 10;      // chosen: half removes whole parts, twice small spots everywhere
 constexpr double kRightAngle = 5.0;  // degrees; chosen: of the design page; half and twice shift all methods alike
 
 struct EvaluateAlignmentOptions {
@@ -45,7 +45,8 @@ CommandLine commandLine(EvaluateAlignmentOptions& o) {
   line.text("cla", "FILE", o.class_path, "only the models of this classification of the Princeton Shape Benchmark")
       .number("num_views", o.num_views, Range::closed(1, 8), "number of scans of each mesh")
       .number("points", o.num_points, Range::closed(100, 10'000'000), "number of points per cloud")
-      .number("noise", o.noise, Range::closed(0, 1), "standard deviation of the noise, along the ray for scans, in diagonals")
+      .number("noise", o.noise, Range::closed(0, 1),
+              "standard deviation of the noise, along the ray for scans, in diagonals")
       .number("missing", o.missing, Range{0, 1, false, true}, "share of the points of each cloud, taken in ten patches")
       .text("csv", "FILE", o.cloud_csv, "a row for each cloud and method")
       .text("histogram_csv", "FILE", o.histogram_csv, "histograms of misalignment (Figure 12)")

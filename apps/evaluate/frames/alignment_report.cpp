@@ -16,8 +16,8 @@ namespace pcl_symmetry::apps {
 namespace {
 
 constexpr double kRightAngle = 5.0;  // degrees; chosen: as in alignment.cpp
-// Bins of Figure 12. chosen: half is noisy for 100 models, twice hides the peak at zero. derived: 25 bins of 2.5 degrees
-// reach 62.5, the smallest angle over all orders and signs is below 63.
+// Bins of Figure 12. chosen: half is noisy for 100 models, twice hides the peak at zero. derived: 25 bins of 2.5
+// degrees reach 62.5, the smallest angle over all orders and signs is below 63.
 constexpr double kTranslationBin = 1.0;  // per cent of the diagonal
 constexpr double kRotationBin = 2.5;     // degrees
 constexpr int kTranslationBins = 20, kRotationBins = 25;

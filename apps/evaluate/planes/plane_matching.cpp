@@ -8,8 +8,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Planes through one line that make an axis. chosen: a prism of eight sides is within 4 % of a circle; half calls a cube
-/// round, twice no prism.
+/// Planes through one line that make an axis. chosen: a prism of eight sides is within 4 % of a circle; half calls a
+/// cube round, twice no prism.
 constexpr std::size_t kRoundPrism = 8;
 
 /// The closest of a kind of references within the limits.

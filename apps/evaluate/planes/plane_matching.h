@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "evaluate/shared/plane_difference.h"
 #include "evaluate/references/reference_symmetries.h"
+#include "evaluate/shared/plane_difference.h"
 
 namespace pcl_symmetry::apps {
 

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "common/pictures/chart.h"
-#include "evaluate/shared/table_text.h"
 #include "core/base/constants.h"
+#include "evaluate/shared/table_text.h"
 
 namespace pcl_symmetry::apps {
 

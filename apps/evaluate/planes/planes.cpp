@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "common/command_line/command_line.h"
-#include "core/base/constants.h"
 #include "common/command_line/console.h"
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
+#include "core/base/constants.h"
 #include "evaluate/planes/plane_report.h"
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/shared/model_flags.h"
@@ -51,21 +51,30 @@ CommandLine commandLine(EvaluatePlanesOptions& o) {
             "reference planes: read for the meshes in it, extended by the others")
       .number("tolerance", o.references.tolerance, Range::open(0, 1),
               "largest distance of a reflected point from the mesh, in diagonals")
-      .number("min_share", o.references.min_share, Range::closed(0.5, 1), "least share of the area that a reference plane maps to the mesh")
+      .number("min_share", o.references.min_share, Range::closed(0.5, 1),
+              "least share of the area that a reference plane maps to the mesh")
       .number("near_share", o.references.near_share, Range::closed(0.5, 1),
               "least share of a near plane, which is neither right nor wrong")
       .choice("sweep", o.sweep, {"none", "noise", "points", "missing", "views"},
               "vary one thing; none: whole clouds at all noise levels, and scans")
       .number("points", o.clouds.num_points, Range::closed(100, 10'000'000), "number of points per cloud")
-      .numbers("noise", o.clouds.noise, Range::closed(0, 1), "standard deviations of the noise of whole clouds, in diagonals")
-      .numbers("scan_noise", o.clouds.scan_noise, Range::closed(0, 1), "standard deviations of the depth of scans, in diagonals")
-      .numbers("missing", o.clouds.missing, Range{0, 1, false, true}, "shares of the points that are cut off, for -sweep missing")
-      .numbers("point_counts", o.clouds.point_counts, Range::closed(10, 10'000'000), "numbers of points, for -sweep points")
+      .numbers("noise", o.clouds.noise, Range::closed(0, 1),
+               "standard deviations of the noise of whole clouds, in diagonals")
+      .numbers("scan_noise", o.clouds.scan_noise, Range::closed(0, 1),
+               "standard deviations of the depth of scans, in diagonals")
+      .numbers("missing", o.clouds.missing, Range{0, 1, false, true},
+               "shares of the points that are cut off, for -sweep missing")
+      .numbers("point_counts", o.clouds.point_counts, Range::closed(10, 10'000'000),
+               "numbers of points, for -sweep points")
       .choice("views", o.views, {"corners", "random", "none"}, "scans from corners of a cube or random directions")
-      .number("num_views", o.clouds.num_views, Range::closed(1, 1000), "number of scans of each mesh, at most 8 from corners")
-      .number("max_angle", o.limits.max_angle, Range::open(0, 90), "largest angle between a found plane and its reference, degrees")
-      .number("max_axis_angle", o.limits.max_axis_angle, Range::open(0, 90), "largest angle between a found axis and its reference, degrees")
-      .number("max_offset", o.limits.max_offset, Range::open(0, 1), "largest offset between a finding and its reference, in diagonals")
+      .number("num_views", o.clouds.num_views, Range::closed(1, 1000),
+              "number of scans of each mesh, at most 8 from corners")
+      .number("max_angle", o.limits.max_angle, Range::open(0, 90),
+              "largest angle between a found plane and its reference, degrees")
+      .number("max_axis_angle", o.limits.max_axis_angle, Range::open(0, 90),
+              "largest angle between a found axis and its reference, degrees")
+      .number("max_offset", o.limits.max_offset, Range::open(0, 1),
+              "largest offset between a finding and its reference, in diagonals")
       .text("export", "DIR", o.export_folder, "write every cloud as PCD, and ground_truth.json")
       .flag("no_detect", o.no_detect, "only find references and export")
       .text("planes", "DIR", o.planes_folder,

@@ -12,6 +12,7 @@
 #include "common/command_line/console.h"
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
+#include "core/base/constants.h"
 #include "evaluate/planes/plane_statistics.h"
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/registration/motion_error.h"
@@ -20,7 +21,6 @@
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
 #include "evaluate/shared/test_clouds.h"
-#include "core/base/constants.h"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {
@@ -50,12 +50,14 @@ CommandLine commandLine(EvaluateRegistrationOptions& o) {
   addModelFlags(line, o.folders, o.selection);
   line.text("references", "FILE", o.references_path,
             "symmetries of the meshes: read for the meshes in it, extended by the others")
-      .number("points", o.num_points, Range::closed(100, 10'000'000), "number of points of a model, and wanted number for a scan")
+      .number("points", o.num_points, Range::closed(100, 10'000'000),
+              "number of points of a model, and wanted number for a scan")
       .number("num_views", o.num_views, Range::closed(1, 8), "number of scans of each mesh, from the corners of a cube")
       .number("noise", o.noise, Range::closed(0, 1), "standard deviation of the depth in scans, in diagonals")
       .number("missing", o.missing, Range{0, 1, false, true}, "share of a scan that is removed, in patches")
       .number("max_angle", o.max_angle, Range::open(0, 180), "largest rotation error of a right registration, degrees")
-      .number("max_distance", o.max_distance, Range::open(0, 1), "largest error at the center of the model of a right registration, in diagonals")
+      .number("max_distance", o.max_distance, Range::open(0, 1),
+              "largest error at the center of the model of a right registration, in diagonals")
       .text("methods", "A,B,...", o.methods,
             "methods: symmetry, frames, rotations, pca, features (symmetry,pca,features)")
       .flag("impostors", o.impostors, "also try each scan with the mesh before its own, where nothing should fit")

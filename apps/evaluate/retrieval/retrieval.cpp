@@ -41,15 +41,17 @@ CommandLine commandLine(EvaluateRetrievalOptions& o) {
                    "symmetry, and by signatures.",
                    "pcl_symmetry_evaluate retrieval psb/train -cla psb/train.cla -csv recall.csv -png recall.png");
   addModelFlags(line, o.folders, o.selection);
-  line.text("cla", "FILE", o.class_path, "classes of the meshes, in the format of the Princeton Shape Benchmark; required")
+  line.text("cla", "FILE", o.class_path,
+            "classes of the meshes, in the format of the Princeton Shape Benchmark; required")
       .number("points", o.num_points, Range::closed(100, 10'000'000), "number of points spread over each mesh")
       .number("references", o.retrieval.num_references, Range::closed(3, 1'000'000),
               "number of meshes, of any class, that compact forms and scaled distances are made from")
-      .number("nearest", o.retrieval.num_nearest, Range::closed(1, 1'000'000), "number of nearest references that scale distances")
+      .number("nearest", o.retrieval.num_nearest, Range::closed(1, 1'000'000),
+              "number of nearest references that scale distances")
       .text("csv", "FILE", o.csv, "precision at each recall, for each method")
       .text("class_csv", "FILE", o.class_csv, "a row for each class and method (Figure 14)")
       .picture("png", o.png,
-            "precision against recall (Figure 13), NAME_files.png and NAME_turned.png; NAME_classes.png (Figure 14)")
+               "precision against recall (Figure 13), NAME_files.png and NAME_turned.png; NAME_classes.png (Figure 14)")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }

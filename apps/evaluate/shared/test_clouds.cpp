@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "common/scanner/random_numbers.h"
+#include "core/base/constants.h"
 #include "core/base/random.h"
 #include "pcl_symmetry/mesh_sampling.h"
-#include "core/base/constants.h"
 
 namespace pcl_symmetry::apps {
 

@@ -8,7 +8,7 @@
 #include "core/descriptors/signature_axes.h"
 #include "core/geometry/axis_rotations.h"
 #include "core/geometry/principal_axes.h"
-#include "core/neighbours/cell_normals.h"
+#include "core/normals/cell_normals.h"
 
 namespace pcl_symmetry {
 

@@ -6,7 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 
 namespace pcl_symmetry {
 

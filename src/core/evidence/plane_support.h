@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/scan/visibility.h"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 #include "core/refinement/far_test.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/scan/visibility.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 
 namespace pcl_symmetry {
 

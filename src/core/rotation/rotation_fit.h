@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/median.h"
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 
 namespace pcl_symmetry {

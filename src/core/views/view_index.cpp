@@ -11,7 +11,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Shapes per block of work. chosen: at half the overhead per block grows, at twice threads idle at the end of few shapes.
+// Shapes per block of work. chosen: at half the overhead per block grows, at twice threads idle at the end of few
+// shapes.
 constexpr std::size_t kBlock = 16;
 constexpr double kLargestDistance = 2.0;  // derived: of two unit vectors
 

@@ -7,8 +7,8 @@
 #include "apps/support/temporary_folder.h"
 #include "common/shape_input/shape_input.h"
 #include "evaluate/references/mesh_distance.h"
-#include "evaluate/shared/plane_difference.h"
 #include "evaluate/references/reference_cache.h"
+#include "evaluate/shared/plane_difference.h"
 
 namespace {
 

@@ -46,9 +46,11 @@ TEST_F(ViewpointTool, DrawsTheScoreAndTheViews) {
 TEST_F(ViewpointTool, ComputesWithoutADisplayAndSaysWhyAPictureIsMissing) {
   const std::string environment = "env -u DISPLAY PATH=/nowhere ";
   ASSERT_EQ(
-      std::system((environment + toolPath("viewpoint") + " " + mesh_ + " -quiet >" + (folder_ / "out") + " 2>&1").c_str()), 0);
-  EXPECT_NE(std::system((environment + toolPath("viewpoint") + " " + mesh_ + " -quiet -png " + (folder_ / "a.png") + " >" +
-                         (folder_ / "out") + " 2>&1")
+      std::system(
+          (environment + toolPath("viewpoint") + " " + mesh_ + " -quiet >" + (folder_ / "out") + " 2>&1").c_str()),
+      0);
+  EXPECT_NE(std::system((environment + toolPath("viewpoint") + " " + mesh_ + " -quiet -png " + (folder_ / "a.png") +
+                         " >" + (folder_ / "out") + " 2>&1")
                             .c_str()),
             0);
   const std::string output = contentOf(folder_ / "out");

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/mesh_sampling.h"
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/detection/local_maxima.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"

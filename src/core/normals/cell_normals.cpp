@@ -1,4 +1,4 @@
-#include "core/neighbours/cell_normals.h"
+#include "core/normals/cell_normals.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

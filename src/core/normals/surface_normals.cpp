@@ -1,4 +1,4 @@
-#include "core/neighbours/surface_normals.h"
+#include "core/normals/surface_normals.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
