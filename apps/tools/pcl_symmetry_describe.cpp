@@ -18,8 +18,8 @@
 #include "core/base/parallel.h"
 #include "core/descriptors/symmetry_descriptor.h"
 #include "core/matching/shape_description.h"
+#include "pcl_symmetry/features/point_types.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
-#include "pcl_symmetry/point_types.h"
 
 namespace {
 

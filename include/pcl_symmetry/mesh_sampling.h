@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "pcl_symmetry/exports.h"
+#include "pcl_symmetry/core/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

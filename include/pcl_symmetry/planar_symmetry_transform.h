@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "pcl_symmetry/cloud_analysis.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/impl/cloud_analysis.hpp"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "pcl_symmetry/cloud_analysis.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/transform_2d/line_transform.h"
+#include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -88,7 +88,7 @@ private:
 template <typename PointT>
 LineMap PlanarSymmetryTransform2D<PointT>::compute() {
   return detail::withBadArguments([&] {
-    constexpr std::uint64_t kSeed = 1;
+    constexpr std::uint64_t kSeed = 1;  // chosen: any other draws other points of a larger cloud
     const Points points = this->selectInput(kSeed);
     if (points.cols() == 0) return LineMap();
     sheet_ = flattened(points);

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/cloud_analysis.h"
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

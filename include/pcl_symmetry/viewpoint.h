@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "pcl_symmetry/exports.h"
+#include "pcl_symmetry/core/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

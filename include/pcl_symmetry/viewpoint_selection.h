@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
-#include "pcl_symmetry/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// chosen: names of files and the first line of a manifest; another name would leave older databases unread.
 constexpr const char* kManifest = "manifest.txt";
 constexpr const char* kNewManifest = "manifest.txt.new";
 constexpr const char* kHeader = "pcl_symmetry database 2";

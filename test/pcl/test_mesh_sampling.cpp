@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "error_message.h"
-#include "pcl_meshes.h"
+#include "pcl/support/error_message.h"
+#include "pcl/support/pcl_meshes.h"
 
 namespace pcl_symmetry {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "clouds.h"
-#include "error_message.h"
+#include "pcl/support/clouds.h"
+#include "pcl/support/error_message.h"
 #include "shapes/contours.h"
 
 namespace pcl_symmetry {

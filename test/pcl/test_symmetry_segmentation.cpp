@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "clouds.h"
-#include "error_message.h"
+#include "pcl/support/clouds.h"
+#include "pcl/support/error_message.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "shapes/meshes.h"
 

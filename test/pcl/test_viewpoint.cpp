@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <string>
 
-#include "clouds.h"
 #include "core/base/random.h"
-#include "error_message.h"
+#include "pcl/support/clouds.h"
+#include "pcl/support/error_message.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"

@@ -10,8 +10,8 @@ std::map<std::string, std::string> readClassFile(const std::string& path) {
   TokenReader reader(text, path);
   if (reader.next() != "PSB") throw InputError(path + ": must begin with PSB");
   reader.count("version", 1, 1);
-  constexpr std::uint64_t kMost =
-      1'000'000;  // chosen: beyond any benchmark; keeps a damaged file from taking all memory
+  // chosen: beyond any benchmark; keeps a damaged file from taking all memory
+  constexpr std::uint64_t kMost = 1'000'000;
   const std::uint64_t num_classes = reader.count("number of classes", 1, kMost);
   const std::uint64_t num_models = reader.count("number of models", 1, kMost);
   std::map<std::string, std::string> class_of_models, full_names;

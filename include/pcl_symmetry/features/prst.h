@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/scan/visibility.h"
-#include "pcl_symmetry/exports.h"
+#include "pcl_symmetry/features/point_types.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
-#include "pcl_symmetry/point_types.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

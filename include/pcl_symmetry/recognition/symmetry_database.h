@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/exports.h"
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/registration/cloud_registration.h"
 #include "pcl_symmetry/viewpoint.h"
 

@@ -10,7 +10,7 @@
 #include "apps/support/tool_run.h"
 #include "core/descriptors/shape_signature.h"
 #include "core/descriptors/symmetry_descriptor.h"
-#include "pcl_symmetry/point_types.h"
+#include "pcl_symmetry/features/point_types.h"
 
 namespace {
 

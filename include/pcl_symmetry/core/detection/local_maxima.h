@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/transform/symmetry_map.h"
-#include "pcl_symmetry/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

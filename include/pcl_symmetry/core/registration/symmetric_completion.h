@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/scan/visibility.h"
-#include "pcl_symmetry/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/exports.h"
+#include "pcl_symmetry/core/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

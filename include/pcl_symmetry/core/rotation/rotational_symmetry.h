@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/rotation/rotation_group.h"
-#include "pcl_symmetry/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 #include "pcl_symmetry/core/transform/symmetry_map.h"
-#include "pcl_symmetry/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/transform/plane_grid.h"
-#include "pcl_symmetry/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "pcl_symmetry/core/detection/local_maxima.h"
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/transform_2d/gaussian_edt_2d.h"
 #include "pcl_symmetry/core/transform_2d/line_map.h"
-#include "pcl_symmetry/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "error_message.h"
+#include "pcl/support/error_message.h"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 
 namespace pcl_symmetry {

@@ -6,7 +6,7 @@
 #include <pcl/point_types.h>
 #include <pcl/register_point_struct.h>
 
-#include "pcl_symmetry/exports.h"
+#include "pcl_symmetry/core/exports.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -9,7 +9,7 @@
 
 #include "core/base/random.h"
 #include "core/descriptors/symmetry_descriptor.h"
-#include "error_message.h"
+#include "pcl/support/error_message.h"
 #include "pcl_symmetry/features/prst.h"
 
 namespace pcl_symmetry {

@@ -1,5 +1,5 @@
 /// Descriptors as PCL points: search trees see all their values.
-#include "pcl_symmetry/point_types.h"
+#include "pcl_symmetry/features/point_types.h"
 
 #include <gtest/gtest.h>
 #include <pcl/kdtree/impl/kdtree_flann.hpp>

@@ -1,10 +1,10 @@
-#include "pcl_symmetry/cloud_analysis.h"
+#include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 #include <gtest/gtest.h>
 #include <pcl/point_types.h>
 
-#include "clouds.h"
-#include "error_message.h"
+#include "pcl/support/clouds.h"
+#include "pcl/support/error_message.h"
 
 namespace pcl_symmetry {
 namespace {

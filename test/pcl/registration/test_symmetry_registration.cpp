@@ -5,8 +5,8 @@
 #include <pcl/console/print.h>
 #include <pcl/registration/icp.h>
 
-#include "clouds.h"
-#include "error_message.h"
+#include "pcl/support/clouds.h"
+#include "pcl/support/error_message.h"
 #include "shapes/scans.h"
 
 namespace {

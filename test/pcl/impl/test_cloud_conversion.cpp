@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <pcl/point_types.h>
 
-#include "error_message.h"
+#include "pcl/support/error_message.h"
 
 namespace pcl_symmetry::detail {
 namespace {
