@@ -1,6 +1,8 @@
 #pragma once
 
-namespace pcl_symmetry {
+#include "pcl_symmetry/core/exports.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Options of the search for poses that bring a scan, or a whole object, to a model of it (Section 5.1). Lengths are in
 /// radii of the model.
