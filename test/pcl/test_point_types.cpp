@@ -2,7 +2,7 @@
 #include "pcl_symmetry/point_types.h"
 
 #include <gtest/gtest.h>
-#include <pcl/kdtree/kdtree_flann.h>
+#include <pcl/kdtree/impl/kdtree_flann.hpp>
 
 #include <algorithm>
 #include <iterator>
