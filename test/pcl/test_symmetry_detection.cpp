@@ -45,8 +45,10 @@ TEST(DetectSymmetryPlanes, TakesMeshes) {
 }
 
 TEST(DetectSymmetryPlanes, GivesNoPlanesWhereThereIsNoAnswer) {
-  for (const auto& [name, cloud] : test::cloudsWithoutAnswer())
-    if (cloud) EXPECT_TRUE(detectSymmetryPlanes(*cloud).empty()) << name;
+  for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
+    if (!cloud) continue;
+    EXPECT_TRUE(detectSymmetryPlanes(*cloud).empty()) << name;
+  }
   EXPECT_TRUE(detectSymmetryPlanes(pcl::PolygonMesh()).empty());
 }
 

@@ -134,7 +134,8 @@ TEST(SymmetryMaximaRefinement, AUsedObjectIsAsGoodAsANewOne) {
   transform.setGridSize(32);
   SymmetryMaximaRefinement<pcl::PointXYZ> used, fresh;
   used.setInputCloud(first);
-  used.setSymmetryMap(transform.compute(), transform.getDistanceTransform());
+  const SymmetryMap map = transform.compute();
+  used.setSymmetryMap(map, transform.getDistanceTransform());
   used.compute();
   EXPECT_FALSE(used.getAxes().empty());
   used.setInputCloud(second);
