@@ -106,6 +106,7 @@ TEST_F(DatabaseTools, SayWhatIsWrong) {
   EXPECT_EQ(database("list " + models_ + " more"), 2);
   EXPECT_EQ(database("list " + models_), 1);
   EXPECT_NE(error_.find("there is no such folder"), std::string::npos) << error_;
+  boost::filesystem::create_directories(models_);
   EXPECT_EQ(database("remove " + models_ + " nobody"), 1);
   EXPECT_NE(error_.find("nobody"), std::string::npos) << error_;
   EXPECT_EQ(database("build " + models_ + " " + (folder_ / "nothing.off")), 1);

@@ -63,7 +63,8 @@ TEST_F(ScanTool, WritesEightScansInOneRandomPose) {
     Eigen::Matrix4d transform;
     for (int k = 0; k < 16; ++k) transform(k / 4, k % 4) = scan["transform"][k].get<double>();
     const Eigen::Matrix4d to_model = transform.inverse();
-    for (const pcl::PointXYZ& point : *loadShape(scan["file"].get<std::string>()).points) {
+    const Shape shape = loadShape(scan["file"].get<std::string>());
+    for (const pcl::PointXYZ& point : *shape.points) {
       if (!std::isfinite(point.x)) continue;
       const Eigen::Vector3d p = (to_model * point.getVector3fMap().cast<double>().homogeneous()).head<3>();
       EXPECT_NEAR((p.array().abs() / Eigen::Array3d(1, 1, 2)).maxCoeff(), 1, 1e-5);
