@@ -7,8 +7,8 @@ usage() {
 usage: bash test/run.sh [-h] [--all] [--filter REGEX]
 
 Installs missing packages, builds libraries, tools and tests into build/ and runs the tests. With --all, builds
-everything twice more, with the address and undefined-behaviour sanitizers into build-sanitize/ and with the thread
-sanitizer into build-thread/, and runs the tests of libraries and tools there too. The last line says "N passed, N
+everything once more with the address and undefined-behaviour sanitizers into build-sanitize/, and the core, which
+starts all threads, with the thread sanitizer and without PCL into build-thread/, and runs their tests too. The last line says "N passed, N
 failed, N skipped"; a step that fails before its tests counts as one failure. Exit status 0 if tests ran and none failed.
 
   --all           with sanitizers

@@ -77,6 +77,11 @@ public:
   /// given a cloud of the points used, and is called from one thread at a time. Null: FLANN (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
 
+  /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not
+  /// zero; false, and for other point types: all normals are estimated from the neighbours.
+  void setUseInputNormals(bool use_input_normals) { use_input_normals_ = use_input_normals; }
+  bool getUseInputNormals() const { return use_input_normals_; }
+
   /// Refines the maxima of this map in place of one that the class computes. Follows setInputCloud(), which forgets it.
   /// \param map,edt made by PlanarSymmetryTransform for the same cloud.
   void setSymmetryMap(const SymmetryMap& map, const std::shared_ptr<const GaussianEdt>& edt);
@@ -119,6 +124,7 @@ private:
 
   DetectionOptions options_;
   SearchPtr search_;
+  bool use_input_normals_ = true;
   SymmetryMap map_, own_map_;  // given; made here
   std::shared_ptr<const GaussianEdt> edt_;
   Points used_points_ = Points(3, 0);

@@ -1,6 +1,7 @@
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 #include <gtest/gtest.h>
+#include <pcl/common/io.h>
 #include <pcl/search/brute_force.h>
 #include <pcl/search/flann_search.h>
 #include <pcl/search/kdtree.h>
@@ -58,6 +59,49 @@ TEST(SymmetryMaximaRefinement, TakesAnySearchMethod) {
     refinement.setSearchMethod(search);
     EXPECT_EQ(numFound(shape, refinement.compute(), 0.2 * test::kDegree, 0.003), 3) << search->getName();
   }
+}
+
+/// The cloud with one normal for all points.
+pcl::PointCloud<pcl::PointNormal>::Ptr withNormals(const pcl::PointCloud<pcl::PointXYZ>& cloud,
+                                                   const Eigen::Vector3f& normal) {
+  auto result = pcl::make_shared<pcl::PointCloud<pcl::PointNormal>>();
+  pcl::copyPointCloud(cloud, *result);
+  for (auto& point : *result) point.getNormalVector3fMap() = normal;
+  return result;
+}
+
+TEST(SymmetryMaximaRefinement, UsesTheNormalsOfTheInput) {
+  const auto shape = test::box(2000, Sampling::Random, 4);
+  const auto cloud = test::toCloud(shape);
+  const auto estimated = detectSymmetryPlanes(*cloud);
+
+  // Normals that are zero or not finite are estimated.
+  SymmetryMaximaRefinement<pcl::PointNormal> refinement;
+  EXPECT_TRUE(refinement.getUseInputNormals());
+  for (const float missing : {0.0f, std::numeric_limits<float>::quiet_NaN()}) {
+    refinement.setInputCloud(withNormals(*cloud, Eigen::Vector3f::Constant(missing)));
+    expectSamePlanes(refinement.compute(), estimated);
+  }
+
+  // Those of the faces of the box give its planes.
+  auto faces = withNormals(*cloud, Eigen::Vector3f::Zero());
+  const Eigen::Vector3f low = cloud->getMatrixXfMap(3, 4, 0).rowwise().minCoeff();
+  const Eigen::Vector3f high = cloud->getMatrixXfMap(3, 4, 0).rowwise().maxCoeff();
+  for (auto& point : *faces) {
+    const Eigen::Array3f x = point.getArray3fMap();
+    Eigen::Index axis;
+    (x - low.array()).abs().min((high.array() - x).abs()).minCoeff(&axis);
+    point.getNormalVector3fMap() = 2.0f * Eigen::Vector3f::Unit(axis);  // of any length
+  }
+  refinement.setInputCloud(faces);
+  const auto exact = refinement.compute();
+  EXPECT_EQ(numFound(shape, exact, 0.2 * test::kDegree, 0.003), 3);
+
+  // Wrong ones change the result, unless they are not to be used.
+  refinement.setInputCloud(withNormals(*cloud, Eigen::Vector3f::UnitX()));
+  EXPECT_LT(numFound(shape, refinement.compute(), 0.2 * test::kDegree, 0.003), 3);
+  refinement.setUseInputNormals(false);
+  expectSamePlanes(refinement.compute(), estimated);
 }
 
 TEST(SymmetryMaximaRefinement, TakesAMapMadeBefore) {

@@ -3,6 +3,7 @@
 #include <pcl/common/point_tests.h>
 #include <pcl/exceptions.h>
 #include <pcl/point_cloud.h>
+#include <pcl/type_traits.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -108,6 +109,19 @@ SelectedPoints selectPoints(const pcl::PointCloud<PointT>& cloud, const pcl::Ind
     selected.indices[slot++] = at(i);
   }
   return selected;
+}
+
+/// \return the normals of some points, 3 x N; nothing for point types without normals.
+template <typename PointT>
+std::optional<Points> normalsOf(const pcl::PointCloud<PointT>& cloud, const pcl::Indices& indices) {
+  if constexpr (pcl::traits::has_normal<PointT>::value) {
+    Points normals(3, static_cast<Eigen::Index>(indices.size()));
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      normals.col(static_cast<Eigen::Index>(i)) = cloud[indices[i]].getNormalVector3fMap();
+    return normals;
+  } else {
+    return std::nullopt;
+  }
 }
 
 /// The rays of an organized cloud from a pinhole camera.

@@ -79,8 +79,11 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     };
     const std::optional<Visibility> seen = this->seenSpace(points);
     const Visibility* visibility = seen ? &*seen : nullptr;
-    Detection detection = edt_ ? refineMaxima(points, *edt_, map_, options_, search(*edt_), visibility)
-                               : detectPlanes(points, options_, search, visibility);
+    const std::optional<Points> normals =
+        use_input_normals_ ? detail::normalsOf(*input_, this->getUsedIndices()) : std::nullopt;
+    const Points* given = normals ? &*normals : nullptr;
+    Detection detection = edt_ ? refineMaxima(points, *edt_, map_, options_, search(*edt_), visibility, given)
+                               : detectPlanes(points, options_, search, visibility, given);
     used_points_ = std::move(points);
     own_map_ = std::move(detection.map);
     axes_ = std::move(detection.axes);

@@ -40,6 +40,14 @@ void spreadSupport(std::vector<SymmetryPlane>& planes, const DistinctPoints& dis
   }
 }
 
+/// The normals of the distinct points: where copies differ, that of the last copy.
+Points normalsOf(const DistinctPoints& distinct, const Points& normals) {
+  Points result(3, distinct.points.cols());
+  for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
+    result.col(distinct.index_of[i]) = normals.col(static_cast<Eigen::Index>(i));
+  return result;
+}
+
 }  // namespace
 
 void DetectionOptions::validate() const {
@@ -65,7 +73,7 @@ void DetectionOptions::validate() const {
 
 Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search,
-                       const Visibility* visibility) {
+                       const Visibility* visibility, const Points* normals) {
   options.validate();
   if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
   Stopwatch watch;
@@ -82,7 +90,8 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
   SymmetryMap map = sampledTransform(edt, grid, sampling, free_space);
   map.center_of_mass = centerOfMass(points);
   const double transform_ms = watch.lap();
-  Detection detection = refineMaxima(points, edt, map, options, make_search ? make_search(edt) : nullptr, visibility);
+  Detection detection =
+      refineMaxima(points, edt, map, options, make_search ? make_search(edt) : nullptr, visibility, normals);
   detection.map = std::move(map);
   detection.timing_ms.insert(
       detection.timing_ms.begin(),
@@ -91,8 +100,10 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
 }
 
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
-                       const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility) {
+                       const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
+                       const Points* normals) {
   options.validate();
+  if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
   if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
   Detection detection;
   Stopwatch watch;
@@ -101,7 +112,9 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   const DistinctPoints distinct(points);
   const bool repeated = distinct.points.cols() < points.cols();
   if (repeated) search = nullptr;  // it knows the copies
-  const NormalizedCloud cloud(distinct.points, edt, std::move(search), visibility, options.num_threads);
+  const Points distinct_normals = normals ? normalsOf(distinct, *normals) : Points();
+  const NormalizedCloud cloud(distinct.points, edt, std::move(search), visibility, options.num_threads,
+                              normals ? &distinct_normals : nullptr);
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(
       cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
   const StagedRefinement refinement(cloud, *fit, options);

@@ -1,6 +1,7 @@
 #include "core/refinement/normalized_cloud.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/median.h"
@@ -20,16 +21,26 @@ constexpr double kVolumeRoughness = 0.36;
 constexpr double kLeastSpacing = 1e-6;   // radii. derived: the rounding of coordinates about 1; avoids a division by 0
 constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supports of surfaces; avoids a division by 0
 
+/// Replaces estimated normals by those that the input has.
+LocalGeometry withNormals(LocalGeometry geometry, const Points* given) {
+  for (Eigen::Index i = 0; given && i < given->cols(); ++i) {
+    const float length = given->col(i).norm();
+    if (std::isfinite(length) && length > 0.0f) geometry.normals.col(i) = given->col(i) / length;
+  }
+  return geometry;
+}
+
 }  // namespace
 
 NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input,
-                                 ClosestPointSearch::Ptr input_search, const Visibility* seen, int num_threads)
+                                 ClosestPointSearch::Ptr input_search, const Visibility* seen, int num_threads,
+                                 const Points* given_normals)
     : edt(edt_of_input),
       center(edt.center()),
       scale(edt.radius()),
       points(normalizePoints(input, center, scale)),
       search(input_search ? std::move(input_search) : makeFlannSearch(points)),
-      geometry(localGeometry(points, *search, kNumSupportNeighbours, num_threads)),
+      geometry(withNormals(localGeometry(points, *search, kNumSupportNeighbours, num_threads), given_normals)),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),
       surface{points, geometry.normals, *search, seen ? &geometry.at_border : nullptr, &far, num_threads},

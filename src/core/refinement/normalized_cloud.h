@@ -18,8 +18,9 @@ struct NormalizedCloud {
   /// \param input_search closest points among the normalised points; null = FLANN.
   /// \param seen what a scanner saw, input frame; null = the points show the object from all sides.
   /// \param num_threads 0 = one per core.
+  /// \param given_normals 3 x N, of any length and sign, used where they are finite and not zero; null = all estimated.
   NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input, ClosestPointSearch::Ptr input_search,
-                  const Visibility* seen, int num_threads);
+                  const Visibility* seen, int num_threads, const Points* given_normals = nullptr);
   NormalizedCloud(const NormalizedCloud&) = delete;  // parts refer to each other
   NormalizedCloud& operator=(const NormalizedCloud&) = delete;
 

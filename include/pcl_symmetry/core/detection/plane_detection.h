@@ -112,19 +112,21 @@ struct Detection {
 /// give an empty result with a reason.
 /// \param make_search makes the search of refineMaxima() for the distance transform of these points; null = FLANN.
 /// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
-/// \throws std::invalid_argument for bad options or coordinates that are not finite.
+/// \param normals of the points, 3 x N, of any length and sign; one that is zero or not finite is estimated from the
+/// neighbours, as are all where this is null.
+/// \throws std::invalid_argument for bad options, coordinates that are not finite, or another number of normals.
 Detection detectPlanes(const PointsRef& points, const DetectionOptions& options = {},
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr,
-                       const Visibility* visibility = nullptr);
+                       const Visibility* visibility = nullptr, const Points* normals = nullptr);
 
 /// From a map that was made before to planes: maxima, refinement (Section 4.4).
 /// \param points as in detectPlanes().
 /// \param edt,map of these points.
 /// \param search closest points among (points - edt.center()) / edt.radius(); null = FLANN.
-/// \param visibility as in detectPlanes().
-/// \throws std::invalid_argument for bad options or coordinates that are not finite.
+/// \param visibility,normals as in detectPlanes().
+/// \throws std::invalid_argument as detectPlanes() does.
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
                        const DetectionOptions& options = {}, ClosestPointSearch::Ptr search = nullptr,
-                       const Visibility* visibility = nullptr);
+                       const Visibility* visibility = nullptr, const Points* normals = nullptr);
 
 }  // namespace pcl_symmetry
