@@ -6,7 +6,7 @@
 
 #include "apps/support/strip_mesh.h"
 #include "apps/support/temporary_folder.h"
-#include "common/shape_input/off_reader.h"
+#include "common/shape_input/shape_input.h"
 #include "evaluate/segmentation/mirror_agreement.h"
 #include "pcl_symmetry/symmetry_segmentation.h"
 
@@ -21,7 +21,7 @@ protected:
   }
 
   const TemporaryFolder folder_;
-  const SegmentationComparison comparison_{readOFF(folder_.write("strip.off", stripOFF(8)))};
+  const SegmentationComparison comparison_{*loadShape(folder_.write("strip.off", stripOFF(8))).mesh};
   const std::vector<int> one_ = {0, 0, 0, 0, 0, 0, 0, 0}, halves_ = {7, 7, 7, 7, 3, 3, 3, 3},
                          early_ = {0, 0, 1, 1, 1, 1, 1, 1}, quarters_ = {0, 0, 1, 1, 2, 2, 3, 3};
 };
@@ -67,7 +67,7 @@ TEST_F(SegmentationDistanceTest, RefusesAnotherNumberOfLabels) {
 
 TEST_F(SegmentationDistanceTest, MirrorImagesLieInPairedSegments) {
   // The strip's squares in its own order; across its middle the i-th is the image of the (7 - i)-th.
-  const auto graph = pcl_symmetry::meshGraph(readOFF(folder_.write("strip.off", stripOFF(8))));
+  const auto graph = pcl_symmetry::meshGraph(*loadShape(folder_.write("strip.off", stripOFF(8))).mesh);
   const Eigen::Vector3d along = (graph.centers.col(7) - graph.centers.col(0)).cast<double>();
   const Eigen::Vector3d middle = 0.5 * (graph.centers.col(7) + graph.centers.col(0)).cast<double>();
   const pcl_symmetry::ReflectionPlane across(along, along.dot(middle));
