@@ -141,7 +141,7 @@ TEST_F(BopTool, AnswersBadInputWithOneLineAndAnExitCodeAndNoFile) {
                                           "HEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3\n1 2 3\n");
   EXPECT_EQ(run(box_ + " " + point + " -quiet -json " + json_), 1);
   EXPECT_NE(error_.find("point.pcd: "), std::string::npos) << error_;
-  EXPECT_NE(error_.find("number of different points = 1, must be >= 20"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("1 distinct point, at least 20 are needed"), std::string::npos) << error_;
   EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
   const std::string flat = folder_.write("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
   EXPECT_EQ(run(flat + " -quiet -json " + json_), 1);
