@@ -5,7 +5,7 @@
 #include "apps/support/tool_run.h"
 #include "common/pictures/raster_image.h"
 #include "common/shape_input/shape_input.h"
-#include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "pcl_symmetry/symmetry_detection.h"
 
 namespace {
 
