@@ -41,10 +41,10 @@ TEST_F(LinesTool, FindsTheLineOfAPicture) {
 }
 
 TEST_F(LinesTool, ReadsPGMAndDrawsWithoutADisplay) {
-  std::string pgm_text = "P5\n7 7\n255\n";
-  for (int i = 0; i < 49; ++i) {
-    const int x = std::abs(i % 7 - 3), y = std::abs(i / 7 - 3);
-    pgm_text += x * y == 0 && x + y < 3 ? '\xFF' : '\0';
+  std::string pgm_text = "P5\n15 15\n255\n";
+  for (int i = 0; i < 225; ++i) {
+    const int x = std::abs(i % 15 - 7), y = std::abs(i / 15 - 7);
+    pgm_text += x * y == 0 && x + y < 7 ? '\xFF' : '\0';
   }
   const std::string pgm = folder_.write("plus.pgm", pgm_text);
   writeImage(triangle(), folder_ / "triangle.png");
@@ -67,6 +67,11 @@ TEST_F(LinesTool, RefusesWhatItCannotUse) {
   EXPECT_EQ(run(folder_ / "empty.png"), 1);
   EXPECT_NE(error_.find("shows nothing"), std::string::npos);
   EXPECT_EQ(run(folder_.write("box.off", boxOFF())), 1);
+  EXPECT_NE(error_.find("8 distinct points, at least 20 are needed"), std::string::npos) << error_;
+  std::string lattice;
+  for (int i = 0; i < 27; ++i)
+    lattice += std::to_string(i % 3) + ' ' + std::to_string(i / 3 % 3) + ' ' + std::to_string(i / 9) + '\n';
+  EXPECT_EQ(run(folder_.write("lattice.xyz", lattice)), 1);
   EXPECT_NE(error_.find("off a plane"), std::string::npos) << error_;
 }
 
