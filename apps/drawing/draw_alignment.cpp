@@ -23,7 +23,8 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 constexpr int kNumPoints = 10'000;  // chosen: the default of the tools
 
-/// A box with a round roof. \param stand the boxes that it stands on, corner to corner.
+/// A box with a round roof.
+/// \param stand the boxes that it stands on, corner to corner.
 pcl::PolygonMesh mailbox(const std::vector<Eigen::AlignedBox3d>& stand) {
   constexpr double kLength = 3.0, kHalfWidth = 0.8, kWall = 0.9;  // chosen: the look of a mailbox
   const auto outline = [&](double u) -> Eigen::Vector2d {         // once around: floor, wall, roof, wall

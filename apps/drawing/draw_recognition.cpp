@@ -24,8 +24,8 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 struct SceneOptions {
   std::string database, scene, picture;
-  double farthest = 1.5;         // of the points that are looked at, from the scanner
-  double plane_distance = 0.03;  // of points that belong to the plane
+  double farthest = 1.5;         // greatest distance of points from the scanner
+  double plane_distance = 0.03;  // greatest distance of points that belong to the plane
   double cluster_distance = 0.02;
   int least_cluster = 1000;
 };

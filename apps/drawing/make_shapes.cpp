@@ -89,7 +89,7 @@ pcl::PolygonMesh chair() {
   return mesh.polygonMesh();
 }
 
-/// Of milk, with a gable and the fin on it.
+/// A milk carton with a gable and the fin on it.
 pcl::PolygonMesh carton() {
   constexpr double kHalf = 0.48, kWall = 1.9, kRidge = 2.4, kFin = 0.18;  // chosen: the look of a milk carton
   ParametricMesh mesh;

@@ -5,7 +5,8 @@
 
 namespace pcl_symmetry::apps {
 
-/// A cup of radius 1 and height 2.4 with an elliptic handle. \param reach,rise of the handle, half axes.
+/// A cup of radius 1 and height 2.4 with an elliptic handle.
+/// \param reach,rise of the handle, half axes.
 inline pcl::PolygonMesh mug(double reach, double rise) {
   // In radii of the mug. chosen: the look of a mug.
   constexpr double kHeight = 2.4, kInner = 0.92, kFloor = 0.1, kThickness = 0.11;

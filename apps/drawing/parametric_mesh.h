@@ -13,7 +13,8 @@ namespace pcl_symmetry::apps {
 
 class ParametricMesh {
 public:
-  /// \param surface takes (u, v) in [0, 1]^2 to an Eigen::Vector3d. \param num_u,num_v quadrangles along each.
+  /// \param surface takes (u, v) in [0, 1]^2 to an Eigen::Vector3d.
+  /// \param num_u,num_v quadrangles along each.
   template <typename Surface>
   void addSurface(int num_u, int num_v, const Surface& surface) {
     const auto first = static_cast<pcl::index_t>(vertices_.size());
@@ -32,7 +33,8 @@ public:
       }
   }
 
-  /// What the profile sweeps when turned about z. \param profile radius and height, from end to end.
+  /// What the profile sweeps when turned about z.
+  /// \param profile radius and height, from end to end.
   void addTurned(const std::vector<Eigen::Vector2d>& profile) {
     for (std::size_t i = 0; i + 1 < profile.size(); ++i)
       addSurface(1, 96, [&](double u, double v) {

@@ -15,13 +15,16 @@ using Solid = std::function<double(const Eigen::Vector3d&)>;
 
 Solid ellipsoid(const Eigen::Vector3d& center, const Eigen::Vector3d& half_axes);
 
-/// A box with rounded edges. \param half_sizes with the rounding. \param rounding radius, >= 0.
+/// A box with rounded edges.
+/// \param half_sizes with the rounding.
+/// \param rounding radius, >= 0.
 Solid box(const Eigen::Vector3d& center, const Eigen::Vector3d& half_sizes, double rounding = 0.0);
 
 /// About an axis along y.
 Solid wheel(const Eigen::Vector3d& center, double radius, double half_width);
 
-/// Along a cubic Bezier curve. \param from,to radii at its ends, linear between.
+/// Along a cubic Bezier curve.
+/// \param from,to radii at its ends, linear between.
 Solid tube(const std::array<Eigen::Vector3d, 4>& control, double from, double to);
 
 /// A ring about z.
@@ -29,10 +32,13 @@ Solid ring(const Eigen::Vector3d& center, double radius, double thickness);
 
 Solid common(const Solid& a, const Solid& b);
 
-/// What is in one of them, with a fillet between. \param fillet its size, > 0.
+/// What is in one of them, with a fillet between.
+/// \param fillet its size, > 0.
 Solid joined(const std::vector<Solid>& parts, double fillet);
 
-/// The surface as triangles. \param bounds of the solid. \param num_cells along its longest edge.
+/// The surface as triangles.
+/// \param bounds of the solid.
+/// \param num_cells along its longest edge.
 pcl::PolygonMesh surfaceOf(const Solid& solid, const Eigen::AlignedBox3d& bounds, int num_cells);
 
 }  // namespace pcl_symmetry::apps

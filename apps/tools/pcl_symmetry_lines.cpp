@@ -110,7 +110,8 @@ void checkFlat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Isomet
   throw InputError(input + text);
 }
 
-/// Reads, transforms and prints one shape. \return its entry of the JSON; its picture where one is wanted.
+/// Reads, transforms and prints one shape.
+/// \return its entry of the JSON; its picture where one is wanted.
 std::pair<nlohmann::json, std::optional<RasterImage>> analyse(const std::string& input, const LinesOptions& options,
                                                               const Console& console) {
   Step loading(console, "Loading " + input);

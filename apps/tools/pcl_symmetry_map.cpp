@@ -85,7 +85,8 @@ struct Volume {
   Eigen::Array3i size;
 
   Volume(const Points& points, int num_cells) {
-    constexpr double kMargin = 0.1;  // of the longest edge, on each side; chosen: twice wastes cells, half cuts planes
+    // share of the longest edge, on each side; chosen: twice wastes cells, half cuts planes
+    constexpr double kMargin = 0.1;
     const Eigen::Vector3d low = points.rowwise().minCoeff().cast<double>(),
                           high = points.rowwise().maxCoeff().cast<double>();
     const double edge = (high - low).maxCoeff();
@@ -125,7 +126,7 @@ void writeVolume(const SymmetryMap& map, const Volume& volume, const Eigen::Vect
 
 /// A slice through the middle of the volume across one axis, seen along it.
 struct Slice {
-  int across, up, axis, size;  // of the picture: to the right, upwards, along the view; pixels
+  int across, up, axis, size;  // axes to the right, upwards and along the view; pixels
   Eigen::Vector3d middle;
   double step;  ///< edge of a pixel, input units
 

@@ -23,7 +23,8 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
-constexpr std::size_t kMaxPanels = 9;  // of a picture; chosen: twice makes panels too small to read, half hides planes
+// panels of a picture; chosen: twice makes panels too small to read, half hides planes
+constexpr std::size_t kMaxPanels = 9;
 
 struct PlanesOptions {
   std::string input;

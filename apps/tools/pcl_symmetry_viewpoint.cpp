@@ -116,7 +116,8 @@ PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView
   return scene;
 }
 
-/// Chooses by the local maxima of the transform of the cloud. \return milliseconds.
+/// Chooses by the local maxima of the transform of the cloud.
+/// \return milliseconds.
 double choose(ViewpointSelection& selection, const InputShape& input, const ViewpointToolOptions& options,
               const Console& console) {
   DetectionOptions detection;

@@ -16,7 +16,8 @@ struct IspFrame {
 };
 
 /// From a plane beside the given one (turned by 12 degrees, shifted by 5 % of the radius) back to rest.
-/// \param points 3 x N, finite, about the origin, of radius 1. \return one frame or more, the last at rest.
+/// \param points 3 x N, finite, about the origin, of radius 1.
+/// \return one frame or more, the last at rest.
 std::vector<IspFrame> ispFrames(const Points& points, const ReflectionPlane& plane);
 
 }  // namespace pcl_symmetry::apps

@@ -68,10 +68,12 @@ public:
   /// Looks from a pose of ViewpointSelection.
   void lookFrom(const Eigen::Affine3f& pose);
 
-  /// Writes what is drawn now as a PNG, whole. \throws InputError if the file cannot be written
+  /// Writes what is drawn now as a PNG, whole.
+  /// \throws InputError if the file cannot be written
   void save(const std::string& path);
 
-  /// Handles what the user does for a moment. \return false once the window is closed
+  /// Handles what the user does for a moment.
+  /// \return false once the window is closed
   bool spin();
 
 private:

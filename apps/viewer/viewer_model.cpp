@@ -81,7 +81,8 @@ std::string summaryOf(const ViewerModel& model, bool seen_from_one_side) {
   return summary;
 }
 
-/// The finite ones, in order. \return their indices.
+/// The finite ones, in order.
+/// \return their indices.
 std::vector<std::size_t> finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud,
                                       pcl::PointCloud<pcl::PointXYZ>& finite) {
   std::vector<std::size_t> indices;

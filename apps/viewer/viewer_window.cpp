@@ -177,7 +177,7 @@ private:
     if (with_support) canvas_.addColorBar();
   }
 
-  /// Of the current plane, at the vertices of the mesh: the mean over the closest points.
+  /// The support for the current plane at the vertices of the mesh: the mean over the closest points.
   std::vector<double> vertexSupport() {
     constexpr int kNumClosest = 4;  // points; chosen: half is noisy, twice blurs
     if (closest_to_vertices_.empty()) {
@@ -225,12 +225,12 @@ private:
   std::string name_;
   ViewerCanvas canvas_;
   ViewerState state_;
-  std::vector<double> brightness_;  // of the points, lit from the best view
+  std::vector<double> brightness_;  // brightness of the points, lit from the best view
   std::string note_;
   int num_saved_ = 0;
   std::optional<std::vector<int>> parts_;  // cut when they are first asked for
   std::vector<int> closest_to_vertices_;
-  std::map<int, std::vector<IspFrame>> frames_;  // of the planes that were refined
+  std::map<int, std::vector<IspFrame>> frames_;  // frames of the planes that were refined
 };
 
 ViewerWindow::ViewerWindow(const ViewerModel& model, const std::string& name, bool off_screen, int width, int height)

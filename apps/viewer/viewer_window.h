@@ -12,20 +12,24 @@ namespace pcl_symmetry::apps {
 /// Needs a display (private_display.h).
 class ViewerWindow {
 public:
-  /// \param name of the shape, in the title and in the names of saved pictures. \param off_screen draws, but shows no
-  /// window and takes no mouse. \param width,height pixels.
+  /// \param name of the shape, in the title and in the names of saved pictures.
+  /// \param off_screen draws, but shows no
+  /// window and takes no mouse.
+  /// \param width,height pixels.
   ViewerWindow(const ViewerModel& model, const std::string& name, bool off_screen, int width, int height);
   ~ViewerWindow();
 
   const ViewerState& state() const;
 
-  /// Does what the key says and draws again. \return whether the key does anything.
+  /// Does what the key says and draws again.
+  /// \return whether the key does anything.
   bool press(const std::string& symbol);
 
   /// Lets the user work until they quit.
   void run();
 
-  /// Writes what is drawn now as a PNG, whole. \throws InputError if the file cannot be written.
+  /// Writes what is drawn now as a PNG, whole.
+  /// \throws InputError if the file cannot be written.
   void save(const std::string& path);
 
 private:

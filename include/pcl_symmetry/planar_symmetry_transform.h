@@ -39,7 +39,8 @@ public:
   TransformMethod getMethod() const { return transform_.method; }
 
   /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
-  /// even, in [8, 512]. \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  /// even, in [8, 512].
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setGridSize(int n) {
     setNumCells(n);
     setMapSize(n, n, n);

@@ -39,7 +39,9 @@ struct SelectedView : RankedView {
 class ViewpointSelection {
 public:
   /// Sets the planes of S, weighted by their score. An axis counts as a fan of planes that weighs as much as two
-  /// planes. \param planes of SymmetryMaximaRefinement with setApproximate(true). \param maxima of the map. As long as
+  /// planes.
+  /// \param planes of SymmetryMaximaRefinement with setApproximate(true).
+  /// \param maxima of the map. As long as
   /// some direction has less than a fifth of the best score, the strongest maximum whose normal is more than 60 degrees
   /// from all planes so far counts too. (Refinement drops maxima that are no symmetry of any part, but without the weak
   /// maximum across its axis a mug would be best seen level from the side.)

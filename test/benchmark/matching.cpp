@@ -29,7 +29,8 @@ Eigen::MatrixXf syntheticForms(int count, std::uint64_t seed) {
   return forms;
 }
 
-/// Calls body() \p count times. \return the median of its time, milliseconds.
+/// Calls body() \p count times.
+/// \return the median of its time, milliseconds.
 template <typename Body>
 double medianTime(int count, const Body& body) {
   std::vector<double> times;

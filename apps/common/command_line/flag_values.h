@@ -37,19 +37,24 @@ struct Range {
 /// \return the value with at most six significant digits.
 std::string shortest(double value);
 
-/// \return the number that the whole text spells. \throws UsageError starting with `name = text`.
+/// \return the number that the whole text spells.
+/// \throws UsageError starting with `name = text`.
 double parseNumber(const std::string& name, const std::string& text, const Range& range = {});
-/// \return the whole number that the text spells. \throws UsageError starting with `name = text`.
+/// \return the whole number that the text spells.
+/// \throws UsageError starting with `name = text`.
 std::int64_t parseInteger(const std::string& name, const std::string& text, const Range& range = {});
 int parseInt(const std::string& name, const std::string& text, const Range& range = {});
 
-/// \return the numbers spelled "A,B,C", at least one. \throws UsageError starting with `name = text`.
+/// \return the numbers spelled "A,B,C", at least one.
+/// \throws UsageError starting with `name = text`.
 std::vector<double> parseNumbers(const std::string& name, const std::string& text, const Range& range = {});
 
-/// \return the vector spelled "X,Y,Z", all finite. \throws UsageError starting with `name = text`.
+/// \return the vector spelled "X,Y,Z", all finite.
+/// \throws UsageError starting with `name = text`.
 Eigen::Vector3d parseVector(const std::string& name, const std::string& text);
 
-/// \return the choice spelled "auto", "none" or "X,Y,Z". \throws UsageError otherwise.
+/// \return the choice spelled "auto", "none" or "X,Y,Z".
+/// \throws UsageError otherwise.
 Viewpoint parseViewpoint(const std::string& name, const std::string& text);
 
 }  // namespace pcl_symmetry::apps

@@ -15,7 +15,8 @@ namespace pcl_symmetry::apps {
 /// \return its size in bytes.
 std::uint64_t checkReadableFile(const std::string& path);
 
-/// \return the whole file. \throws InputError if it cannot be read.
+/// \return the whole file.
+/// \throws InputError if it cannot be read.
 std::string readWholeFile(const std::string& path);
 
 /// Walks through text token by token; a '#' opens a comment that ends with its line.
@@ -51,7 +52,8 @@ private:
 /// \return true if the whole token spells a floating-point number, nan and inf included.
 bool spellsNumber(std::string_view token, double* value = nullptr);
 
-/// \return the whole number that the token spells. \return false if it does not, or if it does not fit.
+/// \return the whole number that the token spells.
+/// \return false if it does not, or if it does not fit.
 bool spellsCount(std::string_view token, std::uint64_t* value);
 
 }  // namespace pcl_symmetry::apps

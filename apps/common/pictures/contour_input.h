@@ -13,7 +13,8 @@ namespace pcl_symmetry::apps {
 /// The pixels of a picture that do not belong to the ground, at (x, height - 1 - y, 0) in pixels. The ground is what
 /// most pixels at the border are, dark or light (of two halves of the range).
 /// \param filled every such pixel; otherwise those beside the ground or the border: the outline.
-/// \throws InputError where there is none. \param name of the picture in the error.
+/// \throws InputError where there is none.
+/// \param name of the picture in the error.
 pcl::PointCloud<pcl::PointXYZ>::Ptr contourOfImage(const RasterImage& image, bool filled, const std::string& name);
 
 /// \param path a picture (.png, .pgm) or a cloud that loadShape() reads.

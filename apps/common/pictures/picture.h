@@ -60,10 +60,11 @@ void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 /// Eight colours that remain apart for colour-blind eyes (Okabe and Ito), repeated from the start when they run out.
 Eigen::Vector3d distinctColor(std::size_t index);
 
-/// Of a segment: the distinct colours, lighter with each round; grey below 0.
+/// The color of a segment: distinct colors, lighter with each round; grey for numbers below 0.
 Eigen::Vector3d segmentColor(int segment);
 
-/// \param value in [0, 1], clamped. \return its colour on the cividis scale (dark blue to yellow).
+/// \param value in [0, 1], clamped.
+/// \return its colour on the cividis scale (dark blue to yellow).
 Eigen::Vector3d cividis(double value);
 
 /// Renders off screen and writes a PNG whole. Uses the display if there is one, or else a private Xvfb.

@@ -28,7 +28,8 @@ Normalization normalizationOf(const PictureScene& scene);
 /// \return for each point how bright it looks with a light at the camera, in [0, 1].
 std::vector<double> shading(const PictureScene& scene, const Normalization& normalize);
 
-/// \param brightness of each point. \param panel_pixels the shorter edge of the panel.
+/// \param brightness of each point.
+/// \param panel_pixels the shorter edge of the panel.
 vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePanel& panel,
                                      const Normalization& normalize, const std::vector<double>& brightness,
                                      double panel_pixels);
@@ -38,21 +39,24 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
 vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
                                     const Normalization& normalize);
 
-/// As long as the points reach along it, and a tenth more, unless it has a length of its own. \param line_width pixels.
+/// As long as the points reach along it, and a tenth more, unless it has a length of its own.
+/// \param line_width pixels.
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width);
 
 /// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
 std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points);
 
-/// The patch with its outline. \param line_width pixels.
+/// The patch with its outline.
+/// \param line_width pixels.
 void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,
               double line_width);
 
 /// \param font_size pixels.
 vtkSmartPointer<vtkTextActor> labelActor(const std::string& text, int font_size);
 
-/// The colours of the support. \param panel_width,panel_height,font_size pixels.
+/// The colours of the support.
+/// \param panel_width,panel_height,font_size pixels.
 vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, int font_size);
 
 }  // namespace pcl_symmetry::apps

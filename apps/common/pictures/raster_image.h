@@ -13,7 +13,8 @@ namespace pcl_symmetry::apps {
 /// Red, green and blue, 8 bits each, row by row from the top.
 struct RasterImage {
   RasterImage() = default;
-  /// White. \param num_columns,num_rows pixels, >= 1.
+  /// White.
+  /// \param num_columns,num_rows pixels, >= 1.
   RasterImage(int num_columns, int num_rows)
       : width(num_columns), height(num_rows), pixels(3 * std::size_t(num_columns) * num_rows, 255) {}
 
@@ -27,7 +28,8 @@ struct RasterImage {
   /// \param color red, green and blue in [0, 1], clamped.
   void set(int x, int y, const Eigen::Vector3d& color);
 
-  /// Fills the disk, at least the pixel that its center is in; what lies outside the picture is left out. \param center
+  /// Fills the disk, at least the pixel that its center is in; what lies outside the picture is left out.
+  /// \param center
   /// pixels, (0, 0) = middle of the first one.
   void drawDisk(const Eigen::Vector2d& center, double radius, const Eigen::Vector3d& color);
 
@@ -35,7 +37,8 @@ struct RasterImage {
   void paste(const RasterImage& tile, int x, int y);
 };
 
-/// Pictures of one size in rows, with white gaps. \param num_columns 0 = one row.
+/// Pictures of one size in rows, with white gaps.
+/// \param num_columns 0 = one row.
 RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns = 0);
 
 /// \return whether the name ends as pictures do that readImage() knows: .png or .pgm, in capitals or not.
@@ -45,7 +48,8 @@ bool isImagePath(const std::string& path);
 /// \throws InputError for a file that is no PNG or binary PGM picture of 8 or 16 bits.
 RasterImage readImage(const std::string& path);
 
-/// Writes a PNG whole. \throws InputError if the file cannot be written.
+/// Writes a PNG whole.
+/// \throws InputError if the file cannot be written.
 void writeImage(const RasterImage& image, const std::string& path);
 
 }  // namespace pcl_symmetry::apps

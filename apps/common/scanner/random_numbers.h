@@ -7,7 +7,8 @@
 
 namespace pcl_symmetry::apps {
 
-/// Uniform in [0, 1). \param generator of 64 random bits.
+/// Uniform in [0, 1).
+/// \param generator of 64 random bits.
 template <typename Generator>
 double uniform(Generator& generator) {
   return static_cast<double>(generator() >> 11) * 0x1.0p-53;

@@ -51,7 +51,7 @@ Eigen::Isometry3d shiftedBack(const Eigen::Isometry3d& T_target_source, const Ei
 /// \return significant digits of lengths in the input frame that a tool prints
 int lengthDigits(const Eigen::Vector3d& shift);
 
-/// \return "x y z" with so many significant digits
+/// \return "x y z" with the given number of significant digits
 std::string spelled(const Eigen::Vector3d& point, int digits);
 
 }  // namespace pcl_symmetry::apps

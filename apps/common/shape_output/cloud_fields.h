@@ -12,11 +12,13 @@
 namespace pcl_symmetry::apps {
 
 /// Moves the points from \p first on: x, y, z and the viewpoint vp_x, vp_y, vp_z by the whole map, normals by its
-/// linear part. Other fields stay. \param map keeps distances: a rigid motion or a reflection.
+/// linear part. Other fields stay.
+/// \param map keeps distances: a rigid motion or a reflection.
 void movePoints(pcl::PCLPointCloud2& cloud, const Eigen::Affine3d& map, std::size_t first = 0);
 
 /// One more field of type float for each name, after those that the cloud has.
-/// \param values for each name one value per point. \throws InputError where a name is taken.
+/// \param values for each name one value per point.
+/// \throws InputError where a name is taken.
 pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<std::string>& names,
                                const std::vector<std::vector<float>>& values);
 

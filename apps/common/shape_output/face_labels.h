@@ -8,7 +8,8 @@
 
 namespace pcl_symmetry::apps {
 
-/// \return one label >= 0 per face. \throws InputError naming the first line that is wrong.
+/// \return one label >= 0 per face.
+/// \throws InputError naming the first line that is wrong.
 std::vector<int> readFaceLabels(const std::string& path);
 
 /// Writes a .seg file whole.

@@ -92,7 +92,7 @@ private:
       const double diagonal = VirtualScanner(*shape.mesh).diagonal();
       Wholes wholes;
       std::vector<FrameErrors> errors;
-      std::vector<Eigen::Matrix3d> axes;  // of each, in the frame of the whole cloud
+      std::vector<Eigen::Matrix3d> axes;  // axes of each frame, in the frame of the whole cloud
       for (const CloudRecipe& recipe : recipesFor(clouds_))
         evaluate(model, maker, recipe, diagonal, wholes, errors, axes);
       markAsGood(wholes, axes, errors);

@@ -11,8 +11,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Of the radius of the scan. chosen: about as far as a hidden half moves the center of mass; smaller values push too
-// little, larger ones beyond the middle.
+// Share of the radius of the scan. chosen: about as far as a hidden half moves the center of mass; smaller values push
+// too little, larger ones beyond the middle.
 constexpr double kPush = 0.15;
 
 FoundFrame bySymmetry(bool as_published, const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed,

@@ -38,7 +38,8 @@ struct AlignmentStatistics {
   double median_ms = 0.0, p95_ms = 0.0;  ///< of scans
 };
 
-/// One for each method. \param errors of the same clouds by all methods.
+/// One for each method.
+/// \param errors of the same clouds by all methods.
 std::vector<AlignmentStatistics> summarize(const std::vector<FrameErrors>& errors);
 
 void printTable(const std::vector<AlignmentStatistics>& statistics);

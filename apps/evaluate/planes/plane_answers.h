@@ -19,13 +19,16 @@ struct PlaneAnswers {
   bool failed = false;                 ///< no answer was given, not even "none"
 };
 
-/// Runs SymmetryMaximaRefinement with its defaults. \param num_threads 0 = all. \return failed where it throws.
+/// Runs SymmetryMaximaRefinement with its defaults.
+/// \param num_threads 0 = all.
+/// \return failed where it throws.
 PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed, int num_threads);
 
 /// Reads folder/name.json, as pcl_symmetry_planes writes it, or else folder/name.txt with a line `a b c d [score]` for
 /// each plane a x + b y + c z + d = 0, best first, # comments. The confidence, or else the score, ranks answers; where
 /// neither is given, their order does.
-/// \return failed where neither file exists. \throws InputError for a file that cannot be understood.
+/// \return failed where neither file exists.
+/// \throws InputError for a file that cannot be understood.
 PlaneAnswers readAnswers(const std::string& folder, const std::string& name);
 
 }  // namespace pcl_symmetry::apps

@@ -55,7 +55,8 @@ struct MatchResult {
   std::optional<Difference> first_axis_error;  ///< of the first right axis
 };
 
-/// \param answers best first. \param references in the frame of the answers.
+/// \param answers best first.
+/// \param references in the frame of the answers.
 ///
 /// A plane is right at a reference plane, through a reference axis and through a reference center; an axis at a
 /// reference axis and through a reference center. Where eight or more reference planes meet in a line, an axis there is

@@ -60,7 +60,8 @@ std::vector<PrecisionRecall> precisionRecall(const CloudResults& results);
 /// Area under the curve, where precision is the best at this recall or more.
 double averagePrecision(const std::vector<PrecisionRecall>& curve);
 
-/// \param share in [0, 1]. \return the value that this share of the values does not exceed, between two of them on a
+/// \param share in [0, 1].
+/// \return the value that this share of the values does not exceed, between two of them on a
 /// straight line; NaN for none.
 double quantile(std::vector<double> values, double share);
 

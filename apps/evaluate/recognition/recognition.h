@@ -3,7 +3,8 @@
 
 namespace pcl_symmetry::apps {
 
-/// The sub-command, with argv[0] its name. \return the exit code.
+/// The sub-command, with argv[0] its name.
+/// \return the exit code.
 int evaluateRecognition(int argc, char** argv);
 
 }  // namespace pcl_symmetry::apps

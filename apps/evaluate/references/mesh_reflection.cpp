@@ -40,9 +40,10 @@ double MeshReflection::share(const ReflectionPlane& plane, double tolerance, int
 
 ReflectionPlane MeshReflection::refine(const ReflectionPlane& start, double width, double final_width,
                                        int stride) const {
-  constexpr int kMaxIterations = 30;    // chosen: most end after ten; twice changes no reference
-  constexpr double kReach = 4.0;        // widths; derived: a residual beyond weighs less than 1/289
-  constexpr double kDamping = 1e-6;     // of the stiffest direction; chosen: only keeps the system regular
+  constexpr int kMaxIterations = 30;  // chosen: most end after ten; twice changes no reference
+  constexpr double kReach = 4.0;      // widths; derived: a residual beyond weighs less than 1/289
+  // share of the stiffness of the stiffest direction; chosen: only keeps the system regular
+  constexpr double kDamping = 1e-6;
   constexpr double kLongestStep = 0.1;  // radians and diagonals; chosen: half is slower, twice leaves the basin
   constexpr double kRest = 1e-9;        // radians and diagonals; chosen: far below what a reference is compared by
   constexpr double kOnSurface = 1e-9;   // diagonals; derived: rounding of double, closer points give no direction

@@ -12,14 +12,15 @@ namespace pcl_symmetry::apps {
 /// Works in the frame of the TriangleScene, where one is the diagonal. Safe to call from several threads.
 class MeshReflection {
 public:
-  /// \param scene must outlive this object. \param num_samples points spread over the mesh by area, >= 1.
+  /// \param scene must outlive this object.
+  /// \param num_samples points spread over the mesh by area, >= 1.
   /// \throws std::invalid_argument where the mesh has no area.
   MeshReflection(const TriangleScene& scene, int num_samples, std::uint64_t seed);
 
   const Points& samples() const { return samples_; }
 
   /// Share of the area whose reflection lies within \p tolerance of the mesh, in [0, 1].
-  /// \param stride takes every so many-th sample.
+  /// \param stride uses one sample in this number.
   double share(const ReflectionPlane& plane, double tolerance, int stride = 1) const;
 
   /// Gauss-Newton steps on the distances d of the reflected samples from the mesh, weighted by 1 / (1 + d^2 / w^2)^2

@@ -7,13 +7,14 @@
 
 namespace pcl_symmetry::apps {
 
-/// Planes through a line at angles that are spread evenly and in step with no polygon.
+/// Planes through a line at angles that are spread evenly and repeat those of no polygon.
 std::vector<ReflectionPlane> planesThrough(const Line3d& line, int count);
 
 /// Planes through a point, normals on a Fibonacci half sphere.
 std::vector<ReflectionPlane> planesThrough(const Eigen::Vector3d& point, int count);
 
-/// The line closest to lying in all planes, of which two must not be parallel. \param start says where along it its
+/// The line closest to lying in all planes, of which two must not be parallel.
+/// \param start says where along it its
 /// origin is.
 Line3d commonLine(const std::vector<ReflectionPlane>& planes, const Line3d& start);
 

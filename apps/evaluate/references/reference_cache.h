@@ -20,7 +20,8 @@ public:
   /// \throws InputError where the file cannot be understood or was made with other options.
   ReferenceCache(std::string path, const ReferenceOptions& options);
 
-  /// \param key as Model::key. \param num_faces of the mesh: another number is another mesh under the same name.
+  /// \param key as Model::key.
+  /// \param num_faces of the mesh: another number is another mesh under the same name.
   std::optional<ReferenceSymmetries> find(const std::string& key, std::size_t num_faces) const;
 
   void add(const std::string& key, std::size_t num_faces, const ReferenceSymmetries& symmetries);

@@ -20,10 +20,11 @@ namespace pcl_symmetry::apps {
 namespace {
 
 // The search, in diagonals and shares.
-/// Of candidates. derived: a plane that maps 90 % of the area has a D far above; half only adds candidates.
+/// Least D of candidates. derived: a plane that maps 90 % of the area has a D far above; half only adds candidates.
 constexpr double kLeastD = 0.3;
 constexpr std::size_t kMaxCandidates = 400;  // chosen: half misses planes of gears, twice takes twice the time
-/// Of the weights at the start of a refinement. chosen: half leaves poor candidates behind, twice joins near planes.
+/// Widths of the weights at the start of a refinement. chosen: half leaves poor candidates behind, twice joins near
+/// planes.
 constexpr double kCoarseWidth = 0.04, kFineWidth = 0.01;
 /// chosen: shares are known to 1 % (screen) and 0.5 % (fine); half doubles the variance, twice the time.
 constexpr int kScreenSamples = 1000, kCoarseSamples = 400, kFineSamples = 4000, kFamilySamples = 5000;
@@ -145,7 +146,8 @@ private:
     });
   }
 
-  /// \param planes best first. \return those that are not close to a better one.
+  /// \param planes best first.
+  /// \return those that are not close to a better one.
   static std::vector<ReferencePlane> merged(const std::vector<ReferencePlane>& planes, double angle, double offset) {
     std::vector<ReferencePlane> kept;
     for (const ReferencePlane& plane : planes)

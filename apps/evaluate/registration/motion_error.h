@@ -18,8 +18,11 @@ struct MotionError {
 ///
 /// Two planes of symmetry make a rotation about their common line, and every rotation that a finite set of planes
 /// generates is made by two of them. About an axis of revolution any angle is right, and a half turn of it where a
-/// plane lies across; about the center of a sphere any rotation is. \param T_model_scan the answer. \param
-/// T_model_scan_true the truth. \param symmetries of the model, in its frame.
+/// plane lies across; about the center of a sphere any rotation is.
+/// \param T_model_scan the answer.
+/// \param
+/// T_model_scan_true the truth.
+/// \param symmetries of the model, in its frame.
 MotionError motionError(const Eigen::Isometry3d& T_model_scan, const Eigen::Isometry3d& T_model_scan_true,
                         const ReferenceSymmetries& symmetries);
 

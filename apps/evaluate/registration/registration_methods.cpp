@@ -24,7 +24,7 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 using FeatureCloud = pcl::PointCloud<pcl::FPFHSignature33>;
 
-/// Of the diagonal of the target's bounding box. chosen: half makes ICP and FPFH slow, twice loses small parts.
+/// Share of the diagonal of the target's bounding box. chosen: half makes ICP and FPFH slow, twice loses small parts.
 constexpr float kLeaf = 0.015f;
 constexpr int kIcpIterations = 50;  // chosen: half stops early on long ways, twice changes few results
 

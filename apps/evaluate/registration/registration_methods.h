@@ -20,7 +20,8 @@ struct RegistrationAnswer {
 struct RegistrationMethod {
   const char* name;
   const char* summary;
-  /// \param source may hold points that are not finite. \param num_threads 0 = all.
+  /// \param source may hold points that are not finite.
+  /// \param num_threads 0 = all.
   RegistrationAnswer (*run)(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& source,
                             const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& target, std::uint64_t seed,
                             int num_threads);

@@ -30,7 +30,8 @@ struct RetrievalMethod {
 using RetrievalProgress = std::function<void(double)>;
 
 /// PRSD, PRST, GEDT and the product of the latter two: L2 in one frame each, about the center of mass.
-/// \param clouds of the models. \param canonical turned to the axes of their symmetry, or else as they are.
+/// \param clouds of the models.
+/// \param canonical turned to the axes of their symmetry, or else as they are.
 std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, bool canonical,
                                               const RetrievalOptions& options, const RetrievalProgress& progress);
 

@@ -26,7 +26,8 @@ struct RetrievalStatistics {
   std::vector<double> precision = std::vector<double>(kNumRecalls, 0.0);
 };
 
-/// \param distances N x N, symmetric; ties go by index. \param classes of the N models.
+/// \param distances N x N, symmetric; ties go by index.
+/// \param classes of the N models.
 RetrievalStatistics retrievalStatistics(const Eigen::MatrixXf& distances, const std::vector<std::string>& classes);
 
 /// The same of the queries of each class alone.

@@ -25,7 +25,8 @@ double pairsTogether(const Table& counts) {
   return counts.unaryExpr(&numPairs).sum();
 }
 
-/// Share of the pairs of faces on which two segmentations differ. \param counts faces in both of two segments.
+/// Share of the pairs of faces on which two segmentations differ.
+/// \param counts faces in both of two segments.
 double randDistance(const Table& counts) {
   const double all = numPairs(counts.sum());
   if (all == 0.0) return 0.0;

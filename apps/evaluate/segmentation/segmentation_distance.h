@@ -41,7 +41,8 @@ public:
 
   std::size_t numFaces() const { return areas_.size(); }
 
-  /// \param labels one per face, any numbers. \throws std::invalid_argument for another number of labels than faces.
+  /// \param labels one per face, any numbers.
+  /// \throws std::invalid_argument for another number of labels than faces.
   PreparedSegmentation prepare(const std::vector<int>& labels) const;
 
   /// \param reference,other of this mesh.

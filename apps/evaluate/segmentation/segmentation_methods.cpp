@@ -16,9 +16,9 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr int kNumClusters = 6;     // of k-means; chosen: people make 2 to 20 segments
-constexpr int kNumPoints = 30'000;  // of the cloud of a mesh; chosen: about a point per face of the benchmark
-constexpr int kMaxDepth = 4;        // of the paper's method; chosen: 16 parts, twice cuts into crumbs
+constexpr int kNumClusters = 6;     // clusters of k-means; chosen: people make 2 to 20 segments
+constexpr int kNumPoints = 30'000;  // points of the cloud of a mesh; chosen: about a point per face of the benchmark
+constexpr int kMaxDepth = 4;        // depth of the paper's method; chosen: 16 parts, twice cuts into crumbs
 
 Segmentation ofLabels(std::vector<int> labels) {
   Segmentation segmentation;

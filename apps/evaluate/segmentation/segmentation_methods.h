@@ -17,8 +17,11 @@ struct NamedSegmentation {
   std::function<Segmentation(const pcl::PolygonMesh&)> segment;
 };
 
-/// Baselines and methods of the library. \param names "one", "k-means", "paper-1" to "paper-4" (by depth), "symmetry",
-/// "concavity" and "all" (merging, by evidence), "points" (the last on a cloud). \param num_threads 0 = all. \throws
+/// Baselines and methods of the library.
+/// \param names "one", "k-means", "paper-1" to "paper-4" (by depth), "symmetry",
+/// "concavity" and "all" (merging, by evidence), "points" (the last on a cloud).
+/// \param num_threads 0 = all.
+/// \throws
 /// UsageError for an unknown name, with those that are known.
 std::vector<NamedSegmentation> segmentationMethods(const std::vector<std::string>& names, int num_threads);
 

@@ -8,8 +8,10 @@
 namespace pcl_symmetry::apps {
 
 /// \param path a .cla file: "PSB 1", the number of classes and of models, then for each class its name, its parent, the
-/// number of its models and their numbers. \return the class of each model, behind its parents ("vehicle/car"); models
-/// are called as the benchmark's files are: "m" and the number. \throws InputError where the file does not keep to
+/// number of its models and their numbers.
+/// \return the class of each model, behind its parents ("vehicle/car"); models
+/// are called as the benchmark's files are: "m" and the number.
+/// \throws InputError where the file does not keep to
 /// this.
 std::map<std::string, std::string> readClassFile(const std::string& path);
 

@@ -17,7 +17,7 @@ struct Model {
   std::string key;  ///< "folder/file.off", the same wherever the folder lies
 };
 
-/// Of each folder's meshes, sorted by name, those with index first, first + every, first + 2 every ..., at most max.
+/// The meshes of each folder, sorted by name, with index first, first + every, first + 2 every ..., at most max.
 struct ModelSelection {
   std::optional<std::string> list;  ///< a file of names without extension, one a line, # comments: others do not count
   int every = 1;

@@ -7,7 +7,7 @@
 
 namespace pcl_symmetry::apps {
 
-/// A number with so many decimals, or a dash where there is nothing to count.
+/// A number with the given number of decimals, or a dash where there is nothing to count.
 std::string fixed(double value, int decimals, double scale = 1.0);
 
 /// Builds one row of comma-separated values; what is not known stays empty.

@@ -69,7 +69,9 @@ public:
   bool getUseInputAxes() const { return parameters_.use_input_axes; }
 
   /// Sets the size of the ball that is described. It is relative to the cloud, unlike that of setRadiusSearch(), which
-  /// is ignored. \param radius in mean distances of the points from the center, > 0; default 2. \throws
+  /// is ignored.
+  /// \param radius in mean distances of the points from the center, > 0; default 2.
+  /// \throws
   /// pcl::BadArgumentException for another radius.
   void setRadius(double radius) {
     detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.radius = radius; });
@@ -149,7 +151,7 @@ private:
   detail::PRSTParameters parameters_;
   std::size_t max_points_ = 20'000;
   Viewpoint viewpoint_;
-  bool warned_ = false;  // of an ignored search
+  bool warned_ = false;  // that a search is ignored
   // While a descriptor is computed:
   pcl::IndicesPtr all_indices_;
   Points points_;

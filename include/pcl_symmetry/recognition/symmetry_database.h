@@ -137,8 +137,12 @@ public:
   std::vector<ModelMatch> match(const Cloud& cloud, int num_nearest = 10, const Viewpoint& viewpoint = {}) const;
 
   /// The models that a scan can show, in the unit of the models. Candidates look like the scan from some side; without
-  /// a viewpoint, candidates are of like shape. \param scan at least two different finite points. \param viewpoint
-  /// where the scanner stood. \return accepted models, best first. \throws pcl::BadArgumentException for bad options.
+  /// a viewpoint, candidates are of like shape.
+  /// \param scan at least two different finite points.
+  /// \param viewpoint
+  /// where the scanner stood.
+  /// \return accepted models, best first.
+  /// \throws pcl::BadArgumentException for bad options.
   /// \throws pcl::IOException naming file and reason.
   Recognition recognize(const Cloud& scan, const RecognitionOptions& options = {},
                         const Viewpoint& viewpoint = {}) const;

@@ -8,7 +8,7 @@ namespace pcl_symmetry {
 
 struct KMeansOptions {
   int num_clusters = 2;  ///< k, >= 1
-  /// Of each try, >= 1.
+  /// Greatest number of iterations of each try, >= 1.
   /// chosen: a guard against endless runs; a lower limit may stop before the clusters rest.
   int max_iterations = 100;
   /// >= 1; the try with the least error counts.

@@ -23,9 +23,13 @@ constexpr int kSignatureSize = 2 * kNumOrientations * kSignatureCells * kSignatu
 /// cell holds the mean of n n^T over the surface in it, n the normal, so that a wall differs from a floor at the same
 /// place. The roots of the values are compared, with their signs. The first cube has the proportions of the shape; in
 /// the second one the shape is stretched to equal root mean squares along the axes, so that long and short things of a
-/// class agree. The comparison decides the order and the signs of the axes, see rotateSignature(). \param points 3 x N,
-/// finite, input units, at least two different ones. \param axes unit vectors in columns, right-handed. \return
-/// kSignatureSize values of unit norm. \throws std::invalid_argument for points without extent.
+/// class agree. The comparison decides the order and the signs of the axes, see rotateSignature().
+/// \param points 3 x N,
+/// finite, input units, at least two different ones.
+/// \param axes unit vectors in columns, right-handed.
+/// \return
+/// kSignatureSize values of unit norm.
+/// \throws std::invalid_argument for points without extent.
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes);
 
 /// Frames that signatures are made in, right-handed axes in columns.

@@ -46,7 +46,8 @@ struct SymmetryDescriptors {
 
 /// \param points 3 x N, finite, input units, not all at the origin of the frame.
 /// \param T_frame_input from the input to the frame of the descriptors: a canonical frame, or the axes of the input
-/// about the center of mass. \throws std::invalid_argument for bad options or points without extent.
+/// about the center of mass.
+/// \throws std::invalid_argument for bad options or points without extent.
 SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Isometry3d& T_frame_input,
                                         const DescriptorOptions& options = {});
 

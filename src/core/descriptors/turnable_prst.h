@@ -19,9 +19,13 @@ constexpr int kTurnablePRSTSize = 2 * kTurnableNormals * kTurnableOffsets;
 /// Departures from the paper: the normals lie on equiangular grids on the faces of a cube, as bins in theta and phi
 /// have no such symmetry; values are weighted by the root of the solid angle around their normal, where the paper
 /// weights differences by sqrt(sin theta). Values are sqrt(D), see SymmetryDescriptors::prst, once in the proportions
-/// of the shape and once for the shape stretched to equal root mean squares along the axes. \param points 3 x N,
-/// finite, input units, at least two different ones. \param axes unit vectors in columns, right-handed. \return
-/// kTurnablePRSTSize values of unit norm. \throws std::invalid_argument for points without extent.
+/// of the shape and once for the shape stretched to equal root mean squares along the axes.
+/// \param points 3 x N,
+/// finite, input units, at least two different ones.
+/// \param axes unit vectors in columns, right-handed.
+/// \return
+/// kTurnablePRSTSize values of unit norm.
+/// \throws std::invalid_argument for points without extent.
 std::vector<float> turnablePRST(const PointsRef& points, const Eigen::Matrix3d& axes);
 
 /// The turnable PRST in the frame whose axes are axes * axisRotations()[rotation]^T.

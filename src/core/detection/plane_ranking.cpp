@@ -14,7 +14,8 @@ namespace {
 // Radians, and radii: how far the slope of a maximum may reach. chosen: twice the limits of a basin of refinement;
 // smaller values report planes that came to rest on a slope, larger ones only cost a value of D each.
 constexpr PlaneTolerance kSlope{0.2, 0.15};
-// Of D. chosen: what rounding and cells make of a level slope; larger values drop shallow maxima of their own.
+// Difference of D. chosen: what rounding and cells make of a level slope; larger values drop shallow maxima of their
+// own.
 constexpr double kSlopeDip = 0.005;
 
 int rankOf(const SymmetryPlane& plane) {

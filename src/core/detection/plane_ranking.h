@@ -10,7 +10,9 @@ namespace pcl_symmetry {
 /// The planes that are reported: best first, each maximum once, as many as the options ask for.
 ///
 /// Order: symmetries, then possible ones, both by falling confidence, then approximate and local ones by falling
-/// support. \param planes input frame. \return with the support of every point.
+/// support.
+/// \param planes input frame.
+/// \return with the support of every point.
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
                                         const PlaneFit& fit, const DetectionOptions& options);
 

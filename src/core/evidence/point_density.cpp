@@ -22,7 +22,7 @@ constexpr double kLeastVariance =
     0.1;                         // cells squared. chosen: less needs no blur; only where kMostCells makes cells wide
 constexpr double kLeast = 1e-9;  // chosen: any value far below all densities and extents; avoids a division by 0
 
-// Of refine(): bandwidths that the farthest points move by in a difference. chosen: at half, single points make the
+// Bandwidths by which the farthest points move in a difference of refine(). chosen: at half, single points make the
 // differences noisy; at twice, they miss narrow maxima.
 constexpr double kStep = 0.5;
 constexpr double kLongestStep = 3.0;  // differences. chosen: the quadric holds that far; longer steps leave the maximum

@@ -95,7 +95,7 @@ private:
   const std::vector<float> free_space_;
   const PlaneProfiles profiles_;
   const SurfaceDirections directions_;
-  const Eigen::Vector3d middle_;  // of the grid, input frame
+  const Eigen::Vector3d middle_;  // middle of the grid, input frame
   const float reach_;
   const PrincipalAxes principal_axes_;
   const Eigen::Vector3f center_of_mass_;

@@ -37,7 +37,7 @@ struct PerpendicularPlane {
   Eigen::Vector3f normal;
   ScoredOffset best;
   double agreement = 0.0;
-  ScoredOffset half_way;  // of the plane half-way between it and the first; scans only
+  ScoredOffset half_way;  // offset of the plane half-way between it and the first; scans only
 };
 
 PerpendicularPlane planeAt(const FrameEvidence& evidence, const CellPlane& first, std::size_t angle_index) {

@@ -24,7 +24,10 @@ class PlaneProfiles {
 public:
   /// \param edt distance transform of the points.
   /// \param free_space one value in [0, 1] per cell, from freeSpace(); empty: the points show the object from all
-  /// sides. \param num_samples points drawn from the distance transform, >= 1. \param seed of the samples. \param
+  /// sides.
+  /// \param num_samples points drawn from the distance transform, >= 1.
+  /// \param seed of the samples.
+  /// \param
   /// num_threads >= 0; 0 = one per core.
   PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& free_space, int num_samples, std::uint64_t seed,
                 int num_threads);

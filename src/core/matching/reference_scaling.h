@@ -10,9 +10,12 @@ namespace pcl_symmetry {
 /// The mean distance of a shape to the nearest shapes of a fixed reference set.
 ///
 /// d(a, b) / sqrt(typical(a) typical(b)) compares distances of shapes that many others resemble with distances of
-/// shapes that stand apart. The classes of the references need not be known. \param distances to the references;
-/// infinite ones, as to the shape itself, are left out. \param num_nearest chosen: half varies with single references,
-/// twice averages over shapes of other kinds. \return > 0; 1 where no distance is left.
+/// shapes that stand apart. The classes of the references need not be known.
+/// \param distances to the references;
+/// infinite ones, as to the shape itself, are left out.
+/// \param num_nearest chosen: half varies with single references,
+/// twice averages over shapes of other kinds.
+/// \return > 0; 1 where no distance is left.
 inline float typicalDistance(std::vector<float> distances, std::size_t num_nearest = 10) {
   distances.erase(std::remove(distances.begin(), distances.end(), std::numeric_limits<float>::infinity()),
                   distances.end());

@@ -15,9 +15,13 @@ struct RankedPose {
 
 /// A few distinct poses of greatest merit (Section 5.1). Evenly spread rotations are screened by merit. The best of
 /// them and all hypotheses are improved coarsely, the best of those finely, by Gauss-Newton steps with a shrinking
-/// Gaussian. \param scan,model each about its own center, in units of the model's radius. \param hypotheses
-/// T_model_scan to improve beside the screened ones, for instance those that bring symmetry frames together. \return
-/// best first. \throws std::invalid_argument for bad options.
+/// Gaussian.
+/// \param scan,model each about its own center, in units of the model's radius.
+/// \param hypotheses
+/// T_model_scan to improve beside the screened ones, for instance those that bring symmetry frames together.
+/// \return
+/// best first.
+/// \throws std::invalid_argument for bad options.
 std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<Eigen::Isometry3d>& hypotheses,
                                     const PoseSearchOptions& options = {});

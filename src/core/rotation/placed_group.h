@@ -40,7 +40,8 @@ Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
 
 /// All elements of a group but the identity, placed by \p frame. The generators are judged and, about a main axis, the
 /// turns of about a quarter and a half: where there are many folds, one step cannot be told from that of one fold more
-/// or less. \param frame rotation from the frame of the group to that of the points.
+/// or less.
+/// \param frame rotation from the frame of the group to that of the points.
 RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame, const Eigen::Vector3d& center);
 
 /// The turns by multiples of 2 pi / \p fold about a line.

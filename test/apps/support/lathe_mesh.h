@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
-/// OFF text of a profile turned about z. \param profile radius and height from end to end. \param num_sides >= 3.
+/// OFF text of a profile turned about z.
+/// \param profile radius and height from end to end.
+/// \param num_sides >= 3.
 inline std::string latheOFF(const std::vector<std::pair<double, double>>& profile, int num_sides) {
   const auto num_rings = static_cast<int>(profile.size());
   std::string text =

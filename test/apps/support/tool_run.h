@@ -9,7 +9,8 @@
 
 #include "apps/support/temporary_folder.h"
 
-/// \return the path of a tool. \param name without the common beginning, e.g. "planes".
+/// \return the path of a tool.
+/// \param name without the common beginning, e.g. "planes".
 inline std::string toolPath(const std::string& name) {
   return std::string(TOOLS_FOLDER) + "/pcl_symmetry_" + name;
 }

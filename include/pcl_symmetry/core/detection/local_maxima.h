@@ -28,7 +28,10 @@ struct LocalMaximum {
 ///
 /// r is the distance of the plane from the center of mass, R the radius of the grid. The discrete Laplacian is the sum
 /// of the second differences along theta, phi and r in steps of the grid. A maximum on a seam of the grid is found
-/// once. \param map may be empty. \return strongest first. \throws std::invalid_argument for bad options.
+/// once.
+/// \param map may be empty.
+/// \return strongest first.
+/// \throws std::invalid_argument for bad options.
 std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMaximaOptions& options = {});
 
 }  // namespace pcl_symmetry

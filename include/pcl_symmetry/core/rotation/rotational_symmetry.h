@@ -62,9 +62,13 @@ struct ObjectSymmetries {
 /// The distance transform tells in which directions axes through the center of mass are likely. The rotations about
 /// these axes are refined and judged as planes are. The greatest group that explains them is then fitted as a whole,
 /// and has to pass the same test. What the surface cannot tell from a symmetry counts as one: a plate whose sides
-/// differ by a hundredth is square, a prism of 16 sides is round. \param points 3 x N, finite, input units; at least 20
-/// distinct ones, not all on a line, that show the object from all sides. \param options limits of the search. \return
-/// the group, in the input frame; C_1 for a shape without symmetry. \throws std::invalid_argument for bad options,
+/// differ by a hundredth is square, a prism of 16 sides is round.
+/// \param points 3 x N, finite, input units; at least 20
+/// distinct ones, not all on a line, that show the object from all sides.
+/// \param options limits of the search.
+/// \return
+/// the group, in the input frame; C_1 for a shape without symmetry.
+/// \throws std::invalid_argument for bad options,
 /// values that are not finite, too few points and points on a line.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
 

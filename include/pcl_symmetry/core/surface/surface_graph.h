@@ -50,7 +50,8 @@ struct SurfaceGraph {
 /// The graph of a mesh: faces are neighbours if they share an edge.
 ///
 /// Vertices at the same place are joined, so that a polygon soup is connected. If more than two faces share an edge,
-/// each is joined with the next one. Faces without area have neighbours, too. \param vertices 3 x V, input frame.
+/// each is joined with the next one. Faces without area have neighbours, too.
+/// \param vertices 3 x V, input frame.
 /// \param polygons three or more indices into the vertices each. A polygon with a vertex that is not finite becomes an
 /// element without neighbours.
 /// \return one element per polygon, in input order.

@@ -20,7 +20,10 @@ struct RankedView {
 };
 
 /// The viewpoint score S(v) = sum over u in W of |v . u| M(u) (Section 5.4). It is large if v looks along the normals
-/// of the planes, so that little of what is seen is repeated. \param planes W. \param direction v, unit. \return S(v)
+/// of the planes, so that little of what is seen is repeated.
+/// \param planes W.
+/// \param direction v, unit.
+/// \return S(v)
 /// in [0, sum of the weights].
 double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3d& direction);
 
@@ -28,9 +31,13 @@ double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3
 ///
 /// A departure from the paper's exhaustive search, because it is exact: where no v . u changes its sign,
 /// S(v) = v . sum of +-M(u) u is largest in the direction of that sum. From each of many even directions the step to
-/// the direction of the sum is repeated until no sign changes; no step lowers S. \param planes W. \param num_directions
+/// the direction of the sum is repeated until no sign changes; no step lowers S.
+/// \param planes W.
+/// \param num_directions
 /// starts of the search, >= 1. chosen: half as many may miss a maximum of a small cell between many planes; twice as
-/// many double the time. \return none if no plane has a weight > 0: then all directions are equal. \throws
+/// many double the time.
+/// \return none if no plane has a weight > 0: then all directions are equal.
+/// \throws
 /// std::invalid_argument if num_directions < 1 and a plane has a weight > 0.
 std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes, int num_directions = 4096);
 
@@ -38,7 +45,9 @@ std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes, int num_
 ///
 /// Where no v . u changes its sign, S is least at a corner of the cell: a direction along two planes. The search over
 /// all pairs of planes is exact. If all planes are parallel, all directions along them are equal and one of them is
-/// returned. \param planes W, at least one. \throws std::invalid_argument if there is no plane.
+/// returned.
+/// \param planes W, at least one.
+/// \throws std::invalid_argument if there is no plane.
 RankedView worstView(const std::vector<ViewPlane>& planes);
 
 }  // namespace pcl_symmetry

@@ -7,7 +7,8 @@
 namespace pcl_symmetry {
 
 /// Joins regions that are too small to be parts with the neighbour that they share most border with, or with the
-/// closest region if they have no neighbour; the smallest region first. \param least_area share of the surface.
+/// closest region if they have no neighbour; the smallest region first.
+/// \param least_area share of the surface.
 Regions joinFragments(Regions regions, const PartEvidence& evidence, double least_area);
 
 /// Regions and the region of each element. Borders between labels may differ from those between patches.

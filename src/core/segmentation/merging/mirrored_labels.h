@@ -22,7 +22,8 @@ std::optional<GlobalPlane> globalPlane(const PartEvidence& evidence);
 Regions mirroredRegions(const Regions& regions, const PartEvidence& evidence, const GlobalPlane& global);
 
 /// For each plane of PartEvidence::images the segment that each segment is reflected onto: the one that receives most
-/// of its area, patch by patch. \param labels one per element, in [0, num_segments).
+/// of its area, patch by patch.
+/// \param labels one per element, in [0, num_segments).
 std::vector<std::vector<int>> segmentImages(const PartEvidence& evidence, const std::vector<int>& labels,
                                             int num_segments);
 
