@@ -17,7 +17,6 @@ if(with_pcl)
   install(DIRECTORY include/pcl_symmetry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 else()
   install(DIRECTORY include/pcl_symmetry/core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcl_symmetry FILES_MATCHING PATTERN "*.h")
-  install(FILES include/pcl_symmetry/core/exports.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcl_symmetry)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
