@@ -9,8 +9,8 @@ usage: bash test/run.sh [-h] [--all] [--filter REGEX]
 Installs missing packages, builds libraries, tools and tests into build/ and runs the tests. With --all, builds the
 libraries once more with the address and undefined-behaviour sanitizers into build-sanitize/ and runs their tests, and
 the core, which starts all threads, with the thread sanitizer and without PCL into build-thread/ and runs its tests of
-threads. The last line says "N passed, N
-failed, N skipped"; a step that fails before its tests counts as one failure. Exit status 0 if tests ran and none failed.
+threads. The last line says "N passed, N failed, N skipped"; a step that fails before its tests counts as one failure.
+Exit status 0 if tests ran and none failed.
 
   --all           with sanitizers
   --filter REGEX  only tests whose name matches
