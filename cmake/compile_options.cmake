@@ -23,3 +23,22 @@ endif()
 # Warnings for our own targets only.
 add_library(pcl_symmetry_warnings INTERFACE)
 target_compile_options(pcl_symmetry_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
+
+# For tools and tests, whose time goes into the libraries: -O1 takes a quarter less time to compile than -O3.
+add_library(pcl_symmetry_quick_compile INTERFACE)
+target_compile_options(pcl_symmetry_quick_compile INTERFACE $<$<CONFIG:Release>:-O1>)
+
+# With CMAKE_UNITY_BUILD (presets release, sanitize and thread) the sources of a folder are compiled as one file: what they
+# include and the templates that they share are compiled once. A folder holds at most 12 files, so that a change compiles
+# little. Without it (preset debug) each source has to name what it includes.
+function(pcl_symmetry_unite_folders target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    get_filename_component(folder ${source} ABSOLUTE)
+    get_filename_component(folder ${folder} DIRECTORY)
+    file(RELATIVE_PATH folder ${CMAKE_CURRENT_SOURCE_DIR} ${folder})
+    string(MAKE_C_IDENTIFIER "folder_${folder}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()

@@ -9,6 +9,7 @@
 #include "common/command_line/run_tool.h"
 #include "common/command_line/tool_errors.h"
 #include "common/pictures/picture.h"
+#include "core/base/constants.h"
 #include "core/geometry/principal_axes.h"
 #include "drawing/mug_mesh.h"
 #include "drawing/parametric_mesh.h"
@@ -31,7 +32,7 @@ pcl::PolygonMesh mailbox(const std::vector<Eigen::AlignedBox3d>& stand) {
     if (u < 0.25) return {kHalfWidth * (1.0 - 8.0 * u), 0.0};
     if (u < 0.4) return {-kHalfWidth, kWall * (u - 0.25) / 0.15};
     if (u > 0.85) return {kHalfWidth, kWall * (1.0 - u) / 0.15};
-    const double angle = M_PI * (1.0 - (u - 0.4) / 0.45);
+    const double angle = kPi * (1.0 - (u - 0.4) / 0.45);
     return {kHalfWidth * std::cos(angle), kWall + kHalfWidth * std::sin(angle)};
   };
   const auto at = [&](double u, double shrink, double y) {

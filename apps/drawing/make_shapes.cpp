@@ -8,6 +8,7 @@
 #include "common/command_line/command_line.h"
 #include "common/command_line/run_tool.h"
 #include "common/command_line/tool_errors.h"
+#include "core/base/constants.h"
 #include "drawing/mug_mesh.h"
 #include "drawing/parametric_mesh.h"
 #include "drawing/solids.h"
@@ -15,6 +16,7 @@
 namespace {
 
 using namespace pcl_symmetry::apps;
+using pcl_symmetry::kPi;
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
@@ -37,7 +39,7 @@ pcl::PolygonMesh octopus() {
   // chosen: arms that are all bent differently.
   constexpr double kBends[] = {0.25, -0.35, 0.1, 0.45, -0.2, 0.35, -0.45, -0.05};
   for (int i = 0; i < 8; ++i) {
-    const double angle = 2.0 * M_PI * (i + 0.5) / 8, bend = kBends[i];
+    const double angle = 2.0 * kPi * (i + 0.5) / 8, bend = kBends[i];
     const Eigen::AngleAxisd turn(angle, Vector3d::UnitZ());
     parts.push_back(
         tube({turn * Vector3d(0.3, 0, 0.35), turn * Vector3d(0.9, 0, 0.5), turn * Vector3d(1.3, 0.3 * bend, -0.35),

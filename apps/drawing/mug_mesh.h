@@ -1,6 +1,7 @@
 /// A mug of our own for pictures.
 #pragma once
 
+#include "core/base/constants.h"
 #include "drawing/parametric_mesh.h"
 
 namespace pcl_symmetry::apps {
@@ -13,7 +14,7 @@ inline pcl::PolygonMesh mug(double reach, double rise) {
   ParametricMesh mesh;
   mesh.addTurned({{0.0, 0.0}, {1.0, 0.0}, {1.0, kHeight}, {kInner, kHeight}, {kInner, kFloor}, {0.0, kFloor}});
   mesh.addSurface(24, 12, [=](double u, double v) -> Eigen::Vector3d {
-    const double angle = M_PI * (u - 0.5), around = 2.0 * M_PI * v;
+    const double angle = kPi * (u - 0.5), around = 2.0 * kPi * v;
     const Eigen::Vector3d out(std::cos(angle), 0.0, std::sin(angle));
     const Eigen::Vector3d middle(0.95 + reach * out.x(), 0.0, 0.5 * kHeight + rise * out.z());
     return middle + kThickness * (std::cos(around) * out + std::sin(around) * Eigen::Vector3d::UnitY());

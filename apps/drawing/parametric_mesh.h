@@ -9,6 +9,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/constants.h"
+
 namespace pcl_symmetry::apps {
 
 class ParametricMesh {
@@ -39,7 +41,7 @@ public:
     for (std::size_t i = 0; i + 1 < profile.size(); ++i)
       addSurface(1, 96, [&](double u, double v) {
         const Eigen::Vector2d p = (1.0 - u) * profile[i] + u * profile[i + 1];
-        return Eigen::Vector3d(p.x() * std::cos(2.0 * M_PI * v), p.x() * std::sin(2.0 * M_PI * v), p.y());
+        return Eigen::Vector3d(p.x() * std::cos(2.0 * kPi * v), p.x() * std::sin(2.0 * kPi * v), p.y());
       });
   }
 

@@ -15,7 +15,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr double kRightAngle = 5.0;  // degrees; chosen: as in alignment.cpp
+constexpr double kReportedRightAngle = 5.0;  // degrees; chosen: as in alignment.cpp
 // Bins of Figure 12. chosen: half is noisy for 100 models, twice hides the peak at zero. derived: 25 bins of 2.5
 // degrees reach 62.5, the smallest angle over all orders and signs is below 63.
 constexpr double kTranslationBin = 1.0;  // per cent of the diagonal
@@ -39,7 +39,7 @@ std::vector<double> valuesOf(const Errors& errors, Value value) {
 
 double shareRight(const Errors& errors, Value value) {
   std::vector<double> right;
-  for (const FrameErrors* e : errors) right.push_back(e->*value < kRightAngle ? 1.0 : 0.0);
+  for (const FrameErrors* e : errors) right.push_back(e->*value < kReportedRightAngle ? 1.0 : 0.0);
   return mean(right);
 }
 

@@ -13,7 +13,7 @@ double ratio(double count, double total) {
   return total > 0.0 ? count / total : std::numeric_limits<double>::quiet_NaN();
 }
 
-double degrees(double radians) {
+double inDegrees(double radians) {
   return radians * 180.0 / kPi;
 }
 
@@ -65,11 +65,11 @@ PlaneStatistics summarize(const CloudResults& results) {
       statistics.num_axes += result->num_reference_axes;
       num_axes_found += match.num_axes_found;
       if (match.first_error) {
-        angles.push_back(degrees(match.first_error->angle));
+        angles.push_back(inDegrees(match.first_error->angle));
         offsets.push_back(match.first_error->offset);
       }
       if (match.first_axis_error) {
-        axis_angles.push_back(degrees(match.first_axis_error->angle));
+        axis_angles.push_back(inDegrees(match.first_axis_error->angle));
         axis_offsets.push_back(match.first_axis_error->offset);
       }
     }

@@ -17,9 +17,9 @@ namespace {
 constexpr int kCells = 64;             // chosen: as kTransformCells of symmetryDescriptors()
 constexpr double kSigma = 1.0 / 16.0;  // radii of the ball. chosen: as kTransformSigma of symmetryDescriptors()
 constexpr int kNumSamples = 256;       // chosen: as DescriptorOptions::num_samples
-constexpr int kSide = 10;              // normals along each side of a cube face. chosen: 9 degrees apart; half blurs
+constexpr int kFaceSide = 10;              // normals along each side of a cube face. chosen: 9 degrees apart; half blurs
                                        // planes, twice takes four times the time and size
-static_assert(kTurnableNormals == 3 * kSide * kSide);
+static_assert(kTurnableNormals == 3 * kFaceSide * kFaceSide);
 constexpr int kFineOffsets = 2 * kTurnableOffsets;  // chosen: D is averaged over two offsets; one is noisier
 // Radius of the ball in mean distances of the points from the middle. chosen: it holds nearly all points of compact
 // shapes; half cuts away the outer parts, twice leaves half of the offsets empty.
@@ -38,9 +38,9 @@ const Normals& normals() {
     Normals made;
     Eigen::Index count = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < kSide * kSide; ++i) {
-        const auto place = [](int k) { return std::tan(((k + 0.5) / kSide - 0.5) * (0.5 * kPi)); };
-        const double u = place(i % kSide), v = place(i / kSide), sq = 1.0 + u * u + v * v;
+      for (int i = 0; i < kFaceSide * kFaceSide; ++i) {
+        const auto place = [](int k) { return std::tan(((k + 0.5) / kFaceSide - 0.5) * (0.5 * kPi)); };
+        const double u = place(i % kFaceSide), v = place(i / kFaceSide), sq = 1.0 + u * u + v * v;
         Eigen::Vector3d x;
         x[axis] = 1.0;
         x[(axis + 1) % 3] = u;

@@ -23,9 +23,9 @@ constexpr int kMaxPeaks = 6;
 constexpr std::size_t kMaxFirstPlanes = 6;
 // Degrees, sizes of the steps to a maximum. derived: the first is a bin of the map (2.8 degrees), each is half of that
 // before it.
-constexpr double kStepsInDegrees[] = {3.0, 1.5, 0.75};
+constexpr double kPlaneStepsInDegrees[] = {3.0, 1.5, 0.75};
 // Steps of one size. derived: 4 of 3 degrees reach past the basin of a candidate, 9 degrees.
-constexpr int kMaxMoves = 4;
+constexpr int kMaxPlaneMoves = 4;
 
 bool isKnown(const std::vector<CellPlane>& planes, const Eigen::Vector3f& normal, double angle) {
   return std::any_of(planes.begin(), planes.end(),
@@ -35,8 +35,8 @@ bool isKnown(const std::vector<CellPlane>& planes, const Eigen::Vector3f& normal
 /// The plane moved to the nearest maximum of quality, by steps of falling size. It turns about the center of mass.
 CellPlane climbed(const FrameEvidence& evidence, CellPlane plane) {
   double quality = evidence.quality(plane);
-  for (const double step : kStepsInDegrees) {
-    for (int move = 0; move < kMaxMoves; ++move) {
+  for (const double step : kPlaneStepsInDegrees) {
+    for (int move = 0; move < kMaxPlaneMoves; ++move) {
       const Eigen::Vector3f u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
       CellPlane better = plane;
       for (const Eigen::Vector3f& side : {u, Eigen::Vector3f(-u), v, Eigen::Vector3f(-v)}) {

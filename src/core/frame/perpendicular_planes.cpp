@@ -20,9 +20,9 @@ constexpr std::size_t kMaxRefined = 6;
 constexpr double kHalfWayWeight = 0.15;
 // Degrees, sizes of the steps of the refinement. derived: the first is less than the 3 degrees between two angles, each
 // is half of that before it.
-constexpr double kStepsInDegrees[] = {2.0, 1.0, 0.5};
+constexpr double kAxesStepsInDegrees[] = {2.0, 1.0, 0.5};
 // Steps of one size. chosen: half may end on the way to the maximum, twice costs time where steps go astray.
-constexpr int kMaxMoves = 3;
+constexpr int kMaxAxesMoves = 3;
 
 Eigen::Vector3f halfWay(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return (a + b).normalized();
@@ -99,8 +99,8 @@ FrameCandidate turnedTo(const FrameEvidence& evidence, const FrameCandidate& fro
 /// The frame turned about its own axes, by steps of falling size, to the nearest maximum of the value.
 FrameCandidate climbed(const FrameEvidence& evidence, const FrameCandidate& start) {
   FrameCandidate frame = turnedTo(evidence, start, start.axes);
-  for (const double step : kStepsInDegrees) {
-    for (int move = 0; move < kMaxMoves; ++move) {
+  for (const double step : kAxesStepsInDegrees) {
+    for (int move = 0; move < kMaxAxesMoves; ++move) {
       FrameCandidate best = frame;
       for (int k = 0; k < 6; ++k) {
         const Eigen::Vector3f about = frame.axes.col(k / 2);

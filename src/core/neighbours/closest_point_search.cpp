@@ -31,14 +31,14 @@ private:
   float sq_distance_;
 };
 
-constexpr int kLeafSize = 10;  // points; chosen: FLANN's default
+constexpr int kPointsPerLeaf = 10;  // points; chosen: FLANN's default
 
 class FlannSearch : public ClosestPointSearch {
 public:
   explicit FlannSearch(const PointsRef& points)
       : points_(points),
         index_(flann::Matrix<float>(points_.data(), points_.cols(), 3),
-               flann::KDTreeSingleIndexParams(kLeafSize, true)) {
+               flann::KDTreeSingleIndexParams(kPointsPerLeaf, true)) {
     index_.buildIndex();
   }
 

@@ -12,7 +12,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kLeafSize = 8;  // points; chosen: half and twice as many shift work between bounds and distances
+constexpr int kPointsPerNode = 8;  // points; chosen: half and twice as many shift work between bounds and distances
 
 /// A binary tree that halves the points at each node. Each node knows a box around its points, and a cone from the
 /// center of the bounding ball.
@@ -66,7 +66,7 @@ private:
     const int index = static_cast<int>(nodes_.size());
     const Node node = around(begin, end);
     nodes_.push_back(node);
-    if (end - begin <= kLeafSize) return index;
+    if (end - begin <= kPointsPerNode) return index;
     int axis = 0;
     node.box.sizes().maxCoeff(&axis);
     const int middle = begin + (end - begin) / 2;

@@ -9,7 +9,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kLeafSize = 4;  // triangles; chosen: half and twice as many shift work between boxes and triangles
+constexpr int kTrianglesPerLeaf = 4;  // triangles; chosen: half and twice as many shift work between boxes and triangles
 
 /// Intersection of a ray with a triangle (Moeller and Trumbore 1997).
 /// \return distance along the ray in lengths of its direction; infinity if it misses the triangle.
@@ -52,7 +52,7 @@ void TriangleTree::build(int node, int begin, int end) {
   nodes_[node].max = box.max();
   nodes_[node].first = begin;
   nodes_[node].count = end - begin;
-  if (end - begin <= kLeafSize || (middles.sizes().array() <= 0.0f).all()) return;
+  if (end - begin <= kTrianglesPerLeaf || (middles.sizes().array() <= 0.0f).all()) return;
   Eigen::Index axis = 0;
   middles.sizes().maxCoeff(&axis);
   const int middle = begin + (end - begin) / 2;

@@ -14,7 +14,7 @@ namespace {
 
 // Share of the surface. chosen: smaller values break families up by sampling noise, larger ones let bodies with a small
 // handle pass for families.
-constexpr double kFamilyAllowance = 0.015;
+constexpr double kSurfaceAllowance = 0.015;
 
 }  // namespace
 
@@ -80,7 +80,7 @@ double SurfaceFit::merit(const PlaneShares& shares) const {
 }
 
 double SurfaceFit::familyAllowance() const {
-  return kFamilyAllowance;
+  return kSurfaceAllowance;
 }
 
 PlaneEvidence SurfaceFit::evidence(double support, double conflict, double score) const {

@@ -19,7 +19,7 @@ constexpr int kMaxIterations = 6;
 constexpr int kSampleFactor = 10;
 // Share of the overlap, which varies less from plane to plane than the support of a surface does. chosen: smaller
 // values break families up by sampling noise, larger ones let noisy bodies with a handle pass for families.
-constexpr double kFamilyAllowance = 0.004;
+constexpr double kVolumeAllowance = 0.004;
 
 }  // namespace
 
@@ -65,7 +65,7 @@ double VolumeFit::merit(const PlaneShares& shares) const {
 }
 
 double VolumeFit::familyAllowance() const {
-  return kFamilyAllowance;
+  return kVolumeAllowance;
 }
 
 PlaneEvidence VolumeFit::evidence(double support, double conflict, double score) const {

@@ -10,7 +10,7 @@ namespace {
 
 // Overlap of the likeliest turn about a line before its fit. chosen: half fits many lines in vain, at twice (1)
 // sampling drops true axes.
-constexpr double kLeastOverlap = 0.5;
+constexpr double kLeastTurnOverlap = 0.5;
 // Rough support of that turn after a rough fit. chosen: half fits closely in vain, twice is beyond 1.
 constexpr double kLeastSupport = 0.6;
 // Axes that are enough to place any finite group. chosen: half may miss the main axis, twice takes twice the time.
@@ -26,7 +26,7 @@ constexpr double kIdentityConfidence = 0.01;
 /// The line moved to where its likeliest turn fits best; nothing where no turn fits.
 std::optional<AxisLineCandidate> fittedLine(const RotationFit& fit, const AxisLineCandidate& start, int max_fold) {
   RotationSet turn = singleTurn(start, likeliestFold(fit, start, max_fold));
-  if (fit.overlap(turn) < kLeastOverlap) return std::nullopt;
+  if (fit.overlap(turn) < kLeastTurnOverlap) return std::nullopt;
   turn = fit.roughlyFitted(turn);
   if (fit.overlap(turn) < kRoughOverlap || fit.roughSupport(turn) < kLeastSupport) return std::nullopt;
   turn = fit.closelyFitted(turn);

@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 namespace {
 
 // directions; chosen: 64 x 64 directions make 128 blocks. Half sets up arrays more often, twice leaves threads idle.
-constexpr std::size_t kDirectionsPerBlock = 32;
+constexpr std::size_t kSampledPerBlock = 32;
 // samples set up at a time; chosen: their lines stay in the first cache (20 kB), and sums of bytes fit in 32 bits
 constexpr int kChunk = 1024;
 
@@ -108,7 +108,7 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
           means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
     }
   };
-  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads, run);
+  parallelRanges(grid.numDirections(), kSampledPerBlock, options.num_threads, run);
   return means;
 }
 

@@ -33,7 +33,7 @@ std::string ply(const std::string& format, const std::string& elements, const st
 }
 
 /// \return the complaint, checked to be one line that names the file.
-std::string complaintAbout(const std::string& path) {
+std::string complaintOnReading(const std::string& path) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   std::string message;
@@ -118,21 +118,21 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"none", "1 2 3\n", "unknown extension ''"}};
   const TemporaryFolder folder;
   for (const BadFile& file : files) {
-    const std::string message = complaintAbout(folder.write(file.name, file.content));
+    const std::string message = complaintOnReading(folder.write(file.name, file.content));
     EXPECT_NE(message.find(file.complaint), std::string::npos) << file.name << ": " << message;
   }
 }
 
 TEST(LoadShape, RefusesWhatIsNoReadableFile) {
   const TemporaryFolder folder;
-  EXPECT_NE(complaintAbout(folder / "missing.pcd").find("no such file"), std::string::npos);
+  EXPECT_NE(complaintOnReading(folder / "missing.pcd").find("no such file"), std::string::npos);
   boost::filesystem::create_directory(folder / "directory.pcd");
-  EXPECT_NE(complaintAbout(folder / "directory.pcd").find("is a directory"), std::string::npos);
+  EXPECT_NE(complaintOnReading(folder / "directory.pcd").find("is a directory"), std::string::npos);
   ASSERT_EQ(mkfifo((folder / "pipe.pcd").c_str(), 0600), 0);
-  EXPECT_NE(complaintAbout(folder / "pipe.pcd").find("not a regular file"), std::string::npos);
+  EXPECT_NE(complaintOnReading(folder / "pipe.pcd").find("not a regular file"), std::string::npos);
   if (geteuid() == 0) return;
   chmod(folder.write("locked.pcd", "x").c_str(), 0);
-  EXPECT_NE(complaintAbout(folder / "locked.pcd").find("cannot be opened"), std::string::npos);
+  EXPECT_NE(complaintOnReading(folder / "locked.pcd").find("cannot be opened"), std::string::npos);
 }
 
 /// Whatever is cut off or overwritten, loading ends with a shape or a complaint.

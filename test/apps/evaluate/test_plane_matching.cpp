@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/base/constants.h"
 #include "evaluate/planes/plane_matching.h"
 #include "evaluate/planes/plane_statistics.h"
 
@@ -9,8 +10,6 @@ namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
-
-constexpr double kDegree = M_PI / 180.0;
 
 /// Normal tilted from x towards y.
 ReflectionPlane tilted(double degrees, double offset) {

@@ -6,6 +6,7 @@
 #include "apps/support/lathe_mesh.h"
 #include "apps/support/temporary_folder.h"
 #include "common/shape_input/shape_input.h"
+#include "core/base/constants.h"
 #include "evaluate/references/mesh_distance.h"
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/shared/plane_difference.h"
@@ -14,8 +15,6 @@ namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
-
-constexpr double kDegree = M_PI / 180.0;
 
 pcl::PolygonMesh meshOf(const std::string& off) {
   const TemporaryFolder folder;

@@ -5,16 +5,13 @@
 
 #include <algorithm>
 
+#include "shapes/posed_surfaces.h"
 #include "shapes/shapes.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
-
-double angleOf(const Eigen::Isometry3d& motion) {
-  return Eigen::AngleAxisd(motion.linear()).angle();
-}
 
 /// A frame in some pose, with no equally good ones.
 SymmetryFrame frameAt(const Eigen::Isometry3d& T_canonical_input, int revolution_axis = -1) {

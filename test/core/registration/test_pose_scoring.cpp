@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 #include <stdexcept>
-#include <utility>
 
+#include "shapes/posed_surfaces.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
 
@@ -15,14 +14,6 @@ namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
-
-double angleOf(const Eigen::Isometry3d& motion) {
-  return Eigen::AngleAxisd(motion.linear()).angle();
-}
-
-PosedSurface surface(const Points& points, std::optional<Visibility> seen = {}) {
-  return {points, std::move(seen), 1, 0};
-}
 
 TEST(PoseScorer, TheTruePoseIsBestAndStandsStill) {
   const Shape shape = asymmetricBlob(4000, 1);

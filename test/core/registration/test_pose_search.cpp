@@ -4,25 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include "core/registration/ranked_poses.h"
+#include "shapes/posed_surfaces.h"
 #include "shapes/shapes.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
-
-double angleOf(const Eigen::Isometry3d& motion) {
-  return Eigen::AngleAxisd(motion.linear()).angle();
-}
-
-PosedSurface surface(const Points& points, std::optional<Visibility> seen = {}) {
-  return {points, std::move(seen), 1, 0};
-}
 
 TEST(PoseScore, MeritIsSupportMinusHalfTheConflict) {
   PoseScore score;
