@@ -16,9 +16,9 @@
 namespace {
 
 using namespace pcl_symmetry::apps;
-using pcl_symmetry::kPi;
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
+using pcl_symmetry::kPi;
 
 /// In the manner of the one in Utah.
 pcl::PolygonMesh teapot() {

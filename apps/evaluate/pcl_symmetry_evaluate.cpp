@@ -47,6 +47,10 @@ int run(int argc, char** argv) {
     printUsage();
     return 0;
   }
+  if (name == "-version" || name == "--version") {
+    printVersion("pcl_symmetry_evaluate");
+    return 0;
+  }
   for (const SubCommand& command : kSubCommands)
     if (name == command.name) return command.run(argc - 1, argv + 1);
   throw UsageError("unknown command '" + name + "'");

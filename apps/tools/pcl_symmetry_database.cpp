@@ -37,7 +37,8 @@ CommandLine commandLine(DatabaseToolOptions& options) {
   return line;
 }
 
-void add(const Console& console, SymmetryDatabase& database, const DatabaseToolOptions& options) {
+/// \return whether all files could be used; the others are in the database.
+bool add(const Console& console, SymmetryDatabase& database, const DatabaseToolOptions& options) {
   Step step(console, "Describing " + std::to_string(options.arguments.size()) + " models");
   std::vector<std::string> failures;
   for (std::size_t i = 0; i < options.arguments.size(); ++i) {
@@ -56,19 +57,23 @@ void add(const Console& console, SymmetryDatabase& database, const DatabaseToolO
   step.done(std::to_string(options.arguments.size() - failures.size()) + " models");
   for (const std::string& failure : failures) console.error("left out: " + failure);
   if (failures.size() == options.arguments.size()) throw InputError(options.folder + ": no model could be used");
+  return failures.empty();
 }
 
-void change(const Console& console, SymmetryDatabase& database, const DatabaseToolOptions& options) {
+/// \return whether all that was asked for could be done.
+bool change(const Console& console, SymmetryDatabase& database, const DatabaseToolOptions& options) {
   if (options.command == "build" && database.size() > 0)
     throw InputError(options.folder + ": holds models already, must be new for build");
+  bool complete = true;
   if (options.command == "remove")
     for (const std::string& name : options.arguments) database.remove(name);
   else if (options.command != "rebuild")
-    add(console, database, options);
+    complete = add(console, database, options);
   Step step(console, "Saving " + options.folder);
   if (options.command == "rebuild") database.rebuild();
   database.save();
   step.done(std::to_string(database.size()) + " models");
+  return complete;
 }
 
 int run(int argc, char** argv) {
@@ -89,10 +94,8 @@ int run(int argc, char** argv) {
   DatabaseOptions database_options;
   database_options.num_threads = options.common.threads;
   SymmetryDatabase database(options.folder, database_options);
-  if (options.command == "list")
-    for (const std::string& name : database.names()) std::printf("%s\n", name.c_str());
-  else
-    change(console, database, options);
+  if (options.command != "list") return change(console, database, options) ? 0 : 1;
+  for (const std::string& name : database.names()) std::printf("%s\n", name.c_str());
   return 0;
 }
 

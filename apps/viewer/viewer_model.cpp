@@ -129,7 +129,7 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
     plane.point_support.clear();
     for (const std::size_t i : finite) plane.point_support.push_back(support[i]);
     model.labels.push_back(labelOf(plane, k, model.planes.size()));
-    static_cast<ReflectionPlane&>(plane) = normalize(static_cast<const ReflectionPlane&>(plane));
+    plane.ReflectionPlane::operator=(normalize(plane));
   }
   model.frame.center = normalize(model.frame.center);
   for (SymmetryAxis& axis : model.axes) axis.point = normalize(axis.point);

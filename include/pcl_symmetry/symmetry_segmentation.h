@@ -36,7 +36,7 @@ public:
   using typename pcl::PCLBase<PointT>::PointCloudConstPtr;
 
   /// Draws at most 30 000 points, see setMaxPoints(); the others follow the closest of them.
-  SymmetrySegmentation() : CloudAnalysis<PointT>("SymmetrySegmentation", 30'000, 10) {}
+  SymmetrySegmentation() : CloudAnalysis<PointT>("SymmetrySegmentation", 30'000, 20) {}
 
   /// Sets the cloud to segment, in place of the last cloud or mesh.
   void setInputCloud(const PointCloudConstPtr& cloud) override {

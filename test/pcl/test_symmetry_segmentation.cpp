@@ -119,8 +119,8 @@ TEST_F(SymmetrySegmentationTest, SettersNameFieldValueAndRule) {
               testing::HasSubstr("depth = -1, must be in [0, 30]"));
   EXPECT_THAT(test::messageOf([&] { segmentation_.setNumberOfNeighbors(2); }),
               testing::HasSubstr("num_neighbors = 2, must be >= 3"));
-  EXPECT_THAT(test::messageOf([&] { segmentation_.setMaxPoints(9); }),
-              testing::HasSubstr("max_points = 9, must be >= 10"));
+  EXPECT_THAT(test::messageOf([&] { segmentation_.setMaxPoints(19); }),
+              testing::HasSubstr("max_points = 19, must be >= 20"));
   EXPECT_THAT(test::messageOf([&] { segmentation_.setNumberOfParts(-2); }),
               testing::HasSubstr("num_parts = -2, must be >= 0"));
 }

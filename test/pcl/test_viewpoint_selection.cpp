@@ -23,8 +23,7 @@ ViewpointSelection selectionOf(const Shape& shape) {
 }
 
 SymmetryPlane plane(const Eigen::Vector3d& normal, double score) {
-  SymmetryPlane result;
-  static_cast<ReflectionPlane&>(result) = ReflectionPlane(normal, 0.0);
+  SymmetryPlane result(ReflectionPlane(normal, 0.0));
   result.kind = PlaneKind::Symmetry;
   result.score = score;
   return result;

@@ -29,7 +29,7 @@ public:
   }
 
   /// Larger clouds are reduced to this number of points, one drawn from each of as many equal runs of the cloud.
-  /// \param max_points >= 2 (>= 10 in SymmetrySegmentation).
+  /// \param max_points >= 2 (>= 20 in SymmetrySegmentation, as fewer hold no parts).
   /// \throws pcl::BadArgumentException for other values.
   void setMaxPoints(std::size_t max_points) {
     detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), least_max_points_);

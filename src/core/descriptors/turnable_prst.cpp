@@ -17,7 +17,7 @@ namespace {
 constexpr int kCells = 64;             // chosen: as kTransformCells of symmetryDescriptors()
 constexpr double kSigma = 1.0 / 16.0;  // radii of the ball. chosen: as kTransformSigma of symmetryDescriptors()
 constexpr int kNumSamples = 256;       // chosen: as DescriptorOptions::num_samples
-constexpr int kFaceSide = 10;              // normals along each side of a cube face. chosen: 9 degrees apart; half blurs
+constexpr int kFaceSide = 10;          // normals along each side of a cube face. chosen: 9 degrees apart; half blurs
                                        // planes, twice takes four times the time and size
 static_assert(kTurnableNormals == 3 * kFaceSide * kFaceSide);
 constexpr int kFineOffsets = 2 * kTurnableOffsets;  // chosen: D is averaged over two offsets; one is noisier

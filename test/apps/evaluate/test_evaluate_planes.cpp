@@ -197,6 +197,8 @@ TEST_F(EvaluatePlanes, LeavesOutWhatItCannotUseAndAnswersBadUsage) {
   EXPECT_EQ(run("planes " + meshes_ + " -near_share 0.99"), 2);
   EXPECT_EQ(run("-h"), 0);
   EXPECT_NE(output_.find("planes"), std::string::npos);
+  EXPECT_EQ(run("-version"), 0);
+  EXPECT_EQ(output_.find("pcl_symmetry_evaluate "), 0u) << output_;
   EXPECT_EQ(run("planes -h"), 0);
   EXPECT_NE(output_.find("pcl_symmetry_evaluate planes psb/train"), std::string::npos);
 }

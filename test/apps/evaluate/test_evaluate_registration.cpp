@@ -18,7 +18,8 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
-Eigen::Isometry3d turnedAndMoved(double degrees, const Eigen::Vector3d& axis, const Eigen::Vector3d& moved = {0, 0, 0}) {
+Eigen::Isometry3d turnedAndMoved(double degrees, const Eigen::Vector3d& axis,
+                                 const Eigen::Vector3d& moved = {0, 0, 0}) {
   Eigen::Isometry3d motion(Eigen::AngleAxisd(degrees * kDegree, axis));
   motion.translation() = moved;
   return motion;
@@ -36,7 +37,8 @@ ReferenceSymmetries boxSymmetries() {
 TEST(MotionError, IsThatOfTheMotionBesidesTheTruth) {
   const Eigen::Isometry3d truth = turnedAndMoved(70.0, Eigen::Vector3d(1, 2, 2) / 3.0, {3, 4, 5});
   const ReferenceSymmetries none;
-  const MotionError error = motionError(turnedAndMoved(7.0, Eigen::Vector3d::UnitY(), {0.1, 0, 0}) * truth, truth, none);
+  const MotionError error =
+      motionError(turnedAndMoved(7.0, Eigen::Vector3d::UnitY(), {0.1, 0, 0}) * truth, truth, none);
   EXPECT_NEAR(error.angle, 7.0 * kDegree, 1e-9);
   EXPECT_NEAR(error.distance, 0.1, 1e-9);
   EXPECT_TRUE(error.within(7.1 * kDegree, 0.11));
@@ -52,8 +54,9 @@ TEST(MotionError, HalfTurnsOfABoxAreRight) {
     EXPECT_NEAR(error.angle, 0.0, 1e-6);
     EXPECT_NEAR(error.distance, 0.0, 1e-9);
   }
-  EXPECT_NEAR(motionError(turnedAndMoved(90.0, Eigen::Vector3d::UnitX()), Eigen::Isometry3d::Identity(), boxSymmetries()).angle,
-              90.0 * kDegree, 1e-6)
+  EXPECT_NEAR(
+      motionError(turnedAndMoved(90.0, Eigen::Vector3d::UnitX()), Eigen::Isometry3d::Identity(), boxSymmetries()).angle,
+      90.0 * kDegree, 1e-6)
       << "quarter turns are not";
 }
 
@@ -73,8 +76,8 @@ TEST(MotionError, AnyAngleAboutAnAxisOfRevolutionIsRight) {
 TEST(MotionError, AnyRotationOfASphereIsRight) {
   ReferenceSymmetries symmetries;
   symmetries.centers = {{Eigen::Vector3d::Zero(), 1.0}};
-  const MotionError error =
-      motionError(turnedAndMoved(50.0, Eigen::Vector3d::UnitY(), {0, 0.03, 0}), Eigen::Isometry3d::Identity(), symmetries);
+  const MotionError error = motionError(turnedAndMoved(50.0, Eigen::Vector3d::UnitY(), {0, 0.03, 0}),
+                                        Eigen::Isometry3d::Identity(), symmetries);
   EXPECT_EQ(error.angle, 0.0);
   EXPECT_NEAR(error.distance, 0.03, 1e-9);
 }

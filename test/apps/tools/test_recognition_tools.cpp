@@ -81,7 +81,8 @@ protected:
 TEST_F(DatabaseTools, BuildAskAndChange) {
   const std::string vase = folder_ / "vase.off", box = folder_ / "box.off", other = folder_ / "tetrahedron.off";
   ASSERT_EQ(database("build " + models_ + " " + vase + " " + box), 0) << error_;
-  ASSERT_EQ(database("add " + models_ + " " + other), 0) << error_;
+  ASSERT_EQ(database("add " + models_ + " " + (folder_ / "nothing.off") + " " + other), 1) << "one file is missing";
+  EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
   ASSERT_EQ(database("list " + models_), 0);
   EXPECT_EQ(output_, "box\ntetrahedron\nvase\n");
   const std::string found = folder_ / "found.json";
