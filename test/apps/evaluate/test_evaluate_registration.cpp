@@ -18,8 +18,7 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
-Eigen::Isometry3d turnedAndMoved(double degrees, const Eigen::Vector3d& axis,
-                                 const Eigen::Vector3d& moved = {0, 0, 0}) {
+Eigen::Isometry3d motionOf(double degrees, const Eigen::Vector3d& axis, const Eigen::Vector3d& moved = {0, 0, 0}) {
   Eigen::Isometry3d motion(Eigen::AngleAxisd(degrees * kDegree, axis));
   motion.translation() = moved;
   return motion;
@@ -35,10 +34,9 @@ ReferenceSymmetries boxSymmetries() {
 }
 
 TEST(MotionError, IsThatOfTheMotionBesidesTheTruth) {
-  const Eigen::Isometry3d truth = turnedAndMoved(70.0, Eigen::Vector3d(1, 2, 2) / 3.0, {3, 4, 5});
+  const Eigen::Isometry3d truth = motionOf(70.0, Eigen::Vector3d(1, 2, 2) / 3.0, {3, 4, 5});
   const ReferenceSymmetries none;
-  const MotionError error =
-      motionError(turnedAndMoved(7.0, Eigen::Vector3d::UnitY(), {0.1, 0, 0}) * truth, truth, none);
+  const MotionError error = motionError(motionOf(7.0, Eigen::Vector3d::UnitY(), {0.1, 0, 0}) * truth, truth, none);
   EXPECT_NEAR(error.angle, 7.0 * kDegree, 1e-9);
   EXPECT_NEAR(error.distance, 0.1, 1e-9);
   EXPECT_TRUE(error.within(7.1 * kDegree, 0.11));
@@ -48,14 +46,14 @@ TEST(MotionError, IsThatOfTheMotionBesidesTheTruth) {
 TEST(MotionError, HalfTurnsOfABoxAreRight) {
   const Eigen::Vector3d center = Eigen::Vector3d::UnitX();
   for (int k = 0; k < 3; ++k) {
-    Eigen::Isometry3d half = turnedAndMoved(180.0, Eigen::Vector3d::Unit(k));
+    Eigen::Isometry3d half = motionOf(180.0, Eigen::Vector3d::Unit(k));
     half.translation() = center - half.linear() * center;
     const MotionError error = motionError(half, Eigen::Isometry3d::Identity(), boxSymmetries());
     EXPECT_NEAR(error.angle, 0.0, 1e-6);
     EXPECT_NEAR(error.distance, 0.0, 1e-9);
   }
   EXPECT_NEAR(
-      motionError(turnedAndMoved(90.0, Eigen::Vector3d::UnitX()), Eigen::Isometry3d::Identity(), boxSymmetries()).angle,
+      motionError(motionOf(90.0, Eigen::Vector3d::UnitX()), Eigen::Isometry3d::Identity(), boxSymmetries()).angle,
       90.0 * kDegree, 1e-6)
       << "quarter turns are not";
 }
@@ -63,9 +61,9 @@ TEST(MotionError, HalfTurnsOfABoxAreRight) {
 TEST(MotionError, AnyAngleAboutAnAxisOfRevolutionIsRight) {
   ReferenceSymmetries symmetries;
   symmetries.axes = {{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), 1.0}};
-  const Eigen::Isometry3d truth = turnedAndMoved(33.0, Eigen::Vector3d::UnitX(), {1, 2, 3});
-  EXPECT_NEAR(motionError(turnedAndMoved(123.0, Eigen::Vector3d::UnitZ()) * truth, truth, symmetries).angle, 0.0, 1e-6);
-  const Eigen::Isometry3d over = turnedAndMoved(180.0, Eigen::Vector3d::UnitX(), {0, 0, 2});
+  const Eigen::Isometry3d truth = motionOf(33.0, Eigen::Vector3d::UnitX(), {1, 2, 3});
+  EXPECT_NEAR(motionError(motionOf(123.0, Eigen::Vector3d::UnitZ()) * truth, truth, symmetries).angle, 0.0, 1e-6);
+  const Eigen::Isometry3d over = motionOf(180.0, Eigen::Vector3d::UnitX(), {0, 0, 2});
   EXPECT_NEAR(motionError(over * truth, truth, symmetries).angle, M_PI, 1e-6) << "a cone has a top";
   symmetries.planes = {{ReflectionPlane(Eigen::Vector3d::UnitZ(), 1.0), 1.0}};
   const MotionError error = motionError(over * truth, truth, symmetries);
@@ -76,8 +74,8 @@ TEST(MotionError, AnyAngleAboutAnAxisOfRevolutionIsRight) {
 TEST(MotionError, AnyRotationOfASphereIsRight) {
   ReferenceSymmetries symmetries;
   symmetries.centers = {{Eigen::Vector3d::Zero(), 1.0}};
-  const MotionError error = motionError(turnedAndMoved(50.0, Eigen::Vector3d::UnitY(), {0, 0.03, 0}),
-                                        Eigen::Isometry3d::Identity(), symmetries);
+  const MotionError error =
+      motionError(motionOf(50.0, Eigen::Vector3d::UnitY(), {0, 0.03, 0}), Eigen::Isometry3d::Identity(), symmetries);
   EXPECT_EQ(error.angle, 0.0);
   EXPECT_NEAR(error.distance, 0.03, 1e-9);
 }
