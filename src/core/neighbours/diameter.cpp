@@ -41,7 +41,7 @@ private:
   };
 
   Node around(int begin, int end) const {
-    constexpr double kRounding = 1e-9;  // derived: far above the rounding of doubles, so that bounds stay bounds
+    constexpr double kSlack = 1e-9;  // derived: far above the rounding of doubles, so that bounds stay bounds
     Node node;
     node.begin = begin;
     node.end = end;
@@ -53,8 +53,8 @@ private:
       node.reach = std::max(node.reach, x.norm());
       node.half_angle = std::max(node.half_angle, angleBetween(node.axis, x));
     }
-    node.reach *= 1.0 + kRounding;
-    node.half_angle += kRounding;
+    node.reach *= 1.0 + kSlack;
+    node.half_angle += kSlack;
     return node;
   }
 
