@@ -32,12 +32,10 @@ void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more)
 }
 
 /// Gives each copy of a point the support of the point.
-void spreadSupport(std::vector<SymmetryPlane>& planes, const DistinctPoints& distinct) {
-  for (SymmetryPlane& plane : planes) {
-    std::vector<float> support(distinct.index_of.size());
-    for (std::size_t i = 0; i < support.size(); ++i) support[i] = plane.point_support[distinct.index_of[i]];
-    plane.point_support = std::move(support);
-  }
+void spreadSupport(SymmetryPlane& plane, const DistinctPoints& distinct) {
+  std::vector<float> support(distinct.index_of.size());
+  for (std::size_t i = 0; i < support.size(); ++i) support[i] = plane.point_support[distinct.index_of[i]];
+  plane.point_support = std::move(support);
 }
 
 /// The normals of the distinct points: where copies differ, that of the last copy.
@@ -66,6 +64,8 @@ void DetectionOptions::validate() const {
   check(merge_offset >= 0.0, "merge_offset", merge_offset, ">= 0");
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
   check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
+  check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");
+  check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
   check(max_possible >= 1, "max_possible", max_possible, ">= 1");
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");
   checkNumThreads(num_threads);
@@ -143,8 +143,14 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   timed("families");
   if (options.approximate) append(planes, judge.findParts(planes));
   timed("parts");
+  const bool answered = !detection.axes.empty() || !detection.centers.empty();
+  if (!answered) detection.best = bestApproximate(planes, cloud, *fit);
+  detection.tolerance = judge.tolerance() * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), cloud, *fit, options);
-  if (repeated) spreadSupport(detection.planes, distinct);
+  if (repeated) {
+    for (SymmetryPlane& plane : detection.planes) spreadSupport(plane, distinct);
+    if (detection.best) spreadSupport(*detection.best, distinct);
+  }
   timed("report");
   return detection;
 }

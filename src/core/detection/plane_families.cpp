@@ -217,18 +217,27 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
                                       [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); }),
                        found.planes.end());
   };
+  // Between its planes, a regular polygon of many sides is not symmetric: the worst plane decides. A scan shows some of
+  // the planes too badly for that.
+  const auto isFamily = [&](const JudgedFamily& judged) {
+    return (cloud.isScan() ? judged.confidence : judged.least_confidence) >= options.min_confidence;
+  };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test)) {
-    const SymmetryAxis judged = judge.judgeFamily(center->planes, samples);
-    found.centers.push_back(
-        {center->point * cloud.scale + cloud.center, judged.confidence, judged.score, judged.support});
-    drop([&](const ReflectionPlane& plane) { return std::abs(plane.signedDistance(center->point)) <= test.tolerance; });
-    return found;
+    const JudgedFamily judged = judge.judgeFamily(center->planes, samples);
+    if (isFamily(judged)) {
+      found.centers.push_back(
+          {center->point * cloud.scale + cloud.center, judged.confidence, judged.score, judged.support});
+      drop([&](const ReflectionPlane& plane) {
+        return std::abs(plane.signedDistance(center->point)) <= test.tolerance;
+      });
+      return found;
+    }
   }
   for (const AxisFamily& family : findAxes(symmetries, test)) {
-    SymmetryAxis axis = judge.judgeFamily(family.planes, samples);
-    axis.point = family.line.origin() * cloud.scale + cloud.center;
-    axis.direction = family.line.direction();
-    found.axes.push_back(axis);
+    const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
+    if (!isFamily(judged)) continue;
+    found.axes.push_back({family.line.origin() * cloud.scale + cloud.center, family.line.direction(),
+                          judged.confidence, judged.score, judged.support});
     drop([&](const ReflectionPlane& plane) { return contains(plane, family.line, test.tolerance); });
   }
   return found;

@@ -1,10 +1,14 @@
 #include "core/detection/plane_judge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
+#include "core/evidence/missing_surface.h"
+#include "core/evidence/plane_support.h"
+#include "core/evidence/surface_distance.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
@@ -16,11 +20,23 @@ namespace {
 constexpr int kScanShare = 4;
 // Iterations of a plane of a part. chosen: as many as of a candidate in its second stage.
 constexpr int kPartIterations = 6;
+// Share of the surface that a symmetry maps to within the tolerance. derived: the definition (evidence/README.md).
+constexpr double kSymmetricShare = 0.97;
+// Share within the tolerance from which nothing needs to be missing. chosen: above the 0.97 of a symmetry by the error
+// of the share; at 1, borders are looked for in every cloud, which takes time.
+constexpr double kSurelyWhole = 0.985;
+constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
 
 }  // namespace
 
 PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
-    : cloud_(cloud), fit_(fit), options_(options) {}
+    : cloud_(cloud),
+      fit_(fit),
+      options_(options),
+      tolerance_(options.absolute_tolerance > 0.0 ? options.absolute_tolerance / cloud.scale
+                                                  : options.tolerance * cloud.extent),
+      own_share_(std::max(kLeastOwnShare, shareWithin(ownSurfaceDistances(cloud.points, cloud.geometry), tolerance_))) {
+}
 
 std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {
   const Eigen::Index num_points = cloud_.points.cols();
@@ -33,7 +49,7 @@ std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candi
     // The last stage may have matched these very samples.
     const bool has_matches = candidate.last.last.closest.size() == samples.size();
     const IspStep step = has_matches ? candidate.last.last : fit_.matches(candidate.plane, samples);
-    planes[i] = judged(candidate.plane, fit_.shares(candidate.plane, samples, step));
+    planes[i] = judged(candidate.plane, fit_.shares(candidate.plane, samples, step), step, samples);
     planes[i].iterations = candidate.iterations;
     planes[i].converged = candidate.last.converged;
     planes[i].residual = step.residual * cloud_.scale;
@@ -41,35 +57,95 @@ std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candi
   return planes;
 }
 
-SymmetryPlane PlaneJudge::judged(const ReflectionPlane& plane, const PlaneShares& shares) const {
+PlaneJudge::Reflected PlaneJudge::reflected(const ReflectionPlane& plane, const std::vector<int>& samples,
+                                            const IspStep& step) const {
+  Reflected result{Points(3, static_cast<Eigen::Index>(samples.size())), {}};
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    result.points.col(static_cast<Eigen::Index>(i)) =
+        plane.reflect(cloud_.points.col(samples[i]).cast<double>()).cast<float>();
+  result.distances = surfaceDistances(result.points, step.closest, cloud_.points, cloud_.geometry);
+  return result;
+}
+
+PlaneJudge::Agreement PlaneJudge::agreement(const Reflected& reflected, const IspStep& step) const {
+  const std::size_t size = reflected.distances.size();
+  std::vector<char> matched(size);
+  for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
+  const double within = shareWithin(reflected.distances, tolerance_) / own_share_;
+  std::vector<float> unknown(size, 0.0f);
+  if (cloud_.isScan()) {
+    for (std::size_t i = 0; i < size; ++i)
+      if (!matched[i])
+        unknown[i] = cloud_.visibility->depthBehind(reflected.points.col(i).cast<double>()) < 0.0 ? 0.0f : 1.0f;
+  } else if (!cloud_.isVolume() && within < kSurelyWhole && static_cast<Eigen::Index>(size) == cloud_.points.cols()) {
+    unknown = missingCounterparts(matched, step.closest, cloud_.geometry, borders());
+  }
+  std::vector<float> telling;  // distances of the samples that say something
+  for (std::size_t i = 0; i < size; ++i)
+    if (unknown[i] < 0.5f) telling.push_back(reflected.distances[i]);
+  const double missing = meanSupport(unknown), good = std::min(1.0, within);
+  const double bad = std::max(0.0, 1.0 - good - missing);
+  Agreement result{good + bad > 0.0 ? good / (good + bad) : 0.0, missing, 0.0};
+  if (telling.empty()) return result;
+  const auto last = telling.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * static_cast<double>(telling.size() - 1));
+  std::nth_element(telling.begin(), last, telling.end());
+  result.deviation = std::isfinite(*last) ? *last : cloud_.extent;
+  return result;
+}
+
+PlaneEvidence PlaneJudge::evidence(const PlaneShares& shares, const Agreement& agreement, double score) const {
+  PlaneEvidence evidence = fit_.evidence(shares.support, shares.conflict, score);
+  evidence.share = agreement.share;
+  evidence.unknown = agreement.unknown;
+  return evidence;
+}
+
+SymmetryPlane PlaneJudge::judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
+                                 const std::vector<int>& samples) const {
   SymmetryPlane answer(cloud_.toInput(plane));
   answer.point_support = shares.point_support;
   answer.score = cloud_.score(answer);
-  const PlaneEvidence evidence = fit_.evidence(shares.support, shares.conflict, answer.score);
-  answer.support = seenSupport(evidence);
-  answer.seen = std::min(1.0, shares.support + shares.conflict);
-  answer.confidence = planeConfidence(evidence);
-  answer.kind = answer.confidence >= options_.min_confidence                    ? PlaneKind::Symmetry
-                : cloud_.isScan() && answer.confidence >= options_.min_possible ? PlaneKind::Possible
-                                                                                : PlaneKind::Approximate;
+  const Agreement agreed = agreement(reflected(plane, samples, step), step);
+  const PlaneEvidence all = evidence(shares, agreed, answer.score);
+  const ShareInterval interval = shareInterval(all);
+  answer.support = seenSupport(all);
+  answer.share = agreed.share;
+  answer.share_low = interval.low;
+  answer.share_high = interval.high;
+  answer.deviation = agreed.deviation * cloud_.scale;
+  answer.seen = cloud_.isScan() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - agreed.unknown;
+  answer.confidence = planeConfidence(all);
+  answer.kind = kindOf(answer.confidence);
   return answer;
 }
 
-SymmetryAxis PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
+PlaneKind PlaneJudge::kindOf(double confidence) const {
+  return confidence >= options_.min_confidence ? PlaneKind::Symmetry
+         : confidence >= options_.min_possible ? PlaneKind::Possible
+                                               : PlaneKind::Approximate;
+}
+
+JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
                                      const std::vector<int>& samples) const {
   const double count = static_cast<double>(planes.size());
-  double support = 0.0, conflict = 0.0, score = 0.0;
+  JudgedFamily family;
+  double support = 0.0, conflict = 0.0, share = 0.0, unknown = 0.0;
   for (const ReflectionPlane& plane : planes) {
-    const PlaneShares shares = fit_.shares(plane, samples);
+    const IspStep step = fit_.matches(plane, samples);
+    const PlaneShares shares = fit_.shares(plane, samples, step);
+    const Agreement agreed = agreement(reflected(plane, samples, step), step);
+    const double score = cloud_.score(cloud_.toInput(plane));
     support += shares.support / count;
     conflict += shares.conflict / count;
-    score += cloud_.score(cloud_.toInput(plane)) / count;
+    share += agreed.share / count;
+    unknown += agreed.unknown / count;
+    family.score += score / count;
+    family.least_confidence =
+        std::min(family.least_confidence, planeConfidence(evidence(shares, agreed, score)));
   }
-  const PlaneEvidence evidence = fit_.evidence(support, conflict, score);
-  SymmetryAxis family{};
-  family.confidence = planeConfidence(evidence);
-  family.score = score;
-  family.support = seenSupport(evidence);
+  const PlaneEvidence together = evidence({support, conflict, {}}, {share, unknown, 0.0}, family.score);
+  family.confidence = planeConfidence(together);
+  family.support = seenSupport(together);
   return family;
 }
 
@@ -88,7 +164,7 @@ std::vector<SymmetryPlane> PlaneJudge::findParts(const std::vector<SymmetryPlane
     const auto normalized = [this](const SymmetryPlane& plane) { return cloud_.toNormalized(plane); };
     if (basinTolerance().anySame(known, part.plane, normalized)) continue;
     const IspStep step = fit_.matches(part.plane, all);
-    SymmetryPlane plane = judged(part.plane, fit_.shares(part.plane, all, step));
+    SymmetryPlane plane = judged(part.plane, fit_.shares(part.plane, all, step), step, all);
     if (plane.kind == PlaneKind::Symmetry) continue;  // one of a family, which is known as its axis or center
     plane.kind = PlaneKind::Local;
     plane.iterations = part.iterations;
@@ -96,6 +172,13 @@ std::vector<SymmetryPlane> PlaneJudge::findParts(const std::vector<SymmetryPlane
     planes.push_back(std::move(plane));
   }
   return planes;
+}
+
+const std::vector<char>& PlaneJudge::borders() const {
+  std::call_once(borders_found_, [this] {
+    borders_ = openBorders(cloud_.points, *cloud_.search, cloud_.geometry.normals, options_.num_threads);
+  });
+  return borders_;
 }
 
 }  // namespace pcl_symmetry

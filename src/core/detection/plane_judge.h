@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mutex>
 #include <vector>
 
 #include "core/refinement/part_search.h"
@@ -8,12 +9,22 @@
 
 namespace pcl_symmetry {
 
+/// What the planes of a family say together.
+struct JudgedFamily {
+  double confidence = 0.0;        ///< of the mean evidence
+  double least_confidence = 1.0;  ///< of a single plane
+  double score = 0.0, support = 0.0;
+};
+
 /// From refined planes to answers: support, D, and the confidence that decides between symmetry, possible symmetry and
 /// approximate symmetry (see evidence/README.md).
 class PlaneJudge {
 public:
   /// \param cloud,fit,options must outlive this object.
   PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options);
+
+  /// What symmetric means here: how far a symmetric surface may be off, normalised frame.
+  double tolerance() const { return tolerance_; }
 
   /// \param candidates after the last stage of refinement.
   /// \return one plane each, input frame, in the same order.
@@ -22,8 +33,7 @@ public:
   /// Planes of a family together.
   /// \param planes normalised frame, at least one.
   /// \param samples indices of the points that judge them.
-  /// \return confidence, score and support; point and direction are zero.
-  SymmetryAxis judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
+  JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
 
   /// Symmetries of parts of the surface.
   /// \param known planes that have been found, input frame.
@@ -31,11 +41,33 @@ public:
   std::vector<SymmetryPlane> findParts(const std::vector<SymmetryPlane>& known) const;
 
 private:
-  SymmetryPlane judged(const ReflectionPlane& plane, const PlaneShares& shares) const;
+  /// The reflections of some samples, and how far they are off the surface.
+  struct Reflected {
+    Points points;
+    std::vector<float> distances;
+  };
+  /// What the reflections say at the tolerance.
+  struct Agreement {
+    double share;      ///< within the tolerance, of those that say something
+    double unknown;    ///< say nothing
+    double deviation;  ///< distance that 97 % of those that say something stay within
+  };
+
+  Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
+  Agreement agreement(const Reflected& reflected, const IspStep& step) const;
+  PlaneEvidence evidence(const PlaneShares& shares, const Agreement& agreement, double score) const;
+  SymmetryPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
+                       const std::vector<int>& samples) const;
+  PlaneKind kindOf(double confidence) const;
+  const std::vector<char>& borders() const;
 
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
   const DetectionOptions& options_;
+  double tolerance_;
+  double own_share_;  ///< within the tolerance, of the points themselves and the surface of the others
+  mutable std::once_flag borders_found_;
+  mutable std::vector<char> borders_;  ///< of the cloud; found where they are first asked for
 };
 
 }  // namespace pcl_symmetry

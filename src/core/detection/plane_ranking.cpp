@@ -47,6 +47,12 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
   return cloud.score(cloud.toInput(between)) > plane.score - kSlopeDip;
 }
 
+/// Judges every point, where the plane was judged by some of them.
+void completeSupport(SymmetryPlane& plane, const NormalizedCloud& cloud, const PlaneFit& fit) {
+  if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
+  plane.point_support = fit.shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).point_support;
+}
+
 }  // namespace
 
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
@@ -63,12 +69,22 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
     });
     if (!is_known) ranked.push_back(std::move(plane));
   }
-  const std::vector<int> all = allOf(cloud.points.cols());
-  parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) {
-    if (ranked[i].point_support.size() != all.size())
-      ranked[i].point_support = fit.shares(cloud.toNormalized(ranked[i]), all).point_support;
-  });
+  parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) { completeSupport(ranked[i], cloud, fit); });
   return ranked;
+}
+
+std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                             const PlaneFit& fit) {
+  const SymmetryPlane* best = nullptr;
+  for (const SymmetryPlane& plane : planes) {
+    if (rankOf(plane) < 2) return std::nullopt;
+    if (plane.kind == PlaneKind::Approximate && (!best || plane.share * plane.seen > best->share * best->seen))
+      best = &plane;
+  }
+  if (!best) return std::nullopt;
+  SymmetryPlane answer = *best;
+  completeSupport(answer, cloud, fit);
+  return answer;
 }
 
 }  // namespace pcl_symmetry

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/refinement/plane_fit.h"
@@ -15,5 +16,11 @@ namespace pcl_symmetry {
 /// \return with the support of every point.
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
                                         const PlaneFit& fit, const DetectionOptions& options);
+
+/// The answer where nothing is a symmetry: of the planes of the whole, the one with the greatest share.
+/// \param planes input frame.
+/// \return with the support of every point; empty where a plane is a symmetry or a possible one, or there is none.
+std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                             const PlaneFit& fit);
 
 }  // namespace pcl_symmetry

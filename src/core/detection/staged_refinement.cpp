@@ -16,11 +16,11 @@ constexpr int kRoughIterations = 4;  // chosen: as above, for candidates that ne
 // Merit of a symmetry of a whole cloud. chosen: a symmetry of 97 % support and 3 % conflict has 0.97; higher values
 // lose symmetries where samples are few, lower ones refine hopeless candidates in full.
 constexpr double kLeastMerit = 0.93;
-// How far below that a candidate may be after the first two stages. chosen: wide weights and few samples blur the
-// merit; smaller values lose symmetries early, larger ones cost time.
-constexpr double kCoarseSlack = 0.4, kCloseSlack = 0.1;
-// Candidates with less merit that go on after the first two stages, best first. chosen: approximate symmetries and
-// those of scans; fewer lose some of them, more cost time.
+// How far below that a candidate may be after the second stage. chosen: few samples blur the merit; smaller values lose
+// symmetries early, larger ones cost time.
+constexpr double kCloseSlack = 0.1;
+// Candidates with less merit that go on after the first two stages, best first: symmetries of scans and of clouds with
+// a piece missing, and the best plane of a shape that has no symmetry. chosen: fewer lose some of them, more cost time.
 constexpr std::size_t kKeptCoarsely = 8, kKeptClosely = 4;
 
 // Samples of the second stage per sample of the first. chosen: fewer blur the merit by which candidates are dropped,
@@ -59,11 +59,11 @@ std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidate
   const double narrow = std::clamp(cloud_.final_sigma, kNarrowestCoarsely * cloud_.sigma, cloud_.sigma);
   const std::vector<Candidate> moved =
       refined(candidates, stage(options_.num_coarse_samples, cloud_.sigma, narrow, kCoarseIterations));
-  return distinct(withinCells(moved, candidates, grid), leastMerit(kCoarseSlack), kKeptCoarsely);
+  return distinct(withinCells(moved, candidates, grid), -1.0, kKeptCoarsely);
 }
 
 std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
-  return distinct(refined(std::move(candidates), closeStage()), leastMerit(kCloseSlack), kKeptClosely);
+  return distinct(refined(std::move(candidates), closeStage()), -1.0, kKeptClosely);
 }
 
 std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
@@ -118,12 +118,6 @@ std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (!candidates[i].from_map || cell.same(starts[i].plane, candidates[i].plane)) kept.push_back(candidates[i]);
   return kept;
-}
-
-/// What the first two stages demand. The best candidates of scans, and approximate symmetries that are wanted, go on
-/// whatever their merit.
-double StagedRefinement::leastMerit(double slack) const {
-  return cloud_.isScan() || options_.approximate ? -1.0 : kLeastMerit - slack;
 }
 
 /// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there are

@@ -11,7 +11,8 @@ namespace pcl_symmetry {
 /// From candidates to precise planes in three stages, each with more samples and narrower weights than the one before
 /// (Section 4.4).
 ///
-/// After the first two stages, candidates that ended at the same plane are merged and hopeless ones are dropped.
+/// After the first two stages, candidates that ended at the same plane are merged, and of those that are no symmetries
+/// of a whole cloud only the best go on.
 class StagedRefinement {
 public:
   /// \param cloud,fit,options must outlive this object.
@@ -37,7 +38,6 @@ private:
                                      const PlaneGrid& grid) const;
   std::vector<Candidate> distinct(std::vector<Candidate> candidates, double least_merit, std::size_t most) const;
   RefinementStage closeStage() const;
-  double leastMerit(double slack) const;
 
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;

@@ -12,11 +12,22 @@ struct PlaneEvidence {
   double roughness = 0.0;  ///< median distance of the samples from their tangent planes, divided by the spacing
   bool partial = false;    ///< seen from one viewpoint
   bool volume = false;     ///< the points resolve no surface; support is the overlap of their density
+  /// Share of the surface mapped to within the tolerance of the surface, of that which says something, in [0, 1].
+  double share = 1.0;
+  double unknown = 0.0;  ///< share of the surface that says nothing: its reflection was not seen or was cut off
 };
 
 /// Share of the surface seen that the plane maps onto the surface, relative to what sampling allows.
 /// \return min(1, support / ((support + conflict) * baseline)), in [0, 1]; 0 where nothing was seen.
 double seenSupport(const PlaneEvidence& evidence);
+
+/// Limits of the share of the whole object that the plane maps to within the tolerance of the object.
+struct ShareInterval {
+  double low, high;
+};
+
+/// \return limits that hold in 95 of 100 cases, in [0, 1].
+ShareInterval shareInterval(const PlaneEvidence& evidence);
 
 /// Probability that the plane is a symmetry of the object: logistic regressions, one each for whole clouds, scans and
 /// points that resolve no surface (see README.md beside the source).

@@ -6,15 +6,13 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/evidence/surface_distance.h"
 #include "core/normals/surface_normals.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Reach of a sample along the surface, spacings. derived: a disc of that radius on a surface of density rho is empty
-// with probability exp(-pi 1.25^2) = 1 / 135.
-constexpr float kReach = 1.25f;
 // Reach across the surface, radii of the points. chosen: the tolerance of a symmetry (1 % of the radius); smaller
 // values see smaller asymmetries, and take the errors of normals for them.
 constexpr float kNormalReach = 0.01f;
@@ -35,7 +33,7 @@ constexpr float kLeastLength = 1e-6f;  // radii. derived: rounding of coordinate
 float sqDeviation(int j, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal, const Points& samples,
                   const LocalGeometry& geometry, float most) {
   const Eigen::Vector3f difference = point - samples.col(j);
-  const float reach = std::max(kLeastLength, kReach * geometry.spacing[j]);
+  const float reach = std::max(kLeastLength, kDiscRadius * geometry.spacing[j]);
   const float along = std::max(0.0f, difference.norm() / reach - 1.0f);
   if (along * along >= most) return most;
   const auto normal = geometry.normals.col(j);

@@ -144,4 +144,18 @@ double diameter(const PointsRef& points) {
   return points.cols() < 2 ? 0.0 : std::sqrt(HalvingTree(points).greatestSqDistance());
 }
 
+double farthestPair(const PointsRef& points) {
+  if (points.cols() < 2) return 0.0;
+  Eigen::Vector3f from = centerOfMass(points).cast<float>();
+  Eigen::Index farthest = 0;
+  (points.colwise() - from).colwise().squaredNorm().maxCoeff(&farthest);
+  double distance = -1.0;
+  for (double longer = 0.0; longer > distance;) {
+    distance = longer;
+    from = points.col(farthest);
+    longer = std::sqrt(static_cast<double>((points.colwise() - from).colwise().squaredNorm().maxCoeff(&farthest)));
+  }
+  return distance;
+}
+
 }  // namespace pcl_symmetry

@@ -11,4 +11,10 @@ namespace pcl_symmetry {
 /// \return diameter, input units; 0 for fewer than two points.
 double diameter(const PointsRef& points);
 
+/// The distance between two points that are each the farthest from the other: the diameter of most shapes, and never
+/// less than 1 / sqrt(3) of it. Takes a few passes over the points, whatever their shape.
+/// \param points 3 x N, finite, input units.
+/// \return distance, input units; 0 for fewer than two points.
+double farthestPair(const PointsRef& points);
+
 }  // namespace pcl_symmetry

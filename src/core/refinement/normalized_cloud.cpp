@@ -7,6 +7,7 @@
 #include "core/base/median.h"
 #include "core/distance_transform/edt_correlation.h"
 #include "core/evidence/plane_support.h"
+#include "core/neighbours/diameter.h"
 
 namespace pcl_symmetry {
 
@@ -44,6 +45,7 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),
       surface{points, geometry.normals, *search, seen ? &geometry.at_border : nullptr, &far, num_threads},
+      extent(farthestPair(points)),
       spacing(median(geometry.spacing)),
       roughness(median(geometry.roughness) / std::max(spacing, kLeastSpacing)),
       baseline(std::max(meanSupport(ownSupport(points, geometry)), kLeastBaseline)),

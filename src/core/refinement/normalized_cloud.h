@@ -35,6 +35,7 @@ struct NormalizedCloud {
   const FarTest far;
   const IspSurface surface;  ///< the above, as Iterative Symmetric Points wants it
 
+  const double extent;       ///< greatest distance between two points, by farthestPair()
   const double spacing;      ///< median of the points' spacing
   const double roughness;    ///< median of the points' roughness, divided by the spacing
   const double baseline;     ///< mean support of the points on the surface of all others, > 0: a symmetry reaches it

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +19,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// What a plane is to the shape.
 enum class PlaneKind {
   Symmetry,     ///< of the whole object: confidence >= min_confidence
-  Possible,     ///< of a scan: what the scanner saw is too little to decide
+  Possible,     ///< confidence >= min_possible: the data do not decide
   Approximate,  ///< less than that: a local maximum of the transform
   Local         ///< a symmetry of a part: of the points that support it
 };
@@ -36,7 +37,16 @@ struct SymmetryPlane : ReflectionPlane {
   double score = 0.0;
   /// Share of the surface seen that the plane maps onto the surface, relative to what sampling and noise allow, [0, 1].
   double support = 0.0;
-  /// Share of the points whose reflection falls where the scanner could see, in [0, 1]; 1 without a viewpoint.
+  /// Estimate of the share of the surface that the plane maps to within the tolerance of the surface, in [0, 1]: of the
+  /// part of the surface that says something. A plane is a symmetry of the object if that share is at least 0.97.
+  double share = 0.0;
+  /// Limits of that share for the whole object: it lies between them in 95 of 100 cases, in [0, 1].
+  double share_low = 0.0, share_high = 1.0;
+  /// Distance that 97 % of the reflected points stay within from the surface, input units: the least tolerance at which
+  /// the plane would be a symmetry.
+  double deviation = 0.0;
+  /// Share of the points whose reflection falls where the cloud could show it, in [0, 1]: less than 1 for planes of scans
+  /// and where a piece of the surface is missing.
   double seen = 1.0;
   /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
   /// of a surface are to each other, falling to 0 beyond.
@@ -82,9 +92,14 @@ struct DetectionOptions {
   double merge_angle = 0.035;       ///< radians, >= 0: planes that differ by no more than this in angle ...
   double merge_offset = 0.02;       ///< ... and by this share of the radius in offset are one, >= 0
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
-  /// A plane of a scan is reported as possible if confidence >= min_possible; in [0, 1].
-  double min_possible = 0.02;
-  int max_possible = 5;  ///< symmetries and possible planes of a scan together, >= 1
+  /// A plane is reported as possible if confidence >= min_possible; in [0, 1].
+  double min_possible = 0.1;
+  int max_possible = 5;  ///< symmetries and possible planes together, where there are possible ones, >= 1
+  /// How far a symmetric surface may be off, as a share of the greatest distance between two points, in (0, 0.1]: a
+  /// symmetry maps 97 % of the surface to within this of the surface.
+  double tolerance = 0.01;
+  /// The same in input units, >= 0; 0 = tolerance decides.
+  double absolute_tolerance = 0.0;
   bool families = true;  ///< planes through one axis or one center are reported as such in place of single planes
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
@@ -101,6 +116,9 @@ struct Detection {
   /// ran, whatever it found.
   std::string reason;
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
+  /// Where there is no symmetry and no possible one: the plane that maps the greatest share of the surface; else empty.
+  std::optional<SymmetryPlane> best;
+  double tolerance = 0.0;  ///< that was decided at, input units
   std::vector<SymmetryAxis> axes;     ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;
   SymmetryMap map;                                        ///< empty where one was given

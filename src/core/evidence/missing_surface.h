@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "core/normals/surface_normals.h"
+#include "pcl_symmetry/core/geometry/point_set.h"
+
+namespace pcl_symmetry {
+
+/// Where a cloud ends although the object goes on: a cut, a hole, a side that no scan saw.
+///
+/// Beyond the paper, which has whole shapes. For a true plane the points without a counterpart begin where the cloud,
+/// or its reflection, ends; for a false one they begin in the middle of the surface.
+
+/// Finds the points at the open borders of a sampled surface: the neighbours in the tangent plane leave a gap, and the
+/// surface does not fold there.
+/// \param samples 3 x N, finite.
+/// \param search over the same samples.
+/// \param normals 3 x N, unit.
+/// \param num_threads 0 = one per core.
+/// \return N values, 1 at a border.
+std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
+                              int num_threads);
+
+/// How well an open border explains that a sample has no counterpart under a plane.
+///
+/// Neighbouring samples without counterpart form regions. A region is explained as far as its edge runs along open
+/// borders, at the samples themselves or at their reflections.
+/// \param matched N values, 1 where the reflection of the sample lies on the surface.
+/// \param closest N indices of the samples closest to the reflections; -1: none is near.
+/// \param geometry of the samples.
+/// \param borders what openBorders() returned.
+/// \return N values in [0, 1]: 0 for samples that have a counterpart or should have one, 1 where it is missing from the
+/// cloud.
+std::vector<float> missingCounterparts(const std::vector<char>& matched, const std::vector<int>& closest,
+                                       const LocalGeometry& geometry, const std::vector<char>& borders);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,60 @@
+#include "core/evidence/surface_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+// How much farther off a plane a new point lies than one of the nine points that the plane was fitted to.
+// derived: with p = 3 parameters and n = 9 points the leverage is l = p / n, residuals of the points have the variance
+// (1 - l) and those of new points (1 + l) times that of the noise; the root of their ratio.
+constexpr float kNewPointFactor = 1.41421356f;
+
+/// Squared distance of a point from the disc of sample \p j.
+float sqDistanceFromDisc(int j, const Eigen::Vector3f& point, const Points& samples, const LocalGeometry& geometry,
+                         float across_factor) {
+  const Eigen::Vector3f difference = point - samples.col(j);
+  const float across = geometry.normals.col(j).dot(difference);
+  const float along = std::sqrt(std::max(0.0f, difference.squaredNorm() - across * across));
+  const float beside = std::max(0.0f, along - kDiscRadius * geometry.spacing[j]);
+  return across_factor * across_factor * across * across + beside * beside;
+}
+
+/// Distance from the nearest of the discs of a sample and its neighbours, but not from that of \p self (-1: none).
+float distanceNear(int closest, int self, const Eigen::Vector3f& point, const Points& samples,
+                   const LocalGeometry& geometry, float across_factor) {
+  float least = sqDistanceFromDisc(closest, point, samples, geometry, across_factor);
+  for (const int j : geometry.nearest[closest])
+    if (j != self) least = std::min(least, sqDistanceFromDisc(j, point, samples, geometry, across_factor));
+  return std::sqrt(least);
+}
+
+}  // namespace
+
+std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest, const Points& samples,
+                                    const LocalGeometry& geometry) {
+  std::vector<float> distances(closest.size(), kFar);
+  for (std::size_t i = 0; i < closest.size(); ++i)
+    if (closest[i] >= 0) distances[i] = distanceNear(closest[i], -1, points.col(i), samples, geometry, 1.0f);
+  return distances;
+}
+
+std::vector<float> ownSurfaceDistances(const Points& samples, const LocalGeometry& geometry) {
+  std::vector<float> distances(static_cast<std::size_t>(samples.cols()));
+  for (int i = 0; i < samples.cols(); ++i)
+    distances[i] = distanceNear(geometry.nearest[i][0], i, samples.col(i), samples, geometry, kNewPointFactor);
+  return distances;
+}
+
+double shareWithin(const std::vector<float>& distances, double tolerance) {
+  const auto limit = static_cast<float>(tolerance);
+  const auto count = std::count_if(distances.begin(), distances.end(), [&](float distance) { return distance <= limit; });
+  return static_cast<double>(count) / static_cast<double>(distances.size());
+}
+
+}  // namespace pcl_symmetry
