@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
 #include <stdexcept>
 
+#include "common/command_line/flag_values.h"
 #include "common/scanner/random_numbers.h"
 #include "core/base/constants.h"
 #include "core/base/random.h"
@@ -35,12 +35,6 @@ std::uint64_t seedOf(std::uint64_t seed, Stream stream, std::uint64_t index = 0)
 Eigen::Vector3d randomDirection(RandomStream& random) {
   const double z = 2.0 * uniform(random) - 1.0, angle = 2.0 * kPi * uniform(random), ring = std::sqrt(1.0 - z * z);
   return {ring * std::cos(angle), ring * std::sin(angle), z};
-}
-
-std::string shortest(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
 }
 
 /// Takes away the points of the given share that lie furthest along the direction.

@@ -9,8 +9,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kTrianglesPerLeaf =
-    4;  // triangles; chosen: half and twice as many shift work between boxes and triangles
+// triangles; chosen: half and twice as many shift work between boxes and triangles
+constexpr int kTrianglesPerLeaf = 4;
 
 /// Intersection of a ray with a triangle (Moeller and Trumbore 1997).
 /// \return distance along the ray in lengths of its direction; infinity if it misses the triangle.

@@ -16,7 +16,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kLanes = 16;  // lines resampled and correlated together; derived: 16-bit integers in an AVX2 register
+constexpr int kBatch = 16;  // lines resampled and correlated together; derived: 16-bit integers in an AVX2 register
 // directions; chosen: half sets up arrays more often, twice leaves threads idle at the end
 constexpr std::size_t kConvolvedPerBlock = 16;
 // Steps of the R2 sequence, which fills the unit square evenly. derived: 1 / g and 1 / g^2 with the plastic number
@@ -26,9 +26,9 @@ constexpr double kPhaseSteps[2] = {0.7548776662466927, 0.5698402909980532};
 /// Sixteen parallel lines of equally spaced points: point l of lane j is start[axis][j] + l * step[axis], in
 /// fixed-point table coordinates, inside the table for l in [begin[j], end[j]).
 struct LineBundle {
-  alignas(64) std::int32_t start[3][kLanes];
-  alignas(64) std::int32_t begin[kLanes];
-  alignas(64) std::int32_t end[kLanes];
+  alignas(64) std::int32_t start[3][kBatch];
+  alignas(64) std::int32_t begin[kBatch];
+  alignas(64) std::int32_t end[kBatch];
   std::int32_t step[3];
   int first;  ///< least begin
   int last;   ///< greatest end
@@ -41,10 +41,10 @@ using Correlate = void (*)(const std::int16_t* values, int first, int last, std:
 
 void resampleScalar(const LineBundle& lines, const std::uint8_t* table, int bits, std::int16_t* values) {
   for (int l = lines.first; l < lines.last; ++l) {
-    for (int j = 0; j < kLanes; ++j) {
+    for (int j = 0; j < kBatch; ++j) {
       const bool inside = l >= lines.begin[j] && l < lines.end[j];
       const auto at = [&](int axis) { return lines.start[axis][j] + l * lines.step[axis]; };
-      values[l * kLanes + j] = inside ? table[LookupTable::index(at(0), at(1), at(2), bits)] : 0;
+      values[l * kBatch + j] = inside ? table[LookupTable::index(at(0), at(1), at(2), bits)] : 0;
     }
   }
 }
@@ -53,9 +53,9 @@ void correlateScalar(const std::int16_t* values, int first, int last, std::int64
   for (int s = 2 * first; s <= 2 * (last - 1); ++s) {
     std::int32_t pairs = 0, self = 0;
     for (int a = std::max(first, s - last + 1); 2 * a < s; ++a)
-      for (int j = 0; j < kLanes; ++j) pairs += values[a * kLanes + j] * values[(s - a) * kLanes + j];
+      for (int j = 0; j < kBatch; ++j) pairs += values[a * kBatch + j] * values[(s - a) * kBatch + j];
     if (s % 2 == 0)
-      for (int j = 0; j < kLanes; ++j) self += values[s / 2 * kLanes + j] * values[s / 2 * kLanes + j];
+      for (int j = 0; j < kBatch; ++j) self += values[s / 2 * kBatch + j] * values[s / 2 * kBatch + j];
     sums[s] += 2 * pairs + self;
   }
 }
@@ -89,7 +89,7 @@ __attribute__((target("avx2"))) void resampleAvx2(const LineBundle& lines, const
           _mm256_mask_i32gather_epi32(zero, reinterpret_cast<const int*>(table), index, inside, 1), byte);
     }
     const __m256i packed = _mm256_permute4x64_epi64(_mm256_packs_epi32(halves[0], halves[1]), 0xD8);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(values + l * kLanes), packed);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(values + l * kBatch), packed);
   }
 }
 
@@ -99,10 +99,10 @@ __attribute__((target("avx2"))) void correlateAvx2(const std::int16_t* values, i
     __m256i pairs = _mm256_setzero_si256();
     for (int a = std::max(first, s - last + 1); 2 * a < s; ++a)
       pairs = _mm256_add_epi32(pairs,
-                               _mm256_madd_epi16(loadLanes(values + a * kLanes), loadLanes(values + (s - a) * kLanes)));
+                               _mm256_madd_epi16(loadLanes(values + a * kBatch), loadLanes(values + (s - a) * kBatch)));
     pairs = _mm256_add_epi32(pairs, pairs);
     if (s % 2 == 0) {
-      const __m256i self = loadLanes(values + s / 2 * kLanes);
+      const __m256i self = loadLanes(values + s / 2 * kBatch);
       pairs = _mm256_add_epi32(pairs, _mm256_madd_epi16(self, self));
     }
     const __m128i four = _mm_add_epi32(_mm256_castsi256_si128(pairs), _mm256_extracti128_si256(pairs, 1));
@@ -168,7 +168,7 @@ public:
       : lattice_(lattice),
         table_(table),
         kernels_(kernels),
-        values_(static_cast<std::size_t>(lattice.num_along) * kLanes),
+        values_(static_cast<std::size_t>(lattice.num_along) * kBatch),
         sums_(2 * lattice.num_along) {}
 
   /// \param index of the direction in the grid.
@@ -186,7 +186,7 @@ public:
     const double phase_u = std::fmod(kPhaseSteps[0] * static_cast<double>(index), 1.0) - 0.5;
     const double phase_v = std::fmod(kPhaseSteps[1] * static_cast<double>(index), 1.0) - 0.5;
     for (int i = 0; i < lattice_.num_across; ++i)
-      for (int j = 0; j < lattice_.num_across; j += kLanes)
+      for (int j = 0; j < lattice_.num_across; j += kBatch)
         addBundle((i - lattice_.num_across / 2 + phase_u) * lattice_.spacing, j, phase_v);
     for (int k = 0; k < lattice_.num_radius; ++k) {
       const double s = (k - num_skipped) * lattice_.refine;
@@ -201,7 +201,7 @@ private:
   void addBundle(double a, int first, double phase_v) {
     lines_.first = lattice_.num_along;
     lines_.last = 0;
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < kBatch; ++lane) {
       placeLine(lane, a, (first + lane - lattice_.num_across / 2 + phase_v) * lattice_.spacing,
                 first + lane < lattice_.num_across);
       if (lines_.begin[lane] >= lines_.end[lane]) continue;

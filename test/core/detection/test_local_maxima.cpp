@@ -11,7 +11,7 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-constexpr double kRadius = 1.0;
+constexpr double kGridRadius = 1.0;
 
 struct Peak {
   ReflectionPlane plane;
@@ -36,7 +36,7 @@ SymmetryMap peaks(const PlaneGrid& grid, const std::vector<Peak>& peaks) {
 }
 
 PlaneGrid grid(int num_theta = 16, int num_phi = 64, int num_radius = 16) {
-  return PlaneGrid(num_theta, num_phi, num_radius, Eigen::Vector3d::Zero(), kRadius);
+  return PlaneGrid(num_theta, num_phi, num_radius, Eigen::Vector3d::Zero(), kGridRadius);
 }
 
 ReflectionPlane plane(double theta, double phi, double r) {
