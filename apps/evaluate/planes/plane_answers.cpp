@@ -42,7 +42,7 @@ PlaneAnswers answersFromJson(const std::string& path) {
     answers.push_back(Answer::ofAxis(vectorFrom(axis.at("point")), vectorFrom(axis.at("direction")), score(axis)));
   for (const json& plane : content.at("planes")) {
     answers.push_back(Answer::ofPlane(planeFrom(plane.at("coefficients").get<std::array<double, 4>>()), score(plane)));
-    answers.back().possible = plane.value("kind", "symmetry") == "possible";
+    answers.back().called = plane.value("kind", "symmetry") == "symmetry";
   }
   const json timing = content.value("timing_ms", json::object());
   if (timing.contains("total")) result.milliseconds = timing["total"].get<double>();
@@ -87,7 +87,7 @@ PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud
       result.answers.push_back(Answer::ofAxis(axis.point, axis.direction, axis.confidence));
     for (const SymmetryPlane& plane : planes) {
       result.answers.push_back(Answer::ofPlane(plane, plane.confidence));
-      result.answers.back().possible = plane.kind == PlaneKind::Possible;
+      result.answers.back().called = plane.kind == PlaneKind::Symmetry;
     }
   } catch (const pcl::BadArgumentException&) {
     result.failed = true;
