@@ -21,6 +21,7 @@ namespace {
 /// Least closeness of candidates. derived: a near plane leaves at most 10 % of the surface far off, and the grid's
 /// plane beside it another third; half only adds candidates.
 constexpr double kLeastCloseness = 0.5;
+constexpr std::size_t kMinCandidates = 20;   // chosen: asymmetric shapes have a best share too; twice screens 20 more
 constexpr std::size_t kMaxCandidates = 300;  // chosen: half misses planes of gears, twice takes twice the time
 /// Widths of the weights at the start of a refinement. chosen: half leaves poor candidates behind, twice joins near
 /// planes.
@@ -97,7 +98,8 @@ private:
     if (options_.by_transform) return transformCandidates(reflection_.samples(), options_);
     std::vector<ReflectionPlane> planes;
     for (const ScannedPlane& scanned : scanPlanes(scene_, reflection_.samples(), options_.num_threads))
-      if (scanned.closeness >= kLeastCloseness && planes.size() < kMaxCandidates) planes.push_back(scanned.plane);
+      if (planes.size() < (scanned.closeness >= kLeastCloseness ? kMaxCandidates : kMinCandidates))
+        planes.push_back(scanned.plane);
     return planes;
   }
 
