@@ -18,7 +18,8 @@ struct Answer {
   Line3d axis{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< of an axis
   Eigen::Vector3d point = Eigen::Vector3d::Zero();                 ///< of a center
   double score = 0.0;                                              ///< larger is surer, comparable between clouds
-  bool called = true;                                              ///< a symmetry; others are listed as what may be one
+  bool rank_only = false;  ///< the score says the order alone: it is no probability
+  bool called = true;      ///< a symmetry; others are listed as what may be one
 
   static Answer ofPlane(const ReflectionPlane& plane, double score);
   static Answer ofAxis(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double score);
@@ -49,7 +50,9 @@ struct Judgement {
 struct OperatingPoint {
   double min_confidence = 0.5;
 
-  bool calls(const Answer& answer) const { return answer.called && answer.score >= min_confidence; }
+  bool calls(const Answer& answer) const {
+    return answer.called && (answer.rank_only || answer.score >= min_confidence);
+  }
 };
 
 struct MatchResult {

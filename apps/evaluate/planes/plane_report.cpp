@@ -123,8 +123,10 @@ std::vector<Reliability> reliabilities(const std::vector<CloudGroup>& groups) {
     std::vector<ShareCase> cases;
     for (const CloudResult* result : group.results) {
       cases.push_back({result->best_share, result->called()});
-      for (std::size_t i = 0; i < result->match.judgements.size(); ++i)
-        forecasts.push_back({result->answers.answers[i].score, result->match.judgements[i].at_reference});
+      for (std::size_t i = 0; i < result->match.judgements.size(); ++i) {
+        const Answer& answer = result->answers.answers[i];
+        if (!answer.rank_only) forecasts.push_back({answer.score, result->match.judgements[i].at_reference});
+      }
     }
     all.push_back(reliabilityOf(group.label, forecasts, cases));
   }

@@ -193,6 +193,10 @@ TEST_F(EvaluatePlanes, OneOperatingPointDecides) {
   possible["kind"] = "possible";
   folder_.write("found/tetrahedron_whole_noise_0.json", json{{"planes", {possible}}}.dump());
   EXPECT_EQ(numCalled(""), 0) << "what may be a symmetry is not called one";
+  boost::filesystem::remove(folder_ / "found/tetrahedron_whole_noise_0.json");
+  folder_.write("found/tetrahedron_whole_noise_0.txt", "1 0 0 0\n");
+  EXPECT_EQ(numCalled(" -min_confidence 1"), 1) << "an order is no probability";
+  EXPECT_EQ(groups()[0]["reliability"]["num_answers"], 0);
 }
 
 TEST_F(EvaluatePlanes, RowsAreChosenByName) {
