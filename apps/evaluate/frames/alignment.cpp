@@ -15,7 +15,7 @@
 #include "evaluate/shared/class_file.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
-#include "evaluate/shared/test_clouds.h"
+#include "evaluate/clouds/test_clouds.h"
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 

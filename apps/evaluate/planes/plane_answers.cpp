@@ -36,13 +36,21 @@ PlaneAnswers answersFromJson(const std::string& path) {
   const auto score = [&](const json& entry) {
     return entry.value("confidence", entry.value("score", scoreOfRank(answers.size())));
   };
-  for (const json& center : listOf("centers"))
+  const auto markRank = [&](const json& entry) {
+    answers.back().rank_only = !entry.contains("confidence") && !entry.contains("score");
+  };
+  for (const json& center : listOf("centers")) {
     answers.push_back(Answer::ofCenter(vectorFrom(center.at("point")), score(center)));
-  for (const json& axis : listOf("axes"))
+    markRank(center);
+  }
+  for (const json& axis : listOf("axes")) {
     answers.push_back(Answer::ofAxis(vectorFrom(axis.at("point")), vectorFrom(axis.at("direction")), score(axis)));
+    markRank(axis);
+  }
   for (const json& plane : content.at("planes")) {
     answers.push_back(Answer::ofPlane(planeFrom(plane.at("coefficients").get<std::array<double, 4>>()), score(plane)));
-    answers.back().possible = plane.value("kind", "symmetry") == "possible";
+    markRank(plane);
+    answers.back().called = plane.value("kind", "symmetry") == "symmetry";
   }
   const json timing = content.value("timing_ms", json::object());
   if (timing.contains("total")) result.milliseconds = timing["total"].get<double>();
@@ -64,6 +72,7 @@ PlaneAnswers answersFromText(const std::string& path) {
                        ", must be a number");
     reader.skipLine();
     answers.push_back(Answer::ofPlane(planeFrom(coefficients), score));
+    answers.back().rank_only = token.empty();
   }
   return result;
 }
@@ -87,7 +96,7 @@ PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud
       result.answers.push_back(Answer::ofAxis(axis.point, axis.direction, axis.confidence));
     for (const SymmetryPlane& plane : planes) {
       result.answers.push_back(Answer::ofPlane(plane, plane.confidence));
-      result.answers.back().possible = plane.kind == PlaneKind::Possible;
+      result.answers.back().called = plane.kind == PlaneKind::Symmetry;
     }
   } catch (const pcl::BadArgumentException&) {
     result.failed = true;

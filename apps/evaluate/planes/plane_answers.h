@@ -26,7 +26,7 @@ PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud
 
 /// Reads folder/name.json, as pcl_symmetry_planes writes it, or else folder/name.txt with a line `a b c d [score]` for
 /// each plane a x + b y + c z + d = 0, best first, # comments. The confidence, or else the score, ranks answers; where
-/// neither is given, their order does.
+/// neither is given, their order does, and all of them are called symmetries.
 /// \return failed where neither file exists.
 /// \throws InputError for a file that cannot be understood.
 PlaneAnswers readAnswers(const std::string& folder, const std::string& name);

@@ -144,6 +144,7 @@ MatchResult matchAnswers(const std::vector<Answer>& answers, const ReferenceSymm
   for (const Answer& answer : answers) {
     Judgement judgement;
     const std::vector<Match> matches = matcher.findReferences(answer);
+    judgement.at_reference = !matches.empty();
     bool repeats_family = false;
     for (const Match& match : matches) {
       const bool is_axis =

@@ -18,7 +18,8 @@ struct Answer {
   Line3d axis{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};  ///< of an axis
   Eigen::Vector3d point = Eigen::Vector3d::Zero();                 ///< of a center
   double score = 0.0;                                              ///< larger is surer, comparable between clouds
-  bool possible = false;  ///< the detector does not call it a symmetry, but lists it as one that may be
+  bool rank_only = false;  ///< the score says the order alone: it is no probability
+  bool called = true;      ///< a symmetry; others are listed as what may be one
 
   static Answer ofPlane(const ReflectionPlane& plane, double score);
   static Answer ofAxis(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double score);
@@ -40,8 +41,18 @@ enum class Verdict {
 
 struct Judgement {
   Verdict verdict = Verdict::False;
-  int num_found = 0;  ///< references that no better answer found
-  Difference error;   ///< where it matches a reference: radians and diagonals
+  bool at_reference = false;  ///< also where a better answer found it: what is said of the plane is true
+  int num_found = 0;          ///< references that no better answer found
+  Difference error;           ///< where it matches a reference: radians and diagonals
+};
+
+/// What a detector decides: an answer that it calls a symmetry, with at least this score, says "symmetric".
+struct OperatingPoint {
+  double min_confidence = 0.5;
+
+  bool calls(const Answer& answer) const {
+    return answer.called && (answer.rank_only || answer.score >= min_confidence);
+  }
 };
 
 struct MatchResult {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/calibration/reliability.h"
 #include "evaluate/planes/plane_statistics.h"
 
 namespace pcl_symmetry::apps {
@@ -20,8 +21,14 @@ struct CloudGroup {
 /// By recipe; with Sweep::Views by the angle between view direction and normal, ten degrees each.
 std::vector<CloudGroup> groupResults(const std::vector<CloudResult>& results, Sweep sweep);
 
-/// One line for each group, with a heading.
-void printTable(const std::vector<CloudGroup>& groups);
+/// Decisions of each group with 95 % Wilson intervals.
+void printDecisions(const std::vector<CloudGroup>& groups, const OperatingPoint& operating_point);
+
+/// Rankings, accuracy and times: one line for each group, with a heading.
+void printRankings(const std::vector<CloudGroup>& groups);
+
+/// Stated probabilities of all answers against references, nearly symmetric clouds included.
+std::vector<Reliability> reliabilities(const std::vector<CloudGroup>& groups);
 
 nlohmann::json toJson(const std::vector<CloudGroup>& groups);
 

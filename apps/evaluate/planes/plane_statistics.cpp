@@ -17,15 +17,44 @@ double inDegrees(double radians) {
   return radians * 180.0 / kPi;
 }
 
-/// Whether the first answer that is not neutral is called a symmetry.
-bool firstIsSure(const CloudResult& result) {
-  const auto& judgements = result.match.judgements;
-  for (std::size_t i = 0; i < judgements.size(); ++i)
-    if (judgements[i].verdict != Verdict::Neutral) return !result.answers.answers[i].possible;
-  return false;
+/// Counts the decision on one cloud.
+void count(const CloudResult& result, DecisionStatistics& decisions) {
+  if (result.kind == SymmetryKind::Symmetric) {
+    decisions.decided_right.add(result.decidedRight());
+    decisions.false_per_cloud += result.numFalse();
+  } else {
+    (result.kind == SymmetryKind::Asymmetric ? decisions.asymmetric_called : decisions.nearly_called)
+        .add(result.called());
+  }
+  if (result.recipe.view < 0) return;
+  const int num_contradicted = result.numFalse(ViewVerdict::Contradicted);
+  decisions.num_contradicted += num_contradicted;
+  decisions.num_undecidable += result.numFalse(ViewVerdict::Undecidable);
+  if (result.kind == SymmetryKind::Asymmetric) decisions.asymmetric_contradicted.add(num_contradicted > 0);
 }
 
 }  // namespace
+
+bool CloudResult::called() const {
+  return std::any_of(answers.answers.begin(), answers.answers.end(),
+                     [&](const Answer& answer) { return operating_point.calls(answer); });
+}
+
+bool CloudResult::decidedRight() const {
+  for (std::size_t i = 0; i < match.judgements.size(); ++i)
+    if (match.judgements[i].verdict != Verdict::Neutral && operating_point.calls(answers.answers[i]))
+      return match.judgements[i].verdict == Verdict::Right;
+  return false;
+}
+
+int CloudResult::numFalse(std::optional<ViewVerdict> verdict) const {
+  int num_false = 0;
+  for (std::size_t i = 0; i < match.judgements.size(); ++i) {
+    const bool counts = match.judgements[i].verdict == Verdict::False && operating_point.calls(answers.answers[i]);
+    num_false += counts && (!verdict || (i < view_verdicts.size() && view_verdicts[i] == *verdict)) ? 1 : 0;
+  }
+  return num_false;
+}
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -38,28 +67,23 @@ double quantile(std::vector<double> values, double share) {
 
 PlaneStatistics summarize(const CloudResults& results) {
   PlaneStatistics statistics;
-  int num_first = 0, num_sure_first = 0, num_five = 0, num_no_answer = 0, num_false = 0, num_none = 0;
+  int num_first = 0, num_five = 0, num_no_answer = 0;
   int num_references = 0, num_found = 0, num_axes_found = 0;
   std::vector<double> angles, offsets, axis_angles, axis_offsets, times;
   for (const CloudResult* result : results) {
     const MatchResult& match = result->match;
+    count(*result, statistics.decisions);
     statistics.num_failed += result->answers.failed ? 1 : 0;
     if (result->answers.milliseconds) times.push_back(*result->answers.milliseconds);
     if (result->kind == SymmetryKind::NearlySymmetric) {
       ++statistics.num_nearly;
     } else if (result->kind == SymmetryKind::Asymmetric) {
       ++statistics.num_asymmetric;
-      const auto& answers = result->answers.answers;
-      const bool none = std::all_of(answers.begin(), answers.end(), [](const Answer& a) { return a.possible; });
-      num_none += none && !result->answers.failed ? 1 : 0;
     } else {
       ++statistics.num_symmetric;
       num_first += result->firstIsRight() ? 1 : 0;
-      num_sure_first += result->firstIsRight() && firstIsSure(*result) ? 1 : 0;
       num_five += match.rank && *match.rank <= 5 ? 1 : 0;
       num_no_answer += result->answers.answers.empty() ? 1 : 0;
-      for (std::size_t i = 0; i < match.judgements.size(); ++i)
-        num_false += match.judgements[i].verdict == Verdict::False && !result->answers.answers[i].possible ? 1 : 0;
       num_references += match.num_references;
       num_found += match.num_found;
       statistics.num_axes += result->num_reference_axes;
@@ -75,12 +99,10 @@ PlaneStatistics summarize(const CloudResults& results) {
     }
   }
   statistics.first_rate = ratio(num_first, statistics.num_symmetric);
-  statistics.sure_first_rate = ratio(num_sure_first, statistics.num_symmetric);
   statistics.five_rate = ratio(num_five, statistics.num_symmetric);
   statistics.no_answer_rate = ratio(num_no_answer, statistics.num_symmetric);
-  statistics.false_per_cloud = ratio(num_false, statistics.num_symmetric);
+  statistics.decisions.false_per_cloud = ratio(statistics.decisions.false_per_cloud, statistics.num_symmetric);
   statistics.recall = ratio(num_found, num_references);
-  statistics.none_rate = ratio(num_none, statistics.num_asymmetric);
   statistics.axis_rate = ratio(num_axes_found, statistics.num_axes);
   statistics.median_angle = quantile(angles, 0.5);
   statistics.p90_angle = quantile(angles, 0.9);

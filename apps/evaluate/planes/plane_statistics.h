@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/clouds/test_clouds.h"
 #include "evaluate/planes/plane_answers.h"
 #include "evaluate/planes/plane_matching.h"
-#include "evaluate/shared/test_clouds.h"
+#include "evaluate/planes/visible_surface.h"
+#include "evaluate/shared/proportion.h"
 
 namespace pcl_symmetry::apps {
 
@@ -22,20 +24,36 @@ struct CloudResult {
   int num_reference_axes = 0;
   PlaneAnswers answers;
   MatchResult match;
+  OperatingPoint operating_point;
+  std::vector<ViewVerdict> view_verdicts;  ///< of a scan: one per answer
 
   bool firstIsRight() const { return match.rank == 1; }
+  /// Whether any answer is called a symmetry.
+  bool called() const;
+  /// Whether the first answer that is called a symmetry, neutral ones left out, is right.
+  bool decidedRight() const;
+  /// \return false answers that are called symmetries; with \p verdict only those.
+  int numFalse(std::optional<ViewVerdict> verdict = std::nullopt) const;
 };
 
-/// Rates in [0, 1], NaN where there is nothing to count. Nearly symmetric clouds count in none.
+/// Decisions at one operating point.
+struct DecisionStatistics {
+  Proportion decided_right;            ///< of symmetric clouds
+  Proportion asymmetric_called;        ///< symmetric, of asymmetric clouds
+  Proportion nearly_called;            ///< symmetric, of nearly symmetric clouds
+  Proportion asymmetric_contradicted;  ///< of asymmetric scans: a visible point contradicts an answer that is called
+  double false_per_cloud = 0.0;        ///< answers that are called, on symmetric clouds; NaN where there is none
+  int num_contradicted = 0, num_undecidable = 0;  ///< false answers that are called, on all scans, by ViewVerdict
+};
+
+/// Rates in [0, 1], NaN where there is nothing to count. Nearly symmetric clouds count in none but their own.
 struct PlaneStatistics {
+  DecisionStatistics decisions;
   int num_symmetric = 0, num_asymmetric = 0, num_nearly = 0, num_failed = 0;
-  double first_rate = 0.0;       ///< symmetric clouds whose first answer is right; neutral answers do not count
-  double sure_first_rate = 0.0;  ///< of them those whose first answer is called a symmetry, not just possible
-  double five_rate = 0.0;        ///< symmetric clouds with a right answer among the first five
-  double no_answer_rate = 0.0;   ///< symmetric clouds without any
-  double recall = 0.0;           ///< references found
-  double false_per_cloud = 0.0;  ///< on symmetric clouds, called symmetries
-  double none_rate = 0.0;        ///< asymmetric clouds where rightly nothing is called a symmetry
+  double first_rate = 0.0;      ///< symmetric clouds whose first answer is right; neutral answers do not count
+  double five_rate = 0.0;       ///< symmetric clouds with a right answer among the first five
+  double no_answer_rate = 0.0;  ///< symmetric clouds without any
+  double recall = 0.0;          ///< references found
   double median_angle = 0.0, p90_angle = 0.0;                ///< degrees, of the best-ranked right answers
   double median_offset = 0.0, p90_offset = 0.0;              ///< diagonals
   int num_axes = 0;                                          ///< axes among the references

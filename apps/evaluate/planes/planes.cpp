@@ -3,10 +3,12 @@
 #include <pcl/conversions.h>
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/command_line/command_line.h"
@@ -33,30 +35,39 @@ struct EvaluatePlanesOptions {
   ReferenceOptions references;
   std::optional<std::string> references_path;
   TestCloudOptions clouds;
-  std::string sweep = "none", views = "corners";
+  std::string sweep = "none", views = "corners", tolerance_of = "diameter", references_by = "brute_force";
+  std::optional<std::string> rows;
   MatchLimits limits;
+  OperatingPoint operating_point;
   bool no_detect = false;
   std::optional<std::string> export_folder, planes_folder;
-  std::optional<std::string> cloud_csv, model_csv, curve_csv, png;
+  std::optional<std::string> cloud_csv, model_csv, curve_csv, reliability_csv, share_csv, png;
   CommonOptions common;
 };
 
-CommandLine commandLine(EvaluatePlanesOptions& o) {
-  CommandLine line(
-      "pcl_symmetry_evaluate planes",
-      "Makes whole clouds and single-view scans of meshes and measures how well their planes are found.",
-      "pcl_symmetry_evaluate planes psb/train -every 4 -max 200 -references references.json -csv clouds.csv");
-  addModelFlags(line, o.folders, o.selection);
+void addReferenceFlags(CommandLine& line, EvaluatePlanesOptions& o) {
   line.text("references", "FILE", o.references_path,
             "reference planes: read for the meshes in it, extended by the others")
       .number("tolerance", o.references.tolerance, Range::open(0, 1),
-              "largest distance of a reflected point from the mesh, in diagonals")
+              "largest distance of a reflected point from the mesh, see -tolerance_of")
+      .choice("tolerance_of", o.tolerance_of, {"diameter", "diagonal"},
+              "unit of -tolerance: the greatest distance between two points, or the diagonal of the bounding box")
+      .choice(
+          "references_by", o.references_by, {"brute_force", "transform"},
+          "search of the references: all planes on the mesh, or maxima of this library's transform, as the detector")
       .number("min_share", o.references.min_share, Range::closed(0.5, 1),
               "least share of the area that a reference plane maps to the mesh")
       .number("near_share", o.references.near_share, Range::closed(0.5, 1),
-              "least share of a near plane, which is neither right nor wrong")
-      .choice("sweep", o.sweep, {"none", "noise", "points", "missing", "views"},
-              "vary one thing; none: whole clouds at all noise levels, and scans")
+              "least share of a near plane, which is neither right nor wrong");
+}
+
+void addCloudFlags(CommandLine& line, EvaluatePlanesOptions& o) {
+  line.choice("sweep", o.sweep, {"none", "noise", "points", "missing", "views"},
+              "vary one thing; none: the clouds of -rows")
+      .text("rows", "A,B,...", o.rows,
+            "kinds of clouds: whole without noise; noise: whole at -noise; scan: with viewpoint; moved: the same scans "
+            "moved and without viewpoint; crop: whole, a random plane cuts off -crops; sampling: whole, random, voxel, "
+            "scanners and rings (whole,noise,scan,moved,crop)")
       .number("points", o.clouds.num_points, Range::closed(100, 10'000'000), "number of points per cloud")
       .numbers("noise", o.clouds.noise, Range::closed(0, 1),
                "standard deviations of the noise of whole clouds, in diagonals")
@@ -64,17 +75,31 @@ CommandLine commandLine(EvaluatePlanesOptions& o) {
                "standard deviations of the depth of scans, in diagonals")
       .numbers("missing", o.clouds.missing, Range{0, 1, false, true},
                "shares of the points that are cut off, for -sweep missing")
+      .numbers("crops", o.clouds.crops, Range{0, 1, false, true},
+               "shares of the points that are cut off, of -rows crop")
       .numbers("point_counts", o.clouds.point_counts, Range::closed(10, 10'000'000),
                "numbers of points, for -sweep points")
       .choice("views", o.views, {"corners", "random", "none"}, "scans from corners of a cube or random directions")
       .number("num_views", o.clouds.num_views, Range::closed(1, 1000),
-              "number of scans of each mesh, at most 8 from corners")
-      .number("max_angle", o.limits.max_angle, Range::open(0, 90),
+              "number of scans of each mesh, at most 8 from corners");
+}
+
+CommandLine commandLine(EvaluatePlanesOptions& o) {
+  CommandLine line(
+      "pcl_symmetry_evaluate planes",
+      "Makes whole clouds and single-view scans of meshes and measures how well their planes are found.",
+      "pcl_symmetry_evaluate planes psb/train -every 4 -max 200 -references references.json -csv clouds.csv");
+  addModelFlags(line, o.folders, o.selection);
+  addReferenceFlags(line, o);
+  addCloudFlags(line, o);
+  line.number("max_angle", o.limits.max_angle, Range::open(0, 90),
               "largest angle between a found plane and its reference, degrees")
       .number("max_axis_angle", o.limits.max_axis_angle, Range::open(0, 90),
               "largest angle between a found axis and its reference, degrees")
       .number("max_offset", o.limits.max_offset, Range::open(0, 1),
               "largest offset between a finding and its reference, in diagonals")
+      .number("min_confidence", o.operating_point.min_confidence, Range::closed(0, 1),
+              "least confidence of an answer that decides: one operating point for right and wrong decisions")
       .text("export", "DIR", o.export_folder, "write every cloud as PCD, and ground_truth.json")
       .flag("no_detect", o.no_detect, "only find references and export")
       .text("planes", "DIR", o.planes_folder,
@@ -82,6 +107,8 @@ CommandLine commandLine(EvaluatePlanesOptions& o) {
             "[score]) of each cloud instead of detecting; NAME as -export has it")
       .text("csv", "FILE", o.cloud_csv, "a row for each cloud")
       .text("model_csv", "FILE", o.model_csv, "a row for each model")
+      .text("reliability_csv", "FILE", o.reliability_csv, "right answers by confidence")
+      .text("share_csv", "FILE", o.share_csv, "clouds called symmetric by the true share of the model's best plane")
       .text("curve_csv", "FILE", o.curve_csv, "precision and recall at every score")
       .picture("png", o.png, "chart: precision against recall, or the rates of a sweep")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
@@ -97,12 +124,31 @@ Sweep sweepNamed(const std::string& name) {
   return sweeps.at(name);
 }
 
+std::vector<CloudRow> rowsNamed(const std::string& names) {
+  static const std::map<std::string, CloudRow> rows = {{"whole", CloudRow::Whole}, {"noise", CloudRow::Noise},
+                                                       {"scan", CloudRow::Scan},   {"moved", CloudRow::Moved},
+                                                       {"crop", CloudRow::Crop},   {"sampling", CloudRow::Sampling}};
+  std::vector<std::string> parts;
+  boost::algorithm::split(parts, names, boost::algorithm::is_any_of(","));
+  std::vector<CloudRow> found;
+  for (const std::string& part : parts) {
+    const auto row = rows.find(part);
+    if (row == rows.end())
+      throw UsageError("-rows: '" + part + "', must be of whole, noise, scan, moved, crop, sampling");
+    found.push_back(row->second);
+  }
+  return found;
+}
+
 void completeOptions(EvaluatePlanesOptions& o, const CommandLine& line) {
   if (o.references.near_share > o.references.min_share) throw UsageError("-near_share must be <= -min_share");
   if (o.no_detect && o.planes_folder) throw UsageError("only one of -no_detect and -planes may be given");
   if (o.planes_folder && !boost::filesystem::is_directory(*o.planes_folder))
     throw InputError(*o.planes_folder + ": must be a folder");
   o.clouds.sweep = sweepNamed(o.sweep);
+  o.clouds.rows = rowsNamed(o.rows.value_or("whole,noise,scan,moved,crop"));
+  o.references.by_transform = o.references_by == "transform";
+  o.references.tolerance_in_diagonals = o.tolerance_of == "diagonal";
   if (o.clouds.sweep == Sweep::Views && !line.given("views")) o.views = "random";
   if (o.clouds.sweep == Sweep::Views && o.views == "none") throw UsageError("-sweep views needs -views");
   o.clouds.random_views = o.views == "random";
@@ -113,8 +159,8 @@ void completeOptions(EvaluatePlanesOptions& o, const CommandLine& line) {
 
 /// Degrees between the view direction and the normal of the best reference plane, as lines.
 std::optional<double> viewAngle(const TestCloud& cloud, const ReferenceSymmetries& references) {
-  if (!cloud.view_direction || references.planes.empty()) return std::nullopt;
-  const double cosine = std::abs(cloud.view_direction->dot(references.planes.front().plane.normal()));
+  if (!cloud.view || references.planes.empty()) return std::nullopt;
+  const double cosine = std::abs(cloud.view->direction.dot(references.planes.front().plane.normal()));
   return std::acos(std::min(1.0, cosine)) * 180.0 / kPi;
 }
 
@@ -150,6 +196,15 @@ private:
   struct Prepared {
     ReferenceSymmetries references;
     TestCloudMaker maker;
+    TriangleScene scene;
+    MeshReflection reflection;
+
+    Prepared(const ReferenceSymmetries& found, const Model& model, const pcl::PolygonMesh& mesh,
+             const EvaluatePlanesOptions& options)
+        : references(found),
+          maker(mesh, model.key, options.clouds),
+          scene(mesh),
+          reflection(scene, options.references.num_samples, options.references.seed) {}
   };
 
   /// \return what it gives; none where it throws, and the reason is kept.
@@ -167,18 +222,19 @@ private:
 
   /// \return whether the model could be used.
   bool evaluate(const Model& model) {
-    const auto prepared = attempt(model.path, [&] {
+    const auto attempted = attempt(model.path, [&] {
       const Shape shape = loadShape(model.path);
       if (!shape.mesh) throw InputError(model.path + ": has no faces");
-      return Prepared{referencesOf(model, *shape.mesh), TestCloudMaker(*shape.mesh, model.key, options_.clouds)};
+      return std::make_unique<Prepared>(referencesOf(model, *shape.mesh), model, *shape.mesh, options_);
     });
-    if (!prepared) return false;
-    ++num_models_[prepared->references.kind];
+    if (!attempted) return false;
+    const Prepared& prepared = **attempted;
+    ++num_models_[prepared.references.kind];
     if (options_.no_detect && !options_.export_folder) return true;
     for (const CloudRecipe& recipe : recipes_) {
       const std::string name = model.name + "_" + recipe.name;
-      if (const auto cloud = attempt(name, [&] { return prepared->maker.make(recipe); }))
-        evaluate(name, model, recipe, *cloud, prepared->references.transformed(cloud->T_cloud_model));
+      if (const auto cloud = attempt(name, [&] { return prepared.maker.make(recipe); }))
+        evaluate(name, model, recipe, *cloud, prepared);
     }
     return true;
   }
@@ -196,7 +252,8 @@ private:
   }
 
   void evaluate(const std::string& name, const Model& model, const CloudRecipe& recipe, const TestCloud& cloud,
-                const ReferenceSymmetries& references) {
+                const Prepared& prepared) {
+    const ReferenceSymmetries references = prepared.references.transformed(cloud.T_cloud_model);
     ++num_clouds_;
     if (options_.export_folder) exportCloud(name, model, recipe, cloud, references);
     if (options_.no_detect) return;
@@ -211,7 +268,20 @@ private:
     result.num_reference_axes = static_cast<int>(references.axes.size());
     result.answers = answersFor(name, cloud);
     result.match = matchAnswers(result.answers.answers, references, options_.limits);
+    result.operating_point = options_.operating_point;
+    if (cloud.view) judgeByView(prepared, cloud, result);
     results_.push_back(std::move(result));
+  }
+
+  /// Whether the scan contradicts an answer is asked of those that are called symmetries and are wrong.
+  void judgeByView(const Prepared& prepared, const TestCloud& cloud, CloudResult& result) const {
+    result.view_verdicts.resize(result.answers.answers.size(), ViewVerdict::Undecidable);
+    if (result.numFalse() == 0) return;
+    const double tolerance = prepared.references.tolerance / prepared.references.diagonal;
+    const VisibleSurface visible(prepared.scene, prepared.reflection, cloud, tolerance);
+    for (std::size_t i = 0; i < result.view_verdicts.size(); ++i)
+      if (result.match.judgements[i].verdict == Verdict::False)
+        result.view_verdicts[i] = visible.verdictOf(result.answers.answers[i]);
   }
 
   PlaneAnswers answersFor(const std::string& name, const TestCloud& cloud) {
@@ -239,13 +309,19 @@ private:
     std::printf("%d symmetric, %d nearly symmetric, %d asymmetric models\n", num_models_[SymmetryKind::Symmetric],
                 num_models_[SymmetryKind::NearlySymmetric], num_models_[SymmetryKind::Asymmetric]);
     const std::vector<CloudGroup> groups = groupResults(results_, options_.clouds.sweep);
-    if (!results_.empty()) printTable(groups);
+    if (!results_.empty()) {
+      printDecisions(groups, options_.operating_point);
+      printRankings(groups);
+      printReliability(reliabilities(groups));
+    }
     std::vector<std::string> failed;
     for (const CloudResult& result : results_)
       if (result.answers.failed) failed.push_back(result.cloud);
     for (const std::string& name : failed) console_.warn("no answer: " + name);
     if (options_.cloud_csv) writeText(*options_.cloud_csv, cloudCSV(results_));
     if (options_.model_csv) writeText(*options_.model_csv, modelCSV(results_));
+    if (options_.reliability_csv) writeText(*options_.reliability_csv, reliabilityCSV(reliabilities(groups)));
+    if (options_.share_csv) writeText(*options_.share_csv, shareCSV(reliabilities(groups)));
     if (options_.curve_csv) writeText(*options_.curve_csv, precisionRecallCSV(groups));
     if (options_.common.json_path) {
       const nlohmann::json summary{{"num_models",
@@ -256,6 +332,9 @@ private:
                                    {"failed", failed},
                                    {"sweep", options_.sweep},
                                    {"seed", options_.common.seed},
+                                   {"min_confidence", options_.operating_point.min_confidence},
+                                   {"tolerance", options_.references.tolerance},
+                                   {"tolerance_of", options_.tolerance_of},
                                    {"limits",
                                     {{"max_angle_deg", options_.limits.max_angle},
                                      {"max_axis_angle_deg", options_.limits.max_axis_angle},

@@ -17,7 +17,7 @@
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
 #include "evaluate/shared/table_text.h"
-#include "evaluate/shared/test_clouds.h"
+#include "evaluate/clouds/test_clouds.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 

@@ -53,6 +53,8 @@ std::vector<ReferenceAxis> axesFrom(const json& list) {
 
 json describe(const ReferenceOptions& options) {
   return {{"tolerance", options.tolerance},
+          {"by_transform", options.by_transform},
+          {"tolerance_in_diagonals", options.tolerance_in_diagonals},
           {"min_share", options.min_share},
           {"near_share", options.near_share},
           {"merge_angle", options.merge_angle},
@@ -71,6 +73,8 @@ json toJson(const ReferenceSymmetries& symmetries) {
           {"best_share", symmetries.best_share},
           {"center", toJson(symmetries.center)},
           {"diagonal", symmetries.diagonal},
+          {"diameter", symmetries.diameter},
+          {"tolerance", symmetries.tolerance},
           {"planes", toJson(symmetries.planes)},
           {"axes", toJson(symmetries.axes)},
           {"centers", centers},
@@ -85,6 +89,8 @@ ReferenceSymmetries referencesFromJson(const json& json) {
   symmetries.best_share = json.at("best_share").get<double>();
   symmetries.center = vectorFrom(json.at("center"));
   symmetries.diagonal = json.at("diagonal").get<double>();
+  symmetries.diameter = json.at("diameter").get<double>();
+  symmetries.tolerance = json.at("tolerance").get<double>();
   symmetries.planes = planesFrom(json.at("planes"));
   symmetries.axes = axesFrom(json.at("axes"));
   for (const auto& center : json.at("centers"))

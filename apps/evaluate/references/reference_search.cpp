@@ -7,27 +7,32 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
-#include "core/geometry/principal_axes.h"
-#include "evaluate/references/mesh_reflection.h"
+#include "evaluate/mesh/mesh_reflection.h"
 #include "evaluate/references/plane_families.h"
+#include "evaluate/references/plane_scan.h"
+#include "evaluate/references/transform_candidates.h"
 #include "evaluate/shared/plane_difference.h"
-#include "pcl_symmetry/core/detection/local_maxima.h"
-#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
-#include "pcl_symmetry/core/transform/planar_transform.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
 // The search, in diagonals and shares.
-/// Least D of candidates. derived: a plane that maps 90 % of the area has a D far above; half only adds candidates.
-constexpr double kLeastD = 0.3;
-constexpr std::size_t kMaxCandidates = 400;  // chosen: half misses planes of gears, twice takes twice the time
+/// Least closeness of candidates. derived: a near plane leaves at most 10 % of the surface far off, and the grid's
+/// plane beside it another third; half only adds candidates.
+constexpr double kLeastCloseness = 0.5;
+constexpr std::size_t kMinCandidates = 20;   // chosen: asymmetric shapes have a best share too; twice screens 20 more
+constexpr std::size_t kMaxCandidates = 300;  // chosen: half misses planes of gears, twice takes twice the time
 /// Widths of the weights at the start of a refinement. chosen: half leaves poor candidates behind, twice joins near
 /// planes.
 constexpr double kCoarseWidth = 0.04, kFineWidth = 0.01;
 /// chosen: shares are known to 1 % (screen) and 0.5 % (fine); half doubles the variance, twice the time.
 constexpr int kScreenSamples = 1000, kCoarseSamples = 400, kFineSamples = 4000, kFamilySamples = 5000;
+/// chosen: climbing by more than the error of a share of these needs no more; half gains by chance, twice takes longer.
+constexpr int kClimbSamples = 2000;
+constexpr double kFullShare = 0.995;  // derived: what is above is symmetric at any min_share that is asked for
+constexpr double kLeastGain =
+    0.002;  // of the share; chosen: a standard error of it, smaller gains leave the plane alone
 constexpr double kScreenSlack = 0.05;  // derived: five standard errors of a share of 0.9 among kScreenSamples
 /// Candidates that reached the same plane. chosen: half refines planes twice, twice joins near ones.
 constexpr double kSameAngle = 1.0 * kDegree, kSameOffset = 0.005;
@@ -43,7 +48,7 @@ struct Family {
 class ReferenceSearch {
 public:
   ReferenceSearch(const TriangleScene& scene, const ReferenceOptions& options)
-      : options_(options), reflection_(scene, options.num_samples, options.seed) {}
+      : options_(options), scene_(scene), reflection_(scene, options.num_samples, options.seed) {}
 
   void run() {
     std::vector<ReferencePlane> coarse = screened(candidates());
@@ -90,21 +95,11 @@ private:
   }
 
   std::vector<ReflectionPlane> candidates() const {
-    GaussianEdtOptions edt_options;
-    edt_options.num_threads = options_.num_threads;
-    const GaussianEdt edt(reflection_.samples(), edt_options);
-    const PlaneGrid grid(64, 256, 96, edt.center(), edt.radius());
-    SampledTransformOptions map_options;
-    map_options.num_samples = 512;
-    map_options.num_threads = options_.num_threads;
-    map_options.seed = options_.seed;
-    const SymmetryMap map = sampledTransform(edt, grid, map_options);
-    LocalMaximaOptions maxima_options;
-    maxima_options.strength = maxima_options.laplacian = 0.0;
-    maxima_options.num_threads = options_.num_threads;
-    std::vector<ReflectionPlane> planes = principalPlanes(principalAxes(reflection_.samples()));
-    for (const LocalMaximum& maximum : findLocalMaxima(map, maxima_options))
-      if (maximum.value >= kLeastD && planes.size() < kMaxCandidates) planes.push_back(maximum.plane);
+    if (options_.by_transform) return transformCandidates(reflection_.samples(), options_);
+    std::vector<ReflectionPlane> planes;
+    for (const ScannedPlane& scanned : scanPlanes(scene_, reflection_.samples(), options_.num_threads))
+      if (planes.size() < (scanned.closeness >= kLeastCloseness ? kMaxCandidates : kMinCandidates))
+        planes.push_back(scanned.plane);
     return planes;
   }
 
@@ -130,9 +125,19 @@ private:
       planes[i].plane =
           reflection_.refine(planes[i].plane, kFineWidth, 0.1 * options_.tolerance, strideFor(kFineSamples));
       planes[i].share = share(planes[i].plane, options_.num_samples);
+      climb(planes[i]);
     });
     sortBestFirst(planes);
     return planes;
+  }
+
+  /// A plane of least distances leaves out area that another beside it maps to within the tolerance: what counts is the
+  /// greatest share near by.
+  void climb(ReferencePlane& plane) const {
+    if (plane.share >= kFullShare) return;
+    const ReflectionPlane higher = reflection_.climb(plane.plane, options_.tolerance, strideFor(kClimbSamples));
+    const double higher_share = share(higher, options_.num_samples);
+    if (higher_share > plane.share + kLeastGain) plane = {higher, higher_share};
   }
 
   static void sortBestFirst(std::vector<ReferencePlane>& planes) {
@@ -234,7 +239,7 @@ private:
     return Family{line, axis_share};
   }
 
-  /// Axes are looked for along the principal axes and where two planes meet.
+  /// Axes are looked for where two planes meet.
   void findFamilies(const std::vector<ReferencePlane>& planes) {
     // chosen: 276 lines; half misses axes, twice takes four times as long.
     constexpr std::size_t kMaxMeetingPlanes = 24;
@@ -252,8 +257,6 @@ private:
         if (axes_.size() >= 3) findCenter();
       }
     };
-    const PrincipalAxes principal = principalAxes(reflection_.samples());
-    for (int k = 0; k < 3; ++k) consider(Line3d(principal.center, principal.axes.col(k)));
     const std::size_t size = std::min(planes.size(), kMaxMeetingPlanes);
     for (std::size_t i = 0; i < size; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
@@ -288,6 +291,7 @@ private:
   }
 
   ReferenceOptions options_;
+  const TriangleScene& scene_;
   MeshReflection reflection_;
   double best_share_ = 0.0;             ///< of planes that were refined, in families or not
   std::vector<ReferencePlane> planes_;  ///< best first

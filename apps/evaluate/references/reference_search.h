@@ -6,7 +6,9 @@
 
 namespace pcl_symmetry::apps {
 
-/// \return symmetries in the frame of the scene, which is centred and has unit diagonal; without diagonal and center
+/// \param options with the tolerance in diagonals.
+/// \return symmetries in the frame of the scene, which is centred and has unit diagonal; without diagonal,
+/// diameter, tolerance and center.
 ReferenceSymmetries searchReferences(const TriangleScene& scene, const ReferenceOptions& options);
 
 }  // namespace pcl_symmetry::apps

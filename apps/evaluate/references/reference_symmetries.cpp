@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/neighbours/diameter.h"
 #include "evaluate/references/reference_search.h"
 
 namespace pcl_symmetry::apps {
@@ -40,6 +41,17 @@ struct SceneToMesh {
   Eigen::Vector3d direction(const Eigen::Vector3d& d) const { return d; }
 };
 
+/// \return the diameter of all triangles, in diagonals.
+double diameterOf(const TriangleScene& scene) {
+  const std::vector<Triangle>& triangles = scene.triangles();
+  Points corners(3, 3 * static_cast<Eigen::Index>(triangles.size()));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
+    corners.middleCols<3>(3 * static_cast<Eigen::Index>(i)) << t.a.cast<float>(), t.b.cast<float>(), t.c.cast<float>();
+  }
+  return diameter(corners);
+}
+
 [[noreturn]] void reject(const char* field, double value, const char* rule) {
   throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + ", " + rule);
 }
@@ -75,9 +87,15 @@ ReferenceSymmetries ReferenceSymmetries::transformed(const Eigen::Isometry3d& mo
 ReferenceSymmetries findReferenceSymmetries(const pcl::PolygonMesh& mesh, const ReferenceOptions& options) {
   options.validate();
   const TriangleScene scene(mesh);
-  ReferenceSymmetries symmetries = searchReferences(scene, options);
+  const double diameter = diameterOf(scene);
+  ReferenceOptions in_diagonals = options;
+  in_diagonals.tolerance_in_diagonals = true;
+  if (!options.tolerance_in_diagonals) in_diagonals.tolerance *= diameter;
+  ReferenceSymmetries symmetries = searchReferences(scene, in_diagonals);
   mapAll(symmetries, SceneToMesh{scene});
   symmetries.diagonal = scene.diagonal();
+  symmetries.diameter = scene.diagonal() * diameter;
+  symmetries.tolerance = scene.diagonal() * in_diagonals.tolerance;
   return symmetries;
 }
 

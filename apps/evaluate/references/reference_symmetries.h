@@ -12,11 +12,15 @@
 namespace pcl_symmetry::apps {
 
 struct ReferenceOptions {
-  double tolerance = 0.005;    ///< a reflected point within this of the mesh is on it, in diagonals, > 0
+  /// A reflected point within this of the mesh is on it, > 0: in diameters (the greatest distance between two points,
+  /// which no rotation changes), or in diagonals of the bounding box.
+  double tolerance = 0.01;
+  bool tolerance_in_diagonals = false;
   double min_share = 0.97;     ///< of the area: planes with more are references, in (0, 1]
   double near_share = 0.90;    ///< planes with more, and less than min_share, are neither right nor wrong
   double merge_angle = 3.0;    ///< degrees: of planes closer than this ...
   double merge_offset = 0.02;  ///< ... and this, in diagonals, the best is kept: answers could not be told apart
+  bool by_transform = false;   ///< candidates from this library's transform in place of brute force, for comparison
   int num_samples = 20'000;    ///< points of the surface that the shares are measured with
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0 = all; does not change the result
@@ -61,14 +65,17 @@ struct ReferenceSymmetries {
   double best_share = 0.0;                           ///< of any plane, also where it is no reference
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the bounding box, where offsets are measured
   double diagonal = 1.0;                             ///< of the bounding box
+  double diameter = 1.0;                             ///< the greatest distance between two points
+  double tolerance = 0.01;                           ///< within which the shares hold
   SymmetryKind kind = SymmetryKind::Asymmetric;
 
   /// The same symmetries of the mesh after a rigid motion; center moves along, the diagonal stays.
   ReferenceSymmetries transformed(const Eigen::Isometry3d& motion) const;
 };
 
-/// Looks at all planes: maxima of the transform without thresholds, planes across and through the principal axes, and
-/// reflections of what was found in each other; each refined on exact distances to the mesh.
+/// Tries all planes, two degrees and one per cent of the diagonal apart, by reflecting points of the mesh; refines the
+/// local maxima, and the reflections of what was found in each other, on exact distances to the mesh, and climbs to the
+/// greatest share. Nothing of it is shared with the detector (but see by_transform).
 /// \throws std::invalid_argument where the mesh has no area, or for bad options.
 ReferenceSymmetries findReferenceSymmetries(const pcl::PolygonMesh& mesh, const ReferenceOptions& options = {});
 

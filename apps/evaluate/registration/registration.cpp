@@ -20,7 +20,7 @@
 #include "evaluate/segmentation/patches.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
-#include "evaluate/shared/test_clouds.h"
+#include "evaluate/clouds/test_clouds.h"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {

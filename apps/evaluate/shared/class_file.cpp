@@ -5,7 +5,14 @@
 
 namespace pcl_symmetry::apps {
 
-std::map<std::string, std::string> readClassFile(const std::string& path) {
+namespace {
+
+struct LeafClass {
+  std::string full_name;  ///< behind its parents
+  int number;             ///< among the classes that name models, from 0
+};
+
+std::map<std::string, LeafClass> classesOfModels(const std::string& path) {
   const std::string text = readWholeFile(path);
   TokenReader reader(text, path);
   if (reader.next() != "PSB") throw InputError(path + ": must begin with PSB");
@@ -14,7 +21,9 @@ std::map<std::string, std::string> readClassFile(const std::string& path) {
   constexpr std::uint64_t kMost = 1'000'000;
   const std::uint64_t num_classes = reader.count("number of classes", 1, kMost);
   const std::uint64_t num_models = reader.count("number of models", 1, kMost);
-  std::map<std::string, std::string> class_of_models, full_names;
+  std::map<std::string, LeafClass> class_of_models;
+  std::map<std::string, std::string> full_names;
+  int num_leaves = 0;
   for (std::uint64_t c = 1; c <= num_classes; ++c) {
     const std::string name(reader.next()), parent(reader.next());
     if (name.empty() || parent.empty())
@@ -24,7 +33,8 @@ std::map<std::string, std::string> readClassFile(const std::string& path) {
     full_names[name] = full_name;
     const std::uint64_t size = reader.count("size of class", c, kMost);
     for (std::uint64_t i = 1; i <= size; ++i)
-      class_of_models["m" + std::to_string(reader.count("model of class", c, kMost))] = full_name;
+      class_of_models["m" + std::to_string(reader.count("model of class", c, kMost))] = {full_name, num_leaves};
+    num_leaves += size > 0 ? 1 : 0;
   }
   if (class_of_models.size() != num_models)
     throw InputError(path + ": names " + std::to_string(class_of_models.size()) + " models, must be " +
@@ -32,9 +42,23 @@ std::map<std::string, std::string> readClassFile(const std::string& path) {
   return class_of_models;
 }
 
+}  // namespace
+
+std::map<std::string, std::string> readClassFile(const std::string& path) {
+  std::map<std::string, std::string> names;
+  for (const auto& [model, leaf] : classesOfModels(path)) names[model] = leaf.full_name;
+  return names;
+}
+
+std::map<std::string, int> leafClassNumbers(const std::string& path) {
+  std::map<std::string, int> numbers;
+  for (const auto& [model, leaf] : classesOfModels(path)) numbers[model] = leaf.number;
+  return numbers;
+}
+
 std::set<std::string> modelsOfClassFile(const std::string& path) {
   std::set<std::string> names;
-  for (const auto& [model, name] : readClassFile(path)) names.insert(model);
+  for (const auto& [model, leaf] : classesOfModels(path)) names.insert(model);
   return names;
 }
 

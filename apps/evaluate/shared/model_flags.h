@@ -12,7 +12,7 @@ namespace pcl_symmetry::apps {
 /// Folders of meshes, and the flags of addSelectionFlags().
 void addModelFlags(CommandLine& line, std::vector<std::string>& folders, ModelSelection& selection);
 
-/// -list, -every, -first and -max.
+/// -list, -classes, -fold, -folds, -every, -first and -max.
 void addSelectionFlags(CommandLine& line, ModelSelection& selection);
 
 }  // namespace pcl_symmetry::apps

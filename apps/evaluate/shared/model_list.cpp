@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "common/files/file_text.h"
+#include "evaluate/shared/class_file.h"
 
 namespace pcl_symmetry::apps {
 
@@ -42,6 +43,21 @@ std::set<std::string> namesIn(const std::string& path) {
   return names;
 }
 
+/// Splits by class, so that near-duplicates of a model, which share its class, stay on its side of the split.
+std::set<std::string> namesInFold(const ModelSelection& selection) {
+  std::set<std::string> names;
+  for (const auto& [name, number] : leafClassNumbers(*selection.classes))
+    if (!selection.fold || number % selection.num_folds == *selection.fold) names.insert(name);
+  return names;
+}
+
+/// Takes away the paths whose names are not wanted.
+void keep(std::vector<fs::path>& paths, const std::set<std::string>& wanted) {
+  paths.erase(std::remove_if(paths.begin(), paths.end(),
+                             [&](const fs::path& path) { return !wanted.count(path.stem().string()); }),
+              paths.end());
+}
+
 std::string folderName(const fs::path& path) {
   return fs::canonical(path).parent_path().filename().string();
 }
@@ -53,6 +69,8 @@ std::string withExtension(const fs::path& path) {
 }  // namespace
 
 std::vector<Model> listModels(const std::vector<std::string>& folders, const ModelSelection& selection) {
+  if (selection.fold && !selection.classes) throw UsageError("-fold needs -classes");
+  if (selection.fold && *selection.fold >= selection.num_folds) throw UsageError("-fold must be < -folds");
   std::vector<std::vector<fs::path>> found;
   std::map<std::string, int> num_stems, num_names;
   for (const std::string& folder : folders) {
@@ -67,13 +85,13 @@ std::vector<Model> listModels(const std::vector<std::string>& folders, const Mod
   for (const std::string& name : wanted)
     if (!num_stems.count(name)) throw InputError(*selection.list + ": no folder holds a mesh named '" + name + "'");
 
+  std::set<std::string> in_fold;
+  if (selection.classes) in_fold = namesInFold(selection);
+
   std::vector<Model> models;
   for (std::vector<fs::path>& paths : found) {
-    if (selection.list) {
-      paths.erase(std::remove_if(paths.begin(), paths.end(),
-                                 [&](const fs::path& path) { return !wanted.count(path.stem().string()); }),
-                  paths.end());
-    }
+    if (selection.list) keep(paths, wanted);
+    if (selection.classes) keep(paths, in_fold);
     int taken = 0;
     for (std::size_t i = selection.first; i < paths.size(); i += selection.every) {
       if (selection.max && taken++ == *selection.max) break;

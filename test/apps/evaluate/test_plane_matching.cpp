@@ -161,8 +161,11 @@ TEST(PlaneStatistics, CountsSymmetricAndAsymmetricCloudsApart) {
   EXPECT_DOUBLE_EQ(s.five_rate, 0.5);
   EXPECT_DOUBLE_EQ(s.no_answer_rate, 0.25);
   EXPECT_DOUBLE_EQ(s.recall, 0.5);
-  EXPECT_DOUBLE_EQ(s.false_per_cloud, 0.5);
-  EXPECT_DOUBLE_EQ(s.none_rate, 0.5);
+  EXPECT_DOUBLE_EQ(s.decisions.false_per_cloud, 0.5);
+  EXPECT_EQ(s.decisions.decided_right.count, 1);
+  EXPECT_EQ(s.decisions.decided_right.total, 4);
+  EXPECT_DOUBLE_EQ(s.decisions.asymmetric_called.rate(), 0.5);
+  EXPECT_DOUBLE_EQ(s.decisions.nearly_called.rate(), 1.0);
   EXPECT_NEAR(s.median_angle, 1.0, 1e-9);
 
   // Both right answers come first, then three wrong ones of equal score: those on the nearly symmetric cloud are none.
@@ -174,12 +177,37 @@ TEST(PlaneStatistics, CountsSymmetricAndAsymmetricCloudsApart) {
   EXPECT_DOUBLE_EQ(s.average_precision, 0.5);
 }
 
+TEST(PlaneStatistics, OnlyAnswersAtTheOperatingPointDecide) {
+  Answer possible = Answer::ofPlane(through(50.0, 0.0), 0.9);
+  possible.called = false;
+  const Answer unsure = Answer::ofPlane(through(60.0, 0.0), 0.4), right = Answer::ofPlane(through(0.0, 0.0), 0.8);
+  const CloudResult found = cloudResult({possible, right}, onePlane());
+  EXPECT_FALSE(found.firstIsRight()) << "the ranking counts all answers";
+  EXPECT_TRUE(found.decidedRight());
+  EXPECT_EQ(found.numFalse(), 0);
+  EXPECT_FALSE(cloudResult({possible, unsure}, onePlane()).called());
+  const CloudResult wrong = cloudResult({Answer::ofPlane(through(70.0, 0.0), 0.9), right}, onePlane());
+  EXPECT_FALSE(wrong.decidedRight());
+  EXPECT_EQ(wrong.numFalse(), 1);
+}
+
+TEST(PlaneStatistics, FalsePlanesOfScansAreSplitByWhatTheViewShows) {
+  const Answer wrong = Answer::ofPlane(through(50.0, 0.0), 0.9);
+  CloudResult scan = cloudResult({wrong, wrong, wrong}, ReferenceSymmetries());
+  scan.recipe.view = 0;
+  scan.view_verdicts = {ViewVerdict::Undecidable, ViewVerdict::Contradicted, ViewVerdict::Undecidable};
+  const DecisionStatistics decisions = summarize({&scan}).decisions;
+  EXPECT_EQ(decisions.num_contradicted, 1);
+  EXPECT_EQ(decisions.num_undecidable, 2);
+  EXPECT_EQ(decisions.asymmetric_contradicted.count, 1);
+}
+
 TEST(PlaneStatistics, AFailureIsNotTheAnswerNone) {
   CloudResult failed = cloudResult({}, ReferenceSymmetries());
   failed.answers.failed = true;
   const PlaneStatistics s = summarize({&failed});
   EXPECT_EQ(s.num_failed, 1);
-  EXPECT_DOUBLE_EQ(s.none_rate, 0.0);
+  EXPECT_DOUBLE_EQ(s.decisions.asymmetric_called.rate(), 0.0) << "nothing is called, but it is counted";
   EXPECT_TRUE(std::isnan(s.first_rate));
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/support/box_mesh.h"
@@ -7,7 +8,9 @@
 #include "apps/support/temporary_folder.h"
 #include "common/shape_input/shape_input.h"
 #include "core/base/constants.h"
-#include "evaluate/references/mesh_distance.h"
+#include "evaluate/mesh/mesh_distance.h"
+#include "evaluate/mesh/mesh_reflection.h"
+#include "evaluate/references/plane_scan.h"
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/shared/plane_difference.h"
 
@@ -75,6 +78,49 @@ TEST(ReferenceSymmetries, ABoxHasThreePlanes) {
   }
 }
 
+TEST(ReferenceSymmetries, TheToleranceIsAShareOfTheDiameterOrTheDiagonal) {
+  // The diameter of this tetrahedron is its longest edge, from (2, 0.1, 0) to (0, 0, 0); its box is 2 by 1.3 by 0.9.
+  const pcl::PolygonMesh mesh = meshOf(tetrahedronOFF());
+  ReferenceOptions options;
+  const ReferenceSymmetries of_diameter = findReferenceSymmetries(mesh, options);
+  EXPECT_NEAR(of_diameter.diameter, std::sqrt(4.01), 1e-5);
+  EXPECT_NEAR(of_diameter.tolerance, 0.01 * std::sqrt(4.01), 1e-7);
+  options.tolerance_in_diagonals = true;
+  EXPECT_NEAR(findReferenceSymmetries(mesh, options).tolerance, 0.01 * std::sqrt(4.0 + 1.69 + 0.81), 1e-7);
+}
+
+TEST(ReferenceSymmetries, BruteForceAndTheTransformAgreeOnABox) {
+  ReferenceOptions options;
+  options.by_transform = true;
+  const pcl::PolygonMesh mesh = boxMesh({1.0f, 1.5f, 2.0f});
+  EXPECT_EQ(findReferenceSymmetries(mesh, options).planes.size(), findReferenceSymmetries(mesh).planes.size());
+}
+
+TEST(PlaneScan, TheBestPlanesOfABoxAreItsOwn) {
+  const TriangleScene scene(boxMesh({1.0f, 1.5f, 2.0f}));
+  const MeshReflection reflection(scene, 5000, 1);
+  const std::vector<ScannedPlane> planes = scanPlanes(scene, reflection.samples(), 0);
+  ASSERT_GE(planes.size(), 3u);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto found = std::find_if(planes.begin(), planes.begin() + 3, [&](const ScannedPlane& scanned) {
+      // The grid is two degrees and 1 % wide: the best plane of it lies within one step of each.
+      return difference(scanned.plane, ReflectionPlane(Eigen::Vector3d::Unit(axis), 0.0), Eigen::Vector3d::Zero())
+          .within(2.0 * kDegree, 0.01);
+    });
+    EXPECT_NE(found, planes.begin() + 3) << axis;
+  }
+  EXPECT_TRUE(std::is_sorted(planes.begin(), planes.end(),
+                             [](const auto& a, const auto& b) { return a.closeness > b.closeness; }));
+}
+
+TEST(MeshReflection, ClimbsToTheGreatestShare) {
+  const TriangleScene scene(boxMesh({1.0f, 1.5f, 2.0f}));
+  const MeshReflection reflection(scene, 2000, 1);
+  const ReflectionPlane off(Eigen::Vector3d(1.0, 0.03, -0.02), 0.006);
+  ASSERT_LT(reflection.share(off, 0.01), 0.9);
+  EXPECT_GT(reflection.share(reflection.climb(off, 0.01, 1), 0.01), 0.97);
+}
+
 TEST(ReferenceSymmetries, ACubeHasNine) {
   EXPECT_EQ(findReferenceSymmetries(boxMesh({1.0f, 1.0f, 1.0f})).planes.size(), 9u);
 }
@@ -115,7 +161,7 @@ TEST(ReferenceSymmetries, MoveWithTheMeshAndSurviveTheCache) {
   const auto read = cache.find("a/box.off", 6);
   ASSERT_TRUE(read);
   EXPECT_EQ(toJson(*read), toJson(box));
-  options.tolerance = 0.01;
+  options.tolerance = 0.02;
   EXPECT_THROW(ReferenceCache(folder / "r.json", options), InputError);
 
   Eigen::Isometry3d motion(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()));

@@ -1,4 +1,4 @@
-#include "evaluate/references/mesh_reflection.h"
+#include "evaluate/mesh/mesh_reflection.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -79,6 +79,39 @@ ReflectionPlane MeshReflection::refine(const ReflectionPlane& start, double widt
     if (step.norm() < width) width = std::max(final_width, 0.5 * width);
   }
   return plane;
+}
+
+ReflectionPlane MeshReflection::climb(const ReflectionPlane& start, double tolerance, int stride) const {
+  // Steps in tolerances: of the offset, and of the angle in tolerances a diagonal. chosen: the first step moves
+  // reflected points by about a tolerance, the last by an eighth; twice as many halvings gain less than the error of
+  // the share.
+  constexpr double kOffsetStep = 0.5, kAngleStep = 2.0;
+  constexpr int kHalvings = 3, kMaxMoves = 40;
+  ReflectionPlane best = start;
+  double best_share = share(best, tolerance, stride);
+  double scale = tolerance;
+  for (int halving = 0, moves = 0; halving <= kHalvings && moves < kMaxMoves; ++moves) {
+    const ReflectionPlane center = best;
+    const Eigen::Vector3d n = center.normal(), u = n.unitOrthogonal(), v = n.cross(u);
+    const double angle = kAngleStep * scale, offset = kOffsetStep * scale;
+    bool moved = false;
+    for (const Eigen::Vector3d& step :
+         {Eigen::Vector3d(angle, 0.0, 0.0), Eigen::Vector3d(0.0, angle, 0.0), Eigen::Vector3d(0.0, 0.0, offset)}) {
+      for (const double sign : {-1.0, 1.0}) {
+        const ReflectionPlane tried((n + sign * (step[0] * u + step[1] * v)).normalized(),
+                                    center.offset() + sign * step[2]);
+        const double tried_share = share(tried, tolerance, stride);
+        if (tried_share <= best_share) continue;
+        best_share = tried_share;
+        best = tried;
+        moved = true;
+      }
+    }
+    if (moved) continue;
+    scale *= 0.5;
+    ++halving;
+  }
+  return best;
 }
 
 }  // namespace pcl_symmetry::apps

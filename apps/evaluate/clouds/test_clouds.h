@@ -1,4 +1,5 @@
-/// The clouds that a mesh is turned into: whole ones and single-view scans, in random poses, noisy, with parts missing.
+/// The clouds that a mesh is turned into: whole ones and single-view scans, in random poses, noisy, with parts missing,
+/// with their viewpoint lost, and sampled in the ways of scanners.
 #pragma once
 
 #include <pcl/PolygonMesh.h>
@@ -12,18 +13,31 @@
 #include <vector>
 
 #include "common/scanner/virtual_scanner.h"
+#include "evaluate/clouds/sampling_pattern.h"
 
 namespace pcl_symmetry::apps {
 
 /// What is varied while all else keeps its default; None: whole clouds at all noise levels, and scans.
 enum class Sweep { None, Noise, Points, Missing, Views };
 
+/// Kinds of clouds of Sweep::None.
+enum class CloudRow {
+  Whole,    ///< without noise
+  Noise,    ///< whole, at the levels of noise above 0
+  Scan,     ///< with viewpoint
+  Moved,    ///< the same scans in another pose, unorganized, origin 0 0 0: the viewpoint is lost
+  Crop,     ///< whole, a share of the points cut off by a random plane
+  Sampling  ///< whole, one cloud for each SamplingPattern
+};
+
 struct TestCloudOptions {
   Sweep sweep = Sweep::None;
+  std::vector<CloudRow> rows = {CloudRow::Whole, CloudRow::Noise, CloudRow::Scan};
   int num_points = 10'000;                                        ///< of a whole cloud, and wanted of a scan
-  std::vector<double> noise = {0.0, 0.01, 0.02};                  ///< of whole clouds, standard deviation in diagonals
+  std::vector<double> noise = {0.0, 0.005, 0.01, 0.02};           ///< of whole clouds, standard deviation in diagonals
   std::vector<double> scan_noise = {0.0};                         ///< along the ray, in diagonals
   std::vector<double> missing = {0.0, 0.05, 0.1, 0.2, 0.3, 0.5};  ///< shares of the points
+  std::vector<double> crops = {0.05, 0.2, 0.5};                   ///< shares of the points, of CloudRow::Crop
   std::vector<double> point_counts = {500, 1000, 2000, 5000, 10'000, 30'000, 100'000};
   bool random_views = false;  ///< or else from the corners of a cube
   int num_views = 8;          ///< scans of one model, 0 for none; at most 8 corners
@@ -38,16 +52,24 @@ struct CloudRecipe {
   int num_points = 10'000;
   double noise = 0.0;
   double missing = 0.0;
-  int view = -1;  ///< of a scan; -1 for a whole cloud
+  int view = -1;                                    ///< of a scan; -1 for a whole cloud
+  bool moved = false;                               ///< the scan's viewpoint is lost
+  SamplingPattern pattern = SamplingPattern::Even;  ///< of a whole cloud
 };
 
 std::vector<CloudRecipe> recipesFor(const TestCloudOptions& options);
 
+/// The true view of a scan, also where the cloud does not tell it.
+struct View {
+  Eigen::Vector3d direction;         ///< from the model's centre to the scanner, in the cloud's frame, unit
+  Eigen::Isometry3d T_cloud_sensor;  ///< z forward
+  double half_width;                 ///< of the square picture at depth one
+};
+
 struct TestCloud {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud;  ///< of a scan organized, as VirtualScan has it, with the sensor's pose
   Eigen::Isometry3d T_cloud_model = Eigen::Isometry3d::Identity();
-  std::optional<Eigen::Vector3d>
-      view_direction;  ///< from the model's centre to the scanner, in the cloud's frame, unit
+  std::optional<View> view;  ///< of a scan
 };
 
 /// Makes the clouds of one model.
@@ -63,6 +85,7 @@ public:
 private:
   TestCloud makeWhole(const CloudRecipe& recipe) const;
   TestCloud makeScan(const CloudRecipe& recipe) const;
+  pcl::PointCloud<pcl::PointXYZ>::Ptr sample(const CloudRecipe& recipe) const;
   Eigen::Vector3d viewDirection(int view) const;
 
   pcl::PolygonMesh mesh_;

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "evaluate/references/mesh_distance.h"
+#include "evaluate/mesh/mesh_distance.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 
@@ -26,6 +26,10 @@ public:
   /// Gauss-Newton steps on the distances d of the reflected samples from the mesh, weighted by 1 / (1 + d^2 / w^2)^2
   /// with w falling from \p width to \p final_width.
   ReflectionPlane refine(const ReflectionPlane& plane, double width, double final_width, int stride) const;
+
+  /// The plane near by that maps most: moves by steps along each of its three freedoms while the share within the
+  /// tolerance grows, and halves them where it does not.
+  ReflectionPlane climb(const ReflectionPlane& plane, double tolerance, int stride) const;
 
 private:
   MeshDistance distance_;

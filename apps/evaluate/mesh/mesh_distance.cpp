@@ -1,4 +1,4 @@
-#include "evaluate/references/mesh_distance.h"
+#include "evaluate/mesh/mesh_distance.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
