@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/base/median.h"
 #include "core/base/random.h"
 #include "core/geometry/directions.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
@@ -33,11 +34,21 @@ constexpr std::size_t kMostNeighbours = 32;    // chosen: see above
 // keeps the points at which sheets meet.
 constexpr float kThickest = 0.5f;
 
+// width over length of a neighbourhood; chosen: below it there is a line. Half takes lines of few points for surfaces,
+// twice leaves out surfaces that slant by 80 degrees.
+constexpr float kThinnest = 0.05f;
+
 // share of the samples at either end; chosen: edges and gaps, where the density means little, are fewer in most clouds.
 // Half lets them in, twice hides a second view.
 constexpr double kTrimmed = 0.1;
 // square of the cosine of the steepest slant, 82 degrees; chosen: normals are not surer than that
 constexpr float kLeastSqCosine = 0.02f;
+
+// patches of the surface; chosen: of 23 samples each. Half joins surfaces of different directions, twice leaves more of
+// the noise.
+constexpr Eigen::Index kNumPatches = 64;
+// of the log of the density; chosen: edges have more. Half hides a second view, twice lets edges decide.
+constexpr float kLargestResidual = 1.0f;
 
 // directions; chosen: 18 degrees apart, a quarter of the width of the minimum. Half misses narrow ones, twice takes
 // twice the time.
@@ -93,6 +104,7 @@ Patch fitPatch(const Points& points, const int* neighbours, int count) {
   const float area = std::sqrt(moments[1] * moments[2]);
   Patch patch{solver.eigenvectors().col(0), -std::log(area), false};
   patch.is_surface = patch.normal.allFinite() && std::isfinite(patch.log_density) &&
+                     moments[1] > kThinnest * kThinnest * moments[2] &&
                      std::max(moments[0], 0.0f) < kThickest * kThickest * area;
   return patch;
 }
@@ -116,6 +128,7 @@ ScanDensity::ScanDensity(const PointsRef& points) : ball_(boundingBall(points)) 
   for (Eigen::Index i = 0; i < used.cols(); ++i)
     used.col(i) = ((points.col(static_cast<Eigen::Index>(indices[i])).cast<double>() - ball_.center) / ball_.radius)
                       .cast<float>();
+  num_points_ = used.cols();
   const auto num_samples = static_cast<Eigen::Index>(std::min(indices.size(), kNumSamples));
   const int count = static_cast<int>(
       std::min(indices.size(), 1 + std::clamp(indices.size() / kNeighbourhoods, kFewestNeighbours, kMostNeighbours)));
@@ -157,20 +170,46 @@ double ScanDensity::trimmedVariance(Eigen::Index num_samples, const Value& value
   return std::max(0.0, sq_sum / count - sum * sum / (count * count));
 }
 
+float ScanDensity::residual(Eigen::Index i, const Eigen::Vector3f& eye) const {
+  const Eigen::Vector3f ray = samples_.col(i) - eye;
+  const float sq_distance = ray.squaredNorm(), along = ray.dot(normals_.col(i));
+  const float sq_projected = std::max(along * along, kLeastSqCosine * sq_distance);  // (d cos a)^2
+  // log(density d^2 / cos a) with cos a = sqrt(sq_projected) / d
+  return log_density_[i] - 0.5f * std::log(sq_projected / (sq_distance * sq_distance * sq_distance));
+}
+
 double ScanDensity::unexplainedFrom(const Eigen::Vector3d& eye, Eigen::Index num_samples) const {
   const Eigen::Vector3f from = eye.cast<float>();
-  return trimmedVariance(num_samples, [&](Eigen::Index i) {
-    const Eigen::Vector3f ray = samples_.col(i) - from;
-    const float sq_distance = ray.squaredNorm(), along = ray.dot(normals_.col(i));
-    const float sq_projected = std::max(along * along, kLeastSqCosine * sq_distance);  // (d cos a)^2
-    // log(density d^2 / cos a) with cos a = sqrt(sq_projected) / d
-    return log_density_[i] - 0.5f * std::log(sq_projected / (sq_distance * sq_distance * sq_distance));
-  });
+  return trimmedVariance(num_samples, [&](Eigen::Index i) { return residual(i, from); });
 }
 
 double ScanDensity::unexplained(const Eigen::Vector3d& viewpoint) const {
   if (!(ball_.radius > 0.0)) return std::numeric_limits<double>::infinity();
   return unexplainedFrom((viewpoint - ball_.center) / ball_.radius, samples_.cols());
+}
+
+double ScanDensity::unexplainedByPatches(const Eigen::Vector3d& viewpoint) const {
+  const auto num_patches = std::min(kNumPatches, samples_.cols());
+  const Eigen::Vector3f eye = ((viewpoint - ball_.center) / ball_.radius).cast<float>();
+  std::vector<double> sums(static_cast<std::size_t>(num_patches), 0.0), counts(sums), means;
+  std::vector<float> residuals;
+  for (Eigen::Index i = 0; i < samples_.cols(); ++i) residuals.push_back(residual(i, eye));
+  if (residuals.size() < kFewestSamples) return std::numeric_limits<double>::infinity();
+  const float middle = median(residuals);
+  for (Eigen::Index i = 0; i < samples_.cols(); ++i) {
+    Eigen::Index patch = 0;
+    (samples_.leftCols(num_patches).colwise() - samples_.col(i)).colwise().squaredNorm().minCoeff(&patch);
+    sums[patch] += std::clamp(residuals[i] - middle, -kLargestResidual, kLargestResidual);
+    counts[patch] += 1.0;
+  }
+  double weight = 0.0, sum = 0.0, sq_sum = 0.0;
+  for (std::size_t patch = 0; patch < sums.size(); ++patch) {
+    weight += counts[patch];
+    sum += sums[patch];
+    sq_sum += sums[patch] * sums[patch] / counts[patch];
+  }
+  const double variance = sq_sum / weight - sum * sum / (weight * weight);
+  return std::max(0.0, variance - static_cast<double>(num_patches) / static_cast<double>(num_points_));
 }
 
 double ScanDensity::variance() const {

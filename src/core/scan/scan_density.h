@@ -25,7 +25,11 @@ public:
   /// \param viewpoint frame of the points.
   double unexplained(const Eigen::Vector3d& viewpoint) const;
 
-  /// \return the same of log(density): what a viewpoint has to explain.
+  /// \return variance of the means of log(density d^2 / cos(a)) over 64 patches of the surface, less the
+  /// variance that random points have. What remains shows that the points are not those of one view from there.
+  double unexplainedByPatches(const Eigen::Vector3d& viewpoint) const;
+
+  /// \return the variance of log(density): what a viewpoint has to explain.
   double variance() const;
 
   /// \return the viewpoint that explains most, up to 30 radii away, frame of the points; nothing where no direction comes
@@ -42,14 +46,16 @@ public:
 private:
   template <typename Value>
   double trimmedVariance(Eigen::Index num_samples, const Value& value) const;
+  float residual(Eigen::Index i, const Eigen::Vector3f& eye) const;
   double varianceOf(Eigen::Index num_samples) const;
   double unexplainedFrom(const Eigen::Vector3d& eye, Eigen::Index num_samples) const;
   struct Candidate;
   Candidate climbed(Candidate start, double first_step, double last_step, Eigen::Index num_samples) const;
 
   BoundingBall ball_;
-  Points samples_;  // on the surface, in radii about the center, in random order
-  Points normals_;  // unit, of arbitrary sign
+  Eigen::Index num_points_ = 0;  // that are used
+  Points samples_;               // on the surface, in radii about the center, in random order
+  Points normals_;               // unit, of arbitrary sign
   std::vector<float> log_density_;
 };
 
