@@ -15,8 +15,8 @@ constexpr double kMostUnexplained = 0.75;
 // viewpoints 90 degrees apart 0.015 and more. Half loses noisy scans, twice accepts such pairs.
 constexpr double kMostUneven = 0.008;
 // Shares of the points, stricter than for viewpoints that are stored. chosen: nine of ten scans have less than 0.08 and
-// 0.10, two scans put together from viewpoints 90 degrees apart have 0.11 and 0.28 in the middle. At half, noisy scans
-// are lost, at twice every second pair of scans passes.
+// 0.10, two scans put together from viewpoints 90 degrees apart 0.11 and 0.28 in the middle. At half, noisy scans are
+// lost; those of stored viewpoints, 0.18 and 0.25, accept half as many such pairs again.
 constexpr SingleViewLimits kLimits{0.12, 0.15};
 // chosen: in scans of 1000 points the true viewpoint leaves up to 1.25 of what the best one leaves. Less refuses true
 // viewpoints, twice accepts places that are 20 degrees off.
@@ -24,6 +24,28 @@ constexpr double kAsGood = 1.3;
 // variance of the log of the density; chosen: what a depth camera has at 3 degrees from the best viewpoint. Half
 // refuses true viewpoints of scans without noise, twice accepts places that are 10 degrees off.
 constexpr double kAsGoodBeyond = 2.0 * ScanDensity::kLeastVariance;
+
+/// Whether the surface bulges towards the viewer: on average it is farther away the farther it is from the middle of
+/// the picture.
+bool bulgesTowards(const PointsRef& points, const Eigen::Vector3d& center, const Eigen::Vector3d& viewpoint) {
+  const Eigen::Vector3d forward = (center - viewpoint).normalized();
+  double depth_sum = 0.0, sq_across_sum = 0.0, product_sum = 0.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d x = points.col(i).cast<double>() - center;
+    const double depth = forward.dot(x), sq_across = x.squaredNorm() - depth * depth;
+    depth_sum += depth;
+    sq_across_sum += sq_across;
+    product_sum += depth * sq_across;
+  }
+  return product_sum * static_cast<double>(points.cols()) > depth_sum * sq_across_sum;
+}
+
+/// A scanner so far away that its rays are parallel leaves the same density from behind: then the bulge decides.
+Eigen::Vector3d onItsSide(const PointsRef& points, const ScanDensity& density, const Eigen::Vector3d& best) {
+  const Eigen::Vector3d center = density.ball().center, behind = 2.0 * center - best;
+  const bool as_good = density.unexplained(behind) <= kAsGood * density.unexplained(best) + kAsGoodBeyond;
+  return as_good && bulgesTowards(points, center, behind) ? behind : best;
+}
 
 }  // namespace
 
@@ -35,7 +57,7 @@ std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vect
   if (!(left + ScanDensity::kLeastVariance < kMostUnexplained * (density.variance() + ScanDensity::kLeastVariance)))
     return std::nullopt;
   const bool as_stored = density.unexplained(stored) <= kAsGood * left + kAsGoodBeyond;
-  const Eigen::Vector3d& position = as_stored ? stored : *best;
+  const Eigen::Vector3d position = as_stored ? stored : onItsSide(points, density, *best);
   if (density.unexplainedByPatches(position) > kMostUneven) return std::nullopt;
   std::optional<Visibility> seen = spaceSeenFrom(points, position, kLimits);
   if (!seen) return std::nullopt;
