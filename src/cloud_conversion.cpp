@@ -11,6 +11,7 @@
 #include "core/base/check.h"
 #include "core/base/random.h"
 #include "core/neighbours/answerable_points.h"
+#include "core/scan/viewpoint_inference.h"
 
 namespace pcl_symmetry::detail {
 
@@ -108,14 +109,20 @@ void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
 
 }  // namespace
 
-std::optional<Visibility> seenFrom(const Points& points, const Viewpoint& viewpoint,
-                                   const Eigen::Vector3d& sensor_origin) {
-  if (viewpoint.mode == Viewpoint::Mode::None) return std::nullopt;
-  if (viewpoint.mode == Viewpoint::Mode::Auto) return spaceSeenFrom(points, sensor_origin);
-  std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);
-  if (!seen)
-    throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
-  return seen;
+SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const StoredPose& stored) {
+  if (viewpoint.mode == Viewpoint::Mode::None) return {};
+  if (viewpoint.mode == Viewpoint::Mode::Given) {
+    std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);
+    if (!seen)
+      throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
+    return {std::move(seen), ViewpointSource::Given};
+  }
+  if (!stored.is_default)
+    if (std::optional<Visibility> seen = spaceSeenFrom(points, stored.origin))
+      return {std::move(seen), ViewpointSource::Stored};
+  std::optional<InferredView> view = inferView(points, stored.origin);
+  if (!view) return {};
+  return {std::move(view->seen), view->as_stored ? ViewpointSource::Stored : ViewpointSource::Inferred};
 }
 
 std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height) {

@@ -86,11 +86,10 @@ ReflectionPlane bestPlane(const Console& console, const InputShape& input, const
   Step step(console, "Searching planes");
   DetectionOptions detection;
   common.applyTo(detection);
-  const Viewpoint viewpoint = shifted(common.viewpoint, input.shift());
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   const std::vector<SymmetryPlane> planes = namingFile(input.path, [&] {
     refinement.setOptions(detection);
-    refinement.setViewpoint(viewpoint);
+    refinement.setViewpoint(shifted(common.viewpoint, input.shift()));
     refinement.setInputCloud(input.points);
     std::vector<SymmetryPlane> found = refinement.compute();
     if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
@@ -98,10 +97,9 @@ ReflectionPlane bestPlane(const Console& console, const InputShape& input, const
   });
   if (!refinement.getAxes().empty()) {
     step.done("axis of revolution");
-    return planeThrough(refinement.getAxes().front(),
-                        viewpoint.mode == Viewpoint::Mode::Given
-                            ? viewpoint.position
-                            : input.shape.points->sensor_origin_.head<3>().cast<double>().eval());
+    return planeThrough(
+        refinement.getAxes().front(),
+        refinement.getUsedViewpoint().value_or(input.shape.points->sensor_origin_.head<3>().cast<double>().eval()));
   }
   if (planes.empty()) throw InputError(input.path + ": has no plane of symmetry to complete it across");
   step.done("confidence " + std::to_string(std::lround(100.0 * planes.front().confidence)) + " %");

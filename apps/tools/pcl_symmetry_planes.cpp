@@ -54,8 +54,9 @@ struct Findings {
   std::vector<SymmetryPlane> planes;
   std::vector<SymmetryAxis> axes;
   std::vector<SymmetryCenter> centers;
-  bool used_viewpoint = false;
-  std::size_t num_points = 0;  ///< that were used
+  ViewpointSource viewpoint_source = ViewpointSource::None;
+  std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
+  std::size_t num_points = 0;                ///< that were used
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::vector<float>> support;  ///< of each plane, by every point; empty where no output shows it
 
@@ -74,6 +75,22 @@ const char* toString(PlaneKind kind) {
       break;
   }
   return "approximate";
+}
+
+const char* toString(ViewpointSource source) {
+  switch (source) {
+    case ViewpointSource::Given:
+      return "given";
+    case ViewpointSource::Rays:
+      return "rays";
+    case ViewpointSource::Stored:
+      return "stored";
+    case ViewpointSource::Inferred:
+      return "inferred";
+    case ViewpointSource::None:
+      break;
+  }
+  return "none";
 }
 
 void printTable(const Findings& findings, const Eigen::Vector3d& shift) {
@@ -104,11 +121,13 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
   const Eigen::Vector3d& shift = input.shift();
   nlohmann::json json{{"file", input.path},
                       {"num_points", findings.num_points},
-                      {"partial", findings.used_viewpoint},
+                      {"partial", findings.viewpoint.has_value()},
+                      {"viewpoint", {{"from", toString(findings.viewpoint_source)}}},
                       {"planes", nlohmann::json::array()},
                       {"axes", nlohmann::json::array()},
                       {"centers", nlohmann::json::array()},
                       {"timing_ms", timingJson(findings.timing_ms)}};
+  if (findings.viewpoint) json["viewpoint"]["position"] = numbersOf(shiftedBack(*findings.viewpoint, shift));
   for (const SymmetryPlane& plane : findings.planes) {
     json["planes"].push_back({{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
                               {"kind", toString(plane.kind)},
@@ -205,13 +224,15 @@ Findings search(const Console& console, const InputShape& input, const PlanesOpt
   });
   findings.axes = refinement.getAxes();
   findings.centers = refinement.getCenters();
-  findings.used_viewpoint = refinement.usedViewpoint();
+  findings.viewpoint_source = refinement.getViewpointSource();
+  findings.viewpoint = refinement.getUsedViewpoint();
   findings.num_points = refinement.getUsedIndices().size();
   findings.timing_ms = refinement.getTiming();
   const std::size_t num_planes = findings.planes.size();
   std::string summary = std::to_string(num_planes) + (num_planes == 1 ? " plane" : " planes");
   if (!findings.axes.empty()) summary += ", " + std::to_string(findings.axes.size()) + " axes";
-  if (findings.used_viewpoint) summary += ", seen from one side";
+  if (findings.viewpoint)
+    summary += std::string(", seen from one side, viewpoint ") + toString(findings.viewpoint_source);
   const double searching_ms = searching.done(summary);
   findings.timing_ms.emplace_back("load", input.loading_ms);
   findings.timing_ms.emplace_back("total", searching_ms);

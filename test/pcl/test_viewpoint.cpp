@@ -2,6 +2,7 @@
 #include "pcl_symmetry/viewpoint.h"
 
 #include <gtest/gtest.h>
+#include <pcl/common/transforms.h>
 
 #include <algorithm>
 #include <string>
@@ -53,6 +54,11 @@ void setOrigin(Cloud& cloud, const Eigen::Vector3d& origin) {
 bool recognised(const Cloud::ConstPtr& cloud) {
   return detail::seenSpace(*cloud, detail::selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{})
       .has_value();
+}
+
+ViewpointSource sourceOf(const Cloud::ConstPtr& cloud) {
+  return detail::findSeenSpace(*cloud, detail::selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{})
+      .source;
 }
 
 bool contains(const std::vector<SymmetryPlane>& planes, const ReflectionPlane& plane, const Eigen::Vector3d& about) {
@@ -112,7 +118,7 @@ TEST(Viewpoint, RowsAndColumnsThatAreNoPictureAreNone) {
   auto shuffled = organized(scan);
   RandomStream random(3);
   for (std::size_t i = shuffled->size() - 1; i > 0; --i) std::swap((*shuffled)[i], (*shuffled)[random.below(i + 1)]);
-  EXPECT_FALSE(recognised(shuffled));
+  EXPECT_NE(sourceOf(shuffled), ViewpointSource::Rays);
   EXPECT_FALSE(detail::seenByOrganizedCloud(Points::Constant(3, 200, NAN), 20, 10));
 }
 
@@ -120,10 +126,36 @@ TEST(Viewpoint, AnUnorganizedScanTellsByItsSensorOrigin) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const Scan scan = randomScan(seed);
     auto cloud = unorganized(scan);
-    EXPECT_FALSE(recognised(cloud)) << seed << ": the origin is in the middle of the box";
+    EXPECT_NE(sourceOf(cloud), ViewpointSource::Stored) << seed << ": the origin is in the middle of the box";
     setOrigin(*cloud, scan.viewpoint);
-    EXPECT_TRUE(recognised(cloud)) << seed;
+    EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored) << seed;
   }
+}
+
+TEST(Viewpoint, AnUnorganizedScanWithoutViewpointTellsByItsDensity) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Scan scan = test::scan(test::blockL(), randomScan(seed).viewpoint);
+    auto cloud = unorganized(scan);
+    EXPECT_EQ(sourceOf(cloud), ViewpointSource::Inferred) << seed;
+    pcl::transformPointCloud(*cloud, *cloud, scan.T_camera_object.cast<float>().matrix());
+    setOrigin(*cloud, Eigen::Vector3d::Zero());
+    EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored) << seed << ": 0 0 0 is true in the frame of the camera";
+  }
+}
+
+TEST(Viewpoint, ADefaultOriginIsNotBelievedByItself) {
+  // An open shell that is seen once from the origin. Its even density is not that of a scan.
+  const Points whole = test::sphere(20'000, 1).cloud();
+  const Points shell = test::facing(whole, whole, {0.0, 0.0, 5.0}).colwise() - Eigen::Vector3f(0.0f, 0.0f, 5.0f);
+  auto cloud = pcl::make_shared<Cloud>();
+  for (Eigen::Index i = 0; i < shell.cols(); ++i) cloud->emplace_back(shell(0, i), shell(1, i), shell(2, i));
+  EXPECT_EQ(sourceOf(cloud), ViewpointSource::None);
+  // Who turns the sensor has set its pose.
+  cloud->sensor_orientation_ = Eigen::Quaternionf(0.0f, 1.0f, 0.0f, 0.0f);
+  EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored);
+  cloud->sensor_orientation_ = Eigen::Quaternionf::Identity();
+  setOrigin(*cloud, {0.0, 0.0, 0.1});
+  EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored);
 }
 
 TEST(Viewpoint, AWholeCloudIsNotTakenForAScan) {
@@ -171,8 +203,10 @@ TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
   const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   refinement.setInputCloud(unorganized(scan));
+  EXPECT_EQ(refinement.getViewpointSource(), ViewpointSource::None) << "before the analysis";
   refinement.compute();
-  EXPECT_FALSE(refinement.usedViewpoint());
+  EXPECT_NE(refinement.getViewpointSource(), ViewpointSource::Given);
+  EXPECT_EQ(refinement.usedViewpoint(), refinement.getUsedViewpoint().has_value());
   refinement.setViewpoint(scan.viewpoint);
   EXPECT_EQ(refinement.getViewpoint().mode, Viewpoint::Mode::Given);
   EXPECT_EQ(refinement.getViewpoint().position, scan.viewpoint);
@@ -180,7 +214,9 @@ TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
   EXPECT_EQ(refinement.getViewpoint().mode, Viewpoint::Mode::None);
   refinement.setViewpoint(scan.viewpoint);
   const auto planes = refinement.compute();
-  EXPECT_TRUE(refinement.usedViewpoint());
+  EXPECT_EQ(refinement.getViewpointSource(), ViewpointSource::Given);
+  ASSERT_TRUE(refinement.getUsedViewpoint());
+  EXPECT_LT((*refinement.getUsedViewpoint() - scan.viewpoint).norm(), 1e-9);
   for (const ReflectionPlane& plane : scan.planes)
     EXPECT_TRUE(contains(planes, plane, Eigen::Vector3d::Zero())) << plane.normal().transpose();
   // A viewpoint among the points is none.
@@ -225,6 +261,7 @@ TEST(PlanarSymmetryTransform, TakesAwayWhatFreeSpaceRulesOut) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setGridSize(32);
   transform.setInputCloud(unorganized(scan));
+  transform.setViewpointMode(Viewpoint::Mode::None);
   const SymmetryMap without = transform.compute();
   transform.setViewpoint(scan.viewpoint);
   for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {

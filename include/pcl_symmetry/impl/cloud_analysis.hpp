@@ -88,8 +88,10 @@ private:
 /// The input of classes that also take into account what a scanner saw.
 ///
 /// By default the data decide where the scanner stood: an organized cloud shows it by its own rays, any other cloud by
-/// its sensor_origin_ if the points can have been seen from there. Reflections that land in space that the scanner saw
-/// to be empty then speak against a plane; reflections that land behind the surface do not count.
+/// its sensor_origin_ if the points can have been seen from there, or by the density of its points: that of a scan
+/// falls with the slant and the distance of the surface. A sensor_origin_ of 0 0 0 without a turn may be a default: the
+/// density has to confirm it. Reflections that land in space that the scanner saw to be empty then speak against a
+/// plane; reflections that land behind the surface do not count.
 template <typename PointT>
 class ScanAnalysis : public CloudAnalysis<PointT> {
 public:
@@ -100,28 +102,36 @@ public:
   const Viewpoint& getViewpoint() const { return viewpoint_; }
 
   /// \return whether the last analysis used a viewpoint.
-  bool usedViewpoint() const { return used_viewpoint_; }
+  bool usedViewpoint() const { return viewpoint_source_ != ViewpointSource::None; }
+  /// \return where the last analysis had its viewpoint from.
+  ViewpointSource getViewpointSource() const { return viewpoint_source_; }
+  /// \return the viewpoint that the last analysis used, input frame; nothing where it used none.
+  const std::optional<Eigen::Vector3d>& getUsedViewpoint() const { return used_viewpoint_; }
 
 protected:
   using CloudAnalysis<PointT>::CloudAnalysis;
 
   void clearResults() override {
     CloudAnalysis<PointT>::clearResults();
-    used_viewpoint_ = false;
+    viewpoint_source_ = ViewpointSource::None;
+    used_viewpoint_.reset();
   }
 
   /// \param points selected from the input, 3 x N, N >= 1.
   /// \return what the scanner saw; nothing without a viewpoint.
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.
   std::optional<Visibility> seenSpace(const Points& points) {
-    std::optional<Visibility> seen = detail::seenSpace(*this->input_, points, viewpoint_);
-    used_viewpoint_ = seen.has_value();
-    return seen;
+    detail::SeenSpace seen = detail::findSeenSpace(*this->input_, points, viewpoint_);
+    viewpoint_source_ = seen.source;
+    used_viewpoint_.reset();
+    if (seen.visibility) used_viewpoint_ = seen.visibility->viewpoint();
+    return std::move(seen.visibility);
   }
 
 private:
   Viewpoint viewpoint_;
-  bool used_viewpoint_ = false;
+  ViewpointSource viewpoint_source_ = ViewpointSource::None;
+  std::optional<Eigen::Vector3d> used_viewpoint_;
 };
 
 }  // namespace pcl_symmetry

@@ -80,14 +80,19 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   return static_cast<double>(num_layered) / static_cast<double>(num_samples);
 }
 
-std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
+std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                        const SingleViewLimits& limits) {
   const BoundingBall ball = boundingBall(points);
   if (!((viewpoint - ball.center).norm() > ball.radius)) return std::nullopt;
   std::optional<Visibility> visibility = Visibility::fromPoints(points, viewpoint);
   if (!visibility) return std::nullopt;
-  if (visibility->hiddenShare(points, kHiddenMargin * ball.radius) > kMostHidden) return std::nullopt;
-  if (layeredShare(points, viewpoint) > kMostLayered) return std::nullopt;
+  if (visibility->hiddenShare(points, kHiddenMargin * ball.radius) > limits.most_hidden) return std::nullopt;
+  if (layeredShare(points, viewpoint) > limits.most_layered) return std::nullopt;
   return visibility;
+}
+
+std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
+  return spaceSeenFrom(points, viewpoint, SingleViewLimits{kMostHidden, kMostLayered});
 }
 
 }  // namespace pcl_symmetry

@@ -6,6 +6,16 @@
 
 namespace pcl_symmetry {
 
+/// What a single view may show at most, shares of the points.
+struct SingleViewLimits {
+  double most_hidden;   ///< that lie well behind others
+  double most_layered;  ///< layeredShare()
+};
+
+/// spaceSeenFrom() with limits of its own.
+std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                        const SingleViewLimits& limits);
+
 /// Share of the points that form layers as seen from a viewpoint.
 ///
 /// A point is layered if the next point in the picture is much farther away or much nearer, and the roughness of the

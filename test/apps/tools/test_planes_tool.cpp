@@ -200,11 +200,17 @@ TEST_F(PlanesTool, TakesTheViewpoint) {
     EXPECT_EQ(run(input + viewpoint + " -json " + (folder_ / "v.json")), 0) << viewpoint << ": " << error_;
     return nlohmann::json::parse(contentOf(folder_ / "v.json"));
   };
-  EXPECT_EQ(report("")["partial"], false) << "the origin is in the middle of the box";
-  EXPECT_EQ(report(" -viewpoint auto")["partial"], false);
-  EXPECT_EQ(report(" -viewpoint none")["partial"], false);
+  // The origin is in the middle of the box. As many points on faces of 12, 8 and 6 units are those of a view from far
+  // away in the direction of (8, 12, 16).
+  const nlohmann::json own = report("");
+  EXPECT_EQ(own["viewpoint"]["from"], "inferred");
+  const auto position = own["viewpoint"]["position"].get<std::vector<double>>();
+  for (const double coordinate : position) EXPECT_GT(coordinate, 2.0);
+  EXPECT_EQ(report(" -viewpoint auto")["viewpoint"], own["viewpoint"]);
+  EXPECT_EQ(report(" -viewpoint none")["viewpoint"], (nlohmann::json{{"from", "none"}}));
   const nlohmann::json seen = report(" -viewpoint 8,9,10");
   EXPECT_EQ(seen["partial"], true);
+  EXPECT_EQ(seen["viewpoint"], (nlohmann::json{{"from", "given"}, {"position", {8.0, 9.0, 10.0}}}));
   ASSERT_FALSE(seen["planes"].empty());
   std::array<int, 3> along{};
   for (const auto& plane : seen["planes"]) {

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "pcl_symmetry/core/geometry/point_set.h"
+
+namespace pcl_symmetry {
+
+/// How densely points cover their surface, and which viewpoints explain it.
+///
+/// Not in the paper. A scanner sends its rays evenly over all directions. A surface at distance d whose normal makes an
+/// angle a with the ray gets
+///     density = c cos(a) / d^2
+/// points per area. Of an object that is known from all sides, or put together from several views, no viewpoint
+/// explains the density.
+class ScanDensity {
+public:
+  /// \param points 3 x N, finite. Of large clouds a part is used.
+  explicit ScanDensity(const PointsRef& points);
+
+  /// \return variance of log(density d^2 / cos(a)) over the samples between the smallest and the largest tenth; infinite
+  /// where the cloud shows no surface. Small if the points were measured from there.
+  /// \param viewpoint frame of the points.
+  double unexplained(const Eigen::Vector3d& viewpoint) const;
+
+  /// \return variance of the means of log(density d^2 / cos(a)) over 64 patches of the surface, less the
+  /// variance that random points have. What remains shows that the points are not those of one view from there.
+  double unexplainedByPatches(const Eigen::Vector3d& viewpoint) const;
+
+  /// \return the variance of log(density): what a viewpoint has to explain.
+  double variance() const;
+
+  /// \return the viewpoint that explains most, up to 30 radii away, frame of the points; nothing where no direction comes
+  /// near to explaining the density.
+  std::optional<Eigen::Vector3d> bestViewpoint() const;
+
+  /// Variance of log(density) that is accuracy rather than pattern. chosen: 3 %, the accuracy of a density where a scan
+  /// is perfect. Half lets the regular points of a whole object pass for a pattern, twice asks more of flat objects.
+  static constexpr double kLeastVariance = 1e-3;
+
+  /// \return a ball around the points.
+  const BoundingBall& ball() const { return ball_; }
+
+private:
+  template <typename Value>
+  double trimmedVariance(Eigen::Index num_samples, const Value& value) const;
+  float residual(Eigen::Index i, const Eigen::Vector3f& eye) const;
+  double varianceOf(Eigen::Index num_samples) const;
+  double unexplainedFrom(const Eigen::Vector3d& eye, Eigen::Index num_samples) const;
+  struct Candidate;
+  Candidate climbed(Candidate start, double first_step, double last_step, Eigen::Index num_samples) const;
+
+  BoundingBall ball_;
+  Eigen::Index num_points_ = 0;  // that are used
+  Points samples_;               // on the surface, in radii about the center, in random order
+  Points normals_;               // unit, of arbitrary sign
+  std::vector<float> log_density_;
+};
+
+}  // namespace pcl_symmetry
