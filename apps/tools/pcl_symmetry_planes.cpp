@@ -44,6 +44,10 @@ CommandLine commandLine(PlanesOptions& options) {
             "also report approximate symmetries and symmetries of parts, marked as such")
       .number("min_confidence", options.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
+      .number("tolerance", options.detection.tolerance, Range::upTo(0, 0.1),
+              "how far a symmetric surface may be off, as a share of the greatest distance between two points")
+      .number("absolute_tolerance", options.detection.absolute_tolerance, Range::atLeast(0),
+              "the same in input units; 0 = -tolerance decides")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "largest number of planes reported")
       .common(options.common, kShapeFlags | kSigma);
   return line;
@@ -56,6 +60,8 @@ struct Findings {
   std::vector<SymmetryCenter> centers;
   ViewpointSource viewpoint_source = ViewpointSource::None;
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
+  std::optional<SymmetryPlane> best;  ///< where nothing else was found
+  double tolerance = 0.0;             ///< that was decided at, input units
   std::size_t num_points = 0;                ///< that were used
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::vector<float>> support;  ///< of each plane, by every point; empty where no output shows it
@@ -93,12 +99,20 @@ const char* toString(ViewpointSource source) {
   return "none";
 }
 
+/// How far the best plane of a shape without symmetry is off.
+void printBest(const SymmetryPlane& best, double tolerance, const Eigen::Vector3d& shift, int digits) {
+  const Eigen::Vector4d c = shiftedBack(best, shift).coefficients();
+  std::printf("best plane %.6f %.6f %.6f %.*g maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n", c[0],
+              c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
+}
+
 void printTable(const Findings& findings, const Eigen::Vector3d& shift) {
+  const int digits = lengthDigits(shift);
   if (findings.empty()) {
     std::printf("no symmetry plane\n");
+    if (findings.best) printBest(*findings.best, findings.tolerance, shift, digits);
     return;
   }
-  const int digits = lengthDigits(shift);
   const auto place = [&](const Eigen::Vector3d& point) { return spelled(shiftedBack(point, shift), digits); };
   for (const SymmetryCenter& center : findings.centers)
     std::printf("center of all planes: %s, confidence %.3f\n", place(center.point).c_str(), center.confidence);
@@ -107,14 +121,29 @@ void printTable(const Findings& findings, const Eigen::Vector3d& shift) {
                 axis.direction.x(), axis.direction.y(), axis.direction.z(), axis.confidence);
   const std::vector<SymmetryPlane>& planes = findings.planes;
   if (planes.empty()) return;
-  std::printf("%5s %10s %10s %10s %12s %10s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence", "support",
-              "score", "seen", "kind");
+  std::printf("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence", "share",
+              "support", "score", "seen", "kind");
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const Eigen::Vector4d c = shiftedBack(planes[i], shift).coefficients();
-    std::printf("%5zu %10.6f %10.6f %10.6f %12.*g %10.3f %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2], digits,
-                c[3], planes[i].confidence, planes[i].support, planes[i].score, planes[i].seen,
+    std::printf("%5zu %10.6f %10.6f %10.6f %12.*g %10.3f %7.3f %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2],
+                digits, c[3], planes[i].confidence, planes[i].share, planes[i].support, planes[i].score, planes[i].seen,
                 toString(planes[i].kind));
   }
+}
+
+nlohmann::json describe(const SymmetryPlane& plane, const Eigen::Vector3d& shift) {
+  return {{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
+          {"kind", toString(plane.kind)},
+          {"confidence", plane.confidence},
+          {"share", plane.share},
+          {"share_interval", nlohmann::json::array({plane.share_low, plane.share_high})},
+          {"deviation", plane.deviation},
+          {"score", plane.score},
+          {"support", plane.support},
+          {"seen", plane.seen},
+          {"residual", plane.residual},
+          {"iterations", plane.iterations},
+          {"converged", plane.converged}};
 }
 
 nlohmann::json describe(const InputShape& input, const Findings& findings) {
@@ -123,22 +152,14 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
                       {"num_points", findings.num_points},
                       {"partial", findings.viewpoint.has_value()},
                       {"viewpoint", {{"from", toString(findings.viewpoint_source)}}},
+                      {"tolerance", findings.tolerance},
                       {"planes", nlohmann::json::array()},
                       {"axes", nlohmann::json::array()},
                       {"centers", nlohmann::json::array()},
                       {"timing_ms", timingJson(findings.timing_ms)}};
   if (findings.viewpoint) json["viewpoint"]["position"] = numbersOf(shiftedBack(*findings.viewpoint, shift));
-  for (const SymmetryPlane& plane : findings.planes) {
-    json["planes"].push_back({{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
-                              {"kind", toString(plane.kind)},
-                              {"confidence", plane.confidence},
-                              {"score", plane.score},
-                              {"support", plane.support},
-                              {"seen", plane.seen},
-                              {"residual", plane.residual},
-                              {"iterations", plane.iterations},
-                              {"converged", plane.converged}});
-  }
+  for (const SymmetryPlane& plane : findings.planes) json["planes"].push_back(describe(plane, shift));
+  if (findings.best) json["best"] = describe(*findings.best, shift);
   for (const SymmetryAxis& axis : findings.axes) {
     json["axes"].push_back({{"point", numbersOf(shiftedBack(axis.point, shift))},
                             {"direction", numbersOf(axis.direction)},
@@ -224,6 +245,8 @@ Findings search(const Console& console, const InputShape& input, const PlanesOpt
   });
   findings.axes = refinement.getAxes();
   findings.centers = refinement.getCenters();
+  findings.best = refinement.getBestPlane();
+  findings.tolerance = refinement.getUsedTolerance();
   findings.viewpoint_source = refinement.getViewpointSource();
   findings.viewpoint = refinement.getUsedViewpoint();
   findings.num_points = refinement.getUsedIndices().size();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,11 @@ public:
   /// \param min_confidence a plane of at least this confidence is a symmetry, in [0, 1]; default 0.5.
   void setMinConfidence(double min_confidence) {
     change([&](DetectionOptions& changed) { changed.min_confidence = min_confidence; });
+  }
+  /// \param tolerance how far a symmetric surface may be off, as a share of the greatest distance between two points, in
+  /// (0, 0.1]; default 0.01.
+  void setTolerance(double tolerance) {
+    change([&](DetectionOptions& changed) { changed.tolerance = tolerance; });
   }
   /// \param approximate also reports maxima of less confidence: approximate symmetries and symmetries of parts, marked
   /// by SymmetryPlane::kind; default false.
@@ -99,6 +105,11 @@ public:
   const std::vector<SymmetryAxis>& getAxes() const { return axes_; }
   /// \return the centers of spheres that the last compute() found.
   const std::vector<SymmetryCenter>& getCenters() const { return centers_; }
+  /// \return where the last compute() found neither a symmetry nor a possible one, the plane that maps the greatest share
+  /// of the surface to within the tolerance; empty otherwise, and where the input holds no answer.
+  const std::optional<SymmetryPlane>& getBestPlane() const { return best_; }
+  /// \return the tolerance that the last compute() decided at, input units.
+  double getUsedTolerance() const { return used_tolerance_; }
   /// \return the map that was given, or else the map that the last compute() made.
   const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : own_map_; }
   /// \return stages of the last compute() and their milliseconds, in order.
@@ -113,6 +124,8 @@ protected:
     used_points_.resize(3, 0);
     axes_.clear();
     centers_.clear();
+    best_.reset();
+    used_tolerance_ = 0.0;
     timing_ms_.clear();
   }
 
@@ -130,6 +143,8 @@ private:
   Points used_points_ = Points(3, 0);
   std::vector<SymmetryAxis> axes_;
   std::vector<SymmetryCenter> centers_;
+  std::optional<SymmetryPlane> best_;
+  double used_tolerance_ = 0.0;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };
 

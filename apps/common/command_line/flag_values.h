@@ -23,6 +23,7 @@ struct Range {
   static Range atLeast(double min) { return {min, std::numeric_limits<double>::infinity(), false, false}; }
   static Range above(double min) { return {min, std::numeric_limits<double>::infinity(), true, false}; }
   static Range closed(double min, double max) { return {min, max, false, false}; }
+  static Range upTo(double above, double max) { return {above, max, true, false}; }
   static Range open(double min, double max) { return {min, max, true, true}; }
 
   bool contains(double value) const;

@@ -11,7 +11,7 @@ namespace {
 
 /// Least D of candidates. derived: a plane that maps 90 % of the area has a D far above; half only adds candidates.
 constexpr double kLeastD = 0.3;
-constexpr std::size_t kMaxCandidates = 400;  // chosen: half misses planes of gears, twice takes twice the time
+constexpr std::size_t kMostMaxima = 400;  // chosen: half misses planes of gears, twice takes twice the time
 
 }  // namespace
 
@@ -30,7 +30,7 @@ std::vector<ReflectionPlane> transformCandidates(const Points& samples, const Re
   maxima_options.num_threads = options.num_threads;
   std::vector<ReflectionPlane> planes = principalPlanes(principalAxes(samples));
   for (const LocalMaximum& maximum : findLocalMaxima(map, maxima_options))
-    if (maximum.value >= kLeastD && planes.size() < kMaxCandidates) planes.push_back(maximum.plane);
+    if (maximum.value >= kLeastD && planes.size() < kMostMaxima) planes.push_back(maximum.plane);
   return planes;
 }
 

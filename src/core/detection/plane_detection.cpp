@@ -145,6 +145,7 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   timed("parts");
   const bool answered = !detection.axes.empty() || !detection.centers.empty();
   if (!answered) detection.best = bestApproximate(planes, cloud, *fit);
+  if (detection.best) detection.best->deviation = judge.deviation(*detection.best);
   detection.tolerance = judge.tolerance() * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), cloud, *fit, options);
   if (repeated) {

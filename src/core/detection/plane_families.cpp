@@ -236,8 +236,8 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   for (const AxisFamily& family : findAxes(symmetries, test)) {
     const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
-    found.axes.push_back({family.line.origin() * cloud.scale + cloud.center, family.line.direction(),
-                          judged.confidence, judged.score, judged.support});
+    found.axes.push_back({family.line.origin() * cloud.scale + cloud.center, family.line.direction(), judged.confidence,
+                          judged.score, judged.support});
     drop([&](const ReflectionPlane& plane) { return contains(plane, family.line, test.tolerance); });
   }
   return found;

@@ -25,6 +25,9 @@ constexpr double kSymmetricShare = 0.97;
 // Share within the tolerance from which nothing needs to be missing. chosen: above the 0.97 of a symmetry by the error
 // of the share; at 1, borders are looked for in every cloud, which takes time.
 constexpr double kSurelyWhole = 0.985;
+// Samples whose distances are measured however far they are. chosen: the error of a share of 0.97 is 0.004; more cost
+// time.
+constexpr int kDeviationSamples = 2000;
 constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
 
 }  // namespace
@@ -39,20 +42,26 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
 }
 
 std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {
+  std::vector<SymmetryPlane> planes;
+  for (JudgedPlane& judged : judgeWithEvidence(candidates)) planes.push_back(std::move(judged.plane));
+  return planes;
+}
+
+std::vector<JudgedPlane> PlaneJudge::judgeWithEvidence(const std::vector<Candidate>& candidates) const {
   const Eigen::Index num_points = cloud_.points.cols();
   const std::vector<int> samples =
       cloud_.isScan() ? drawSamples(num_points, options_.num_refine_samples / kScanShare, options_.seed)
                       : allOf(num_points);
-  std::vector<SymmetryPlane> planes(candidates.size());
+  std::vector<JudgedPlane> planes(candidates.size());
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     const Candidate& candidate = candidates[i];
     // The last stage may have matched these very samples.
     const bool has_matches = candidate.last.last.closest.size() == samples.size();
     const IspStep step = has_matches ? candidate.last.last : fit_.matches(candidate.plane, samples);
     planes[i] = judged(candidate.plane, fit_.shares(candidate.plane, samples, step), step, samples);
-    planes[i].iterations = candidate.iterations;
-    planes[i].converged = candidate.last.converged;
-    planes[i].residual = step.residual * cloud_.scale;
+    planes[i].plane.iterations = candidate.iterations;
+    planes[i].plane.converged = candidate.last.converged;
+    planes[i].plane.residual = step.residual * cloud_.scale;
   });
   return planes;
 }
@@ -86,11 +95,26 @@ PlaneJudge::Agreement PlaneJudge::agreement(const Reflected& reflected, const Is
   const double missing = meanSupport(unknown), good = std::min(1.0, within);
   const double bad = std::max(0.0, 1.0 - good - missing);
   Agreement result{good + bad > 0.0 ? good / (good + bad) : 0.0, missing, 0.0};
-  if (telling.empty()) return result;
-  const auto last = telling.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * static_cast<double>(telling.size() - 1));
-  std::nth_element(telling.begin(), last, telling.end());
-  result.deviation = std::isfinite(*last) ? *last : cloud_.extent;
+  result.deviation = deviationOf(std::move(telling));
   return result;
+}
+
+double PlaneJudge::deviationOf(std::vector<float> distances) const {
+  if (distances.empty()) return 0.0;
+  const auto last =
+      distances.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * static_cast<double>(distances.size() - 1));
+  std::nth_element(distances.begin(), last, distances.end());
+  return std::isfinite(*last) ? *last : cloud_.extent;
+}
+
+double PlaneJudge::deviation(const ReflectionPlane& plane) const {
+  const ReflectionPlane normalized = cloud_.toNormalized(plane);
+  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kDeviationSamples, options_.seed);
+  IspStep step;
+  step.closest.assign(samples.size(), -1);
+  Reflected all = reflected(normalized, samples, step);
+  cloud_.search->search(all.points, 1, step.closest, step.sq_distances);
+  return deviationOf(surfaceDistances(all.points, step.closest, cloud_.points, cloud_.geometry)) * cloud_.scale;
 }
 
 PlaneEvidence PlaneJudge::evidence(const PlaneShares& shares, const Agreement& agreement, double score) const {
@@ -100,8 +124,8 @@ PlaneEvidence PlaneJudge::evidence(const PlaneShares& shares, const Agreement& a
   return evidence;
 }
 
-SymmetryPlane PlaneJudge::judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
-                                 const std::vector<int>& samples) const {
+JudgedPlane PlaneJudge::judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
+                               const std::vector<int>& samples) const {
   SymmetryPlane answer(cloud_.toInput(plane));
   answer.point_support = shares.point_support;
   answer.score = cloud_.score(answer);
@@ -116,7 +140,7 @@ SymmetryPlane PlaneJudge::judged(const ReflectionPlane& plane, const PlaneShares
   answer.seen = cloud_.isScan() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - agreed.unknown;
   answer.confidence = planeConfidence(all);
   answer.kind = kindOf(answer.confidence);
-  return answer;
+  return {std::move(answer), all};
 }
 
 PlaneKind PlaneJudge::kindOf(double confidence) const {
@@ -140,8 +164,7 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
     share += agreed.share / count;
     unknown += agreed.unknown / count;
     family.score += score / count;
-    family.least_confidence =
-        std::min(family.least_confidence, planeConfidence(evidence(shares, agreed, score)));
+    family.least_confidence = std::min(family.least_confidence, planeConfidence(evidence(shares, agreed, score)));
   }
   const PlaneEvidence together = evidence({support, conflict, {}}, {share, unknown, 0.0}, family.score);
   family.confidence = planeConfidence(together);
@@ -164,7 +187,7 @@ std::vector<SymmetryPlane> PlaneJudge::findParts(const std::vector<SymmetryPlane
     const auto normalized = [this](const SymmetryPlane& plane) { return cloud_.toNormalized(plane); };
     if (basinTolerance().anySame(known, part.plane, normalized)) continue;
     const IspStep step = fit_.matches(part.plane, all);
-    SymmetryPlane plane = judged(part.plane, fit_.shares(part.plane, all, step), step, all);
+    SymmetryPlane plane = judged(part.plane, fit_.shares(part.plane, all, step), step, all).plane;
     if (plane.kind == PlaneKind::Symmetry) continue;  // one of a family, which is known as its axis or center
     plane.kind = PlaneKind::Local;
     plane.iterations = part.iterations;

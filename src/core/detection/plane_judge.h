@@ -9,6 +9,12 @@
 
 namespace pcl_symmetry {
 
+/// A plane, and what the decision was taken from.
+struct JudgedPlane {
+  SymmetryPlane plane;  ///< input frame
+  PlaneEvidence evidence;
+};
+
 /// What the planes of a family say together.
 struct JudgedFamily {
   double confidence = 0.0;        ///< of the mean evidence
@@ -29,6 +35,14 @@ public:
   /// \param candidates after the last stage of refinement.
   /// \return one plane each, input frame, in the same order.
   std::vector<SymmetryPlane> judge(const std::vector<Candidate>& candidates) const;
+
+  /// The same with the evidence.
+  std::vector<JudgedPlane> judgeWithEvidence(const std::vector<Candidate>& candidates) const;
+
+  /// SymmetryPlane::deviation of a plane that maps many points far from the surface.
+  /// \param plane input frame.
+  /// \return input units.
+  double deviation(const ReflectionPlane& plane) const;
 
   /// Planes of a family together.
   /// \param planes normalised frame, at least one.
@@ -53,11 +67,12 @@ private:
     double deviation;  ///< distance that 97 % of those that say something stay within
   };
 
+  double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
   Agreement agreement(const Reflected& reflected, const IspStep& step) const;
   PlaneEvidence evidence(const PlaneShares& shares, const Agreement& agreement, double score) const;
-  SymmetryPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
-                       const std::vector<int>& samples) const;
+  JudgedPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
+                     const std::vector<int>& samples) const;
   PlaneKind kindOf(double confidence) const;
   const std::vector<char>& borders() const;
 

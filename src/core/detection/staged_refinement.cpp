@@ -63,7 +63,12 @@ std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidate
 }
 
 std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
-  return distinct(refined(std::move(candidates), closeStage()), -1.0, kKeptClosely);
+  candidates = refined(std::move(candidates), closeStage());
+  // Beside a symmetry of a whole cloud, the others are of no use.
+  const bool is_whole = std::any_of(candidates.begin(), candidates.end(),
+                                    [](const Candidate& candidate) { return candidate.merit >= kLeastMerit; });
+  const bool others = cloud_.isScan() || options_.approximate || !is_whole;
+  return distinct(std::move(candidates), -1.0, others ? kKeptClosely : 0);
 }
 
 std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {

@@ -1,20 +1,24 @@
-// Written by calibrate_planes (apps/calibrate); see README.md beside this file. Do not edit.
+// Written by calibrate_planes; see README.md beside this file. Do not edit.
 #pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/evidence/plane_confidence.h"
 
 namespace pcl_symmetry {
 
-/// Coefficients of the log odds that a plane is a symmetry; each summand has unit 1.
+/// The fitted numbers of the decision, by EvidenceKind.
 struct ConfidenceFit {
-  struct Surface {
-    double intercept = -1.0, per_off = -2.5, per_unknown = -20.0;
-  } surface;
-  struct Scan {
-    double intercept = -2.4, per_off = -3.1, per_lost_score = -2.6;
-  } scan;
-  struct Volume {
-    double intercept = 8.76, per_root_off = -23.0, per_lost_score = -1.06, per_missing_overlap = -26.9;
-  } volume;
+  std::array<std::vector<double>, 3> log_odds;  ///< coefficients of logOddsTerms()
+  std::array<ShareInterval, 3> share_errors;    ///< of the share, units of shareUnit()
 };
-constexpr ConfidenceFit kConfidenceFit{};
+
+// fitted: 178 models, tolerance 0.01 of the diameter.
+inline const ConfidenceFit kConfidenceFit{
+    {{{2.109, -1.246, -9.495, -1.076, -59.7},
+      {-0.7243, -2.254, -2.669},
+      {4.544, -21.26, -10.5, -26.15, -24.78}}},
+    {{{-3.82, 0.525}, {-49.5, 1.01}, {-22.6, 0.801}}}};
 
 }  // namespace pcl_symmetry

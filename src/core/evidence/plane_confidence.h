@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 namespace pcl_symmetry {
 
 /// What the points say about one plane, and how finely they sample the surface.
@@ -21,16 +23,33 @@ struct PlaneEvidence {
 /// \return min(1, support / ((support + conflict) * baseline)), in [0, 1]; 0 where nothing was seen.
 double seenSupport(const PlaneEvidence& evidence);
 
-/// Limits of the share of the whole object that the plane maps to within the tolerance of the object.
+/// Each kind of evidence has coefficients of its own.
+enum class EvidenceKind {
+  Surface,  ///< a cloud that may lack a piece
+  Scan,     ///< seen from one viewpoint
+  Volume    ///< the points resolve no surface
+};
+
+EvidenceKind kindOf(const PlaneEvidence& evidence);
+
+/// The summands of the log odds that a plane is a symmetry, before their coefficients. The first is 1; then
+/// come those that fall as the evidence gets better, then the spacing, which says what to expect of the others.
+std::vector<double> logOddsTerms(const PlaneEvidence& evidence);
+
+/// Limits of a share.
 struct ShareInterval {
   double low, high;
 };
 
-/// \return limits that hold in 95 of 100 cases, in [0, 1].
+/// \return the unit of the error of PlaneEvidence::share as an estimate for the whole object, > 0.
+double shareUnit(const PlaneEvidence& evidence);
+
+/// \return limits of the share of the whole object that the plane maps to within the tolerance of the object, which hold
+/// in 95 of 100 cases; in [0, 1].
 ShareInterval shareInterval(const PlaneEvidence& evidence);
 
-/// Probability that the plane is a symmetry of the object: logistic regressions, one each for whole clouds, scans and
-/// points that resolve no surface (see README.md beside the source).
+/// Probability that the plane is a symmetry of the object: it maps 97 % of the surface to within the tolerance of the
+/// surface. A logistic regression for each kind of evidence, see README.md beside the source.
 /// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 

@@ -8,8 +8,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
-
 // How much farther off a plane a new point lies than one of the nine points that the plane was fitted to.
 // derived: with p = 3 parameters and n = 9 points the leverage is l = p / n, residuals of the points have the variance
 // (1 - l) and those of new points (1 + l) times that of the noise; the root of their ratio.
@@ -38,7 +36,7 @@ float distanceNear(int closest, int self, const Eigen::Vector3f& point, const Po
 
 std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest, const Points& samples,
                                     const LocalGeometry& geometry) {
-  std::vector<float> distances(closest.size(), kFar);
+  std::vector<float> distances(closest.size(), std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < closest.size(); ++i)
     if (closest[i] >= 0) distances[i] = distanceNear(closest[i], -1, points.col(i), samples, geometry, 1.0f);
   return distances;
@@ -53,7 +51,8 @@ std::vector<float> ownSurfaceDistances(const Points& samples, const LocalGeometr
 
 double shareWithin(const std::vector<float>& distances, double tolerance) {
   const auto limit = static_cast<float>(tolerance);
-  const auto count = std::count_if(distances.begin(), distances.end(), [&](float distance) { return distance <= limit; });
+  const auto count =
+      std::count_if(distances.begin(), distances.end(), [&](float distance) { return distance <= limit; });
   return static_cast<double>(count) / static_cast<double>(distances.size());
 }
 

@@ -8,7 +8,8 @@
 namespace pcl_symmetry {
 
 /// Radius of the disc of surface that a sample stands for, spacings.
-/// derived: a disc of that radius on a surface of density rho holds no sample with probability exp(-pi 1.25^2) = 1 / 135.
+/// derived: a disc of that radius on a surface of density rho holds no sample with probability exp(-pi 1.25^2) = 1 /
+/// 135.
 constexpr float kDiscRadius = 1.25f;
 
 /// How far points lie from the surface that samples describe. Each sample stands for a disc in its tangent plane; the

@@ -25,13 +25,13 @@ struct RotationEvidence {
   /// Share of the surface that a rotation maps off it in one or more pieces together, in [0, 1]: the greatest of any
   /// rotation. A piece is where most neighbouring samples are off; single samples are off by chance and do not count.
   double feature = 0.0;
-  double confidence = 0.0;  ///< planeConfidence() of the rotations together
+  double confidence = 0.0;  ///< probability that the rotations together are symmetries, in [0, 1]
 };
 
 /// The surface that rotations are compared with, fitted to and judged on.
 ///
-/// Rotations are treated as planes are: ISP (Section 4.4) with rotations in place of reflections, then the support and
-/// confidence of planes. All lengths are in the normalised frame.
+/// Rotations are treated as planes are: ISP (Section 4.4) with rotations in place of reflections, then the support of
+/// planes. All lengths are in the normalised frame.
 class RotationFit {
 public:
   /// \param points 3 x N, normalised to the unit ball about 0.
@@ -71,6 +71,7 @@ private:
   RotationSet fitted(RotationSet set, const std::vector<std::size_t>& used, const std::vector<int>& samples,
                      Annealing annealing) const;
   std::vector<float> support(const RotationSet& set, std::size_t i, const std::vector<int>& samples) const;
+  double confidence(double support, double score) const;
   double featureShare(const std::vector<float>& support) const;
   double score(const RotationSet& set, std::size_t i) const;
 

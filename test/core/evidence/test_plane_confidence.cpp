@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,94 +17,116 @@ struct Regime {
   PlaneEvidence good;  ///< of a symmetry that is well sampled
 };
 
-std::vector<Regime> regimes() {
-  return {{"whole", {0.97, 0.02, 0.98, 0.98, 0.02, 0.05, false, false}},
-          {"rough", {0.90, 0.10, 0.95, 0.92, 0.05, 0.30, false, false}},
-          {"volume", {0.98, 0.02, 0.98, 1.0, 0.05, 0.40, false, true}},
-          {"scan", {0.30, 0.01, 0.40, 0.98, 0.02, 0.05, true, false}}};
+PlaneEvidence evidenceOf(double score, double spacing, double roughness, bool partial, bool volume) {
+  PlaneEvidence evidence;
+  evidence.support = 0.98;
+  evidence.conflict = 0.02;
+  evidence.score = score;
+  evidence.spacing = spacing;
+  evidence.roughness = roughness;
+  evidence.partial = partial;
+  evidence.volume = volume;
+  evidence.share = 0.999;
+  return evidence;
 }
 
-TEST(PlaneConfidence, FallsWithConflict) {
+std::vector<Regime> regimes() {
+  return {{"whole", evidenceOf(0.98, 0.02, 0.05, false, false)},
+          {"sparse", evidenceOf(0.95, 0.07, 0.20, false, false)},
+          {"volume", evidenceOf(0.98, 0.02, 0.40, false, true)},
+          {"scan", evidenceOf(0.95, 0.02, 0.05, true, false)}};
+}
+
+/// Confidence must not rise while a value goes from good to bad in 40 steps.
+void expectFalls(const std::string& what, const std::function<void(PlaneEvidence&, double)>& worsen) {
   for (const auto& [name, good] : regimes()) {
     double before = 1.0;
     for (int step = 0; step <= 40; ++step) {
       PlaneEvidence evidence = good;
-      const double moved = good.support * step / 40.0;  // from support to conflict: the points seen stay
-      evidence.conflict = good.conflict + moved;
-      if (!good.partial) evidence.support -= moved;
+      worsen(evidence, step / 40.0);
       const double confidence = planeConfidence(evidence);
-      EXPECT_LE(confidence, before + 1e-12) << name << ", conflict " << evidence.conflict;
+      EXPECT_LE(confidence, before + 1e-12) << name << ", " << what << ", step " << step;
       before = confidence;
     }
-    EXPECT_LT(before, 0.05) << name << ": as much conflict as support, or nothing but conflict";
   }
 }
 
-TEST(PlaneConfidence, RisesWithSupportOfWhatWasSeen) {
+TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
+  expectFalls("share", [](PlaneEvidence& e, double t) { e.share = 1.0 - t; });
+  expectFalls("unknown", [](PlaneEvidence& e, double t) { e.unknown = t; });
+  expectFalls("score", [](PlaneEvidence& e, double t) { e.score = 1.0 - t; });
+  expectFalls("support", [](PlaneEvidence& e, double t) { e.support = 1.0 - t; });
+}
+
+TEST(PlaneConfidence, IsHighForSymmetriesAndLowForOthers) {
   for (const auto& [name, good] : regimes()) {
-    const double seen = good.support + good.conflict;
-    double before = 0.0;
-    for (int step = 0; step <= 40; ++step) {
-      PlaneEvidence evidence = good;
-      evidence.support = seen * step / 40.0;
-      evidence.conflict = seen - evidence.support;
-      const double confidence = planeConfidence(evidence);
-      EXPECT_GE(confidence, before - 1e-12) << name << ", support " << evidence.support << " of " << seen;
-      before = confidence;
-    }
-    EXPECT_GT(before, 0.5) << name;
+    EXPECT_GT(planeConfidence(good), 0.8) << name;
+    PlaneEvidence half = good;
+    half.share = 0.5;
+    half.support = half.score = 0.6;
+    EXPECT_LT(planeConfidence(half), 0.05) << name;
   }
 }
 
-TEST(PlaneConfidence, RisesWithScore) {
-  for (const auto& [name, good] : regimes()) {
-    double before = 0.0;
-    for (int step = 0; step <= 40; ++step) {
-      PlaneEvidence evidence = good;
-      evidence.score = step / 40.0;
-      const double confidence = planeConfidence(evidence);
-      EXPECT_GE(confidence, before) << name << ", score " << evidence.score;
-      before = confidence;
-    }
-    EXPECT_GT(before, 0.5) << name;
-  }
-}
-
-TEST(PlaneConfidence, IsAProbabilityEverywhere) {
-  for (const double support : {0.0, 1e-9, 0.5, 1.0, 1.1})
-    for (const double conflict : {0.0, 1e-9, 0.5, 1.0})
-      for (const double score : {0.0, 0.5, 1.0})
-        for (const double baseline : {1e-3, 0.5, 1.0})
-          for (const double spacing : {0.0, 1e-6, 0.1, 1.0})
-            for (const double roughness : {0.0, 0.3, 10.0})
-              for (const int kind : {0, 1, 2}) {
-                const PlaneEvidence evidence{support, conflict,  score,     baseline,
-                                             spacing, roughness, kind == 1, kind == 2};
-                const double share = seenSupport(evidence), confidence = planeConfidence(evidence);
-                ASSERT_TRUE(std::isfinite(confidence) && std::isfinite(share)) << support << " " << conflict;
-                ASSERT_GE(share, 0.0);
-                ASSERT_LE(share, 1.0);
-                ASSERT_GE(confidence, 0.0);
-                ASSERT_LE(confidence, 1.0);
-              }
+TEST(PlaneConfidence, OfAWholeCloudFollowsTheDefinition) {
+  // 97 % of the surface make a symmetry; below 90 % a plane is none.
+  PlaneEvidence evidence = regimes().front().good;
+  evidence.share = 0.985;
+  EXPECT_GT(planeConfidence(evidence), 0.5);
+  evidence.share = 0.90;
+  EXPECT_LT(planeConfidence(evidence), 0.5);
 }
 
 TEST(PlaneConfidence, APlaneThatNothingSpeaksForIsNoSymmetry) {
   for (const auto& [name, good] : regimes()) {
     PlaneEvidence evidence = good;
-    evidence.support = evidence.score = 0.0;
-    evidence.conflict = good.partial ? 0.0 : 1.0;  // of a scan: every reflection falls where nobody looked
+    evidence.share = evidence.score = evidence.support = 0.0;
     EXPECT_EQ(seenSupport(evidence), 0.0) << name;
     EXPECT_LT(planeConfidence(evidence), 0.02) << name;
-    // A hundredth of the points that meet something by chance makes it no better.
-    evidence.support = 0.01;
-    if (!good.partial) evidence.conflict = 0.99;
-    EXPECT_LT(planeConfidence(evidence), 0.5) << name;
   }
 }
 
+TEST(PlaneConfidence, IsAProbabilityEverywhere) {
+  for (const double support : {0.0, 1e-9, 0.5, 1.0, 1.1})
+    for (const double share : {0.0, 1e-9, 0.5, 1.0})
+      for (const double score : {0.0, 0.5, 1.0})
+        for (const double unknown : {0.0, 0.5, 1.0})
+          for (const double spacing : {0.0, 1e-6, 0.1, 1.0})
+            for (const double roughness : {0.0, 0.3, 10.0})
+              for (const int kind : {0, 1, 2}) {
+                PlaneEvidence evidence = evidenceOf(score, spacing, roughness, kind == 1, kind == 2);
+                evidence.support = support;
+                evidence.share = share;
+                evidence.unknown = unknown;
+                const double confidence = planeConfidence(evidence);
+                const ShareInterval interval = shareInterval(evidence);
+                ASSERT_TRUE(std::isfinite(confidence)) << support << " " << share;
+                ASSERT_GE(confidence, 0.0);
+                ASSERT_LE(confidence, 1.0);
+                ASSERT_GE(interval.low, 0.0);
+                ASSERT_LE(interval.low, share);
+                ASSERT_GE(interval.high, share);
+                ASSERT_LE(interval.high, 1.0);
+              }
+}
+
+TEST(PlaneConfidence, FewerPointsAndNoiseWidenTheInterval) {
+  PlaneEvidence evidence = regimes().front().good;
+  evidence.share = 0.9;
+  const ShareInterval fine = shareInterval(evidence);
+  evidence.spacing *= 3.0;
+  const ShareInterval coarse = shareInterval(evidence);
+  evidence.roughness = 0.3;
+  const ShareInterval rough = shareInterval(evidence);
+  EXPECT_GT(coarse.high - coarse.low, fine.high - fine.low);
+  EXPECT_GT(rough.high - rough.low, coarse.high - coarse.low);
+}
+
 TEST(PlaneConfidence, SupportIsCountedInWhatSamplingLets) {
-  PlaneEvidence evidence{0.45, 0.05, 0.9, 0.9, 0.02, 0.05, true, false};
+  PlaneEvidence evidence;
+  evidence.support = 0.45;
+  evidence.conflict = 0.05;
+  evidence.baseline = 0.9;
   EXPECT_NEAR(seenSupport(evidence), 1.0, 1e-12);  // 0.45 / (0.5 * 0.9)
   evidence.baseline = 1.0;
   EXPECT_NEAR(seenSupport(evidence), 0.9, 1e-12);

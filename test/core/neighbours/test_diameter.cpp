@@ -42,4 +42,16 @@ TEST(Diameter, OfFewOrEqualPoints) {
   EXPECT_EQ(diameter(line), 6.0);
 }
 
+TEST(FarthestPair, IsTheDiameterOfMostShapesAndNeverMuchLess) {
+  for (const Shape& shape : {cylinder(2000, 2), box(2000, Sampling::Random, 3), scaleneTetrahedron(2000, 4)}) {
+    const Points points = moved(shape, randomPose(6)).cloud();
+    EXPECT_NEAR(farthestPair(points), diameter(points), 1e-2 * diameter(points));
+  }
+  const Points round = sphere(2000, 1).cloud();
+  EXPECT_LE(farthestPair(round), diameter(round));
+  EXPECT_GE(farthestPair(round), diameter(round) / std::sqrt(3.0));
+  EXPECT_EQ(farthestPair(Points(3, 0)), 0.0);
+  EXPECT_EQ(farthestPair(Points::Ones(3, 100)), 0.0);
+}
+
 }  // namespace

@@ -45,8 +45,8 @@ struct SymmetryPlane : ReflectionPlane {
   /// Distance that 97 % of the reflected points stay within from the surface, input units: the least tolerance at which
   /// the plane would be a symmetry.
   double deviation = 0.0;
-  /// Share of the points whose reflection falls where the cloud could show it, in [0, 1]: less than 1 for planes of scans
-  /// and where a piece of the surface is missing.
+  /// Share of the points whose reflection falls where the cloud could show it, in [0, 1]: less than 1 for planes of
+  /// scans and where a piece of the surface is missing.
   double seen = 1.0;
   /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
   /// of a surface are to each other, falling to 0 beyond.
@@ -118,8 +118,8 @@ struct Detection {
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
   /// Where there is no symmetry and no possible one: the plane that maps the greatest share of the surface; else empty.
   std::optional<SymmetryPlane> best;
-  double tolerance = 0.0;  ///< that was decided at, input units
-  std::vector<SymmetryAxis> axes;     ///< best first; their planes are not among planes
+  double tolerance = 0.0;          ///< that was decided at, input units
+  std::vector<SymmetryAxis> axes;  ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;
   SymmetryMap map;                                        ///< empty where one was given
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
