@@ -42,6 +42,9 @@ constexpr double kFamilyTolerance = 0.03;
 // Points that judge a family. chosen: 1500 have a standard error of 0.5 % at a share of 0.96; more cost time.
 constexpr int kFamilySamples = 1500;
 constexpr int kRoughSampleShare = 5;  // chosen: one sample in this many screens a family
+// Confidence of the worst plane of a family, shares of that of a symmetry. chosen: one, and chance breaks up families
+// of few points; a quarter, and cones with five petals pass for round.
+constexpr double kWorstShare = 0.5;
 constexpr int kRefineIterations = 6;  // chosen: as many as of a candidate in its second stage
 // Share of the points. chosen: where less of a reflection was seen, that says nothing, and the share tends to 1.
 constexpr double kUnseen = 0.02;
@@ -217,10 +220,11 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
                                       [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); }),
                        found.planes.end());
   };
-  // Between its planes, a regular polygon of many sides is not symmetric: the worst plane decides. A scan shows some of
-  // the planes too badly for that.
+  // Between its planes, a regular polygon is not symmetric: the worst plane decides too. A scan shows some of the
+  // planes too badly for that.
   const auto isFamily = [&](const JudgedFamily& judged) {
-    return (cloud.isScan() ? judged.confidence : judged.least_confidence) >= options.min_confidence;
+    return judged.confidence >= options.min_confidence &&
+           (cloud.isScan() || judged.least_confidence >= kWorstShare * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test)) {
     const JudgedFamily judged = judge.judgeFamily(center->planes, samples);

@@ -69,7 +69,8 @@ private:
 
   double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
-  Agreement agreement(const Reflected& reflected, const IspStep& step) const;
+  Points matchedNormals(const IspStep& step) const;
+  Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step) const;
   PlaneEvidence evidence(const PlaneShares& shares, const Agreement& agreement, double score) const;
   JudgedPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
                      const std::vector<int>& samples) const;

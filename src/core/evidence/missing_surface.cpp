@@ -1,5 +1,6 @@
 #include "core/evidence/missing_surface.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,9 +17,9 @@ constexpr std::size_t kBlockSize = 512;  // points; chosen: smaller blocks cost 
 // Neighbours among which a gap is looked for. chosen: with half as many, gaps appear inside the surface; with twice as
 // many, narrow cuts close.
 constexpr int kNumNeighbours = 16;
-// Radians. measured: 16 points drawn evenly around a point leave a gap of 110 degrees in 1 of 100 cases; smaller gaps
-// appear inside the surface, larger ones miss ragged borders.
-constexpr float kGap = 110.0f * static_cast<float>(kPi) / 180.0f;
+// Radians. derived: the greatest gap g (in turns) between k = 16 random directions exceeds g with the probability
+// k (1 - g)^(k - 1) at most: 0.5 % for 150 degrees. At a straight border the gap is 180 degrees and more.
+constexpr float kGap = 150.0f * static_cast<float>(kPi) / 180.0f;
 // A neighbour is off the tangent plane if its offset across exceeds this share of its distance (30 degrees), and the
 // surface folds where more than this many are. chosen: at half, noise looks like folds; at twice, the edges of a box
 // look like borders.
@@ -27,6 +28,8 @@ constexpr int kMostOffPlane = 2;
 // Explained share of a region's edge from which its samples begin to count as missing, and from which they count in
 // full. chosen: false planes of whole models have up to 0.5 by chance; higher bounds lose cuts with ragged borders.
 constexpr float kLeastExplained = 0.5f, kExplained = 0.9f;
+
+constexpr double kTiltRidge = 1e-4;  // chosen: any value far below the stiffness of tilts that are held
 
 /// Regions of samples that are joined as neighbours.
 class Regions {
@@ -90,6 +93,33 @@ std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& s
       borders[i] = isAtBorder(static_cast<int>(i), indices.data() + (i - begin) * count, count, samples, normals);
   });
   return borders;
+}
+
+double offsetStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
+                       const ReflectionPlane& plane) {
+  const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double count = 0.0;
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    if (!matched[i]) continue;
+    const auto column = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d x = points.col(column).cast<double>(), normal = normals.col(column).cast<double>();
+    // x is a reflection: x = y - 2 (n.y - r) n. Its derivatives along the normal of the match, by tilt and by offset.
+    const double distance = -plane.signedDistance(x);
+    const Eigen::Vector3d y = x + 2.0 * distance * n;
+    const auto by_tilt = [&](const Eigen::Vector3d& axis) {
+      return -2.0 * (axis.dot(y) * normal.dot(n) + distance * normal.dot(axis));
+    };
+    const Eigen::Vector3d gradient(by_tilt(u), by_tilt(v), 2.0 * normal.dot(n));
+    information += gradient * gradient.transpose();
+    count += 1.0;
+  }
+  if (count == 0.0) return 0.0;
+  information /= count;
+  Eigen::Matrix2d tilts = information.topLeftCorner<2, 2>();
+  tilts.diagonal().array() += kTiltRidge;
+  const Eigen::Vector2d coupling = information.topRightCorner<2, 1>();
+  return std::max(0.0, information(2, 2) - coupling.dot(tilts.ldlt().solve(coupling)));
 }
 
 std::vector<float> missingCounterparts(const std::vector<char>& matched, const std::vector<int>& closest,

@@ -16,7 +16,8 @@ struct PlaneEvidence {
   bool volume = false;     ///< the points resolve no surface; support is the overlap of their density
   /// Share of the surface mapped to within the tolerance of the surface, of that which says something, in [0, 1].
   double share = 1.0;
-  double unknown = 0.0;  ///< share of the surface that says nothing: its reflection was not seen or was cut off
+  double tolerance = 0.02;  ///< of that share, divided by the radius of the points, > 0
+  double unknown = 0.0;     ///< share of the surface that says nothing: its reflection was not seen or was cut off
 };
 
 /// Share of the surface seen that the plane maps onto the surface, relative to what sampling allows.

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <nlohmann/answer.hpp>
 
 #include "apps/support/tool_run.h"
 #include "common/pictures/raster_image.h"
@@ -22,18 +22,18 @@ protected:
 
 TEST_F(ViewpointTool, LooksAtABoxFromACornerAndWorstAlongItsPlanes) {
   ASSERT_EQ(run(mesh_ + " -quiet -json " + (folder_ / "a.json")), 0) << error_;
-  const nlohmann::json json = nlohmann::json::parse(contentOf(folder_ / "a.json"));
-  const auto best = json["best"]["direction"].get<std::vector<double>>();
-  const auto worst = json["worst"]["direction"].get<std::vector<double>>();
+  const nlohmann::json answer = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+  const auto best = answer["best"]["direction"].get<std::vector<double>>();
+  const auto worst = answer["worst"]["direction"].get<std::vector<double>>();
   double largest = 0.0;
   for (int k = 0; k < 3; ++k) {
     EXPECT_GT(std::abs(best[k]), 0.3);
     largest = std::max(largest, std::abs(worst[k]));
   }
   EXPECT_GT(largest, 0.99);
-  EXPECT_GT(json["best"]["score"].get<double>(), json["worst"]["score"].get<double>());
-  EXPECT_EQ(json["best"]["pose"].size(), 16u);
-  EXPECT_EQ(json["good"][0], json["best"]);
+  EXPECT_GT(answer["best"]["score"].get<double>(), answer["worst"]["score"].get<double>());
+  EXPECT_EQ(answer["best"]["pose"].size(), 16u);
+  EXPECT_EQ(answer["good"][0], answer["best"]);
   EXPECT_NE(output_.find("worst"), std::string::npos);
 }
 

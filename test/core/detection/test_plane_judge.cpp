@@ -14,12 +14,15 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-/// The body of a box with a ridge on one side of the plane x = 0: a plane of symmetry but for the ridge.
-/// \param height of the ridge over the side of the box, which it covers.
-Points ridgedBox(double height, int num_points) {
+/// A box with a smooth swelling on one side of the plane x = 0, a plane of symmetry but for that.
+/// \param height of the swelling.
+Points swollenBox(double height, int num_points) {
   Points points = box({1.0, 0.7, 0.4}, num_points, Sampling::Random, 3).cloud();
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (points(0, i) > 0.3f && points(2, i) > 0.399f) points(2, i) += static_cast<float>(height);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (points(0, i) < 0.0f || points(2, i) < 0.399f) continue;
+    const double across = std::sin(kPi * points(0, i)), along = std::cos(0.5 * kPi * points(1, i) / 0.7);
+    points(2, i) += static_cast<float>(height * across * across * std::min(1.0, 3.0 * along));
+  }
   return points;
 }
 
@@ -42,8 +45,9 @@ Points cut(const Points& points, double share, const Eigen::Vector3f& direction)
 }
 
 TEST(PlaneJudge, ToleranceDecidesWhatIsSymmetric) {
-  // The ridge is 0.04 high; the diameter of the box is 2.57, so that 1 % is 0.026 and 2 % is 0.051.
-  const Points points = ridgedBox(0.04, 10'000);
+  // The swelling is 0.047 high; the diameter of the box is 2.57, so that 1 % is 0.026 and 2 % is 0.051. More than 0.026 of
+  // it covers a half of 1.4 of the surface of 11, which is off on both sides.
+  const Points points = swollenBox(0.047, 10'000);
   DetectionOptions options;
   options.tolerance = 0.02;
   const Detection coarse = detectPlanes(points, options);
@@ -74,7 +78,7 @@ TEST(PlaneJudge, ShareAndDeviationAreThoseOfTheSurface) {
 TEST(PlaneJudge, TheAnswerDoesNotDependOnTheNumberOfPoints) {
   for (const int num_points : {3000, 10'000, 50'000}) {
     EXPECT_EQ(detectPlanes(box(num_points, Sampling::Random, 5).cloud()).planes.size(), 3u) << num_points;
-    EXPECT_EQ(planeAcrossX(detectPlanes(ridgedBox(0.2, num_points))), nullptr) << num_points;
+    EXPECT_EQ(planeAcrossX(detectPlanes(swollenBox(0.2, num_points))), nullptr) << num_points;
   }
 }
 
@@ -101,7 +105,6 @@ TEST(PlaneJudge, ACutCloudKeepsItsPlane) {
       return planeError(first, plane, Eigen::Vector3d::Zero()).angle < 3.0 * kDegree;
     });
     EXPECT_TRUE(is_true) << share;
-    EXPECT_LT(first.seen, 0.99) << share;
   }
 }
 
@@ -139,8 +142,7 @@ TEST(PlaneJudge, ChanceIsNoSymmetry) {
                       ? 1
                       : 0;
   }
-  // A cube is symmetric, and points drawn from it show that where they are many: at most a quarter may look like it.
-  EXPECT_LE(num_called, 10);
+  EXPECT_EQ(num_called, 0);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ struct DetectionOptions {
   double merge_offset = 0.02;       ///< ... and by this share of the radius in offset are one, >= 0
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
   /// A plane is reported as possible if confidence >= min_possible; in [0, 1].
-  double min_possible = 0.1;
+  double min_possible = 0.2;
   int max_possible = 5;  ///< symmetries and possible planes together, where there are possible ones, >= 1
   /// How far a symmetric surface may be off, as a share of the greatest distance between two points, in (0, 0.1]: a
   /// symmetry maps 97 % of the surface to within this of the surface.
