@@ -171,8 +171,8 @@ TEST(SymmetryMaximaRefinement, FindsNothingWhereThereIsNoAnswer) {
 }
 
 TEST(SymmetryMaximaRefinement, AUsedObjectIsAsGoodAsANewOne) {
-  const auto first = test::toCloud(test::cylinder(1000, 3)),
-             second = test::toCloud(test::cube(1000, Sampling::Random, 6));
+  const auto first = test::toCloud(test::cylinder(3000, 3)),
+             second = test::toCloud(test::cube(3000, Sampling::Random, 6));
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setInputCloud(first);
   transform.setGridSize(32);

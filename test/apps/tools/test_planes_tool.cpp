@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
-#include <nlohmann/answer.hpp>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/answer.hpp>
+#include <nlohmann/json.hpp>
 
 #include "apps/support/tool_run.h"
 #include "common/pictures/raster_image.h"

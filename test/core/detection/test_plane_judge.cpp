@@ -45,8 +45,8 @@ Points cut(const Points& points, double share, const Eigen::Vector3f& direction)
 }
 
 TEST(PlaneJudge, ToleranceDecidesWhatIsSymmetric) {
-  // The swelling is 0.047 high; the diameter of the box is 2.57, so that 1 % is 0.026 and 2 % is 0.051. More than 0.026 of
-  // it covers a half of 1.4 of the surface of 11, which is off on both sides.
+  // The swelling is 0.047 high; the diameter of the box is 2.57, so that 1 % is 0.026 and 2 % is 0.051. More than 0.026
+  // of it covers a half of 1.4 of the surface of 11, which is off on both sides.
   const Points points = swollenBox(0.047, 10'000);
   DetectionOptions options;
   options.tolerance = 0.02;
