@@ -133,6 +133,7 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   GroupClosure closure(cloud, {options.merge_angle, options.merge_offset});
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
     append(planes, judge.judge(refinement.full(std::move(candidates))));
+  planes = judge.preferringWhole(std::move(planes));
   timed("closure");
   if (options.families) {
     PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, *fit, judge, options);

@@ -44,6 +44,12 @@ public:
   /// \return input units.
   double deviation(const ReflectionPlane& plane) const;
 
+  /// Where a plane explains all of a cloud, nothing of it is missing: doubts planes that need a missing piece (the
+  /// plane across an open cup needs a lid).
+  /// \param planes that were judged.
+  /// \return the same planes, some of them with less confidence.
+  std::vector<SymmetryPlane> preferringWhole(std::vector<SymmetryPlane> planes) const;
+
   /// Planes of a family together.
   /// \param planes normalised frame, at least one.
   /// \param samples indices of the points that judge them.
