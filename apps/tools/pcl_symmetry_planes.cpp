@@ -60,8 +60,8 @@ struct Findings {
   std::vector<SymmetryCenter> centers;
   ViewpointSource viewpoint_source = ViewpointSource::None;
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
-  std::optional<SymmetryPlane> best;  ///< where nothing else was found
-  double tolerance = 0.0;             ///< that was decided at, input units
+  std::optional<SymmetryPlane> best;         ///< where nothing else was found
+  double tolerance = 0.0;                    ///< that was decided at, input units
   std::size_t num_points = 0;                ///< that were used
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::vector<float>> support;  ///< of each plane, by every point; empty where no output shows it

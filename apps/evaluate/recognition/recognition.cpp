@@ -13,11 +13,11 @@
 #include "common/command_line/console.h"
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
+#include "evaluate/clouds/test_clouds.h"
 #include "evaluate/shared/class_file.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
 #include "evaluate/shared/table_text.h"
-#include "evaluate/clouds/test_clouds.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 

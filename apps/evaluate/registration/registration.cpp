@@ -13,6 +13,7 @@
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
 #include "core/base/constants.h"
+#include "evaluate/clouds/test_clouds.h"
 #include "evaluate/planes/plane_statistics.h"
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/registration/motion_error.h"
@@ -20,7 +21,6 @@
 #include "evaluate/segmentation/patches.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
-#include "evaluate/clouds/test_clouds.h"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {

@@ -26,7 +26,7 @@ constexpr float kGap = 150.0f * static_cast<float>(kPi) / 180.0f;
 constexpr float kOffPlane = 0.5f;
 constexpr int kMostOffPlane = 2;
 // Explained share of a region's edge from which its samples begin to count as missing, and from which they count in
-// full. chosen: false planes of whole models have up to 0.5 by chance; higher bounds lose cuts with ragged borders.
+// full. chosen: lower bounds excuse what is asymmetric; higher bounds lose cuts with ragged borders.
 constexpr float kLeastExplained = 0.5f, kExplained = 0.9f;
 
 constexpr double kTiltRidge = 1e-4;  // chosen: any value far below the stiffness of tilts that are held
