@@ -14,7 +14,8 @@ namespace {
 constexpr double kOffAtEvenOdds = 0.03;
 // Error of that share: of clouds without noise, the same per spacing in tolerances, and of scans, whose hidden parts
 // may differ. chosen: by a prototype on 11 to 14 symmetric planes each of whole clouds of 40 000, 10 000, 3000 and 1000
-// points, 95 % of which had an error of at most 0.006, 0.007, 0.02 and 0.027; half lets sampling decide, twice blurs 3 %.
+// points, 95 % of which had an error of at most 0.006, 0.007, 0.02 and 0.027; half lets sampling decide, twice blurs 3
+// %.
 constexpr double kOffUnit = 0.005, kOffUnitPerSpacing = 0.002, kScanOffUnit = 0.01;
 // How exactly the share is known: twice the above, less where much says nothing; and from where on it does not matter.
 // chosen: with half of them nearly symmetric planes are possible ones, with twice of them symmetries are doubted.
