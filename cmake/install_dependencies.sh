@@ -8,6 +8,7 @@ packages=(
   libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev # the tools: options, files, reports,
   libassimp-dev libembree-dev                                             # meshes, the virtual scanner,
   libvtk9-dev libx11-dev xvfb libgl1-mesa-dri                             # pictures, also without a screen
+  pybind11-dev python3-dev python3-numpy                                  # the Python module
   libgtest-dev libgmock-dev libbenchmark-dev                              # tests and benchmarks
 )
 

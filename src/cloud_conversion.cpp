@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/base/random.h"
+#include "core/base/even_draw.h"
 #include "core/neighbours/answerable_points.h"
 #include "core/scan/viewpoint_inference.h"
 
@@ -48,16 +48,7 @@ void warnOfNoAnswer(const std::string& source, const std::string& reason) {
 }
 
 std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t max_points, std::uint64_t seed) {
-  std::vector<std::size_t> drawn(max_points);
-  RandomStream random(seed);
-  const double run = static_cast<double>(num_points) / static_cast<double>(max_points);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < max_points; ++i) {
-    const double position = (static_cast<double>(i) + random.uniform()) * run;
-    drawn[i] = std::max(next, std::min(num_points - 1, static_cast<std::size_t>(position)));
-    next = drawn[i] + 1;
-  }
-  return drawn;
+  return oneOfEachRun(num_points, max_points, seed);
 }
 
 namespace {

@@ -2,7 +2,6 @@
 
 #include <pcl/common/point_tests.h>
 #include <pcl/conversions.h>
-#include <pcl/features/normal_3d.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkLookupTable.h>
@@ -23,12 +22,17 @@
 #include <limits>
 #include <utility>
 
+#include "core/normals/surface_normals.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+
 namespace pcl_symmetry::apps {
 
 namespace {
 
 /// More points shade themselves by their density. chosen: half leaves medium clouds flat, twice takes twice the time.
 constexpr std::size_t kMaxShadedPoints = 200000;
+/// Neighbours that give the normal of a point. chosen: half shows noise as specks, twice rounds edges.
+constexpr int kShadingNeighbours = 12;
 const Eigen::Vector3d kPlainColor(0.30, 0.38, 0.52);
 
 /// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
@@ -105,26 +109,21 @@ Normalization normalizationOf(const PictureScene& scene) {
 
 std::vector<double> shading(const PictureScene& scene, const Normalization& normalize) {
   std::vector<double> brightness(scene.points->size(), 1.0);
-  pcl::PointCloud<pcl::PointXYZ>::Ptr finite(new pcl::PointCloud<pcl::PointXYZ>);
+  Points finite(3, static_cast<Eigen::Index>(scene.points->size()));
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < scene.points->size(); ++i) {
     const Eigen::Vector3d position = (*scene.points)[i].getVector3fMap().cast<double>();
     if (!position.allFinite()) continue;
-    const Eigen::Vector3f q = normalize(position).cast<float>();
-    finite->emplace_back(q.x(), q.y(), q.z());
+    finite.col(static_cast<Eigen::Index>(index.size())) = normalize(position).cast<float>();
     index.push_back(i);
   }
-  if (finite->size() < 16 || finite->size() > kMaxShadedPoints) return brightness;
-  pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
-  pcl::PointCloud<pcl::Normal> normals;
-  estimation.setInputCloud(finite);
-  estimation.setKSearch(12);
-  estimation.compute(normals);
-  const Eigen::Vector3f view = scene.view.normalized().cast<float>();
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const float cosine = std::abs(normals[i].getNormalVector3fMap().dot(view));
-    if (std::isfinite(cosine)) brightness[index[i]] = cosine;
-  }
+  if (index.size() < 16 || index.size() > kMaxShadedPoints) return brightness;
+  finite.conservativeResize(3, static_cast<Eigen::Index>(index.size()));
+  const Points normals = localGeometry(finite, *makeFlannSearch(finite), kShadingNeighbours, 0).normals;
+  const Eigen::RowVectorXf cosines = (scene.view.normalized().cast<float>().transpose() * normals).cwiseAbs();
+  for (std::size_t i = 0; i < index.size(); ++i)
+    if (std::isfinite(cosines[static_cast<Eigen::Index>(i)]))
+      brightness[index[i]] = cosines[static_cast<Eigen::Index>(i)];
   return brightness;
 }
 

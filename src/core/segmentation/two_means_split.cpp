@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/base/k_means.h"
-#include "core/surface/border_cut.h"
+#include "core/surface/cut/border_cut.h"
 
 namespace pcl_symmetry {
 

@@ -1,4 +1,4 @@
-#include "core/surface/border_cut.h"
+#include "core/surface/cut/border_cut.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/surface/border_cut.h"
+#include "core/surface/cut/border_cut.h"
 #include "pcl_symmetry/core/surface/surface_graph.h"
 
 namespace pcl_symmetry {

@@ -1,4 +1,4 @@
-#include "core/surface/border_cut.h"
+#include "core/surface/cut/border_cut.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <queue>
 
-#include "core/base/graph_cut.h"
+#include "core/surface/cut/graph_cut.h"
 
 namespace pcl_symmetry {
 

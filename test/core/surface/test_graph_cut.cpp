@@ -1,4 +1,4 @@
-#include "core/base/graph_cut.h"
+#include "core/surface/cut/graph_cut.h"
 
 #include <gtest/gtest.h>
 

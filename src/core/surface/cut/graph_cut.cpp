@@ -1,4 +1,4 @@
-#include "core/base/graph_cut.h"
+#include "core/surface/cut/graph_cut.h"
 
 #include <algorithm>
 #include <boost/graph/adjacency_list.hpp>

@@ -1,0 +1,152 @@
+#include "python/input_points.h"
+
+#include <pybind11/stl.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "core/base/even_draw.h"
+#include "core/scan/viewpoint_inference.h"
+
+namespace py = pybind11;
+
+namespace pcl_symmetry::python {
+
+namespace {
+
+/// Share of the extent. chosen: a tenth of the default tolerance of 1 % would show in results; half and twice are as
+/// far from both float32's 6e-8 and that.
+constexpr double kMostRounding = 1e-4;
+
+using Rows = py::array_t<float, py::array::forcecast>;
+
+std::string shapeOf(const py::array& array) {
+  std::string shape = "(";
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) shape += (i ? ", " : "") + std::to_string(array.shape(i));
+  return shape + ")";
+}
+
+void checkShape(const char* name, const py::array& array) {
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw std::invalid_argument(std::string(name) + " = array of shape " + shapeOf(array) + ", must be (N, 3)");
+  const char kind = array.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u')
+    throw std::invalid_argument(std::string(name) + " = array of kind " + kind + ", must hold real numbers");
+}
+
+/// \throws std::invalid_argument where float32 rounds more than results stand.
+void checkRounding(const char* name, const py::array& array) {
+  if (array.dtype().kind() == 'f' && array.itemsize() <= 4) return;
+  const auto exact = py::array_t<double, py::array::forcecast>(array);
+  const auto value = exact.unchecked<2>();
+  Eigen::AlignedBox3d box;
+  for (py::ssize_t i = 0; i < value.shape(0); ++i) {
+    const Eigen::Vector3d row(value(i, 0), value(i, 1), value(i, 2));
+    if (row.allFinite()) box.extend(row);
+  }
+  if (box.isEmpty()) return;
+  const double greatest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  if (greatest * std::numeric_limits<float>::epsilon() > kMostRounding * box.diagonal().norm())
+    throw std::invalid_argument(std::string(name) +
+                                " = coordinates too large for the extent of the points, must be moved near the origin");
+}
+
+bool isInPlace(const Rows& array) {
+  return array.strides(1) == static_cast<py::ssize_t>(sizeof(float)) && array.strides(0) >= 0 &&
+         array.strides(0) % static_cast<py::ssize_t>(sizeof(float)) == 0;
+}
+
+}  // namespace
+
+InputPoints::InputPoints(const char* name, const py::array& array, std::size_t max_points, std::uint64_t seed) {
+  checkShape(name, array);
+  checkRounding(name, array);
+  array_ = Rows(array);
+  num_rows_ = static_cast<std::size_t>(array.shape(0));
+  const auto value = array_.unchecked<2>();
+  const auto isFinite = [&](std::size_t row) {
+    const auto i = static_cast<py::ssize_t>(row);
+    return std::isfinite(value(i, 0)) && std::isfinite(value(i, 1)) && std::isfinite(value(i, 2));
+  };
+  std::size_t num_finite = 0;
+  for (std::size_t row = 0; row < num_rows_; ++row) num_finite += isFinite(row) ? 1 : 0;
+  if (max_points == 0) max_points = num_finite;
+  if (num_finite == num_rows_ && num_finite <= max_points && isInPlace(array_)) return;
+
+  std::vector<std::size_t> drawn;
+  if (num_finite > max_points) drawn = oneOfEachRun(num_finite, max_points, seed);
+  const std::size_t size = std::min(num_finite, max_points);
+  rows_.reserve(size);
+  for (std::size_t row = 0, position = 0; row < num_rows_ && rows_.size() < size; ++row) {
+    if (!isFinite(row)) continue;
+    if (drawn.empty() || position == drawn[rows_.size()]) rows_.push_back(row);
+    ++position;
+  }
+  copied_.resize(3, static_cast<Eigen::Index>(rows_.size()));
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    for (int k = 0; k < 3; ++k) copied_(k, static_cast<Eigen::Index>(i)) = value(static_cast<py::ssize_t>(rows_[i]), k);
+  if (rows_.size() == num_rows_) rows_.clear();
+  array_ = Rows();
+}
+
+PointsRef InputPoints::points() const {
+  if (array_.ndim() != 2) return copied_;
+  const Eigen::OuterStride<> stride(array_.strides(0) / static_cast<py::ssize_t>(sizeof(float)));
+  return Eigen::Map<const Points, 0, Eigen::OuterStride<>>(array_.data(), 3, array_.shape(0), stride);
+}
+
+py::array_t<float> InputPoints::atRows(const std::vector<float>& values) const {
+  py::array_t<float> result(static_cast<py::ssize_t>(num_rows_));
+  float* row = result.mutable_data();
+  if (rows_.empty()) {
+    std::copy_n(values.begin(), std::min(values.size(), num_rows_), row);
+    return result;
+  }
+  std::fill_n(row, num_rows_, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < rows_.size() && i < values.size(); ++i) row[rows_[i]] = values[i];
+  return result;
+}
+
+Points InputPoints::atPoints(const char* name, const py::array& normals) const {
+  checkShape(name, normals);
+  if (static_cast<std::size_t>(normals.shape(0)) != num_rows_)
+    throw std::invalid_argument(std::string(name) + " = array of shape " + shapeOf(normals) + ", must be (" +
+                                std::to_string(num_rows_) + ", 3), one for each point");
+  const Rows rows(normals);
+  const auto value = rows.unchecked<2>();
+  const std::size_t size = rows_.empty() ? num_rows_ : rows_.size();
+  Points result(3, static_cast<Eigen::Index>(size));
+  for (std::size_t i = 0; i < size; ++i)
+    for (int k = 0; k < 3; ++k)
+      result(k, static_cast<Eigen::Index>(i)) = value(static_cast<py::ssize_t>(rows_.empty() ? i : rows_[i]), k);
+  return result;
+}
+
+std::optional<Visibility> seenFrom(const PointsRef& points, const py::object& viewpoint) {
+  if (viewpoint.is_none() || points.cols() == 0) return std::nullopt;
+  if (py::isinstance<py::str>(viewpoint)) {
+    const auto word = viewpoint.cast<std::string>();
+    if (word != "auto") throw std::invalid_argument("viewpoint = " + word + ", must be \"auto\", None or (x, y, z)");
+    const py::gil_scoped_release release;
+    std::optional<InferredView> view = inferView(points, Eigen::Vector3d::Zero());
+    return view ? std::optional<Visibility>(std::move(view->seen)) : std::nullopt;
+  }
+  std::array<double, 3> position{};
+  try {
+    position = viewpoint.cast<std::array<double, 3>>();
+  } catch (const py::cast_error&) {
+    throw std::invalid_argument("viewpoint = " + py::str(viewpoint).cast<std::string>() +
+                                ", must be \"auto\", None or (x, y, z)");
+  }
+  std::optional<Visibility> seen = Visibility::fromPoints(points, {position[0], position[1], position[2]});
+  if (!seen)
+    throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
+  return seen;
+}
+
+}  // namespace pcl_symmetry::python

@@ -1,0 +1,55 @@
+/// Arrays of NumPy as points of the core.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/scan/visibility.h"
+
+namespace pcl_symmetry::python {
+
+/// The points of an array that an analysis uses.
+///
+/// Rows of float32 are seen in place, without a copy, where all of them are used. Other rows are copied: those of other
+/// types, those of an array that holds rows that are not finite, and one of each of max_points equal runs of a larger
+/// array.
+class InputPoints {
+public:
+  /// \param name of the parameter, for messages.
+  /// \param array (N, 3), rows in input units.
+  /// \param max_points 0: all.
+  /// \throws std::invalid_argument for another shape, and for numbers that float32 would round by more than 1e-4 of the
+  /// extent of the points.
+  InputPoints(const char* name, const pybind11::array& array, std::size_t max_points, std::uint64_t seed);
+
+  /// \return 3 x M points, as long as this object lives.
+  PointsRef points() const;
+  /// \return number of rows of the array.
+  std::size_t numRows() const { return num_rows_; }
+  /// \return the row of each point; empty where all rows are used.
+  const std::vector<std::size_t>& rows() const { return rows_; }
+
+  /// \param values one for each point.
+  /// \return one for each row, NaN for those that were not used.
+  pybind11::array_t<float> atRows(const std::vector<float>& values) const;
+  /// \param normals (N, 3).
+  /// \return those of the points, 3 x M.
+  Points atPoints(const char* name, const pybind11::array& normals) const;
+
+private:
+  pybind11::array_t<float, pybind11::array::forcecast> array_;  // keeps the memory alive
+  std::size_t num_rows_ = 0;
+  std::vector<std::size_t> rows_;
+  Points copied_ = Points(3, 0);
+};
+
+/// Where the scanner stood: "auto" (the points decide), None, or x, y, z.
+/// \return what it saw; nothing without a viewpoint.
+/// \throws std::invalid_argument for another value, and where the points surround the viewpoint.
+std::optional<Visibility> seenFrom(const PointsRef& points, const pybind11::object& viewpoint);
+
+}  // namespace pcl_symmetry::python

@@ -1,0 +1,340 @@
+/// The Python module: the functions of the core on arrays of NumPy. Formulas stand in the core; here are names,
+/// defaults, shapes and words.
+#include <pybind11/eigen.h>
+#include <pybind11/functional.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/mesh_sampling.h"
+#include "core/matching/shape_description.h"
+#include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/core/registration/symmetric_completion.h"
+#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
+#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
+#include "python/input_points.h"
+#include "python/plane_results.h"
+
+namespace py = pybind11;
+
+namespace pcl_symmetry::python {
+
+namespace {
+
+using RowMajor4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+/// The motions as one (K, 4, 4) array.
+py::array_t<double> stacked(const std::vector<Eigen::Isometry3d>& motions) {
+  py::array_t<double> result({static_cast<py::ssize_t>(motions.size()), py::ssize_t{4}, py::ssize_t{4}});
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    Eigen::Map<RowMajor4>(result.mutable_data() + 16 * i) = motions[i].matrix();
+  return result;
+}
+
+/// Points as rows.
+py::array_t<float> rowsOf(const PointsRef& points) {
+  py::array_t<float> result({static_cast<py::ssize_t>(points.cols()), py::ssize_t{3}});
+  Eigen::Map<Points>(result.mutable_data(), 3, points.cols()) = points;
+  return result;
+}
+
+std::vector<std::vector<int>> polygonsOf(const py::array_t<int, py::array::c_style | py::array::forcecast>& faces) {
+  if (faces.ndim() != 2 || faces.shape(1) < 3)
+    throw std::invalid_argument("faces = array of another shape, must be (F, 3), indices into the vertices");
+  const auto index = faces.unchecked<2>();
+  std::vector<std::vector<int>> polygons(static_cast<std::size_t>(faces.shape(0)));
+  for (py::ssize_t i = 0; i < faces.shape(0); ++i)
+    for (py::ssize_t k = 0; k < faces.shape(1); ++k) polygons[static_cast<std::size_t>(i)].push_back(index(i, k));
+  return polygons;
+}
+
+py::array_t<float> sampleMesh(const py::array& vertices, const py::array& faces, int num_points, std::uint64_t seed) {
+  const InputPoints input("vertices", vertices, 0, seed);
+  if (!input.rows().empty()) throw std::invalid_argument("vertices: not all finite, must be");
+  std::vector<Eigen::Vector3i> triangles;
+  for (const std::vector<int>& polygon : polygonsOf(faces))
+    for (std::size_t k = 2; k < polygon.size(); ++k) triangles.emplace_back(polygon[0], polygon[k - 1], polygon[k]);
+  return rowsOf(sampleTriangles(input.points(), triangles, num_points, seed));
+}
+
+PlaneSearch planes(const py::array& points, const py::object& viewpoint, DetectionOptions options,
+                   std::size_t max_points, const py::object& normals) {
+  const InputPoints input("points", points, max_points, options.seed);
+  options.edt.num_threads = options.num_threads;
+  std::optional<Points> given;
+  if (!normals.is_none()) given = input.atPoints("normals", normals.cast<py::array>());
+  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+  PlaneSearch search;
+  if (seen) search.viewpoint = seen->viewpoint();
+  {
+    const py::gil_scoped_release release;
+    search.found = detectPlanes(input.points(), options, nullptr, seen ? &*seen : nullptr, given ? &*given : nullptr);
+  }
+  for (const SymmetryPlane& plane : search.found.planes)
+    search.point_support.push_back(input.atRows(plane.point_support));
+  return search;
+}
+
+SymmetryFrame frame(const py::array& points, const py::object& viewpoint, std::size_t max_points, std::uint64_t seed,
+                    int threads) {
+  const InputPoints input("points", points, max_points, seed);
+  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+  const py::gil_scoped_release release;
+  FrameOptions options;
+  options.seed = seed;
+  options.num_threads = options.edt.num_threads = threads;
+  return symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
+}
+
+ObjectSymmetries rotations(const py::array& points, std::uint64_t seed, int threads) {
+  const InputPoints input("points", points, 0, seed);
+  const py::gil_scoped_release release;
+  ObjectSymmetryOptions options;
+  options.seed = seed;
+  options.num_threads = threads;
+  return objectSymmetries(input.points(), options);
+}
+
+/// \return the added points, and the rows that they are the reflections of.
+std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const py::array& points, const ReflectionPlane& plane,
+                                                                 const py::object& viewpoint, int threads) {
+  const InputPoints input("points", points, 0, 0);
+  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+  CompletionOptions options;
+  options.num_threads = threads;
+  Points added;
+  std::vector<std::size_t> rows;
+  {
+    const py::gil_scoped_release release;
+    const PointsRef all = input.points();
+    const std::vector<int> completing = completingPoints(all, plane, options, seen ? &*seen : nullptr);
+    added.resize(3, static_cast<Eigen::Index>(completing.size()));
+    for (std::size_t i = 0; i < completing.size(); ++i) {
+      const auto source = static_cast<std::size_t>(completing[i]);
+      added.col(static_cast<Eigen::Index>(i)) = plane.reflect(all.col(completing[i]).cast<double>()).cast<float>();
+      rows.push_back(input.rows().empty() ? source : input.rows()[source]);
+    }
+  }
+  return {rowsOf(added), rows};
+}
+
+/// Points that a cloud's parts are found with, as SymmetrySegmentation has it.
+constexpr std::size_t kMostSegmentedPoints = 30'000;  // chosen: half blurs small parts, twice takes twice the time
+/// As SymmetrySegmentation has it. chosen: half leaves gaps between points, twice joins sheets that lie close.
+constexpr int kCloudNeighbours = 12;
+
+std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions& options) {
+  const InputPoints input("points", points, kMostSegmentedPoints, options.seed);
+  const py::gil_scoped_release release;
+  const PointsRef used = input.points();
+  if (used.cols() <= kCloudNeighbours)
+    throw std::invalid_argument("points: too few to have parts, must be more than 12");
+  const ClosestPointSearch::Ptr search = makeFlannSearch(used);
+  std::vector<int> found, labels(input.numRows(), -1);
+  std::vector<float> sq_distances;
+  search->search(used, kCloudNeighbours + 1, found, sq_distances);
+  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(used.cols()));
+  for (std::size_t i = 0; i < neighbours.size(); ++i)
+    for (int k = 0; k <= kCloudNeighbours; ++k) {
+      const int j = found[i * (kCloudNeighbours + 1) + static_cast<std::size_t>(k)];
+      if (j != static_cast<int>(i) && neighbours[i].size() < kCloudNeighbours) neighbours[i].push_back(j);
+    }
+  const Segmentation parts = segmentSurface(cloudGraph(used, neighbours), options);
+  if (input.rows().empty()) return parts.labels;
+  for (std::size_t i = 0; i < input.rows().size(); ++i) labels[input.rows()[i]] = parts.labels[i];
+  return labels;
+}
+
+std::vector<int> segment(const py::array& points, const py::object& faces, int parts,
+                         const std::function<void(double)>& progress, std::uint64_t seed, int threads) {
+  SegmentationOptions options;
+  options.num_parts = parts;
+  options.seed = seed;
+  options.num_threads = threads;
+  if (progress)
+    options.progress = [&progress](double share) {
+      const py::gil_scoped_acquire acquire;
+      progress(share);
+    };
+  if (faces.is_none()) return segmentCloud(points, options);
+  const InputPoints input("points", points, 0, seed);
+  if (!input.rows().empty()) throw std::invalid_argument("points: vertices not all finite, must be");
+  const std::vector<std::vector<int>> polygons = polygonsOf(faces.cast<py::array>());
+  const py::gil_scoped_release release;
+  return segmentSurface(meshGraph(input.points(), polygons), options).labels;
+}
+
+Eigen::MatrixXf describe(const py::array& points, const py::object& viewpoint, std::uint64_t seed, int threads) {
+  const InputPoints input("points", points, 0, seed);
+  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+  const py::gil_scoped_release release;
+  DescriptionOptions options;
+  options.seed = seed;
+  options.num_threads = threads;
+  return describeShape(input.points(), options, seen ? &*seen : nullptr).signatures.transpose();
+}
+
+SymmetryMap transform(const py::array& points, const std::array<int, 3>& bins, const std::string& method,
+                      std::uint64_t seed, int threads) {
+  const InputPoints input("points", points, 0, seed);
+  PlanarTransformOptions options;
+  const std::vector<std::string> names{"sampled", "convolution", "voting"};
+  const auto at = std::find(names.begin(), names.end(), method);
+  if (at == names.end()) throw std::invalid_argument("method = " + method + ", must be sampled, convolution or voting");
+  options.method = static_cast<TransformMethod>(at - names.begin());
+  options.sampled.seed = options.voting.seed = seed;
+  options.sampled.num_threads = options.convolution.num_threads = options.voting.num_threads = threads;
+  const py::gil_scoped_release release;
+  GaussianEdtOptions edt_options;
+  edt_options.num_threads = threads;
+  const GaussianEdt edt(input.points(), edt_options);
+  const PlaneGrid grid(bins[0], bins[1], bins[2], edt.center(), edt.radius());
+  return planarTransform(edt, grid, centerOfMass(input.points()), options);
+}
+
+std::vector<RankedView> viewpoints(const std::vector<SymmetryPlane>& planes) {
+  std::vector<ViewPlane> view_planes;
+  for (const SymmetryPlane& plane : planes) view_planes.push_back({plane.normal(), plane.score});
+  return bestViews(view_planes);
+}
+
+void addFrame(py::module_& module) {
+  py::class_<SymmetryFrame>(module, "Frame",
+                            "Canonical frame of a shape (Section 5.1): center and principal symmetry axes.")
+      .def_readonly("center", &SymmetryFrame::center, "(3,) center of symmetry, frame and units of the input")
+      .def_readonly("axes", &SymmetryFrame::axes, "(3, 3) axes in columns, orthonormal, right-handed, best first")
+      .def_readonly("scores", &SymmetryFrame::scores, "(3,) score of the plane across each axis, in [0, 1]")
+      .def_readonly("revolution_axis", &SymmetryFrame::revolution_axis,
+                    "column that is an axis of revolution; -1: none, 3: every line through the center")
+      .def_property_readonly(
+          "transform", [](const SymmetryFrame& f) { return RowMajor4(f.T_canonical_input.matrix()); },
+          "(4, 4) from the input to the canonical frame")
+      .def_property_readonly(
+          "equivalent", [](const SymmetryFrame& f) { return stacked(f.equivalent); },
+          "(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first");
+  py::class_<ObjectSymmetries>(module, "Rotations", "The rotations that map a shape onto itself.")
+      .def_property_readonly("name", &ObjectSymmetries::name, "after Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3")
+      .def_readonly("fold", &ObjectSymmetries::fold, "order of the main axis; 0 where it is one of revolution")
+      .def_readonly("center", &ObjectSymmetries::center, "(3,) point that all axes pass through")
+      .def_property_readonly(
+          "discrete", [](const ObjectSymmetries& s) { return stacked(s.discrete); },
+          "(K, 4, 4) motions of the input frame, without the identity")
+      .def_property_readonly(
+          "continuous",
+          [](const ObjectSymmetries& s) {
+            std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> axes;
+            for (const ContinuousSymmetry& axis : s.continuous) axes.emplace_back(axis.offset, axis.axis);
+            return axes;
+          },
+          "list of (point, direction) of axes of revolution")
+      .def_readonly("support", &ObjectSymmetries::support, "share of the surface that is mapped onto the surface")
+      .def_readonly("confidence", &ObjectSymmetries::confidence, "probability that these are symmetries, in [0, 1]");
+}
+
+void addMap(py::module_& module) {
+  py::class_<SymmetryMap>(module, "Map", "The transform D(f, gamma) of equation 2 on a grid of planes.")
+      .def_property_readonly(
+          "values",
+          [](const py::object& self) {
+            const auto& map = self.cast<const SymmetryMap&>();
+            const std::vector<py::ssize_t> shape{map.grid.numTheta(), map.grid.numPhi(), map.grid.numRadius()};
+            return py::array_t<float>(shape, map.values.data(), self);
+          },
+          "(theta, phi, r) values of D, 1 for a perfect symmetry; a view of the map's memory")
+      .def(
+          "plane",
+          [](const SymmetryMap& map, int theta, int phi, int r) {
+            if (theta < 0 || phi < 0 || r < 0 || theta >= map.grid.numTheta() || phi >= map.grid.numPhi() ||
+                r >= map.grid.numRadius())
+              throw py::index_error("bin outside the map");
+            return map.grid.plane({theta, phi, r}).coefficients();
+          },
+          py::arg("theta"), py::arg("phi"), py::arg("r"),
+          "(4,) coefficients a, b, c, d of the plane at the center of a bin")
+      .def_readonly("sigma", &SymmetryMap::sigma, "width of the Gaussian, input units");
+}
+
+void addPlaneFunctions(py::module_& module) {
+  const DetectionOptions standard;
+  module.def(
+      "planes",
+      [](const py::array& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
+         bool approximate, int max_planes, const py::object& normals, std::size_t max_points, std::uint64_t seed,
+         int threads) {
+        DetectionOptions options;
+        options.tolerance = tolerance;
+        options.absolute_tolerance = absolute_tolerance;
+        options.approximate = approximate;
+        options.max_planes = max_planes;
+        options.seed = seed;
+        options.num_threads = threads;
+        return planes(points, viewpoint, options, max_points, normals);
+      },
+      py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto", py::arg("tolerance") = standard.tolerance,
+      py::arg("absolute_tolerance") = 0.0, py::arg("approximate") = false, py::arg("max_planes") = standard.max_planes,
+      py::arg("normals") = py::none(), py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0,
+      "Planes of symmetry of a cloud (Sections 4.1 to 4.4).\n\n"
+      "points: (N, 3), input units; float32 rows are not copied. Rows that are not finite are left out.\n"
+      "viewpoint: where the scanner stood: \"auto\" (the points decide), None (seen from all sides) or (x, y, z).\n"
+      "tolerance: how far a symmetric surface may be off, share of the greatest distance between two points, in (0, "
+      "0.1].\n"
+      "absolute_tolerance: the same in input units; 0: tolerance decides.\n"
+      "approximate: also the other maxima of the transform, and symmetries of parts.\n"
+      "normals: (N, 3), of any length and sign; None: estimated.\n"
+      "max_points: larger clouds are thinned to so many. threads: 0 = one per core.\n"
+      "Returns Planes. Raises ValueError for bad parameters.");
+  module.def(
+      "complete", &complete, py::arg("points"), py::arg("plane"), py::kw_only(), py::arg("viewpoint") = "auto",
+      py::arg("threads") = 0,
+      "Completes a scan by its reflection in a plane.\n\n"
+      "Returns (added, rows): (M, 3) points that neither fall onto the measured surface nor into space that was\n"
+      "seen to be empty, and the row of the point that each is the reflection of.");
+  module.def("viewpoints", &viewpoints, py::arg("planes"),
+             "Directions from the object to the camera that show the least repetition (Section 5.4).\n\n"
+             "planes: list of Plane. Returns a list of View, best first.");
+}
+
+void addShapeFunctions(py::module_& module) {
+  module.def("sample_mesh", &sampleMesh, py::arg("vertices"), py::arg("faces"), py::arg("num_points") = 10'000,
+             py::kw_only(), py::arg("seed") = 1,
+             "(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces.");
+  module.def("frame", &frame, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
+             py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0,
+             "Canonical frame of a cloud (Section 5.1). Parameters as in planes(). Returns Frame.");
+  module.def("rotations", &rotations, py::arg("points"), py::kw_only(), py::arg("seed") = 1, py::arg("threads") = 0,
+             "The group of rotations that map a whole object onto itself (Section 6). Returns Rotations.");
+  module.def("segment", &segment, py::arg("points"), py::arg("faces") = py::none(), py::kw_only(), py::arg("parts") = 0,
+             py::arg("progress") = py::none(), py::arg("seed") = 1, py::arg("threads") = 0,
+             "Cuts a surface into parts by its symmetries (Section 5.3).\n\n"
+             "points: (N, 3), points of a cloud or vertices of a mesh. faces: (F, 3), or None for a cloud.\n"
+             "parts: number of parts; 0: the method finds it. progress: called with the share done, in [0, 1].\n"
+             "Returns the label of each point or face; -1 for points that were left out.");
+  module.def("describe", &describe, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
+             py::arg("seed") = 1, py::arg("threads") = 0,
+             "(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2).");
+  module.def("transform", &transform, py::arg("points"), py::arg("bins") = std::array<int, 3>{64, 64, 64},
+             py::kw_only(), py::arg("method") = "sampled", py::arg("seed") = 1, py::arg("threads") = 0,
+             "The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.\n"
+             "method: sampled, convolution or voting. Returns Map.");
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_pcl_symmetry, module) {
+  addPlaneResults(module);
+  addFrame(module);
+  addMap(module);
+  addPlaneFunctions(module);
+  addShapeFunctions(module);
+  module.attr("__version__") = PCL_SYMMETRY_VERSION;
+}
+
+}  // namespace pcl_symmetry::python

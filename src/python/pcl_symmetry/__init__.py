@@ -1,0 +1,52 @@
+"""Symmetry of 3D shapes from point clouds.
+
+>>> import numpy, pcl_symmetry
+>>> cloud = numpy.random.default_rng(1).normal(size=(4000, 3))
+>>> cloud /= numpy.abs(cloud).max(axis=1, keepdims=True)  # the surface of a cube
+>>> found = pcl_symmetry.planes((cloud * (1.0, 0.8, 0.5)).astype("float32"))
+>>> [plane.kind for plane in found]
+['symmetry', 'symmetry', 'symmetry']
+"""
+
+from ._pcl_symmetry import (
+    Axis,
+    Center,
+    Frame,
+    Map,
+    Plane,
+    Planes,
+    ReflectionPlane,
+    Rotations,
+    View,
+    __version__,
+    complete,
+    describe,
+    frame,
+    planes,
+    rotations,
+    sample_mesh,
+    segment,
+    transform,
+    viewpoints,
+)
+
+__all__ = [
+    "Axis",
+    "Center",
+    "Frame",
+    "Map",
+    "Plane",
+    "Planes",
+    "ReflectionPlane",
+    "Rotations",
+    "View",
+    "complete",
+    "describe",
+    "frame",
+    "planes",
+    "rotations",
+    "sample_mesh",
+    "segment",
+    "transform",
+    "viewpoints",
+]

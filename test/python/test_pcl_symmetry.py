@@ -1,0 +1,197 @@
+"""The Python module: shapes, units, errors, and that it says what the C++ functions say."""
+
+import inspect
+import re
+import subprocess
+import sys
+import threading
+import time
+import unittest
+from pathlib import Path
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: NumPy is not installed for " + sys.executable)
+    sys.exit(77)
+
+import pcl_symmetry
+
+
+def box(size=(1.0, 0.7, 0.4), num_points=6000, seed=1):
+    """Points on the surface of a box of the given edges about the origin, (N, 3) float32."""
+    random = np.random.default_rng(seed)
+    edges = np.asarray(size)
+    areas = np.repeat(np.prod(edges) / edges, 2)
+    side = random.choice(6, num_points, p=areas / areas.sum())
+    points = (random.random((num_points, 3)) - 0.5) * edges
+    axis = side // 2
+    points[np.arange(num_points), axis] = (side % 2 - 0.5) * edges[axis]
+    return points.astype(np.float32)
+
+
+def box_mesh():
+    """A box of two by one by one with its faces as triangles."""
+    vertices = np.array([[x, y, z] for x in (-1, 1) for y in (-0.5, 0.5) for z in (-0.5, 0.5)], dtype=np.float32)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+
+
+class Planes(unittest.TestCase):
+    def test_a_box_has_three(self):
+        found = pcl_symmetry.planes(box())
+        self.assertEqual([plane.kind for plane in found], ["symmetry"] * 3)
+        for plane in found:
+            self.assertGreater(np.abs(plane.normal).max(), 0.9999)
+            self.assertLess(abs(plane.offset), 0.002)
+            self.assertGreater(plane.share, 0.97)
+            low, high = plane.share_interval
+            self.assertLessEqual(low, plane.share)
+            self.assertLessEqual(plane.share, high)
+        self.assertEqual(found.reason, "")
+        self.assertIsNone(found.best)
+        self.assertAlmostEqual(found.tolerance, 0.01 * np.linalg.norm([1, 0.7, 0.4]), delta=2e-4)
+        self.assertEqual(found.point_support[0].shape, (6000,))
+
+    def test_all_kinds_of_rows_give_the_same(self):
+        points = box()
+        padded = np.zeros((len(points), 5), dtype=np.float32)
+        padded[:, :3] = points
+        expected = [plane.coefficients for plane in pcl_symmetry.planes(points)]
+        for same in (points.astype(np.float64), np.asfortranarray(points), padded[:, :3], points.tolist()):
+            found = pcl_symmetry.planes(np.asarray(same))
+            np.testing.assert_allclose([plane.coefficients for plane in found], expected, atol=1e-9)
+
+    def test_rows_that_are_not_finite_are_left_out(self):
+        points = np.vstack([box(), [[np.nan, 0, 0]]]).astype(np.float32)
+        found = pcl_symmetry.planes(points)
+        self.assertEqual(len(found), 3)
+        self.assertTrue(np.isnan(found.point_support[0][-1]))
+        self.assertFalse(np.isnan(found.point_support[0][:-1]).any())
+
+    def test_data_without_an_answer_give_a_reason(self):
+        for points in (np.zeros((0, 3), np.float32), np.zeros((100, 3), np.float32), box(num_points=12)):
+            found = pcl_symmetry.planes(points)
+            self.assertEqual(len(found), 0)
+            self.assertNotEqual(found.reason, "")
+
+    def test_wrong_parameters_name_field_value_and_rule(self):
+        for arguments, words in (
+            (dict(points=np.zeros((5, 2))), "points = array of shape \\(5, 2\\), must be \\(N, 3\\)"),
+            (dict(points=np.zeros((5, 3), dtype="U3")), "points = array of kind U"),
+            (dict(points=box(), tolerance=0.5), "tolerance = 0.5, must be"),
+            (dict(points=box(), threads=-1), "num_threads = -1"),
+            (dict(points=box(), viewpoint="here"), "viewpoint = here, must be"),
+            (dict(points=box(), viewpoint=(0, 0, 0)), "viewpoint: among the points"),
+            (dict(points=box(), normals=np.zeros((5, 3))), "normals = array of shape \\(5, 3\\), must be \\(6000, 3\\)"),
+            (dict(points=box().astype(float) + 1e7), "points = coordinates too large"),
+        ):
+            with self.assertRaisesRegex(ValueError, words):
+                pcl_symmetry.planes(**arguments)
+
+    def test_large_arrays_are_not_copied(self):
+        import resource
+
+        points = np.tile(box(), (1700, 1))  # 10.2 million rows, 122 MB
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        self.assertEqual(len(pcl_symmetry.planes(points, threads=1)), 3)
+        grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
+        print(f"10.2 million points: {grown:.0f} MB more at the peak")
+        self.assertLess(grown, 90)
+
+    def test_other_python_threads_run_meanwhile(self):
+        points, ticks, stop = box(num_points=50_000), [0], threading.Event()
+
+        def tick():
+            while not stop.is_set():
+                ticks[0] += 1
+                time.sleep(0.0005)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        before = ticks[0]
+        pcl_symmetry.planes(points, threads=1)
+        during = ticks[0] - before
+        stop.set()
+        thread.join()
+        self.assertGreater(during, 3)
+
+
+class OtherFunctions(unittest.TestCase):
+    def test_frame_and_rotations_of_a_box(self):
+        frame = pcl_symmetry.frame(box())
+        np.testing.assert_allclose(np.abs(frame.axes).max(axis=0), 1, atol=1e-3)
+        np.testing.assert_allclose(frame.transform @ np.append(frame.center, 1), [0, 0, 0, 1], atol=1e-9)
+        self.assertEqual(frame.equivalent.shape[1:], (4, 4))
+        rotations = pcl_symmetry.rotations(box())
+        self.assertEqual(rotations.name, "D2")
+        self.assertEqual(rotations.discrete.shape, (3, 4, 4))
+
+    def test_half_a_box_is_completed(self):
+        points = box()
+        half = points[points[:, 0] > -0.1]
+        plane = pcl_symmetry.ReflectionPlane((1, 0, 0), 0)
+        added, rows = pcl_symmetry.complete(half, plane, viewpoint=None)
+        self.assertGreater(len(added), 1000)
+        np.testing.assert_allclose(added, half[rows] * (-1, 1, 1), atol=1e-6)
+        self.assertLess(added[:, 0].max(), 0.0)
+
+    def test_parts_of_a_mesh_and_of_a_cloud(self):
+        vertices, faces = box_mesh()
+        self.assertEqual(len(pcl_symmetry.segment(vertices, faces)), len(faces))
+        shares = []
+        labels = pcl_symmetry.segment(box(num_points=2000), parts=2, progress=shares.append)
+        self.assertEqual(len(labels), 2000)
+        self.assertTrue(shares and max(shares) <= 1.0)
+        self.assertEqual(pcl_symmetry.sample_mesh(vertices, faces, 500).shape, (500, 3))
+
+    def test_description_does_not_depend_on_the_pose(self):
+        points = box()
+        turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]], dtype=np.float32)
+        first = pcl_symmetry.describe(points)
+        self.assertEqual(first.shape[0], 2)
+        np.testing.assert_allclose(np.linalg.norm(first, axis=1), 1, atol=1e-4)
+        self.assertEqual(pcl_symmetry.describe(points @ turn.T).shape, first.shape)
+
+    def test_the_map_has_its_maximum_at_a_plane_of_the_box(self):
+        for method in ("sampled", "convolution"):
+            map_ = pcl_symmetry.transform(box(), (32, 64, 33), method=method)
+            self.assertEqual(map_.values.shape, (32, 64, 33))
+            best = np.unravel_index(map_.values.argmax(), map_.values.shape)
+            self.assertGreater(np.abs(map_.plane(*map(int, best))[:3]).max(), 0.98)
+        with self.assertRaises(IndexError):
+            map_.plane(32, 0, 0)
+        with self.assertRaisesRegex(ValueError, "method = guess, must be"):
+            pcl_symmetry.transform(box(), method="guess")
+
+    def test_views_show_three_sides_of_a_box(self):
+        views = pcl_symmetry.viewpoints(pcl_symmetry.planes(box()).planes)
+        self.assertGreater(np.abs(views[0].direction).min(), 0.3)
+
+
+class Package(unittest.TestCase):
+    def test_stubs_name_what_the_module_has(self):
+        stub = Path(pcl_symmetry.__file__).with_suffix(".pyi").read_text()
+        for name in pcl_symmetry.__all__:
+            self.assertRegex(stub, rf"(class|def) {name}\b")
+            if inspect.isclass(getattr(pcl_symmetry, name)):
+                body = re.search(rf"class {name}\b.*?(?=\nclass |\ndef )", stub, re.S).group(0)
+                for member, value in vars(getattr(pcl_symmetry, name)).items():
+                    if not member.startswith("_"):
+                        self.assertRegex(body, rf"def {member}\b", name)
+                        self.assertTrue(value.__doc__, name + "." + member)
+
+    def test_the_example_of_the_package_is_true(self):
+        import doctest
+
+        self.assertEqual(doctest.testmod(pcl_symmetry).failed, 0)
+
+    def test_importing_is_quick(self):
+        code = "import time; t = time.perf_counter(); import pcl_symmetry; print(time.perf_counter() - t)"
+        seconds = min(float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(3))
+        print(f"import: {1000 * seconds:.0f} ms")
+        self.assertLess(seconds, 0.5)  # ten times what an idle machine takes
+
+
+if __name__ == "__main__":
+    unittest.main()
