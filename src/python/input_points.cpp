@@ -100,18 +100,6 @@ PointsRef InputPoints::points() const {
   return Eigen::Map<const Points, 0, Eigen::OuterStride<>>(array_.data(), 3, array_.shape(0), stride);
 }
 
-py::array_t<float> InputPoints::atRows(const std::vector<float>& values) const {
-  py::array_t<float> result(static_cast<py::ssize_t>(num_rows_));
-  float* row = result.mutable_data();
-  if (rows_.empty()) {
-    std::copy_n(values.begin(), std::min(values.size(), num_rows_), row);
-    return result;
-  }
-  std::fill_n(row, num_rows_, std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < rows_.size() && i < values.size(); ++i) row[rows_[i]] = values[i];
-  return result;
-}
-
 Points InputPoints::atPoints(const char* name, const py::array& normals) const {
   checkShape(name, normals);
   if (static_cast<std::size_t>(normals.shape(0)) != num_rows_)

@@ -33,9 +33,6 @@ public:
   /// \return the row of each point; empty where all rows are used.
   const std::vector<std::size_t>& rows() const { return rows_; }
 
-  /// \param values one for each point.
-  /// \return one for each row, NaN for those that were not used.
-  pybind11::array_t<float> atRows(const std::vector<float>& values) const;
   /// \param normals (N, 3).
   /// \return those of the points, 3 x M.
   Points atPoints(const char* name, const pybind11::array& normals) const;

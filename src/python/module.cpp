@@ -78,8 +78,8 @@ PlaneSearch planes(const py::array& points, const py::object& viewpoint, Detecti
     const py::gil_scoped_release release;
     search.found = detectPlanes(input.points(), options, nullptr, seen ? &*seen : nullptr, given ? &*given : nullptr);
   }
-  for (const SymmetryPlane& plane : search.found.planes)
-    search.point_support.push_back(input.atRows(plane.point_support));
+  search.num_rows = input.numRows();
+  search.rows = input.rows();
   return search;
 }
 

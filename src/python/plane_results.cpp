@@ -4,6 +4,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -79,6 +81,15 @@ void addScores(py::class_<Symmetry>& type) {
 
 }  // namespace
 
+py::array_t<float> PlaneSearch::pointSupport(std::size_t index) const {
+  const std::vector<float>& values = found.planes.at(index).point_support;
+  py::array_t<float> result(static_cast<py::ssize_t>(num_rows));
+  float* row = result.mutable_data();
+  std::fill_n(row, num_rows, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < values.size(); ++i) row[rows.empty() ? i : rows[i]] = values[i];
+  return result;
+}
+
 void addPlaneResults(py::module_& module) {
   addPlane(module);
   py::class_<SymmetryAxis> axis(module, "Axis", "All planes through a line are symmetries: a body of revolution.");
@@ -106,8 +117,8 @@ void addPlaneResults(py::module_& module) {
           "reason", [](const PlaneSearch& s) { return s.found.reason; },
           "why there is no answer; empty where the search ran")
       .def_readonly("viewpoint", &PlaneSearch::viewpoint, "(3,) where the scanner stood; None: seen from all sides")
-      .def_readonly("point_support", &PlaneSearch::point_support,
-                    "for each plane an (N,) array: the support at each row, NaN for rows that were not used")
+      .def("point_support", &PlaneSearch::pointSupport, py::arg("index"),
+           "(N,) support for a plane at each row of the input, in [0, 1]; NaN for rows that were not used")
       .def("__len__", [](const PlaneSearch& s) { return s.found.planes.size(); })
       .def("__getitem__",
            [](const PlaneSearch& s, py::ssize_t i) {

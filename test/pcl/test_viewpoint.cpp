@@ -211,7 +211,9 @@ TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
   refinement.setViewpoint(scan.viewpoint);
   EXPECT_EQ(refinement.getViewpoint().mode, Viewpoint::Mode::Given);
   EXPECT_EQ(refinement.getViewpoint().position, scan.viewpoint);
-  refinement.setViewpoint(Viewpoint{Viewpoint::Mode::None, {}});
+  Viewpoint none;
+  none.mode = Viewpoint::Mode::None;
+  refinement.setViewpoint(none);
   EXPECT_EQ(refinement.getViewpoint().mode, Viewpoint::Mode::None);
   refinement.setViewpoint(scan.viewpoint);
   const auto planes = refinement.compute();

@@ -51,7 +51,7 @@ class Planes(unittest.TestCase):
         self.assertEqual(found.reason, "")
         self.assertIsNone(found.best)
         self.assertAlmostEqual(found.tolerance, 0.01 * np.linalg.norm([1, 0.7, 0.4]), delta=2e-4)
-        self.assertEqual(found.point_support[0].shape, (6000,))
+        self.assertEqual(found.point_support(0).shape, (6000,))
 
     def test_all_kinds_of_rows_give_the_same(self):
         points = box()
@@ -66,8 +66,8 @@ class Planes(unittest.TestCase):
         points = np.vstack([box(), [[np.nan, 0, 0]]]).astype(np.float32)
         found = pcl_symmetry.planes(points)
         self.assertEqual(len(found), 3)
-        self.assertTrue(np.isnan(found.point_support[0][-1]))
-        self.assertFalse(np.isnan(found.point_support[0][:-1]).any())
+        self.assertTrue(np.isnan(found.point_support(0)[-1]))
+        self.assertFalse(np.isnan(found.point_support(0)[:-1]).any())
 
     def test_data_without_an_answer_give_a_reason(self):
         for points in (np.zeros((0, 3), np.float32), np.zeros((100, 3), np.float32), box(num_points=12)):

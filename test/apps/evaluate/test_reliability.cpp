@@ -55,9 +55,15 @@ TEST(Reliability, CloudsAreBinnedByTheShareOfTheirBestPlane) {
   int num_cases = 0;
   for (const ShareBin& bin : curve.shares) {
     num_cases += bin.called.total;
-    if (bin.low == 0.85) EXPECT_EQ(bin.called.total, 1) << "0.89";
-    if (bin.low == 0.9) EXPECT_EQ(bin.called.count, 1) << "borders belong to the upper bin";
-    if (bin.high == 1.0) EXPECT_EQ(bin.called.total, 1) << "the last bin has both of its borders";
+    if (bin.low == 0.85) {
+      EXPECT_EQ(bin.called.total, 1) << "0.89";
+    }
+    if (bin.low == 0.9) {
+      EXPECT_EQ(bin.called.count, 1) << "borders belong to the upper bin";
+    }
+    if (bin.high == 1.0) {
+      EXPECT_EQ(bin.called.total, 1) << "the last bin has both of its borders";
+    }
   }
   EXPECT_EQ(num_cases, 5);
   const std::string rows = shareCSV({curve});
