@@ -50,13 +50,14 @@ void addFolder(const fs::path& folder, bool by_path, std::vector<ModelFile>& fil
   for (const fs::path& path : found) files.push_back({path.string(), nameOf(path, folder, by_path)});
 }
 
-void addPattern(const std::string& pattern, std::vector<ModelFile>& files) {
+std::vector<std::string> filesOfPattern(const std::string& pattern) {
   glob_t found{};
   const int code = ::glob(pattern.c_str(), 0, nullptr, &found);
-  for (std::size_t i = 0; code == 0 && i < found.gl_pathc; ++i)
-    files.push_back({found.gl_pathv[i], nameOf(found.gl_pathv[i], {}, false)});
+  std::vector<std::string> paths;
+  if (code == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   ::globfree(&found);
   if (code != 0) throw InputError(pattern + ": no file has such a name");
+  return paths;
 }
 
 std::vector<std::string> linesOf(const std::string& path) {
@@ -73,14 +74,17 @@ std::vector<std::string> linesOf(const std::string& path) {
 
 std::vector<ModelFile> modelFiles(const std::vector<std::string>& arguments, bool by_path) {
   std::vector<ModelFile> files;
+  const auto add = [&](const std::vector<std::string>& more) {
+    for (ModelFile& file : modelFiles(more, by_path)) files.push_back(std::move(file));
+  };
   for (const std::string& argument : arguments) {
     boost::system::error_code error;
     if (argument.size() > 1 && argument.front() == '@') {
-      for (ModelFile& file : modelFiles(linesOf(argument.substr(1)), by_path)) files.push_back(std::move(file));
+      add(linesOf(argument.substr(1)));
     } else if (fs::is_directory(argument, error)) {
       addFolder(argument, by_path, files);
     } else if (!fs::exists(argument, error) && argument.find_first_of("*?[") != std::string::npos) {
-      addPattern(argument, files);
+      add(filesOfPattern(argument));
     } else {
       files.push_back({argument, nameOf(argument, {}, by_path)});
     }

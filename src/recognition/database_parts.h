@@ -11,7 +11,7 @@
 #include "recognition/search/shape_search.h"
 #include "recognition/search/view_search.h"
 #include "recognition/storage/model_store.h"
-#include "recognition/storage/packed_model.h"
+#include "recognition/packing/packed_model.h"
 
 namespace pcl_symmetry::detail {
 

@@ -8,7 +8,7 @@
 #include "core/base/check.h"
 #include "core/descriptors/shape_signature.h"
 #include "core/matching/reference_scaling.h"
-#include "recognition/storage/packed_bytes.h"
+#include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::detail {
 

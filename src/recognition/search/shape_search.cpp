@@ -9,8 +9,8 @@
 
 #include "core/base/parallel.h"
 #include "core/matching/shape_description.h"
+#include "recognition/packing/packed_model.h"
 #include "recognition/storage/io_error.h"
-#include "recognition/storage/packed_model.h"
 
 namespace pcl_symmetry::detail {
 

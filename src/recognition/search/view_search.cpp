@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "recognition/packing/packed_model.h"
 #include "recognition/storage/io_error.h"
-#include "recognition/storage/packed_model.h"
 
 namespace pcl_symmetry::detail {
 

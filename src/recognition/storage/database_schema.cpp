@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "recognition/packing/packed_bytes.h"
 #include "recognition/storage/io_error.h"
-#include "recognition/storage/packed_bytes.h"
 
 namespace pcl_symmetry::detail {
 
@@ -27,7 +27,8 @@ struct Table {
   const char* name;
   const char* definition;
 };
-// Columns of a blob: the model, the bytes, their checksum.
+// chosen: a table for each part of a model, so that a query reads what it needs. Columns: the model, the bytes, their
+// checksum.
 constexpr std::array<Table, 7> kTables = {{
     {"facts", "CREATE TABLE facts (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
     {"models",

@@ -13,7 +13,7 @@
 
 namespace pcl_symmetry::detail {
 
-/// What a model is found and recognized by, as bytes of packed_model.h.
+/// What a model is found and recognized by, as bytes of packing/packed_model.h.
 struct PackedModel {
   std::string cloud, signatures, views;
   std::size_t num_points = 0;

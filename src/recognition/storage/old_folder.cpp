@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "recognition/packing/packed_model.h"
 #include "recognition/storage/io_error.h"
-#include "recognition/storage/packed_model.h"
 
 namespace pcl_symmetry::detail {
 

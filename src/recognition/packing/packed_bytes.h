@@ -51,8 +51,9 @@ private:
   std::size_t position_ = 0;
 };
 
+enum class Effort { Low = 1, High = 6 };  ///< levels of zlib
 /// Compressed bytes with their length before them.
-std::string compressed(const std::string& bytes);
+std::string compressed(const std::string& bytes, Effort effort);
 /// \throws std::invalid_argument for bytes that compressed() did not make.
 std::string decompressed(const std::string& bytes);
 

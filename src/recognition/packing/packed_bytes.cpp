@@ -1,4 +1,4 @@
-#include "recognition/storage/packed_bytes.h"
+#include "recognition/packing/packed_bytes.h"
 
 #include <zlib.h>
 
@@ -10,8 +10,6 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-// Of 9. chosen: at 6 clouds become 3 % smaller and building takes a tenth longer.
-constexpr int kCompressionLevel = 1;
 // Bytes. chosen: no part of a model is as large; twice would let a damaged length ask for more memory.
 constexpr std::uint32_t kLargestPart = 1u << 30;
 
@@ -37,7 +35,7 @@ void getColumn(UnpackedBytes& packed, Eigen::Ref<Eigen::VectorXf> column) {
 
 }  // namespace
 
-std::string compressed(const std::string& bytes) {
+std::string compressed(const std::string& bytes, Effort effort) {
   if (bytes.size() > kLargestPart) throw std::invalid_argument("is too large to be stored");
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::string result(sizeof(std::uint32_t) + size, '\0');
@@ -45,7 +43,7 @@ std::string compressed(const std::string& bytes) {
   std::memcpy(result.data(), &length, sizeof(length));
   if (compress2(reinterpret_cast<Bytef*>(result.data() + sizeof(length)), &size,
                 reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
-                kCompressionLevel) != Z_OK)
+                static_cast<int>(effort)) != Z_OK)
     throw std::bad_alloc();
   result.resize(sizeof(length) + size);
   return result;
