@@ -57,7 +57,8 @@ ModelStore::ModelStore(const std::string& file, double lock_timeout, const std::
 /// Opens the file where there is one, and refuses what this library did not write.
 void ModelStore::open() {
   std::error_code error;
-  if (!fs::exists(file_, error)) return;
+  if (!fs::exists(file_, error) && !error) return;
+  if (error) failIO(file_, error.message());
   refuseForeignFile(file_);
   connection_.emplace(file_, SQLiteAccess::Change, lock_timeout_);
   refuseOtherSchema(*connection_);
@@ -70,12 +71,11 @@ void ModelStore::create() {
     if (fs::exists(file_ + ending))
       failIO(file_ + ending, "must not exist, as a new database needs a file of this name");
   const std::string made = file_ + ".new-" + std::to_string(::getpid());
-  std::error_code error;
   if (fs::exists(made, error)) fs::remove(made, error);
   try {
     makeTables(SQLiteConnection(made, SQLiteAccess::Create, lock_timeout_));
     fs::create_hard_link(made, file_, error);
-    if (error && !fs::exists(file_)) fs::rename(made, file_);  // file systems without links
+    if (error && !fs::exists(file_, error)) fs::rename(made, file_);  // file systems without links
   } catch (const fs::filesystem_error& reason) {
     fs::remove(made, error);
     failIO(file_, reason.code().message());

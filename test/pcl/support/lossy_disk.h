@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <set>
 #include <string>
@@ -35,6 +36,8 @@ public:
   }
 
 private:
+  static constexpr sqlite3_int64 kPiece = 65'536;  // bytes; SQLite's files take less than 131 072 at once
+
   struct Write {
     sqlite3_int64 offset;
     std::string data;
@@ -69,8 +72,15 @@ private:
     sqlite3_int64 size = 0;
     file->pMethods->xFileSize(file, &size);
     std::string content(static_cast<std::size_t>(size), '\0');
-    if (size > 0) file->pMethods->xRead(file, content.data(), static_cast<int>(size), 0);
+    for (sqlite3_int64 at = 0; at < size; at += kPiece)
+      file->pMethods->xRead(file, content.data() + at, static_cast<int>(std::min(kPiece, size - at)), at);
     return content;
+  }
+  static void replaceContent(sqlite3_file* file, const std::string& content) {
+    const auto size = static_cast<sqlite3_int64>(content.size());
+    file->pMethods->xTruncate(file, 0);
+    for (sqlite3_int64 at = 0; at < size; at += kPiece)
+      file->pMethods->xWrite(file, content.data() + at, static_cast<int>(std::min(kPiece, size - at)), at);
   }
 
   static int open(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* out_flags) {
@@ -150,9 +160,7 @@ private:
         if (write.truncates || content.size() < offset + write.data.size()) content.resize(offset + write.data.size());
         content.replace(offset, write.data.size(), write.data);
       }
-      const sqlite3_io_methods& disk = *file->real()->pMethods;
-      disk.xTruncate(file->real(), 0);
-      if (!content.empty()) disk.xWrite(file->real(), content.data(), static_cast<int>(content.size()), 0);
+      replaceContent(file->real(), content);
     }
     ::_exit(9);
   }
