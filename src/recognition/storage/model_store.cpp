@@ -67,11 +67,12 @@ void ModelStore::open() {
 /// Makes an empty database under another name and then gives it its own: a file of that name is whole from the start,
 /// and one that another program made in the meantime is kept.
 void ModelStore::create() {
+  std::error_code error;
   for (const char* ending : {"-wal", "-shm", "-journal"})
-    if (fs::exists(file_ + ending))
+    if (fs::exists(file_ + ending, error))
       failIO(file_ + ending, "must not exist, as a new database needs a file of this name");
-  const std::string made = file_ + ".new-" + std::to_string(::getpid());
-  if (fs::exists(made, error)) fs::remove(made, error);
+  std::string made = file_ + ".new-" + std::to_string(::getpid());
+  while (fs::exists(made, error)) made += "_";
   try {
     makeTables(SQLiteConnection(made, SQLiteAccess::Create, lock_timeout_));
     fs::create_hard_link(made, file_, error);
