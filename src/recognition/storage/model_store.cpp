@@ -1,5 +1,6 @@
 #include "recognition/storage/model_store.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -68,6 +69,10 @@ void ModelStore::open() {
 /// and one that another program made in the meantime is kept.
 void ModelStore::create() {
   std::error_code error;
+  const fs::path folder = fs::absolute(file_).parent_path();
+  if (!fs::is_directory(folder, error)) failIO(file_, "cannot be made: there is no folder " + folder.string());
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+    failIO(file_, "cannot be made: its folder may only be read");
   for (const char* ending : {"-wal", "-shm", "-journal"})
     if (fs::exists(file_ + ending, error))
       failIO(file_ + ending, "must not exist, as a new database needs a file of this name");
