@@ -4,7 +4,8 @@ set -euo pipefail
 
 packages=(
   build-essential cmake ninja-build ccache pkg-config
-  libpcl-dev libflann-dev libeigen3-dev libboost-dev                      # the library
+  libpcl-dev libflann-dev libeigen3-dev libboost-dev                      # the library,
+  libsqlite3-dev zlib1g-dev                                               # its database of models
   libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev # the tools: options, files, reports,
   libassimp-dev libembree-dev                                             # meshes, the virtual scanner,
   libvtk9-dev libx11-dev xvfb libgl1-mesa-dri                             # pictures, also without a screen

@@ -33,7 +33,7 @@ struct SceneOptions {
 CommandLine commandLine(SceneOptions& o) {
   CommandLine line("draw_recognition", "Recognizes the objects that stand on a plane, and draws them.",
                    "draw_recognition models.db scene.pcd found.png");
-  line.positional("database", o.database, "folder of pcl_symmetry_database")
+  line.positional("database", o.database, "file of pcl_symmetry_database")
       .positional("scene", o.scene, ".pcd, as a scanner took it")
       .positional("picture", o.picture, "PNG file")
       .number("farthest", o.farthest, Range::above(0), "depth of the points that are looked at, input units")

@@ -19,7 +19,7 @@ pcl_symmetry::PRSTSignature32768 describe(const Cloud::ConstPtr& cloud) {
 int main(int argc, char** argv) {
   Cloud::Ptr query(new Cloud);
   if (argc < 4 || pcl::io::loadPCDFile(argv[2], *query) < 0) {
-    std::cerr << "usage: 06_matching DATABASE_FOLDER QUERY.pcd MODEL.pcd ...\n";
+    std::cerr << "usage: 06_matching DATABASE QUERY.pcd MODEL.pcd ...\n";
     return 2;
   }
   const auto query_descriptor = describe(query);

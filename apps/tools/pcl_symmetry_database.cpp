@@ -1,6 +1,11 @@
 /// Builds and keeps a database of models that pcl_symmetry_match asks.
+#include <pcl/conversions.h>
+
 #include <boost/filesystem.hpp>
 #include <cstdio>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -8,17 +13,20 @@
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
-#include "common/shape_input/input_shape.h"
-#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "common/shape_output/shape_output.h"
+#include "database/database_listing.h"
+#include "database/model_files.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
+namespace fs = boost::filesystem;
 
 struct DatabaseToolOptions {
-  std::string command, folder;
+  std::string command, file, names = "file";
   std::vector<std::string> arguments;
+  std::optional<std::string> csv, tag, unit;
   CommonOptions common;
 
   DatabaseToolOptions() { common.mesh_points = kDatabaseMeshPoints; }
@@ -27,76 +35,187 @@ struct DatabaseToolOptions {
 CommandLine commandLine(DatabaseToolOptions& options) {
   CommandLine line(
       "pcl_symmetry_database",
-      "Keeps models in a folder to be found by their symmetry. Commands: build (a new database of files), "
-      "add (files, named as they are without extension; models of the names are replaced), remove (names), "
-      "rebuild (after many changes), list.",
+      "Keeps models in a file to be found by their symmetry. Commands: build or add (files, folders, patterns, @LISTS; "
+      "goes on where it was interrupted: files that are stored and unchanged are kept), remove (names), list, info "
+      "(names, or none), check (is anything damaged?), export (a folder, and names or none: clouds as PCD files), "
+      "import (other databases, or folders of version 0.1), rebuild (after many changes).",
       "pcl_symmetry_database build models.db meshes/*.off");
-  line.positional("command", options.command, "build, add, remove, rebuild or list")
-      .positionals("folder", options.arguments, "the database, and files or names behind it")
-      .common(options.common, kMeshPoints | kThreads | kQuiet);
+  line.positional("command", options.command, "build, add, remove, list, info, check, export, import or rebuild")
+      .positionals("database", options.arguments, "the database, and what the command takes behind it")
+      .choice("names", options.names, {"file", "path"},
+              "models of folders are named by the file without its ending, or by its path in the folder")
+      .text("tag", "WORD", options.tag, "stored with the models of build and add, such as their class")
+      .text("unit", "WORD", options.unit, "unit of the coordinates, such as m; stored with a new database")
+      .text("csv", "FILE", options.csv, "list and info: a row for each model")
+      .common(options.common, kMeshPoints | kJson | kThreads | kQuiet);
   return line;
 }
 
-/// \return whether all files could be used; the others are in the database.
-bool add(const Console& console, SymmetryDatabase& database, const DatabaseToolOptions& options) {
-  Step step(console, "Describing " + std::to_string(options.arguments.size()) + " models");
-  std::vector<std::string> failures;
-  for (std::size_t i = 0; i < options.arguments.size(); ++i) {
-    const std::string& path = options.arguments[i];
-    try {
-      const InputShape input = loadInput(path, options.common.mesh_points, options.common.librarySeed());
-      // Poses of recognition are those of the model's file; a shift would be lost.
-      if (!input.shift().isZero(0.0))
-        throw InputError(path + ": its coordinates are too large for its extent, must be moved near the origin");
-      namingFile(path, [&] { database.add(boost::filesystem::path(path).stem().string(), *input.points); });
-    } catch (const InputError& error) {
-      failures.emplace_back(error.what());
-    }
-    step.progress(static_cast<double>(i + 1) / static_cast<double>(options.arguments.size()));
-  }
-  step.done(std::to_string(options.arguments.size() - failures.size()) + " models");
-  for (const std::string& failure : failures) console.error("left out: " + failure);
-  if (failures.size() == options.arguments.size()) throw InputError(options.folder + ": no model could be used");
-  return failures.empty();
-}
+class DatabaseTool {
+public:
+  explicit DatabaseTool(const DatabaseToolOptions& options) : options_(options), console_(options.common.quiet) {}
 
-/// \return whether all that was asked for could be done.
-bool change(const Console& console, SymmetryDatabase& database, const DatabaseToolOptions& options) {
-  if (options.command == "build" && database.size() > 0)
-    throw InputError(options.folder + ": holds models already, must be new for build");
-  bool complete = true;
-  if (options.command == "remove")
-    for (const std::string& name : options.arguments) database.remove(name);
-  else if (options.command != "rebuild")
-    complete = add(console, database, options);
-  Step step(console, "Saving " + options.folder);
-  if (options.command == "rebuild") database.rebuild();
-  database.save();
-  step.done(std::to_string(database.size()) + " models");
-  return complete;
-}
+  /// \return the exit code.
+  int run() {
+    if (options_.command == "check") return check();
+    DatabaseOptions database_options;
+    database_options.num_threads = options_.common.threads;
+    database_options.unit = options_.unit.value_or("");
+    const bool makes_file = isBuild() || options_.command == "import";
+    if (!makes_file && !fs::exists(options_.file)) throw InputError(options_.file + ": there is no such file");
+    SymmetryDatabase database(options_.file, database_options);
+    if (isBuild()) return build(database);
+    if (options_.command == "import") return import(database);
+    if (options_.command == "export") return exportClouds(database);
+    if (options_.command == "list" || options_.command == "info") return show(database);
+    change(database);
+    return 0;
+  }
+
+private:
+  bool isBuild() const { return options_.command == "build" || options_.command == "add"; }
+
+  void printFailures(const BuildReport& report) const {
+    for (const auto& [name, reason] : report.failures)
+      console_.error("left out: " + (reason.rfind("name = ", 0) == 0 || reason.find(name) != std::string::npos
+                                         ? reason
+                                         : name + ": " + reason));
+  }
+
+  int build(SymmetryDatabase& database) const {
+    const std::vector<ModelFile> files = modelFiles(options_.arguments, options_.names == "path");
+    std::vector<std::string> tags;
+    if (options_.tag) tags.push_back(*options_.tag);
+    Step step(console_, "Describing " + std::to_string(files.size()) + " models");
+    const BuildReport report =
+        database.build(modelInputs(files, options_.common.mesh_points, options_.common.librarySeed(), tags),
+                       [&](double share) { return step.progress(share), true; });
+    step.done(std::to_string(report.num_added) + " models" +
+              (report.num_kept > 0 ? ", " + std::to_string(report.num_kept) + " kept" : ""));
+    return finish(report, {{"kept", report.num_kept}});
+  }
+
+  int import(SymmetryDatabase& database) const {
+    BuildReport all;
+    for (const std::string& path : options_.arguments) {
+      Step step(console_, "Importing " + path);
+      const BuildReport report = database.importFrom(path, [&](double share) { return step.progress(share), true; });
+      step.done(std::to_string(report.num_added) + " models");
+      all.num_added += report.num_added;
+      all.failures.insert(all.failures.end(), report.failures.begin(), report.failures.end());
+    }
+    return finish(all, nlohmann::json::object());
+  }
+
+  int finish(const BuildReport& report, nlohmann::json json) const {
+    printFailures(report);
+    json["added"] = report.num_added;
+    json["failures"] = nlohmann::json::array();
+    for (const auto& [name, reason] : report.failures) json["failures"].push_back({{"name", name}, {"reason", reason}});
+    writeJson(json);
+    return report.failures.empty() ? 0 : 1;
+  }
+
+  void change(SymmetryDatabase& database) const {
+    Step step(console_, "Changing " + options_.file);
+    if (options_.command == "remove")
+      for (const std::string& name : options_.arguments) database.remove(name);
+    else
+      database.rebuild();
+    step.done(std::to_string(database.size()) + " models");
+  }
+
+  int show(const SymmetryDatabase& database) const {
+    const bool all = options_.command == "list" || options_.arguments.empty();
+    const std::vector<ModelInfo> models = infosOf(database, all ? database.names() : options_.arguments);
+    nlohmann::json json{{"models", modelsJson(models)}};
+    if (options_.command == "list") {
+      for (const ModelInfo& model : models) std::printf("%s\n", model.name.c_str());
+    } else if (all) {
+      json = {{"database", options_.file},
+              {"num_models", database.size()},
+              {"unit", database.unit()},
+              {"bytes", fs::file_size(options_.file)}};
+      std::printf("models  %zu\nunit    %s\nbytes   %ju\n", database.size(),
+                  database.unit().empty() ? "not given" : database.unit().c_str(),
+                  static_cast<std::uintmax_t>(fs::file_size(options_.file)));
+    } else {
+      for (const ModelInfo& model : models) std::printf("%s", modelText(model).c_str());
+    }
+    if (options_.csv) writeText(*options_.csv, modelsCSV(models));
+    writeJson(json);
+    return 0;
+  }
+
+  int check() const {
+    std::vector<std::string> damages;
+    {
+      Step step(console_, "Checking " + options_.file);
+      damages = SymmetryDatabase::check(options_.file);
+      step.done(damages.empty() ? "no damage" : std::to_string(damages.size()) + " damages");
+    }
+    for (const std::string& damage : damages) std::printf("%s\n", damage.c_str());
+    writeJson({{"damages", damages}});
+    return damages.empty() ? 0 : 1;
+  }
+
+  /// Files that are there are not replaced.
+  int exportClouds(const SymmetryDatabase& database) const {
+    const fs::path folder = options_.arguments.front();
+    std::vector<std::string> names(options_.arguments.begin() + 1, options_.arguments.end());
+    if (names.empty()) names = database.names();
+    boost::system::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw InputError(folder.string() + ": " + error.message());
+    Step step(console_, "Writing " + std::to_string(names.size()) + " clouds");
+    std::vector<std::string> failures;
+    for (const std::string& name : names) {
+      const std::string path = (folder / (name + ".pcd")).string();
+      try {
+        if (fs::exists(path)) throw InputError(path + ": exists, is not replaced");
+        pcl::PCLPointCloud2 cloud;
+        pcl::toPCLPointCloud2(database.cloud(name), cloud);
+        saveCloud(path, cloud, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
+      } catch (const pcl::PCLException& reason) {
+        failures.push_back(plainMessage(reason));
+      } catch (const InputError& reason) {
+        failures.emplace_back(reason.what());
+      }
+    }
+    step.done(std::to_string(names.size() - failures.size()) + " clouds");
+    for (const std::string& failure : failures) console_.error("left out: " + failure);
+    return failures.empty() ? 0 : 1;
+  }
+
+  void writeJson(const nlohmann::json& json) const {
+    // Sources may be named by bytes that are no UTF-8.
+    if (options_.common.json_path)
+      writeText(*options_.common.json_path, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+
+  const DatabaseToolOptions& options_;
+  const Console console_;
+};
 
 int run(int argc, char** argv) {
   DatabaseToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  options.folder = options.arguments.front();
+  options.file = options.arguments.front();
   options.arguments.erase(options.arguments.begin());
-  const bool takes_arguments = options.command == "build" || options.command == "add" || options.command == "remove";
-  if (!takes_arguments && options.command != "list" && options.command != "rebuild")
-    throw UsageError("command = " + options.command + ", must be build, add, remove, rebuild or list");
-  if (takes_arguments == options.arguments.empty())
-    throw UsageError(takes_arguments ? "missing argument behind the folder" : "too many arguments behind the folder");
-  const Console console(options.common.quiet);
-  const bool makes_folder = options.command == "build" || options.command == "add";
-  if (!makes_folder && !boost::filesystem::is_directory(options.folder))
-    throw InputError(options.folder + ": there is no such folder");
-  DatabaseOptions database_options;
-  database_options.num_threads = options.common.threads;
-  SymmetryDatabase database(options.folder, database_options);
-  if (options.command != "list") return change(console, database, options) ? 0 : 1;
-  for (const std::string& name : database.names()) std::printf("%s\n", name.c_str());
-  return 0;
+  enum Takes { Nothing, Something, Anything };
+  const std::map<std::string, Takes> commands{{"build", Something},  {"add", Something},    {"remove", Something},
+                                              {"export", Something}, {"import", Something}, {"rebuild", Nothing},
+                                              {"check", Nothing},    {"list", Nothing},     {"info", Anything}};
+  const auto command = commands.find(options.command);
+  if (command == commands.end())
+    throw UsageError("command = " + options.command +
+                     ", must be build, add, remove, list, info, check, export, import or rebuild");
+  if (command->second == Something && options.arguments.empty())
+    throw UsageError("missing argument behind the database");
+  if (command->second == Nothing && !options.arguments.empty())
+    throw UsageError("too many arguments behind the database");
+  return DatabaseTool(options).run();
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <pcl/exceptions.h>
 
 #include <algorithm>
+#include <boost/filesystem.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,7 +24,7 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct MatchOptions {
-  std::string folder, input;
+  std::string database, input;
   int num_matches = 10;
   bool recognize = false;
   RecognitionOptions recognition;
@@ -37,7 +38,7 @@ CommandLine commandLine(MatchOptions& options) {
                    "Finds the models of a database that are most like a cloud or mesh, in any pose and of any size. "
                    "With -recognize, the model that a scan shows, with its pose, or 'unknown object'.",
                    "pcl_symmetry_match models.db scan.pcd -recognize -json found.json");
-  line.positional("database", options.folder, "folder of pcl_symmetry_database")
+  line.positional("database", options.database, "file of pcl_symmetry_database")
       .positional("input", options.input, kShapeFiles)
       .number("max", options.num_matches, Range::closed(1, 1'000'000), "largest number of models shown")
       .flag("recognize", options.recognize, "bring the models to the scan and keep those that fit")
@@ -91,11 +92,12 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   const Console console(options.common.quiet);
+  if (!boost::filesystem::exists(options.database)) throw InputError(options.database + ": there is no such file");
   const InputShape input = loadInput(options.input, options.common.mesh_points, options.common.librarySeed());
   DatabaseOptions database_options;
   database_options.num_threads = options.common.threads;
-  const SymmetryDatabase database(options.folder, database_options);
-  if (database.size() == 0) throw InputError(options.folder + ": holds no models");
+  const SymmetryDatabase database(options.database, database_options);
+  if (database.size() == 0) throw InputError(options.database + ": holds no models");
   const nlohmann::json json = namingFile(options.input, [&] {
     return options.recognize ? recognize(console, database, input, options) : match(console, database, input, options);
   });

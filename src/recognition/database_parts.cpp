@@ -1,26 +1,138 @@
 #include "recognition/database_parts.h"
 
+#include <ctime>
 #include <utility>
+
+#include "core/matching/shape_description.h"
+#include "core/views/view_signature.h"
+#include "recognition/storage/io_error.h"
 
 namespace pcl_symmetry::detail {
 
-DatabaseParts::DatabaseParts(const std::string& path, const DatabaseOptions& database_options)
-    : options(database_options), folder(path), search(options.num_references, options.num_threads) {
-  if (folder.manifest().files.empty()) return;
-  SignatureProjection projection = folder.projection();
-  models = folder.models(projection);
-  search.restore(std::move(projection), folder.manifest().num_references);
-  search.index(models, folder);
+namespace {
+
+// Bytes. chosen: with an ending they stay below the 255 of file systems; half would be enough for most names.
+constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kShownOfName = 40;  // characters of a wrong name in its message. chosen: the line stays readable
+
+bool isUTF8(const std::string& text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto first = static_cast<unsigned char>(text[i]);
+    const std::size_t length = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : first >> 3 == 30 ? 4 : 0;
+    if (length == 0 || i + length > text.size()) return false;
+    for (std::size_t k = 1; k < length; ++k)
+      if (static_cast<unsigned char>(text[i + k]) >> 6 != 2) return false;
+    i += length;
+  }
+  return true;
 }
 
-PositionCloud DatabaseParts::modelCloud(const std::string& name) const {
-  const auto model = models.find(name);
-  if (model == models.end()) throw std::invalid_argument("name = '" + name + "', must be that of a model");
-  return folder.cloud(model->second);
+}  // namespace
+
+std::int64_t currentTime() {
+  return static_cast<std::int64_t>(std::time(nullptr));
 }
 
-Points DatabaseParts::modelPoints(const std::string& name, std::size_t max_points) const {
-  return finitePoints(modelCloud(name), max_points);
+void checkModelName(const std::string& name) {
+  bool good = !name.empty() && name.size() <= kLongestName && name.front() != '.' && isUTF8(name);
+  for (const unsigned char c : name) good = good && c >= 0x20 && c != 0x7f && c != '/';
+  if (good) return;
+  std::string shown = name.substr(0, kShownOfName) + (name.size() > kShownOfName ? "..." : "");
+  for (char& c : shown)
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+  throw std::invalid_argument(
+      "name = '" + shown + "' (" + std::to_string(name.size()) +
+      " bytes), must be 1 to 200 bytes of UTF-8 without '/' and control characters, not '.' first");
+}
+
+DescribedModel describedModel(const Points& points, const DatabaseOptions& options) {
+  if (const std::string reason = reasonForNoAnswer(points); !reason.empty()) throw std::invalid_argument(reason);
+  DescriptionOptions description;
+  description.num_threads = options.num_threads;
+  DescribedModel model;
+  model.packed.signatures = packedSignatures(describeShape(points, description).signatures);
+  model.packed.views = packedViews(viewsAround(points, options.num_views, options.num_threads));
+  PositionCloud cloud(static_cast<std::uint32_t>(points.cols()), 1);
+  cloud.getMatrixXfMap(3, 4, 0) = points;
+  model.packed.cloud = packedCloud(cloud);
+  model.packed.num_points = cloud.size();
+  model.signatures = unpackedSignatures(model.packed.signatures);
+  return model;
+}
+
+NumberedForms DatabaseParts::storedForms() {
+  const std::int64_t id = store.projectionId();
+  if (id == forms_.id) return forms_;
+  NumberedForms forms{id, nullptr};
+  try {
+    if (id != 0) forms.forms = std::make_shared<const CompactForms>(CompactForms::unpacked(store.projection()->values));
+  } catch (const std::invalid_argument& error) {
+    failIO(store.file(), std::string("the projection ") + error.what());
+  }
+  return forms_ = std::move(forms);
+}
+
+std::shared_ptr<const ShapeSearch> DatabaseParts::shapes() {
+  const std::lock_guard<std::mutex> lock(mutex);
+  const std::uint64_t version = store.version();
+  if (!shapes_ || shapes_version_ != version)
+    shapes_ = std::make_shared<const ShapeSearch>(store, storedForms(), options);
+  shapes_version_ = version;
+  return shapes_;
+}
+
+std::shared_ptr<const ViewSearch> DatabaseParts::views() {
+  const std::lock_guard<std::mutex> lock(mutex);
+  const std::uint64_t version = store.version();
+  if (!views_ || views_version_ != version) views_ = std::make_shared<const ViewSearch>(store, options.num_threads);
+  views_version_ = version;
+  return views_;
+}
+
+PositionCloud DatabaseParts::cloud(const StoredModel& model) {
+  const std::string bytes = [&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return store.part(ModelPart::Cloud, model);
+  }();
+  try {
+    return unpackedCloud(bytes);
+  } catch (const std::invalid_argument& error) {
+    failIO(store.file(), "the cloud of model '" + model.name + "' " + error.what());
+  }
+}
+
+Points DatabaseParts::points(const StoredModel& model, std::size_t max_points) {
+  return finitePoints(cloud(model), max_points);
+}
+
+void DatabaseParts::add(const ModelInfo& info, const PackedModel& model, const Eigen::MatrixXf& signatures) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  const NumberedForms stored = storedForms();
+  store.add(info, model, stored.id, stored.forms ? stored.forms->formOf(signatures, 0).packed() : "");
+}
+
+void DatabaseParts::save() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto size = static_cast<std::size_t>(store.size());
+    if (size == 0) return;
+    if (!isOutgrown(static_cast<std::size_t>(store.numReferences()), size, options.num_references)) {
+      const std::vector<StoredModel> without = store.modelsWithoutForms();
+      if (without.empty()) return;
+      const NumberedForms stored = storedForms();
+      store.addForms(stored.id, formsOfModels(store, without, *stored.forms, options.num_threads));
+      return;
+    }
+  }
+  rebuild();
+}
+
+void DatabaseParts::rebuild() {
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (store.size() == 0) return;
+  const auto forms = fitForms(store, options.num_references, options.num_threads);
+  store.setProjection({0, forms->numReferences(), forms->packed()},
+                      formsOfModels(store, store.models(), *forms, options.num_threads));
 }
 
 }  // namespace pcl_symmetry::detail

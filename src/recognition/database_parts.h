@@ -1,34 +1,66 @@
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/recognition/symmetry_database.h"
-#include "recognition/model_folder.h"
-#include "recognition/model_search.h"
+#include "recognition/search/shape_search.h"
+#include "recognition/search/view_search.h"
+#include "recognition/storage/model_store.h"
+#include "recognition/packing/packed_model.h"
 
 namespace pcl_symmetry::detail {
 
-/// What a database is made of: files, models, indexes.
+/// What a database is made of: the file, and what was read of it for queries. Every function throws pcl::IOException,
+/// which names the file and the reason. Threads may call all functions at once; `store` belongs to who holds `mutex`.
 struct DatabaseParts {
-  /// Opens the folder and indexes its models.
-  /// \throws pcl::IOException naming file and reason.
-  DatabaseParts(const std::string& path, const DatabaseOptions& database_options);
+  DatabaseParts(const std::string& file, const DatabaseOptions& database_options)
+      : options(database_options), store(file, database_options.lock_timeout, database_options.unit) {}
 
+  /// Of the state that is read now.
+  std::shared_ptr<const ShapeSearch> shapes();
+  std::shared_ptr<const ViewSearch> views();
+  /// The projection of the store; null forms without one. The mutex must be held.
+  NumberedForms storedForms();
+
+  PositionCloud cloud(const StoredModel& model);
   /// The points of a model, at most \p max_points.
-  /// \throws std::invalid_argument where there is no such model, pcl::IOException.
-  Points modelPoints(const std::string& name, std::size_t max_points) const;
-  /// \throws std::invalid_argument where there is no such model, pcl::IOException.
-  PositionCloud modelCloud(const std::string& name) const;
+  Points points(const StoredModel& model, std::size_t max_points);
+
+  /// Stores a model with its compact form where there is a projection.
+  void add(const ModelInfo& info, const PackedModel& model, const Eigen::MatrixXf& signatures);
+  /// See SymmetryDatabase::save().
+  void save();
+  void rebuild();
 
   DatabaseOptions options;
-  ModelFolder folder;
-  ModelSearch search;
-  Models models;
-  bool changed = false;  // since the last save
+  std::mutex mutex;
+  ModelStore store;
+
+private:
+  std::shared_ptr<const ShapeSearch> shapes_;
+  std::shared_ptr<const ViewSearch> views_;
+  std::uint64_t shapes_version_ = 0, views_version_ = 0;  // of the store when they were read
+  NumberedForms forms_;
 };
+
+/// Seconds since 1970 (UTC).
+std::int64_t currentTime();
+
+/// \throws std::invalid_argument unless it is 1 to 200 bytes of UTF-8 without "/" and control characters, not "." first.
+void checkModelName(const std::string& name);
+
+/// A model as it is stored.
+struct DescribedModel {
+  PackedModel packed;
+  Eigen::MatrixXf signatures;  ///< as they are stored
+};
+/// \throws std::invalid_argument for points that hold no answer.
+DescribedModel describedModel(const Points& points, const DatabaseOptions& options);
 
 /// The finite points of a cloud, at most \p max_points.
 inline Points finitePoints(const PositionCloud& cloud, std::size_t max_points) {

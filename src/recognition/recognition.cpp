@@ -27,7 +27,7 @@ constexpr std::size_t kScanPoints = 10'000;
 constexpr std::size_t kModelPoints = 5'000;  // chosen: see above
 
 /// Models that look like the scan from some side, brought to it from the poses of these views.
-Recognition fitLikeViews(const DatabaseParts& database, const Points& points, const Points& scan_points,
+Recognition fitLikeViews(DatabaseParts& database, const Points& points, const Points& scan_points,
                          const Visibility& seen, const RecognitionOptions& options) {
   ViewSearchOptions search;
   search.num_nearest = options.num_candidates;
@@ -35,20 +35,20 @@ Recognition fitLikeViews(const DatabaseParts& database, const Points& points, co
   search.num_threads = options.num_threads;
   const View view = viewOf(points, boundingBall(points).center - seen.viewpoint());
   PosedScan scan(scan_points, seen, options.registration);
-  for (const auto& [name, T_model_scan] : database.search.likeViews(view, search))
-    scan.bringTo(name, database.modelPoints(name, kModelPoints), T_model_scan);
+  for (const auto& [model, T_model_scan] : database.views()->nearest(view, search))
+    scan.bringTo(model.name, database.points(model, kModelPoints), T_model_scan);
   return scan.refined(options.num_refined);
 }
 
 /// Models of like shape, registered to the scan.
-Recognition fitLikeShapes(const DatabaseParts& database, const Points& points, const Points& scan_points,
+Recognition fitLikeShapes(DatabaseParts& database, const Points& points, const Points& scan_points,
                           const RecognitionOptions& options) {
   Recognition found;
-  for (const ModelMatch& match : database.search.likeShapes(points, nullptr, options.num_candidates)) {
-    const Points model_points = database.modelPoints(match.name, kScanPoints);
+  for (const auto& [model, distance] : database.shapes()->nearest(points, nullptr, options.num_candidates)) {
+    const Points model_points = database.points(model, kScanPoints);
     const CloudRegistration posed = registerClouds(scan_points, std::nullopt, model_points, std::nullopt,
                                                    Eigen::Isometry3d::Identity(), options.registration);
-    found.push_back({match.name, posed.T_target_source, posed.score, 0.0});
+    found.push_back({model.name, posed.T_target_source, posed.score, 0.0});
   }
   return found;
 }
@@ -113,6 +113,17 @@ Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOpti
     fillConfidences(found, options.min_merit);
     return found;
   });
+}
+
+std::vector<Recognition> SymmetryDatabase::recognize(const std::vector<Cloud>& clusters,
+                                                     const RecognitionOptions& options, const Viewpoint& viewpoint,
+                                                     const BuildProgress& progress) const {
+  std::vector<Recognition> found(clusters.size());
+  for (std::size_t i = 0; i < clusters.size(); ++i) {
+    found[i] = recognize(clusters[i], options, viewpoint);
+    if (progress && !progress(static_cast<double>(i + 1) / static_cast<double>(clusters.size()))) break;
+  }
+  return found;
 }
 
 }  // namespace pcl_symmetry

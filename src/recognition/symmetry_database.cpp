@@ -1,33 +1,28 @@
 #include "pcl_symmetry/recognition/symmetry_database.h"
 
-#include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/matching/shape_description.h"
-#include "core/views/view_signature.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "recognition/database_parts.h"
+#include "recognition/storage/io_error.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-void checkModelName(const std::string& name) {
-  if (!detail::isModelName(name))
-    throw std::invalid_argument("name = '" + name +
-                                "', must be 1 to 100 letters, digits, '_', '-' or '.', not '.' first");
+[[noreturn]] void failUnknown(const std::string& name) {
+  throw std::invalid_argument("name = '" + name + "', must be that of a model");
 }
 
-detail::Model describedModel(const Points& points, const DatabaseOptions& options) {
-  DescriptionOptions description;
-  description.num_threads = options.num_threads;
-  detail::Model model;
-  model.signatures = describeShape(points, description).signatures;
-  model.views = viewsAround(points, options.num_views, options.num_threads);
-  model.cloud.resize(static_cast<std::size_t>(points.cols()));
-  model.cloud.getMatrixXfMap(3, 4, 0) = points;
-  return model;
+std::pair<std::int64_t, ModelInfo> findModel(detail::DatabaseParts& parts, const std::string& name) {
+  return detail::withBadArguments([&] {
+    const std::lock_guard<std::mutex> lock(parts.mutex);
+    auto found = parts.store.find(name);
+    if (!found) failUnknown(name);
+    return std::move(*found);
+  });
 }
 
 }  // namespace
@@ -36,12 +31,13 @@ void DatabaseOptions::validate() const {
   check(num_references >= 1, "num_references", num_references, ">= 1");
   check(num_views >= 1, "num_views", num_views, ">= 1");
   check(max_points >= 100, "max_points", static_cast<double>(max_points), ">= 100");
+  check(lock_timeout >= 0.0 && lock_timeout <= 1e6, "lock_timeout", lock_timeout, "in [0, 1e6]");
   checkNumThreads(num_threads);
 }
 
-SymmetryDatabase::SymmetryDatabase(const std::string& folder, const DatabaseOptions& options) {
+SymmetryDatabase::SymmetryDatabase(const std::string& file, const DatabaseOptions& options) {
   detail::withBadArguments([&] { options.validate(); });
-  parts_ = std::make_unique<detail::DatabaseParts>(folder, options);
+  parts_ = std::make_unique<detail::DatabaseParts>(file, options);
 }
 
 SymmetryDatabase::~SymmetryDatabase() = default;
@@ -49,57 +45,67 @@ SymmetryDatabase::SymmetryDatabase(SymmetryDatabase&&) noexcept = default;
 SymmetryDatabase& SymmetryDatabase::operator=(SymmetryDatabase&&) noexcept = default;
 
 std::vector<std::string> SymmetryDatabase::names() const {
+  const std::lock_guard<std::mutex> lock(parts_->mutex);
   std::vector<std::string> names;
-  for (const auto& [name, model] : parts_->models) names.push_back(name);
+  for (const detail::StoredModel& model : parts_->store.models()) names.push_back(model.name);
   return names;
 }
 
 std::size_t SymmetryDatabase::size() const {
-  return parts_->models.size();
+  const std::lock_guard<std::mutex> lock(parts_->mutex);
+  return static_cast<std::size_t>(parts_->store.size());
 }
 
 bool SymmetryDatabase::contains(const std::string& name) const {
-  return parts_->models.count(name) > 0;
+  const std::lock_guard<std::mutex> lock(parts_->mutex);
+  return parts_->store.find(name).has_value();
 }
 
-void SymmetryDatabase::add(const std::string& name, const Cloud& cloud) {
+ModelInfo SymmetryDatabase::info(const std::string& name) const {
+  return findModel(*parts_, name).second;
+}
+
+std::string SymmetryDatabase::unit() const {
+  const std::lock_guard<std::mutex> lock(parts_->mutex);
+  return parts_->store.fact("unit");
+}
+
+void SymmetryDatabase::refresh() {
+  const std::lock_guard<std::mutex> lock(parts_->mutex);
+  parts_->store.refresh();
+}
+
+void SymmetryDatabase::add(const std::string& name, const Cloud& cloud, const ModelSource& source) {
   detail::withBadArguments([&] {
-    checkModelName(name);
-    const Points points = detail::finitePoints(cloud, parts_->options.max_points);
-    if (const std::string reason = detail::reasonForNoAnswer(points); !reason.empty())
-      throw std::invalid_argument(reason);
-    parts_->models[name] = describedModel(points, parts_->options);
-    parts_->search.forget(name);
-    parts_->changed = true;
+    detail::checkModelName(name);
+    const detail::DescribedModel model =
+        detail::describedModel(detail::finitePoints(cloud, parts_->options.max_points), parts_->options);
+    parts_->add({name, detail::currentTime(), source, model.packed.num_points}, model.packed, model.signatures);
   });
 }
 
 void SymmetryDatabase::remove(const std::string& name) {
   detail::withBadArguments([&] {
-    if (parts_->models.erase(name) == 0) throw std::invalid_argument("name = '" + name + "', must be that of a model");
-    parts_->search.forget(name);
-    parts_->changed = true;
+    const std::lock_guard<std::mutex> lock(parts_->mutex);
+    if (!parts_->store.remove(name)) failUnknown(name);
   });
 }
 
-void SymmetryDatabase::rebuild() {
-  parts_->changed = true;
-  detail::withBadArguments([&] { parts_->search.fit(parts_->models, parts_->folder); });
-  parts_->search.index(parts_->models, parts_->folder);
+void SymmetryDatabase::save() {
+  detail::withBadArguments([&] { parts_->save(); });
 }
 
-void SymmetryDatabase::save() {
-  if (!parts_->changed) return;
-  if (parts_->search.isOutgrown(parts_->models))
-    rebuild();
-  else
-    parts_->search.index(parts_->models, parts_->folder);
-  parts_->folder.save(parts_->models, parts_->search.projection(), parts_->search.numReferences());
-  parts_->changed = false;
+void SymmetryDatabase::rebuild() {
+  detail::withBadArguments([&] { parts_->rebuild(); });
+}
+
+std::vector<std::string> SymmetryDatabase::check(const std::string& file) {
+  if (!std::filesystem::exists(file)) detail::failIO(file, "there is no such file");
+  return detail::ModelStore(file, DatabaseOptions().lock_timeout, "").damages();
 }
 
 SymmetryDatabase::Cloud SymmetryDatabase::cloud(const std::string& name) const {
-  return detail::withBadArguments([&] { return parts_->modelCloud(name); });
+  return parts_->cloud({findModel(*parts_, name).first, name});
 }
 
 std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_nearest, const Viewpoint& viewpoint) const {
@@ -108,7 +114,10 @@ std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_near
   return detail::emptyWithoutAnswer(points, [&] {
     const std::optional<Visibility> seen =
         detail::withBadArguments([&] { return detail::seenSpace(cloud, points, viewpoint); });
-    return parts_->search.likeShapes(points, seen ? &*seen : nullptr, num_nearest);
+    std::vector<ModelMatch> matches;
+    for (const auto& [model, distance] : parts_->shapes()->nearest(points, seen ? &*seen : nullptr, num_nearest))
+      matches.push_back({model.name, distance});
+    return matches;
   });
 }
 

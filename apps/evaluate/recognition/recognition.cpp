@@ -3,7 +3,6 @@
 #include <pcl/exceptions.h>
 
 #include <algorithm>
-#include <boost/filesystem.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -86,12 +85,10 @@ public:
   }
 
 private:
-  /// In memory: it is never saved.
   SymmetryDatabase emptyDatabase() const {
     DatabaseOptions options;
     options.num_threads = options_.common.threads;
-    const auto folder = boost::filesystem::temp_directory_path() / boost::filesystem::unique_path();
-    return SymmetryDatabase(folder.string(), options);
+    return SymmetryDatabase(":memory:", options);
   }
 
   void list() {

@@ -30,6 +30,7 @@ struct EvaluateRetrievalOptions {
   std::optional<std::string> class_path;
   int num_points = 20'000;
   RetrievalOptions retrieval;
+  bool database = false;
   std::optional<std::string> csv, class_csv, png;
   CommonOptions common;
 };
@@ -48,6 +49,7 @@ CommandLine commandLine(EvaluateRetrievalOptions& o) {
               "number of meshes, of any class, that compact forms and scaled distances are made from")
       .number("nearest", o.retrieval.num_nearest, Range::closed(1, 1'000'000),
               "number of nearest references that scale distances")
+      .flag("database", o.database, "only SymmetryDatabase::match(), each model turned at random")
       .text("csv", "FILE", o.csv, "precision at each recall, for each method")
       .text("class_csv", "FILE", o.class_csv, "a row for each class and method (Figure 14)")
       .picture("png", o.png,
@@ -70,6 +72,12 @@ public:
 
   void run() {
     load();
+    if (options_.database) {
+      evaluate("Asking a database", [&](const auto& progress) {
+        return std::vector{databaseMethod(clouds_, options_.retrieval, progress)};
+      });
+      return printTable();
+    }
     evaluate("Describing models as they are",
              [&](const auto& progress) { return publishedMethods(clouds_, false, options_.retrieval, progress); });
     for (std::size_t i = 0; i < clouds_.size(); ++i) {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 
+#include "common/scanner/virtual_scanner.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/descriptors/symmetry_descriptor.h"
@@ -14,6 +16,7 @@
 #include "core/matching/reference_scaling.h"
 #include "core/matching/shape_description.h"
 #include "core/matching/signature_projection.h"
+#include "pcl_symmetry/recognition/symmetry_database.h"
 
 namespace pcl_symmetry::apps {
 
@@ -185,6 +188,36 @@ std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds,
        turnableMethods(signatures, options, [&](double share) { progress(0.7 + 0.3 * share); }))
     methods.push_back(std::move(method));
   return methods;
+}
+
+RetrievalMethod databaseMethod(const std::vector<Points>& clouds, const RetrievalOptions& options,
+                               const RetrievalProgress& progress) {
+  const auto asCloud = [](const Points& points) {
+    SymmetryDatabase::Cloud cloud(static_cast<std::uint32_t>(points.cols()), 1);
+    cloud.getMatrixXfMap(3, 4, 0) = points;
+    return cloud;
+  };
+  DatabaseOptions database_options;
+  database_options.num_references = options.num_references;
+  database_options.num_threads = options.num_threads;
+  database_options.num_views = 1;  // for scans, which are not asked for here
+  SymmetryDatabase database(":memory:", database_options);
+  std::vector<ModelInput> models;
+  for (std::size_t i = 0; i < clouds.size(); ++i)
+    models.push_back({std::to_string(i), {}, [&, i] { return asCloud(clouds[i]); }});
+  database.build(models, [&](double share) { return progress(0.5 * share), true; });
+  const auto size = static_cast<Eigen::Index>(clouds.size());
+  RetrievalMethod method{"SymmetryDatabase::match", Eigen::MatrixXf::Constant(size, size, 1e6f), true};
+  Viewpoint none;
+  none.mode = Viewpoint::Mode::None;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Eigen::Isometry3d pose = randomPose(options.seed + 100'000 + static_cast<std::uint64_t>(i), 0.0);
+    const Points turned = pose.linear().cast<float>() * clouds[static_cast<std::size_t>(i)];
+    for (const ModelMatch& match : database.match(asCloud(turned), static_cast<int>(size), none))
+      method.distances(std::stol(match.name), i) = static_cast<float>(match.distance);
+    progress(0.5 + 0.5 * static_cast<double>(i + 1) / static_cast<double>(size));
+  }
+  return method;
 }
 
 }  // namespace pcl_symmetry::apps

@@ -40,4 +40,8 @@ std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds,
 std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,
                                               const RetrievalProgress& progress);
 
+/// SymmetryDatabase::match(): each cloud, turned once more at random, asks a database of all.
+RetrievalMethod databaseMethod(const std::vector<Points>& clouds, const RetrievalOptions& options,
+                               const RetrievalProgress& progress);
+
 }  // namespace pcl_symmetry::apps

@@ -1,13 +1,17 @@
-/// Models in a folder, found by shape or recognized in a scan (Section 5.2).
+/// Models in a file, found by shape or recognized in a scan (Section 5.2).
 #pragma once
 
+#include <pcl/common/io.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
@@ -21,14 +25,19 @@ struct DatabaseParts;
 }
 
 struct DatabaseOptions {
-  /// Models, spread evenly over all, that compact forms are fitted to, >= 1. chosen: fewer show less of the variety of
-  /// the models, twice takes four times the time and memory of the fit; README measures 200 for 904 models.
-  int num_references = 128;
+  /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1. chosen: fewer
+  /// show less of the variety of the models, twice takes four times the time and memory of the fit; README measures 200
+  /// for 904 models.
+  int num_references = 200;
   /// Views of a model that scans are compared with, >= 1. chosen: of 80 views the nearest is within 12 degrees of any
   /// direction; half makes that 17 degrees, twice 8.5 (gaps shrink with the square root).
   int num_views = 80;
   std::size_t max_points = 20'000;  ///< points of a cloud that are kept, >= 100. chosen: time grows with them
   int num_threads = 0;              ///< >= 0; 0 = one per core
+  /// Seconds that a change waits while another program writes, >= 0. chosen: a program that builds a database writes
+  /// for milliseconds at a time; half and twice are as good.
+  double lock_timeout = 30.0;
+  std::string unit;  ///< of the coordinates of all models, such as "m"; stored when the database is made
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -58,7 +67,9 @@ struct RecognitionOptions {
 
 struct ModelMatch {
   std::string name;
-  double distance;  ///< L2 distance of the compact signatures, in [0, 2]
+  /// L2 distance of the compact signatures, divided by the root of the product of the two mean distances to the ten
+  /// nearest references: 1 between shapes that are as far from each other as from what is most like them.
+  double distance;
 };
 
 struct RecognizedModel {
@@ -73,57 +84,110 @@ struct RecognizedModel {
 /// Accepted models, best first. Empty: the object is unknown.
 using Recognition = std::vector<RecognizedModel>;
 
-/// Models in a folder, found by their symmetry (Section 5.2): match() finds models of like shape, recognize() the model
+/// Where a model comes from; what is not known stays empty.
+struct ModelSource {
+  std::string path;               ///< file or address
+  std::string checksum;           ///< of what is there; build() passes over models whose checksum is stored
+  std::vector<std::string> tags;  ///< its class, or any other words; one line each
+};
+
+struct ModelInfo {
+  std::string name;
+  std::int64_t time = 0;  ///< when it was stored, seconds since 1970 (UTC)
+  ModelSource source;
+  std::size_t num_points = 0;
+};
+
+/// A model of a long build. Its functions are called by several threads at once.
+struct ModelInput {
+  std::string name;
+  std::function<ModelSource()> source;                        ///< nothing: no source is stored
+  std::function<pcl::PointCloud<pcl::PointXYZ>()> load = {};  ///< called unless the source is stored already
+};
+
+struct BuildReport {
+  std::size_t num_added = 0;
+  std::size_t num_kept = 0;                                   ///< models whose source was stored before
+  std::vector<std::pair<std::string, std::string>> failures;  ///< name and reason, in the order of the inputs
+  bool cancelled = false;
+};
+
+/// Told the share of the work that is done, in [0, 1]. Returns whether to go on.
+using BuildProgress = std::function<bool(double)>;
+
+/// Models in a file, found by their symmetry (Section 5.2): match() finds models of like shape, recognize() the model
 /// that a scan shows.
 ///
-/// The folder holds manifest.txt; for each model its cloud, signatures and views; and the compact forms of all models.
-/// A save writes new files beside the old ones and then replaces manifest.txt: if it is interrupted, the old state
-/// stays whole. Other files in the folder are neither changed nor removed. Only one program may write at a time.
+/// The file is a database of SQLite. What a function changes is on the disk when it returns, whole or not at all, also
+/// if the program is killed. Several programs may read while one writes; a second writer waits, see
+/// DatabaseOptions::lock_timeout. A database that is open shows the state of its first reading, or that after its own
+/// last change, until refresh(). While it is open, SQLite keeps FILE-wal and FILE-shm beside the file.
 ///
-/// Clouds that hold no answer (fewer than 20 distinct points, or all of them on one line) give an empty result and a
-/// PCL_WARN.
+/// Parts of models are read when a query needs them. An object may be used by several threads for queries, or by one
+/// for changes. Clouds that hold no answer (fewer than 20 distinct points, or all of them on one line) give an empty
+/// result and a PCL_WARN.
 ///
 /// \code
-/// pcl_symmetry::SymmetryDatabase database("models");
+/// pcl_symmetry::SymmetryDatabase database("models.db");
 /// database.add("milk", cloud);
-/// database.save();
 /// for (const auto& model : database.recognize(scan)) std::cout << model.name << ' ' << model.confidence << '\n';
 /// \endcode
 class SymmetryDatabase {
 public:
   using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-  /// Opens a database. A folder that is missing or empty becomes an empty database.
-  /// \throws pcl::IOException naming file and reason.
+  /// Opens a database. A file that is missing is an empty database, and is made by the first change.
+  /// \param file ":memory:" = no file: the models are gone with the object.
+  /// \throws pcl::IOException naming file and reason: no database of this library, of a newer or an older one, damaged.
   /// \throws pcl::BadArgumentException for bad options.
-  explicit SymmetryDatabase(const std::string& folder, const DatabaseOptions& options = {});
+  explicit SymmetryDatabase(const std::string& file, const DatabaseOptions& options = {});
   ~SymmetryDatabase();
   SymmetryDatabase(SymmetryDatabase&&) noexcept;
   SymmetryDatabase& operator=(SymmetryDatabase&&) noexcept;
 
-  /// \return names of all models, sorted.
+  /// \return names of all models, sorted by their bytes.
   std::vector<std::string> names() const;
   std::size_t size() const;
   bool contains(const std::string& name) const;
+  /// \throws pcl::BadArgumentException where there is no such model.
+  ModelInfo info(const std::string& name) const;
+  /// \return the unit that the database was made with.
+  std::string unit() const;
+  /// Reads what others have changed since.
+  void refresh();
 
-  /// Adds a model, or replaces the model of that name. The model is stored by save(), and found after save() or
-  /// rebuild().
-  /// \param name 1 to 100 letters, digits and "_-."; the first one is not ".".
+  /// Stores a model, or replaces the model of that name. It is found at once.
+  /// \param name 1 to 200 bytes of UTF-8 without "/" and control characters; the first one is not ".".
   /// \param cloud the object seen from all sides.
   /// \throws pcl::BadArgumentException for another name or a cloud that holds no answer: it would never be found.
-  void add(const std::string& name, const Cloud& cloud);
-  /// Removes a model. Its files are removed by save().
+  /// \throws pcl::IOException naming file and reason; the database is unchanged then.
+  void add(const std::string& name, const Cloud& cloud, const ModelSource& source = {});
   /// \throws pcl::BadArgumentException where there is no such model.
+  /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void remove(const std::string& name);
-  /// Fits the compact forms anew to the models that are there now, and indexes all models.
-  /// \throws pcl::IOException naming file and reason.
-  void rebuild();
-  /// Stores all changes. The compact forms are fitted anew if they have less than half of the references that
-  /// DatabaseOptions::num_references asks for.
-  /// \throws pcl::IOException naming file and reason.
+  /// Stores many models, each as soon as it is described, and fits the compact forms as save() does. Models that cannot
+  /// be used are reported, and the others stored. An interrupted build goes on where it stopped: a model of the same
+  /// name and the same source checksum is kept.
+  /// \throws pcl::IOException naming file and reason; what was stored before stays stored.
+  BuildReport build(const std::vector<ModelInput>& models, const BuildProgress& progress = {});
+  /// Adds the models of another database, or those of a folder that version 0.1 of this library wrote; models of the
+  /// same name are replaced. The folder's clouds are described again.
+  /// \throws pcl::IOException naming file and reason; what was stored before stays stored.
+  BuildReport importFrom(const std::string& path, const BuildProgress& progress = {});
+  /// Fits the compact forms anew if they have less than half of the references that DatabaseOptions::num_references
+  /// asks for, and stores those that are missing. Without it, each program that asks has to do so for itself.
+  /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void save();
+  /// Fits the compact forms anew to the models that are there now.
+  /// \throws pcl::IOException naming file and reason; the database is unchanged then.
+  void rebuild();
 
-  /// \return the cloud of a model, at most DatabaseOptions::max_points points.
+  /// \return what is damaged, a sentence each; empty where all is well.
+  /// \throws pcl::IOException naming file and reason where it cannot be read at all.
+  static std::vector<std::string> check(const std::string& file);
+
+  /// \return the cloud of a model, at most DatabaseOptions::max_points points. Coordinates differ from those that were
+  /// added by at most 7.7e-6 of the greatest extent; points have another order.
   /// \throws pcl::BadArgumentException where there is no such model.
   /// \throws pcl::IOException naming file and reason.
   Cloud cloud(const std::string& name) const;
@@ -134,20 +198,48 @@ public:
   /// \param viewpoint where the scanner stood.
   /// \return nearest first, at most \p num_nearest.
   /// \throws pcl::BadArgumentException for bad parameters.
+  /// \throws pcl::IOException naming file and reason.
   std::vector<ModelMatch> match(const Cloud& cloud, int num_nearest = 10, const Viewpoint& viewpoint = {}) const;
 
   /// The models that a scan can show, in the unit of the models. Candidates look like the scan from some side; without
   /// a viewpoint, candidates are of like shape.
   /// \param scan at least two different finite points.
-  /// \param viewpoint
-  /// where the scanner stood.
+  /// \param viewpoint where the scanner stood.
   /// \return accepted models, best first.
   /// \throws pcl::BadArgumentException for bad options.
   /// \throws pcl::IOException naming file and reason.
   Recognition recognize(const Cloud& scan, const RecognitionOptions& options = {},
                         const Viewpoint& viewpoint = {}) const;
 
+  /// The same for each of many clusters.
+  /// \param progress after each; where it returns false the rest stays unknown.
+  std::vector<Recognition> recognize(const std::vector<Cloud>& clusters, const RecognitionOptions& options = {},
+                                     const Viewpoint& viewpoint = {}, const BuildProgress& progress = {}) const;
+
+  /// The same for clouds of other point types; colours and other fields are not used.
+  template <typename PointT>
+  void add(const std::string& name, const pcl::PointCloud<PointT>& cloud, const ModelSource& source = {}) {
+    add(name, positionsOf(cloud), source);
+  }
+  template <typename PointT>
+  std::vector<ModelMatch> match(const pcl::PointCloud<PointT>& cloud, int num_nearest = 10,
+                                const Viewpoint& viewpoint = {}) const {
+    return match(positionsOf(cloud), num_nearest, viewpoint);
+  }
+  template <typename PointT>
+  Recognition recognize(const pcl::PointCloud<PointT>& scan, const RecognitionOptions& options = {},
+                        const Viewpoint& viewpoint = {}) const {
+    return recognize(positionsOf(scan), options, viewpoint);
+  }
+
 private:
+  template <typename PointT>
+  static Cloud positionsOf(const pcl::PointCloud<PointT>& cloud) {
+    Cloud positions;
+    pcl::copyPointCloud(cloud, positions);
+    return positions;
+  }
+
   std::unique_ptr<detail::DatabaseParts> parts_;
 };
 

@@ -41,12 +41,17 @@ void CompactIndexOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-CompactIndex::CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options)
-    : compact_(std::move(compact)), forms_per_shape_(forms_per_shape), options_(options) {
+CompactIndex::CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options,
+                           std::vector<float> typical)
+    : compact_(std::move(compact)), forms_per_shape_(forms_per_shape), typical_(std::move(typical)), options_(options) {
   options.validate();
   check(forms_per_shape >= 1, "forms_per_shape", forms_per_shape, ">= 1");
   check(compact_.cols() % forms_per_shape == 0, "number of compact forms", compact_.cols(),
         "a multiple of those of a shape");
+  if (typical_.empty()) typical_.assign(static_cast<std::size_t>(numShapes()), 1.0f);
+  check(typical_.size() == static_cast<std::size_t>(numShapes()), "number of typical distances",
+        static_cast<double>(typical_.size()), "that of the shapes");
+  for (const float distance : typical_) check(distance > 0.0f, "typical distance", distance, "> 0");
   const Eigen::Index num_leading = std::min<Eigen::Index>(compact_.rows(), options.num_leading);
   leading_.resize(num_leading + 1, compact_.cols());
   leading_.topRows(num_leading) = compact_.topRows(num_leading);
@@ -67,12 +72,13 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
   queries.topRows(num_leading) = rotations.topRows(num_leading);
   queries.row(num_leading).setOnes();
   const Eigen::VectorXf sq_norms = 0.5f * rotations.topRows(num_leading).colwise().squaredNorm().transpose();
-  std::vector<float> nearness(forms.size());  // -1/2 of the squared distance to the nearest rotation
+  std::vector<float> nearness(forms.size());  // -1/2 of the squared scaled distance to the nearest rotation
   parallelRanges(forms.size(), kForms, options_.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto first = static_cast<Eigen::Index>(begin), size = static_cast<Eigen::Index>(end - begin);
     Eigen::MatrixXf products = queries.transpose() * leading_.middleCols(first, size);
     products.colwise() -= sq_norms;
     Eigen::Map<Eigen::RowVectorXf>(nearness.data() + begin, size) = products.colwise().maxCoeff();
+    for (std::size_t i = begin; i < end; ++i) nearness[i] /= typical_[i / static_cast<std::size_t>(forms_per_shape_)];
   });
   std::nth_element(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(count), forms.end(), [&](int a, int b) {
     const float near_a = nearness[static_cast<std::size_t>(a)], near_b = nearness[static_cast<std::size_t>(b)];
@@ -93,6 +99,7 @@ std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& 
   for (std::size_t i = 0; i < forms.size(); ++i) near.col(static_cast<Eigen::Index>(i)) = compact_.col(forms[i]);
   const Eigen::RowVectorXf cosines = (rotations.transpose() * near).colwise().maxCoeff();
   std::vector<std::pair<int, float>> found = leastDistances(forms, cosines, forms_per_shape_);
+  for (auto& [shape, distance] : found) distance /= std::sqrt(typical_[static_cast<std::size_t>(shape)]);
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   found.resize(std::min(found.size(), static_cast<std::size_t>(num_nearest)));
   return found;

@@ -29,14 +29,18 @@ public:
 
   /// \param compact K x (forms_per_shape N), unit columns, those of one shape side by side.
   /// \param forms_per_shape >= 1.
-  /// \throws std::invalid_argument for bad options or a number of columns that is no multiple of forms_per_shape.
-  CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options = {});
+  /// \param typical distances of the N shapes, each > 0: distances to a shape are divided by the root of its own, see
+  /// typicalDistance(); empty: all are 1.
+  /// \throws std::invalid_argument for bad options, a number of columns that is no multiple of forms_per_shape, or
+  /// another number of typical distances.
+  CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options = {},
+               std::vector<float> typical = {});
 
   Eigen::Index numShapes() const;
 
   /// \param rotations K x 24 M, all rotations of the query's compact forms, see SignatureProjection::rotations().
   /// \param num_nearest >= 0.
-  /// \return shapes and their signatureDistance(), nearest first, at most \p num_nearest. Exact where the index holds
+  /// \return shapes and their signatureDistance(), scaled, nearest first, at most \p num_nearest. Exact where the index holds
   /// no more than num_candidates forms.
   /// \throws std::invalid_argument for another K or a negative \p num_nearest.
   std::vector<std::pair<int, float>> nearest(const Eigen::MatrixXf& rotations, int num_nearest) const;
@@ -47,6 +51,7 @@ private:
   Eigen::MatrixXf compact_;
   Eigen::MatrixXf leading_;  // leading components of the forms; last row: -1/2 of their squared norm
   int forms_per_shape_ = 1;
+  std::vector<float> typical_;  // of the shapes
   CompactIndexOptions options_;
 };
 

@@ -75,7 +75,7 @@ protected:
   int database(const std::string& arguments) { return run("./pcl_symmetry_database " + arguments); }
   int match(const std::string& arguments) { return run("./pcl_symmetry_match " + arguments); }
 
-  const std::string models_ = folder_ / "models";
+  const std::string models_ = folder_ / "models.db";
 };
 
 TEST_F(DatabaseTools, BuildAskAndChange) {
@@ -106,13 +106,56 @@ TEST_F(DatabaseTools, SayWhatIsWrong) {
   EXPECT_EQ(database("add " + models_), 2);
   EXPECT_EQ(database("list " + models_ + " more"), 2);
   EXPECT_EQ(database("list " + models_), 1);
-  EXPECT_NE(error_.find("there is no such folder"), std::string::npos) << error_;
-  boost::filesystem::create_directories(models_);
+  EXPECT_NE(error_.find("there is no such file"), std::string::npos) << error_;
+  EXPECT_EQ(match(models_ + " " + (folder_ / "box.off")), 1);
+  EXPECT_NE(error_.find("there is no such file"), std::string::npos) << error_;
+  EXPECT_EQ(database("build " + models_ + " " + (folder_ / "nothing.off")), 1);
+  EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
+  ASSERT_EQ(database("build " + models_ + " " + (folder_ / "box.off") + " -points 2000"), 0) << error_;
   EXPECT_EQ(database("remove " + models_ + " nobody"), 1);
   EXPECT_NE(error_.find("nobody"), std::string::npos) << error_;
-  EXPECT_EQ(database("build " + models_ + " " + (folder_ / "nothing.off")), 1);
+  EXPECT_EQ(database("build " + models_ + " '" + (folder_ / "*.xyz") + "'"), 1);
+  EXPECT_NE(error_.find("no file has such a name"), std::string::npos) << error_;
+  ASSERT_EQ(database("remove " + models_ + " box"), 0) << error_;
   EXPECT_EQ(match(models_ + " " + (folder_ / "box.off")), 1);
   EXPECT_NE(error_.find("holds no models"), std::string::npos) << error_;
+  EXPECT_EQ(database("list " + (folder_ / "box.off")), 1);
+  EXPECT_NE(error_.find("is no database of pcl_symmetry"), std::string::npos) << error_;
+  EXPECT_EQ(contentOf(folder_ / "box.off"), boxOFF());
+}
+
+TEST_F(DatabaseTools, GoOnTakeFoldersAndTellWhatTheyHold) {
+  boost::filesystem::create_directories(folder_ / "shapes/more");
+  folder_.write("shapes/a.off", boxOFF());
+  folder_.write("shapes/more/b.off", tetrahedronOFF());
+  folder_.write("shapes/notes.txt", "mine");
+  folder_.write("list.txt", "# files\n" + (folder_ / "vase.off") + "\n" + (folder_ / "sha*") + "\n");
+  const std::string build = "build " + models_ + " -points 2000 -names path -unit m -tag thing ";
+  ASSERT_EQ(database(build + (folder_ / "shapes")), 0) << error_;
+  folder_.write("shapes/a.off", boxOFF() + "\n");
+  const std::string report = folder_ / "report.json";
+  ASSERT_EQ(database(build + (folder_ / "shapes") + " '" + (folder_ / "va*.off") + "' -json " + report), 0) << error_;
+  const json built = json::parse(contentOf(report));
+  EXPECT_EQ(built["added"], 2) << "the file that changed and the new one";
+  EXPECT_EQ(built["kept"], 1);
+  ASSERT_EQ(database("list " + models_ + " -csv " + (folder_ / "list.csv") + " -json " + report), 0) << error_;
+  EXPECT_EQ(output_, "a\nmore_b\nvase\n");
+  EXPECT_EQ(contentOf(folder_ / "list.csv").rfind("name,points,time,source,checksum,tags\na,2000,", 0), 0u);
+  EXPECT_EQ(json::parse(contentOf(report))["models"][1]["tags"][0], "thing");
+  ASSERT_EQ(database("info " + models_), 0) << error_;
+  EXPECT_EQ(output_.rfind("models  3\nunit    m\n", 0), 0u) << output_;
+  ASSERT_EQ(database("info " + models_ + " vase"), 0) << error_;
+  EXPECT_NE(output_.find("vase.off"), std::string::npos) << output_;
+  ASSERT_EQ(database("export " + models_ + " " + (folder_ / "clouds")), 0) << error_;
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  ASSERT_EQ(pcl::io::loadPCDFile(folder_ / "clouds/more_b.pcd", cloud), 0);
+  EXPECT_EQ(cloud.size(), 2000u);
+  EXPECT_EQ(database("export " + models_ + " " + (folder_ / "clouds") + " a"), 1) << "files that are there stay";
+  ASSERT_EQ(database("import " + (folder_ / "other.db") + " " + models_), 0) << error_;
+  ASSERT_EQ(database("check " + (folder_ / "other.db")), 0) << error_ << output_;
+  ASSERT_EQ(database("build " + (folder_ / "third.db") + " @" + (folder_ / "list.txt") + " -points 2000"), 0) << error_;
+  ASSERT_EQ(database("list " + (folder_ / "third.db")), 0) << error_;
+  EXPECT_EQ(output_, "a\nb\nvase\n");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/base/random.h"
 #include "core/matching/compact_index.h"
@@ -40,6 +41,28 @@ TEST(CompactIndex, FindsWhatAComparisonOfAllFinds) {
   for (int shape = 0; shape < 300; ++shape)
     nearer += signatureDistance(queries, forms.middleCols(2 * shape, 2)) < nearest.back().second - 1e-4f ? 1 : 0;
   EXPECT_EQ(nearer, 9);
+}
+
+TEST(CompactIndex, ScalesDistancesBeforeItChooses) {
+  const Eigen::MatrixXf forms = syntheticForms(64, 6000, 1), queries = syntheticForms(64, 24, 2);
+  RandomStream random(4);
+  std::vector<float> typical;
+  for (int i = 0; i < 3000; ++i) typical.push_back(static_cast<float>(0.5 + random.uniform()));
+  const auto scaled = [&](int shape) {
+    return signatureDistance(queries, forms.middleCols(2 * shape, 2)) /
+           std::sqrt(typical[static_cast<std::size_t>(shape)]);
+  };
+  CompactIndexOptions options;
+  options.num_leading = 64;
+  const auto nearest = CompactIndex(forms, 2, options, typical).nearest(queries, 3);
+  ASSERT_EQ(nearest.size(), 3u);
+  int nearer = 0;
+  for (int shape = 0; shape < 3000; ++shape) nearer += scaled(shape) < nearest[2].second - 1e-4f ? 1 : 0;
+  EXPECT_EQ(nearer, 2) << "as a comparison of all";
+  for (const auto& [shape, distance] : nearest) EXPECT_NEAR(distance, scaled(shape), 1e-4);
+  EXPECT_THROW(CompactIndex(forms, 2, options, {1.0f}), std::invalid_argument);
+  typical[7] = 0.0f;
+  EXPECT_THROW(CompactIndex(forms, 2, options, typical), std::invalid_argument);
 }
 
 TEST(CompactIndex, FindsTheNearestOfManyByLeadingComponents) {

@@ -1,0 +1,123 @@
+/// A program that changes a database until it is killed, and what has to be left then.
+#pragma once
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "core/base/random.h"
+#include "pcl/support/lossy_disk.h"
+#include "recognition/storage/model_store.h"
+
+namespace pcl_symmetry::test {
+
+enum class Interruption { Kill, PowerFailure };
+
+/// Starts a writer, ends it at a random moment and looks at what it left, again and again on the same file.
+class InterruptedWriter {
+public:
+  explicit InterruptedWriter(std::string file) : file_(std::move(file)) {}
+
+  /// \return what was wrong; empty if nothing was.
+  std::string run(Interruption interruption, std::uint64_t seed) {
+    int ends[2];
+    if (::pipe(ends) != 0) return "no pipe";
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::close(ends[0]);
+      if (interruption == Interruption::PowerFailure) {
+        LossyDisk::use();
+        LossyDisk::failAtWrite(static_cast<int>(RandomStream(seed).below(400)), seed);
+      }
+      write(ends[1], seed);
+      ::_exit(0);
+    }
+    ::close(ends[1]);
+    if (interruption == Interruption::Kill) {
+      std::this_thread::sleep_for(std::chrono::microseconds(RandomStream(seed).below(60'000)));
+      ::kill(child, SIGKILL);
+    }
+    std::string said;
+    char piece[4096];
+    for (ssize_t size; (size = ::read(ends[0], piece, sizeof(piece))) > 0;) said.append(piece, size);
+    ::close(ends[0]);
+    ::waitpid(child, nullptr, 0);
+    // The index of the log lies in memory: it does not survive.
+    if (interruption == Interruption::PowerFailure) std::filesystem::remove(file_ + "-shm");
+    return compare(said);
+  }
+
+  std::size_t numChanges() const { return num_changes_; }
+
+private:
+  /// Says what it is going to do, does it, and says that it is done.
+  void write(int out, std::uint64_t seed) {
+    RandomStream random(seed + 1);
+    const auto say = [&](const std::string& line) {
+      return ::write(out, (line + "\n").data(), line.size() + 1) == static_cast<ssize_t>(line.size() + 1);
+    };
+    try {
+      detail::ModelStore store(file_, 10.0, "");
+      for (int i = 0; i < 10'000; ++i) {
+        const std::string name = "model_" + std::to_string(random.below(20));
+        const std::string value = std::to_string(seed) + "_" + std::to_string(i);
+        const bool adds = random.below(3) > 0;
+        if (!say((adds ? "add " : "remove ") + name + " " + value)) return;
+        const std::string part(1000 + random.below(20'000), static_cast<char>('a' + i % 26));
+        if (adds)
+          store.add({name, 0, {value, "", {}}, 1}, {part, part, part, 1}, 0, "");
+        else
+          store.remove(name);
+        if (i % 16 == 0) store.setProjection({0, 1, part}, {});
+        if (!say("done")) return;
+      }
+    } catch (const std::exception& error) {
+      say(std::string("error ") + error.what());
+    }
+  }
+
+  std::string compare(const std::string& said) {
+    std::istringstream lines(said);
+    std::map<std::string, std::string> with_last = models_;  // if the last change was made
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      std::string what, name, value;
+      words >> what >> name >> value;
+      if (what == "error") return line;
+      if (what == "add") with_last[name] = value;
+      if (what == "remove") with_last.erase(name);
+      if (what == "done") {
+        models_ = with_last;
+        ++num_changes_;
+      }
+    }
+    if (!std::filesystem::exists(file_)) return models_.empty() ? "" : "the file is gone";
+    try {
+      detail::ModelStore store(file_, 10.0, "");
+      for (const std::string& damage : store.damages()) return damage;
+      std::map<std::string, std::string> found;
+      for (const detail::StoredModel& model : store.models()) {
+        found[model.name] = store.find(model.name)->second.source.path;
+        store.part(detail::ModelPart::Cloud, model);
+      }
+      if (found != models_ && found != with_last) return "a model was lost, or one is there that was never added";
+      models_ = found;
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::string file_;
+  std::map<std::string, std::string> models_;  // what has to be there: the value of each name
+  std::size_t num_changes_ = 0;
+};
+
+}  // namespace pcl_symmetry::test
