@@ -18,7 +18,7 @@ namespace {
 // people drew by hand for another one, twice takes folds of 60 for round.
 constexpr double kOneTurn = 0.02;
 // Turns that stand for all turns about an axis. chosen: half takes polygons for round, twice takes twice the time.
-constexpr int kNumTurns = 8;
+constexpr int kNumAngles = 8;
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -48,7 +48,7 @@ public:
 
   /// Whether a group has all turns about an axis.
   bool hasAll(const ObjectSymmetries& group, const ContinuousSymmetry& symmetry) const {
-    for (int k = 1; k <= kNumTurns; ++k)
+    for (int k = 1; k <= kNumAngles; ++k)
       if (!has(group, turnOf(symmetry, 2.0 * kPi * goldenFraction(k)))) return false;
     return true;
   }
@@ -60,7 +60,7 @@ public:
 
   Disagreement aboutAxis(const std::string& says, const ContinuousSymmetry& symmetry) const {
     Disagreement result{says, symmetry.axis, symmetry.offset, 0.0, {}};
-    for (int k = 1; k <= kNumTurns; ++k) {
+    for (int k = 1; k <= kNumAngles; ++k) {
       const MotionEvidence evidence = surface_.of(turnOf(symmetry, 2.0 * kPi * goldenFraction(k)));
       if (evidence.deviation >= result.evidence.deviation) result.evidence = evidence;
     }
@@ -89,6 +89,7 @@ private:
 
 /// What is wrong with a list that should be a group as bop_toolkit composes it.
 std::string lacksOf(const ListedSymmetries& listed, const ObjectSymmetries& group) {
+  if (listed.is_composed) return "";
   if (group.kind == RotationGroupKind::Spherical && listed.continuous.size() > 1)
     return "axes of revolution are not composed with each other: a sphere needs one axis and tilts";
   if (isContinuous(group.kind)) return "";

@@ -65,6 +65,7 @@ IsaacAxes isaacAxes(const ObjectSymmetries& symmetries) {
 
 ListedSymmetries symmetriesFromIsaac(const std::vector<std::string>& axes, const std::string& where) {
   ListedSymmetries listed;
+  listed.is_composed = true;
   for (const std::string& text : axes) {
     const std::size_t axis = text.size() > 2 && text[1] == '_' ? kNames.find(text[0]) : std::string::npos;
     const std::string angle = axis == std::string::npos ? "" : text.substr(2);

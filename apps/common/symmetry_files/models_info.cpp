@@ -99,7 +99,7 @@ std::vector<Eigen::Isometry3d> bopTransforms(const ListedSymmetries& listed, dou
 }
 
 ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle) {
-  if (symmetries.kind != RotationGroupKind::Spherical) return {symmetries.discrete, symmetries.continuous};
+  if (symmetries.kind != RotationGroupKind::Spherical) return {symmetries.discrete, symmetries.continuous, false};
   ListedSymmetries listed;
   listed.continuous.push_back({Eigen::Vector3d::UnitZ(), symmetries.center});
   for (const Eigen::Matrix3d& tilt : tiltsCovering(Eigen::Vector3d::UnitZ(), sphere_angle)) {

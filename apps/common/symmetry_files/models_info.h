@@ -16,6 +16,7 @@ namespace pcl_symmetry::apps {
 struct ListedSymmetries {
   std::vector<Eigen::Isometry3d> discrete;     ///< with or without the identity, unit and frame of the model
   std::vector<ContinuousSymmetry> continuous;  ///< unit axes
+  bool is_composed = false;                    ///< whether whoever reads the file composes all that it lists
 };
 
 /// The transforms that bop_toolkit makes of an entry: each discrete one, the identity among them, followed by each turn

@@ -12,7 +12,7 @@ namespace pcl_symmetry {
 /// ring follows from its width, so that the angle is a bound and no estimate.
 /// \param axis unit; called a above.
 /// \param angle radians, in (0, pi].
-/// \return the identity first; about 6.3 / angle^2 rotations.
+/// \return the identity first; about 6.5 / angle^2 rotations.
 /// \throws std::invalid_argument for an angle out of range.
 std::vector<Eigen::Matrix3d> tiltsCovering(const Eigen::Vector3d& axis, double angle);
 
