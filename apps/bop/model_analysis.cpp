@@ -49,8 +49,8 @@ Points sampled(const Shape& shape, const Points& vertices, const ModelOptions& o
 /// Colours and the given file, in the frame of the shifted points.
 void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const ModelOptions& options,
              const std::optional<ListedSymmetries>& given) {
-  info.has_colours = hasColours(shape);
   const bool use_colours = options.use_colours && hasVertexColours(shape);
+  info.has_unread_colours = hasColours(shape) && !use_colours;
   if (!use_colours && !given) return;
   const Points points = sampled(shape, vertices, options);
   if (use_colours) {

@@ -28,7 +28,7 @@ struct ModelInfo {
   double diameter = 0.0;
   int digits = 6;                      ///< significant ones of lengths that are printed
   ObjectSymmetries symmetries;         ///< input frame
-  bool has_colours = false;            ///< of its vertices, or a texture
+  bool has_unread_colours = false;     ///< of its vertices or a texture, which nobody asked for or can read
   std::string group_without_colours;   ///< empty where they take nothing away
   std::optional<SymmetryCheck> check;  ///< against a given file
 };

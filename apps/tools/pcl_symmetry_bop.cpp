@@ -129,11 +129,11 @@ std::string modelsInfo(std::vector<ModelInfo> infos, double sphere_angle) {
 }
 
 void printColourNote(const std::vector<ModelInfo>& infos, bool use_colours) {
-  const auto num_coloured =
-      std::count_if(infos.begin(), infos.end(), [](const auto& info) { return info.has_colours; });
-  if (num_coloured > 0 && !use_colours)
-    std::printf("%td of %zu models have colours, which were not looked at: -colour asks for rotations that keep them\n",
-                num_coloured, infos.size());
+  const auto is_coloured = [](const ModelInfo& info) { return info.has_unread_colours; };
+  const auto num_coloured = std::count_if(infos.begin(), infos.end(), is_coloured);
+  if (num_coloured == 0) return;
+  std::printf("%td of %zu models have colours, which were not looked at: %s\n", num_coloured, infos.size(),
+              use_colours ? "only those of vertices can be read" : "-colour asks for rotations that keep them");
 }
 
 /// Prints how a given file compares, and writes that as JSON.

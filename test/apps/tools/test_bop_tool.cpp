@@ -247,6 +247,13 @@ TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
   EXPECT_NE(output_.find("obj_1.ply  group O"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_2.ply  group C4"), std::string::npos) << output_;
   EXPECT_NE(output_.find("without its colours the group is O"), std::string::npos) << output_;
+  // The same red cube with its colours as coordinates in a texture.
+  std::string textured = cubePLY(true);
+  for (const auto& [from, to] : {std::pair("uchar red", "uchar texture_u"), std::pair("uchar green", "uchar texture_v"),
+                                 std::pair("uchar blue", "uchar other")})
+    textured.replace(textured.find(from), std::string(from).size(), to);
+  ASSERT_EQ(run(folder_.write("obj_3.ply", textured) + " -quiet -points 1000 -colour"), 0) << error_;
+  EXPECT_NE(output_.find("only those of vertices can be read"), std::string::npos) << output_;
 }
 
 TEST_F(BopTool, AnswersBadInputWithOneLineAndAnExitCodeAndDoesTheRest) {
