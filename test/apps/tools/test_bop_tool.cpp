@@ -144,7 +144,7 @@ TEST_F(BopTool, TakesFolders) {
   folder_.write("models/obj_000011.off", boxOFF());
   folder_.write("models/other.off", boxOFF());
   folder_.write("models/readme.txt", "no model");
-  EXPECT_EQ(run((folder_ / "models") + " -quiet -points 1000 -json " + json_), 1) << "one has no surface";
+  EXPECT_EQ(run((folder_ / "models") + " -quiet -points 1000 -grid 32 -json " + json_), 1) << "one has no surface";
   const json info = json::parse(contentOf(json_));
   EXPECT_EQ(info.size(), 2u);
   EXPECT_TRUE(info.contains("2") && info.contains("11"));
@@ -161,7 +161,9 @@ TEST_F(BopTool, SaysWhereAFileDisagreesWithTheSurface) {
       folder_.write("given.json", R"({"3": {"symmetries_discrete": [[1,0,0,0, 0,-1,0,0, 0,0,-1,0, 0,0,0,1]]},
           "12": {"symmetries_continuous": [{"axis": [0,0,1], "offset": [0,0,0]}]}})");
   const std::string report = folder_ / "report.json", plain = folder_.write("plain.off", boxOFF());
-  ASSERT_EQ(run(box_ + " " + vase_ + " " + plain + " -quiet -check " + given + " -report " + report), 0) << error_;
+  ASSERT_EQ(
+      run(box_ + " " + vase_ + " " + plain + " -quiet -points 2000 -grid 32 -check " + given + " -report " + report), 0)
+      << error_;
   EXPECT_NE(output_.find("model 12     file Cinf  surface Cinf  agree"), std::string::npos) << output_;
   EXPECT_NE(output_.find("1 of 2 models disagree"), std::string::npos) << output_;
   const json checked = json::parse(contentOf(report));
@@ -184,7 +186,7 @@ TEST_F(BopTool, ShowsThatATurnInAFileIsNone) {
   const std::string given =
       folder_.write("model_info.json", R"({"symmetries_discrete": [[0,-1,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1]]})");
   const std::string report = folder_ / "report.json";
-  ASSERT_EQ(run(box_ + " -quiet -check " + given + " -report " + report), 0) << error_;
+  ASSERT_EQ(run(box_ + " -quiet -points 2000 -grid 32 -check " + given + " -report " + report), 0) << error_;
   const json box = json::parse(contentOf(report))["models"]["3"];
   EXPECT_EQ(box["file"], "C4");
   EXPECT_EQ(box["remark"], "lists 1 of the 3 rotations of C4");
@@ -199,10 +201,11 @@ TEST_F(BopTool, ShowsThatATurnInAFileIsNone) {
 
 TEST_F(BopTool, AgreesWithWhatItWroteInEveryFormat) {
   const std::string isaac = folder_ / "isaac.yaml", dope = folder_ / "dope";
-  ASSERT_EQ(run(box_ + " -quiet -json " + json_ + " -isaac " + isaac + " -dope " + dope), 0) << error_;
+  ASSERT_EQ(run(box_ + " -quiet -points 2000 -grid 32 -json " + json_ + " -isaac " + isaac + " -dope " + dope), 0)
+      << error_;
   EXPECT_NE(contentOf(isaac).find(R"("3": ["x_180", "y_180", "z_180"]  # D2)"), std::string::npos) << contentOf(isaac);
   for (const std::string& file : {json_, isaac, dope + "/obj_000003/model_info.json"}) {
-    ASSERT_EQ(run(box_ + " -quiet -check " + file), 0) << error_;
+    ASSERT_EQ(run(box_ + " -quiet -points 2000 -grid 32 -check " + file), 0) << error_;
     EXPECT_NE(output_.find("0 of 1 models disagree"), std::string::npos) << file << output_;
   }
 }
@@ -239,10 +242,10 @@ std::string cubePLY(bool has_red_side) {
 
 TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
   const std::string plain = folder_.write("obj_1.ply", cubePLY(false)), red = folder_.write("obj_2.ply", cubePLY(true));
-  ASSERT_EQ(run(plain + " " + red + " -quiet -points 4000"), 0) << error_;
-  EXPECT_NE(output_.find("2 of 2 models have colours, which were not looked at"), std::string::npos) << output_;
+  ASSERT_EQ(run(red + " -quiet -points 2000 -grid 32"), 0) << error_;
+  EXPECT_NE(output_.find("1 of 1 models have colours, which were not looked at"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_2.ply  group O"), std::string::npos) << output_;
-  ASSERT_EQ(run(plain + " " + red + " -quiet -points 4000 -colour"), 0) << error_;
+  ASSERT_EQ(run(plain + " " + red + " -quiet -points 2000 -grid 32 -colour"), 0) << error_;
   EXPECT_EQ(output_.find("not looked at"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_1.ply  group O"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_2.ply  group C4"), std::string::npos) << output_;
@@ -252,7 +255,7 @@ TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
   for (const auto& [from, to] : {std::pair("uchar red", "uchar texture_u"), std::pair("uchar green", "uchar texture_v"),
                                  std::pair("uchar blue", "uchar other")})
     textured.replace(textured.find(from), std::string(from).size(), to);
-  ASSERT_EQ(run(folder_.write("obj_3.ply", textured) + " -quiet -points 1000 -colour"), 0) << error_;
+  ASSERT_EQ(run(folder_.write("obj_3.ply", textured) + " -quiet -points 1000 -grid 32 -colour"), 0) << error_;
   EXPECT_NE(output_.find("only those of vertices can be read"), std::string::npos) << output_;
 }
 
