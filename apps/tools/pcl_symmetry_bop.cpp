@@ -1,33 +1,37 @@
 /// Symmetries, diameter and extent of models, as models_info.json of the BOP pose benchmark has them.
 #include <algorithm>
-#include <boost/filesystem/path.hpp>
-#include <cctype>
+#include <boost/filesystem.hpp>
 #include <cstdio>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bop/model_analysis.h"
+#include "bop/model_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
-#include "common/files/json_values.h"
-#include "common/shape_input/exact_coordinates.h"
-#include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
-#include "core/neighbours/diameter.h"
-#include "pcl_symmetry/object_symmetries.h"
+#include "common/symmetry_files/isaac_axes.h"
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
+using GivenSymmetries = std::map<std::string, ListedSymmetries>;
+
 struct BopOptions {
   std::vector<std::string> inputs;
-  ObjectSymmetryOptions symmetries;
+  ModelOptions models;
+  double sphere_angle = 15.0;  ///< degrees
+  std::optional<std::string> check_path, report_path, dope_folder, isaac_path;
   CommonOptions common;
 };
 
@@ -35,164 +39,170 @@ CommandLine commandLine(BopOptions& options) {
   CommandLine line("pcl_symmetry_bop",
                    "Finds the rotations that map models onto themselves, and writes them with diameter and extent as "
                    "models_info.json of the BOP pose benchmark, in the unit of the input (BOP's is the millimetre).",
-                   "pcl_symmetry_bop models/obj_*.ply -json models/models_info.json");
+                   "pcl_symmetry_bop models -json models/models_info.json");
   line.positionals("input", options.inputs,
                    std::string(kShapeFiles) +
-                       "; obj_000012.ply is model 12, a name without a number takes the first "
+                       ", or a folder of them; obj_000012.ply is model 12, a name without a number takes the first "
                        "free one")
-      .number("feature", options.symmetries.max_feature, Range::closed(0, 1),
+      .number("feature", options.models.symmetries.max_feature, Range::closed(0, 1),
               "least share of the surface, as of a handle or a notch, that breaks a symmetry when it has no image")
-      .number("min_confidence", options.symmetries.min_confidence, Range::closed(0, 1),
+      .number("min_confidence", options.models.symmetries.min_confidence, Range::closed(0, 1),
               "least probability of rotations that are called symmetries")
+      .flag("colour", options.models.use_colours, "only rotations that keep the colours of the vertices")
+      .number("colour_tolerance", options.models.colour_tolerance, Range::above(0),
+              "difference of colours that counts as none, in CIELAB")
+      .number("sphere_angle", options.sphere_angle, Range::upTo(0, 180),
+              "degrees within which the tilts that are written for a sphere reach any rotation")
+      .text("check", "FILE", options.check_path,
+            "compare with models_info.json, DOPE's model_info.json, or Isaac's symmetry_axes in YAML")
+      .text("report", "FILE", options.report_path, "with -check: the comparison as JSON")
+      .text("dope", "DIR", options.dope_folder, "write NAME/model_info.json for DOPE, for each model")
+      .text("isaac", "FILE", options.isaac_path, "write symmetry_axes for Isaac ROS, a line for each model")
       .common(options.common, kMeshPoints | kJson | kSeed | kThreads | kGrid | kQuiet);
   return line;
 }
 
-/// The number that the name of a file ends in; empty where it ends in none.
-std::string numberOf(const std::string& path) {
-  const std::string stem = boost::filesystem::path(path).stem().string();
-  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
-  const auto digits = std::find_if_not(stem.rbegin(), stem.rend(), is_digit).base();
-  const auto number = std::find_if(digits, stem.end(), [](char c) { return c != '0'; });
-  return digits != stem.end() && number == stem.end() ? "0" : std::string(number, stem.end());
+GivenSymmetries readGiven(const std::string& path, std::size_t num_models) {
+  const std::string ending = boost::filesystem::path(path).extension().string();
+  GivenSymmetries given = ending == ".yaml" || ending == ".yml" ? readIsaacAxes(path) : readModelsInfo(path);
+  if (given.count("") > 0 && num_models != 1)
+    throw InputError(path + ": is a file of one model, there are " + std::to_string(num_models));
+  return given;
 }
 
-/// The number of each file; where there is none the first from 1 on that is free.
-/// \throws UsageError where two files have one number.
-std::vector<std::string> keysOf(const std::vector<std::string>& paths) {
-  std::map<std::string, std::string> path_of;
-  std::vector<std::string> keys;
-  for (const std::string& path : paths) {
-    keys.push_back(numberOf(path));
-    if (keys.back().empty()) continue;
-    const auto [entry, is_new] = path_of.insert({keys.back(), path});
-    if (!is_new) throw UsageError(path + " and " + entry->second + " are both model " + keys.back());
-  }
-  int free = 1;
-  for (std::string& key : keys) {
-    if (!key.empty()) continue;
-    while (path_of.count(std::to_string(free)) > 0) ++free;
-    key = std::to_string(free++);
-  }
-  return keys;
+std::optional<ListedSymmetries> givenFor(const GivenSymmetries& given, const std::string& key) {
+  const auto entry = given.find(given.count("") > 0 ? "" : key);
+  if (entry == given.end()) return std::nullopt;
+  return entry->second;
 }
 
-/// What models_info.json says of a model.
-struct ModelInfo {
-  std::string key, file;
-  Eigen::Vector3d low, size;  ///< of the bounding box, input frame
-  double diameter;
-  int digits;                   ///< significant ones of lengths that are printed
-  ObjectSymmetries symmetries;  ///< input frame
+/// What was found of the models, in their order, and what went wrong.
+struct Results {
+  std::vector<ModelInfo> infos;
+  std::vector<std::string> errors;
 };
 
-Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {
-  Points points(3, static_cast<Eigen::Index>(cloud.size()));
-  Eigen::Index size = 0;
-  for (const pcl::PointXYZ& point : cloud)
-    if (point.getVector3fMap().allFinite()) points.col(size++) = point.getVector3fMap();
-  points.conservativeResize(3, size);
-  return points;
-}
-
-void shiftBack(ObjectSymmetries& symmetries, const Eigen::Vector3d& shift) {
-  if (shift.isZero(0.0)) return;
-  symmetries.center += shift;
-  for (Eigen::Isometry3d& symmetry : symmetries.discrete) symmetry = shiftedBack(symmetry, shift, shift);
-  for (ContinuousSymmetry& symmetry : symmetries.continuous) symmetry.offset += shift;
-}
-
-ModelInfo analyse(const Console& console, const std::string& path, const BopOptions& options) {
-  Step loading(console, "Loading " + path);
-  const Shape shape = loadShape(path);
-  const Points vertices = finitePoints(*shape.points);
-  if (vertices.cols() == 0) throw InputError(path + ": has no finite points");
-  loading.done(std::to_string(vertices.cols()) + (shape.mesh ? " vertices" : " points"));
-  ModelInfo info;
-  info.file = path;
-  info.digits = lengthDigits(shape.shift);
-  info.low = vertices.rowwise().minCoeff().cast<double>();
-  info.size = vertices.rowwise().maxCoeff().cast<double>() - info.low;
-  info.low = shiftedBack(info.low, shape.shift);
-  info.diameter = diameter(vertices);
-  Step searching(console, "Searching rotations");
-  info.symmetries = namingFile(path, [&] {
-    return shape.mesh ? detectObjectSymmetries(*shape.mesh, options.symmetries, options.common.mesh_points)
-                      : detectObjectSymmetries(*shape.points, options.symmetries);
+/// A model at a time on each thread: memory grows with the threads, not with the models.
+Results analyseAll(const std::vector<ModelFile>& files, const BopOptions& options, const GivenSymmetries& given) {
+  ModelOptions model_options = options.models;
+  const auto num_threads = static_cast<std::size_t>(resolveNumThreads(options.common.threads));
+  model_options.symmetries.num_threads = static_cast<int>(std::max<std::size_t>(1, num_threads / files.size()));
+  std::vector<std::optional<ModelInfo>> infos(files.size());
+  std::vector<std::string> errors(files.size());
+  const Console console(options.common.quiet);
+  Step searching(console,
+                 "Searching rotations of " + std::to_string(files.size()) + (files.size() == 1 ? " model" : " models"));
+  std::mutex progress;
+  std::size_t num_done = 0;
+  parallelBlocks(files.size(), options.common.threads, [&](std::size_t i) {
+    try {
+      infos[i] = analyseModel(files[i].path, model_options, givenFor(given, files[i].key));
+      infos[i]->key = files[i].key;
+    } catch (const InputError& error) {
+      errors[i] = error.what();
+    }
+    const std::lock_guard<std::mutex> lock(progress);
+    searching.progress(static_cast<double>(++num_done) / static_cast<double>(files.size()));
   });
-  if (!info.symmetries.reason.empty()) throw InputError(path + ": " + info.symmetries.reason);
-  shiftBack(info.symmetries, shape.shift);
-  searching.done(info.symmetries.name());
-  return info;
-}
-
-nlohmann::ordered_json toJson(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-nlohmann::ordered_json toJson(const ModelInfo& info) {
-  nlohmann::ordered_json json{{"diameter", info.diameter}, {"min_x", info.low.x()},   {"min_y", info.low.y()},
-                              {"min_z", info.low.z()},     {"size_x", info.size.x()}, {"size_y", info.size.y()},
-                              {"size_z", info.size.z()}};
-  for (const Eigen::Isometry3d& symmetry : info.symmetries.discrete) {
-    json["symmetries_discrete"].push_back(rowMajor(symmetry));
+  Results results;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (infos[i])
+      results.infos.push_back(std::move(*infos[i]));
+    else
+      results.errors.push_back(errors[i]);
   }
-  for (const ContinuousSymmetry& symmetry : info.symmetries.continuous)
-    json["symmetries_continuous"].push_back({{"axis", toJson(symmetry.axis)}, {"offset", toJson(symmetry.offset)}});
-  return json;
+  std::string outcome = std::to_string(results.infos.size()) + " done";
+  if (!results.errors.empty()) outcome += ", " + std::to_string(results.errors.size()) + " failed";
+  searching.done(outcome);
+  return results;
 }
 
 /// By number, a line each, as the benchmark's own files are.
-std::string modelsInfo(std::vector<ModelInfo> infos) {
+std::string modelsInfo(std::vector<ModelInfo> infos, double sphere_angle) {
   std::stable_sort(infos.begin(), infos.end(), [](const ModelInfo& a, const ModelInfo& b) {
     return a.key.size() != b.key.size() ? a.key.size() < b.key.size() : a.key < b.key;
   });
   std::string text;
   for (const ModelInfo& info : infos)
-    text += (text.empty() ? "{\n  \"" : ",\n  \"") + info.key + "\": " + toJson(info).dump();
+    text += (text.empty() ? "{\n  \"" : ",\n  \"") + info.key + "\": " + toJson(info, sphere_angle).dump();
   return text + "\n}\n";
 }
 
-void printInfo(const ModelInfo& info) {
-  const ObjectSymmetries& found = info.symmetries;
-  std::printf("model %s  %s  group %s, %zu discrete, %zu continuous, confidence %.3f\n", info.key.c_str(),
-              info.file.c_str(), found.name().c_str(), found.discrete.size(), found.continuous.size(),
-              found.confidence);
-  std::printf("  diameter %.6g  size %.6g x %.6g x %.6g\n", info.diameter, info.size.x(), info.size.y(), info.size.z());
-  const auto print_axis = [&](const Eigen::Vector3d& direction, const std::string& turns) {
-    std::printf("  axis %9.6f %9.6f %9.6f through %s  %s\n", direction.x(), direction.y(), direction.z(),
-                spelled(found.center, info.digits).c_str(), turns.c_str());
-  };
-  for (const ContinuousSymmetry& symmetry : found.continuous) print_axis(symmetry.axis, "any angle");
-  std::vector<Eigen::Matrix3d> rotations;
-  for (const Eigen::Isometry3d& symmetry : found.discrete) rotations.push_back(symmetry.linear());
-  for (const RotationAxis& axis : axesOf(rotations)) print_axis(axis.direction, "fold " + std::to_string(axis.order));
+void printColourNote(const std::vector<ModelInfo>& infos, bool use_colours) {
+  const auto is_coloured = [](const ModelInfo& info) { return info.has_unread_colours; };
+  const auto num_coloured = std::count_if(infos.begin(), infos.end(), is_coloured);
+  if (num_coloured == 0) return;
+  std::printf("%td of %zu models have colours, which were not looked at: %s\n", num_coloured, infos.size(),
+              use_colours ? "only those of vertices can be read" : "-colour asks for rotations that keep them");
+}
+
+/// Prints how a given file compares, and writes that as JSON.
+void report(const std::vector<ModelInfo>& infos, const BopOptions& options) {
+  nlohmann::ordered_json models = nlohmann::ordered_json::object(), missing = nlohmann::ordered_json::array();
+  int num_disagreeing = 0, num_compared = 0;
+  for (const ModelInfo& info : infos) {
+    if (!info.check) {
+      std::printf("model %-6s is not in %s\n", info.key.c_str(), options.check_path->c_str());
+      missing.push_back(info.key);
+      continue;
+    }
+    printCheck(info.key, *info.check, info.diameter);
+    models[info.key] = toJson(*info.check, info.diameter);
+    ++num_compared;
+    num_disagreeing += info.check->agrees() ? 0 : 1;
+  }
+  std::printf("%d of %d models disagree with %s\n", num_disagreeing, num_compared, options.check_path->c_str());
+  if (options.report_path)
+    writeText(
+        *options.report_path,
+        nlohmann::ordered_json{{"disagreeing", num_disagreeing}, {"models", models}, {"missing", missing}}.dump(2) +
+            "\n");
+}
+
+void writeDope(const std::vector<ModelInfo>& infos, const std::string& folder, double sphere_angle) {
+  for (const ModelInfo& info : infos) {
+    const boost::filesystem::path model = boost::filesystem::path(folder) / boost::filesystem::path(info.file).stem();
+    boost::system::error_code ignored;  // writeText() names the folder that is missing
+    boost::filesystem::create_directories(model, ignored);
+    writeText((model / "model_info.json").string(), dopeJson(info.symmetries, sphere_angle).dump(2) + "\n");
+  }
+}
+
+void writeIsaac(const std::vector<ModelInfo>& infos, const std::string& path) {
+  std::string text;
+  for (const ModelInfo& info : infos) {
+    const IsaacAxes axes = isaacAxes(info.symmetries);
+    text += isaacLine("\"" + info.key + "\"", axes.axes) + "  # " + info.symmetries.name() +
+            (axes.is_complete ? "" : ", of which turns about x, y and z are only a part") + "\n";
+  }
+  writeText(path, text);
 }
 
 int run(int argc, char** argv) {
   BopOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  const std::vector<std::string> keys = keysOf(options.inputs);
-  options.symmetries.num_cells = options.common.grid;
-  options.symmetries.max_points = std::max(options.symmetries.max_points, options.common.mesh_points);
-  options.symmetries.seed = options.common.librarySeed();
-  options.symmetries.num_threads = options.common.threads;
-  const Console console(options.common.quiet);
-  std::vector<ModelInfo> infos;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    try {
-      infos.push_back(analyse(console, options.inputs[i], options));
-      infos.back().key = keys[i];
-      printInfo(infos.back());
-    } catch (const InputError& error) {
-      console.error(error.what());
-    }
+  if (options.report_path && !options.check_path) throw UsageError("-report needs -check");
+  const std::vector<ModelFile> files = modelFiles(options.inputs);
+  const GivenSymmetries given = options.check_path ? readGiven(*options.check_path, files.size()) : GivenSymmetries{};
+  ObjectSymmetryOptions& symmetries = options.models.symmetries;
+  options.models.mesh_points = options.common.mesh_points;
+  symmetries.num_cells = options.common.grid;
+  symmetries.max_points = std::max(symmetries.max_points, options.common.mesh_points);
+  symmetries.seed = options.common.librarySeed();
+  const Results results = analyseAll(files, options, given);
+  for (const ModelInfo& info : results.infos) printModel(info);
+  printColourNote(results.infos, options.models.use_colours);
+  const double sphere_angle = options.sphere_angle * kDegree;
+  if (!results.infos.empty()) {
+    if (options.check_path) report(results.infos, options);
+    if (options.common.json_path) writeText(*options.common.json_path, modelsInfo(results.infos, sphere_angle));
+    if (options.dope_folder) writeDope(results.infos, *options.dope_folder, sphere_angle);
+    if (options.isaac_path) writeIsaac(results.infos, *options.isaac_path);
   }
-  if (infos.empty()) return 1;
-  const bool all_done = infos.size() == keys.size();
-  if (options.common.json_path) writeText(*options.common.json_path, modelsInfo(std::move(infos)));
-  return all_done ? 0 : 1;
+  const Console console(options.common.quiet);
+  for (const std::string& error : results.errors) console.error(error);
+  return results.errors.empty() ? 0 : 1;
 }
 
 }  // namespace

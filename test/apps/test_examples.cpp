@@ -77,9 +77,18 @@ TEST_F(Example, OwnSearchAndPointType) {
   EXPECT_EQ(numLinesWith(output_, "confidence"), 3) << output_;
 }
 
+/// The box of D2 turns by 0.1 radians a frame.
+TEST_F(Example, SymmetricPoses) {
+  ASSERT_EQ(runOn("09_symmetric_poses", "box.pcd"), 0) << error_;
+  EXPECT_NE(output_.find("group D2"), std::string::npos) << output_;
+  EXPECT_EQ(numLinesWith(output_, "the track by 5.7"), 5) << output_;
+  EXPECT_NE(output_.find("look 28.6"), std::string::npos) << output_;
+}
+
 TEST_F(Example, SaysHowItIsUsed) {
-  for (const std::string example : {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration",
-                                    "06_matching", "07_segmentation", "08_own_search_and_point_type"}) {
+  for (const std::string example :
+       {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration", "06_matching",
+        "07_segmentation", "08_own_search_and_point_type", "09_symmetric_poses"}) {
     EXPECT_EQ(run(example), 2);
     EXPECT_NE(error_.find("usage: " + example), std::string::npos);
   }

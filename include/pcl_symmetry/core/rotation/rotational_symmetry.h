@@ -34,7 +34,17 @@ struct ContinuousSymmetry {
   Eigen::Vector3d offset;  ///< a point of the axis, input frame
 };
 
+/// How far two poses of an object are from each other, whatever its symmetries hide.
+struct PoseDistance {
+  double angle;   ///< radians, in [0, pi]: the least angle between the first pose and all that look like the second
+  double offset;  ///< input units: between the two places of ObjectSymmetries::center
+};
+
 /// The rotations that map a shape onto itself.
+///
+/// A pose T maps the input frame to any other one, such as that of a camera. The pose T S looks like T for every
+/// symmetry S. The methods below take all symmetries into account: the turns of a continuous group in closed form,
+/// without samples of their angles. discrete and continuous are a group, as detection and from() leave them.
 struct ObjectSymmetries {
   RotationGroupKind kind = RotationGroupKind::Cyclic;
   int fold = 1;  ///< order of the main axis; 0 where it is one of revolution
@@ -53,6 +63,52 @@ struct ObjectSymmetries {
   std::string reason;  ///< why there is no answer, set by detectObjectSymmetries() for clouds; empty where there is one
 
   std::string name() const { return nameOf(kind, fold); }
+
+  /// The group that given motions and axes generate, exact but for rounding: how what people wrote into a file becomes
+  /// symmetries. A sphere may be given by two axes of revolution, or by one and a motion that tilts it.
+  /// \param discrete rigid motions in the input frame, the identity or not; each rotates by less than half a degree
+  /// from an element of the group.
+  /// \param continuous axes of revolution, not zero, of any length.
+  /// \throws std::invalid_argument where the motions generate no group of at most 240 rotations, or a motion shifts the
+  /// axes off the common center.
+  static ObjectSymmetries from(const std::vector<Eigen::Isometry3d>& discrete,
+                               const std::vector<ContinuousSymmetry>& continuous);
+
+  /// The poses that look like T.
+  /// \param step radians, > 0: turns about an axis of revolution are at most this far apart. For a sphere, every
+  /// rotation lies within half a step of one of the result; their number grows with its third power.
+  /// \return T first.
+  /// \throws std::invalid_argument for a step that is not > 0.
+  std::vector<Eigen::Isometry3d> equivalents(const Eigen::Isometry3d& T, double step = 0.5) const;
+
+  /// The pose that looks like T and is turned least from another one: the pose that continues a track. The step from
+  /// \p T_previous is never greater than that of the object, whichever of the equivalent poses T is.
+  Eigen::Isometry3d closestTo(const Eigen::Isometry3d& T, const Eigen::Isometry3d& T_previous) const;
+
+  /// One pose for all that look the same: the one that is turned least, among equals the one whose matrix is greatest
+  /// column by column (a body of revolution upside down: a fixed one of its half turns). Poses that look the same have
+  /// the same result but for rounding. No such choice can be continuous: use closestTo() along a track.
+  Eigen::Isometry3d canonical(const Eigen::Isometry3d& T) const;
+
+  /// Difference between two poses as it looks.
+  PoseDistance distance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2) const;
+
+  /// Maximum symmetry-aware surface distance (MSSD of the BOP benchmark): how far the worst of the points is, in the
+  /// pose that looks like T_2 for which that is least. Exact for turns about an axis; for spheres, the distance of the
+  /// centers.
+  /// \param points 3 x N, finite, input frame; N >= 1. The vertices of a mesh, or of its convex hull, are enough.
+  /// \return distance, input units.
+  /// \throws std::invalid_argument without a point.
+  double surfaceDistance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2, const PointsRef& points) const;
+
+  /// Whether two poses look the same within an angle in radians and a distance in input units.
+  bool sameUpTo(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2, double max_angle, double max_offset) const;
+
+  /// Mean of poses of which each may be any of those that look like it: it has the least sum of sin^2 of half the
+  /// angles to them, as far as a descent from each of at most 32 of the poses finds it, and their mean center.
+  /// \return of all that look the same, the pose closest to the first one.
+  /// \throws std::invalid_argument without a pose.
+  Eigen::Isometry3d mean(const std::vector<Eigen::Isometry3d>& poses) const;
 };
 
 /// Finds the group of rotations of a shape: both the rotations that planes of symmetry generate and those of shapes

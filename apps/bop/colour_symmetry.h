@@ -1,0 +1,50 @@
+/// Which symmetries of a shape also keep its colours.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "common/shape_input/shape_input.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+
+namespace pcl_symmetry::apps {
+
+/// Difference of colours in CIELAB that counts as none. chosen: half takes uneven light of a scan for print, twice
+/// overlooks pale print. 2.3 is just noticeable side by side.
+constexpr double kColourTolerance = 12.0;
+
+/// Whether a file has colours for its vertices, or coordinates in a texture.
+bool hasColours(const Shape& shape);
+bool hasVertexColours(const Shape& shape);
+
+/// CIELAB of an sRGB colour under D65.
+/// \param rgb in [0, 1].
+/// \return L in [0, 100], a, b.
+Eigen::Vector3f labOf(const Eigen::Vector3f& rgb);
+
+/// Samples of a surface with the colours of the vertices next to them.
+class ColouredSurface {
+public:
+  /// \param shape with vertex colours.
+  /// \param points 3 x N, finite, N >= 1, minus the shift of the shape.
+  /// \param tolerance difference in CIELAB.
+  ColouredSurface(const Shape& shape, Points points, double tolerance);
+
+  /// Share of the surface on which a motion changes the colour by more than the tolerance.
+  double changedShare(const Eigen::Isometry3d& motion) const;
+
+  /// Whether a motion changes the colour of no more than 5 % of the surface.
+  bool keeps(const Eigen::Isometry3d& motion) const;
+
+private:
+  Points points_;
+  Eigen::Matrix3Xf lab_;
+  double tolerance_;
+  ClosestPointSearch::Ptr search_;
+};
+
+/// The greatest group among the symmetries that keeps the colours.
+ObjectSymmetries keepingColours(const ObjectSymmetries& found, const ColouredSurface& surface);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,125 @@
+#include "bop/model_analysis.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <mutex>
+
+#include "common/command_line/file_errors.h"
+#include "common/files/json_values.h"
+#include "common/shape_input/exact_coordinates.h"
+#include "core/neighbours/diameter.h"
+#include "pcl_symmetry/mesh_sampling.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+// Points spread over a mesh to measure distances. chosen: half blurs edges by half a per cent of the diameter, twice
+// takes twice the time.
+constexpr int kEvidencePoints = 20'000;
+
+Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {
+  Points points(3, static_cast<Eigen::Index>(cloud.size()));
+  Eigen::Index size = 0;
+  for (const pcl::PointXYZ& point : cloud)
+    if (point.getVector3fMap().allFinite()) points.col(size++) = point.getVector3fMap();
+  points.conservativeResize(3, size);
+  return points;
+}
+
+/// PCL's readers are told to be silent by a switch for the whole program.
+Shape loadOneAtATime(const std::string& path) {
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  return loadShape(path);
+}
+
+void shiftBack(ObjectSymmetries& symmetries, const Eigen::Vector3d& shift) {
+  if (shift.isZero(0.0)) return;
+  symmetries.center += shift;
+  for (Eigen::Isometry3d& symmetry : symmetries.discrete) symmetry = shiftedBack(symmetry, shift, shift);
+  for (ContinuousSymmetry& symmetry : symmetries.continuous) symmetry.offset += shift;
+}
+
+ListedSymmetries shifted(ListedSymmetries listed, const Eigen::Vector3d& shift) {
+  for (Eigen::Isometry3d& motion : listed.discrete) motion = shiftedBack(motion, -shift, -shift);
+  for (ContinuousSymmetry& symmetry : listed.continuous) symmetry.offset -= shift;
+  return listed;
+}
+
+Points sampled(const Shape& shape, const Points& vertices, int num_points, std::uint64_t seed) {
+  return shape.mesh ? finitePoints(*sampleMesh(*shape.mesh, num_points, seed)) : vertices;
+}
+
+/// Colours and the given file, in the frame of the shifted points.
+void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const ModelOptions& options,
+             const std::optional<ListedSymmetries>& given) {
+  const bool use_colours = options.use_colours && hasVertexColours(shape);
+  info.has_unread_colours = hasColours(shape) && !use_colours;
+  const std::uint64_t seed = options.symmetries.seed;
+  if (use_colours) {
+    const Points points = sampled(shape, vertices, options.mesh_points, seed);
+    const std::string before = info.symmetries.name();
+    info.symmetries = keepingColours(info.symmetries, ColouredSurface(shape, points, options.colour_tolerance));
+    if (info.symmetries.name() != before) info.group_without_colours = before;
+  }
+  if (given) {
+    const int num_points = std::max(options.mesh_points, kEvidencePoints);
+    const SurfaceEvidence surface(sampled(shape, vertices, num_points, seed), options.tolerance * info.diameter);
+    info.check = checkSymmetries(shifted(*given, shape.shift), info.symmetries, surface, info.diameter);
+    for (Disagreement& disagreement : info.check->disagreements) disagreement.point += shape.shift;
+  }
+}
+
+}  // namespace
+
+ModelInfo analyseModel(const std::string& path, const ModelOptions& options,
+                       const std::optional<ListedSymmetries>& given) {
+  const Shape shape = loadOneAtATime(path);
+  const Points vertices = finitePoints(*shape.points);
+  if (vertices.cols() == 0) throw InputError(path + ": has no finite points");
+  ModelInfo info;
+  info.file = path;
+  info.digits = lengthDigits(shape.shift);
+  info.low = vertices.rowwise().minCoeff().cast<double>();
+  info.size = vertices.rowwise().maxCoeff().cast<double>() - info.low;
+  info.low = shiftedBack(info.low, shape.shift);
+  info.diameter = diameter(vertices);
+  info.symmetries = namingFile(path, [&] {
+    return shape.mesh ? detectObjectSymmetries(*shape.mesh, options.symmetries, options.mesh_points)
+                      : detectObjectSymmetries(*shape.points, options.symmetries);
+  });
+  if (!info.symmetries.reason.empty()) throw InputError(path + ": " + info.symmetries.reason);
+  namingFile(path, [&] { compare(info, shape, vertices, options, given); });
+  shiftBack(info.symmetries, shape.shift);
+  return info;
+}
+
+nlohmann::ordered_json toJson(const ModelInfo& info, double sphere_angle) {
+  nlohmann::ordered_json json{{"diameter", info.diameter}, {"min_x", info.low.x()},   {"min_y", info.low.y()},
+                              {"min_z", info.low.z()},     {"size_x", info.size.x()}, {"size_y", info.size.y()},
+                              {"size_z", info.size.z()}};
+  json.update(symmetriesJson(bopSymmetries(info.symmetries, sphere_angle)));
+  return json;
+}
+
+void printModel(const ModelInfo& info) {
+  const ObjectSymmetries& found = info.symmetries;
+  std::printf("model %s  %s  group %s, %zu discrete, %zu continuous, confidence %.3f\n", info.key.c_str(),
+              info.file.c_str(), found.name().c_str(), found.discrete.size(), found.continuous.size(),
+              found.confidence);
+  if (!info.group_without_colours.empty())
+    std::printf("  without its colours the group is %s\n", info.group_without_colours.c_str());
+  std::printf("  diameter %.6g  size %.6g x %.6g x %.6g\n", info.diameter, info.size.x(), info.size.y(), info.size.z());
+  const auto print_axis = [&](const Eigen::Vector3d& direction, const std::string& turns) {
+    std::printf("  axis %9.6f %9.6f %9.6f through %s  %s\n", direction.x(), direction.y(), direction.z(),
+                spelled(found.center, info.digits).c_str(), turns.c_str());
+  };
+  for (const ContinuousSymmetry& symmetry : found.continuous) print_axis(symmetry.axis, "any angle");
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Eigen::Isometry3d& symmetry : found.discrete) rotations.push_back(symmetry.linear());
+  for (const RotationAxis& axis : axesOf(rotations)) print_axis(axis.direction, "fold " + std::to_string(axis.order));
+}
+
+}  // namespace pcl_symmetry::apps

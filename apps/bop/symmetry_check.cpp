@@ -1,0 +1,226 @@
+#include "bop/symmetry_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+
+#include "common/files/json_values.h"
+#include "core/base/constants.h"
+#include "core/geometry/directions.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+// Greatest distance of a point between turns that are one, share of the diameter. chosen: half takes an axis that
+// people drew by hand for another one, twice takes folds of 60 for round.
+constexpr double kOneTurn = 0.02;
+// Turns that stand for all turns about an axis. chosen: half takes polygons for round, twice takes twice the time.
+constexpr int kNumAngles = 8;
+
+const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
+
+Eigen::Isometry3d turnOf(const ContinuousSymmetry& symmetry, double angle) {
+  Eigen::Isometry3d turn = kIdentity;
+  turn.linear() = rotationAbout(symmetry.axis, angle);
+  turn.translation() = symmetry.offset - turn.linear() * symmetry.offset;
+  return turn;
+}
+
+/// A point that a turn fixes, as close to the origin as there is one.
+Eigen::Vector3d fixedPointOf(const Eigen::Isometry3d& motion) {
+  const Eigen::AngleAxisd turn(motion.linear());
+  const Eigen::Vector3d across = motion.translation() - turn.axis().dot(motion.translation()) * turn.axis();
+  return 0.5 * (across + turn.axis().cross(across) / std::tan(0.5 * turn.angle()));
+}
+
+/// Compares one model.
+class Comparison {
+public:
+  Comparison(const SurfaceEvidence& surface, double diameter)
+      : surface_(surface), points_(cornersOf(surface.points())), limit_(kOneTurn * diameter) {}
+
+  bool has(const ObjectSymmetries& group, const Eigen::Isometry3d& motion) const {
+    return group.surfaceDistance(kIdentity, motion, points_) <= limit_;
+  }
+
+  /// Whether a group has all turns about an axis.
+  bool hasAll(const ObjectSymmetries& group, const ContinuousSymmetry& symmetry) const {
+    for (int k = 1; k <= kNumAngles; ++k)
+      if (!has(group, turnOf(symmetry, 2.0 * kPi * goldenFraction(k)))) return false;
+    return true;
+  }
+
+  Disagreement aboutTurn(const std::string& says, const Eigen::Isometry3d& motion) const {
+    const Eigen::AngleAxisd turn(motion.linear());
+    return {says, turn.axis(), fixedPointOf(motion), turn.angle(), surface_.of(motion)};
+  }
+
+  Disagreement aboutAxis(const std::string& says, const ContinuousSymmetry& symmetry) const {
+    Disagreement result{says, symmetry.axis, symmetry.offset, 0.0, {}};
+    for (int k = 1; k <= kNumAngles; ++k) {
+      const MotionEvidence evidence = surface_.of(turnOf(symmetry, 2.0 * kPi * goldenFraction(k)));
+      if (evidence.deviation >= result.evidence.deviation) result.evidence = evidence;
+    }
+    return result;
+  }
+
+private:
+  /// The points farthest along many directions: those that decide on greatest distances.
+  static Points cornersOf(const Points& points) {
+    constexpr int kNumDirections = 200;  // chosen: half is 10 degrees coarse, twice takes twice the time
+    std::vector<int> corners;
+    for (const Eigen::Vector3d& direction : evenDirections(kNumDirections)) {
+      int farthest = 0;
+      (direction.cast<float>().transpose() * points).maxCoeff(&farthest);
+      corners.push_back(farthest);
+    }
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    return points(Eigen::all, corners);
+  }
+
+  const SurfaceEvidence& surface_;
+  Points points_;
+  double limit_;
+};
+
+/// What is wrong with a list that should be a group as bop_toolkit composes it.
+std::string lacksOf(const ListedSymmetries& listed, const ObjectSymmetries& group) {
+  if (listed.is_composed) return "";
+  if (group.kind == RotationGroupKind::Spherical && listed.continuous.size() > 1)
+    return "axes of revolution are not composed with each other: a sphere needs one axis and tilts";
+  if (isContinuous(group.kind)) return "";
+  std::size_t num_listed = 1;
+  for (const Eigen::Isometry3d& motion : group.discrete) {
+    const bool is_listed = std::any_of(listed.discrete.begin(), listed.discrete.end(), [&](const auto& other) {
+      return Eigen::AngleAxisd(other.linear().transpose() * motion.linear()).angle() < kDegree;
+    });
+    num_listed += is_listed ? 1 : 0;
+  }
+  const std::size_t size = group.discrete.size() + 1;
+  if (num_listed == size) return "";
+  return "lists " + std::to_string(num_listed - 1) + " of the " + std::to_string(size - 1) + " rotations of " +
+         group.name();
+}
+
+std::optional<ObjectSymmetries> groupOf(const ListedSymmetries& listed, std::string& remark) {
+  try {
+    const ObjectSymmetries group = ObjectSymmetries::from(listed.discrete, listed.continuous);
+    remark = lacksOf(listed, group);
+    return group;
+  } catch (const std::invalid_argument& error) {
+    remark = error.what();
+    return std::nullopt;
+  }
+}
+
+bool isParallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.cross(b).norm() < std::sin(kDegree);
+}
+
+/// Listed turns that the surface does not have: of each axis the smallest.
+std::vector<Eigen::Isometry3d> wrongTurns(const ListedSymmetries& listed, const ObjectSymmetries& found,
+                                          const Comparison& comparison) {
+  std::vector<Eigen::Isometry3d> wrong;
+  for (const Eigen::Isometry3d& motion : listed.discrete) {
+    if (comparison.has(found, motion)) continue;
+    const Eigen::AngleAxisd turn(motion.linear());
+    const auto known = std::find_if(wrong.begin(), wrong.end(), [&](const Eigen::Isometry3d& other) {
+      return isParallel(Eigen::AngleAxisd(other.linear()).axis(), turn.axis());
+    });
+    if (known == wrong.end())
+      wrong.push_back(motion);
+    else if (turn.angle() < Eigen::AngleAxisd(known->linear()).angle())
+      *known = motion;
+  }
+  return wrong;
+}
+
+/// What the file has and the surface has not. Of a sphere, whose tilts are many, only the worst.
+void addWrong(const ListedSymmetries& listed, const ObjectSymmetries& found, bool is_sphere,
+              const Comparison& comparison, std::vector<Disagreement>& disagreements) {
+  std::vector<Disagreement> wrong;
+  for (const ContinuousSymmetry& symmetry : listed.continuous)
+    if (!comparison.hasAll(found, symmetry)) wrong.push_back(comparison.aboutAxis("file only", symmetry));
+  for (const Eigen::Isometry3d& motion : wrongTurns(listed, found, comparison))
+    wrong.push_back(comparison.aboutTurn("file only", motion));
+  if (is_sphere && wrong.size() > 1) {
+    std::sort(wrong.begin(), wrong.end(),
+              [](const auto& a, const auto& b) { return a.evidence.deviation > b.evidence.deviation; });
+    wrong.resize(1);
+  }
+  disagreements.insert(disagreements.end(), wrong.begin(), wrong.end());
+}
+
+/// What the surface has and the file has not: an axis at a time, by its smallest turn.
+void addMissing(const ObjectSymmetries& found, const ObjectSymmetries& given, const Comparison& comparison,
+                std::vector<Disagreement>& disagreements) {
+  for (const ContinuousSymmetry& symmetry : found.continuous)
+    if (!comparison.hasAll(given, symmetry)) disagreements.push_back(comparison.aboutAxis("surface only", symmetry));
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Eigen::Isometry3d& motion : found.discrete) rotations.push_back(motion.linear());
+  for (const RotationAxis& axis : axesOf(rotations)) {
+    const Eigen::Isometry3d turn = turnOf({axis.direction, found.center}, 2.0 * kPi / axis.order);
+    if (!comparison.has(given, turn)) disagreements.push_back(comparison.aboutTurn("surface only", turn));
+  }
+}
+
+std::string angleText(double angle) {
+  if (angle == 0.0) return "any angle";
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2f degrees", angle / kDegree);
+  return text;
+}
+
+}  // namespace
+
+SymmetryCheck checkSymmetries(const ListedSymmetries& listed, const ObjectSymmetries& found,
+                              const SurfaceEvidence& surface, double diameter) {
+  const Comparison comparison(surface, diameter);
+  SymmetryCheck check;
+  check.surface_group = found.name();
+  const std::optional<ObjectSymmetries> given = groupOf(listed, check.remark);
+  const bool is_sphere = given && given->kind == RotationGroupKind::Spherical;
+  addWrong(listed, found, is_sphere, comparison, check.disagreements);
+  if (given) {
+    check.file_group = given->name();
+    addMissing(found, *given, comparison, check.disagreements);
+  }
+  return check;
+}
+
+nlohmann::ordered_json toJson(const SymmetryCheck& check, double diameter) {
+  nlohmann::ordered_json json{{"file", check.file_group},
+                              {"surface", check.surface_group},
+                              {"agrees", check.agrees()},
+                              {"remark", check.remark}};
+  json["disagreements"] = nlohmann::ordered_json::array();
+  for (const Disagreement& disagreement : check.disagreements)
+    json["disagreements"].push_back({{"says", disagreement.says},
+                                     {"axis", numbersOf(disagreement.axis)},
+                                     {"point", numbersOf(disagreement.point)},
+                                     {"angle", disagreement.angle / kDegree},
+                                     {"share", disagreement.evidence.share},
+                                     {"mean", disagreement.evidence.mean},
+                                     {"deviation", disagreement.evidence.deviation},
+                                     {"deviation_of_diameter", disagreement.evidence.deviation / diameter}});
+  return json;
+}
+
+void printCheck(const std::string& name, const SymmetryCheck& check, double diameter) {
+  std::printf("model %-6s file %-5s surface %-5s %s%s\n", name.c_str(),
+              check.file_group.empty() ? "none" : check.file_group.c_str(), check.surface_group.c_str(),
+              check.agrees() ? "agree" : "disagree", check.remark.empty() ? "" : (": " + check.remark).c_str());
+  for (const Disagreement& disagreement : check.disagreements) {
+    const Eigen::Vector3d& axis = disagreement.axis;
+    std::printf("  %-12s  axis %9.6f %9.6f %9.6f  %-14s  share %.3f  mean %5.2f %%  deviation %5.2f %%\n",
+                disagreement.says.c_str(), axis.x(), axis.y(), axis.z(), angleText(disagreement.angle).c_str(),
+                disagreement.evidence.share, 100.0 * disagreement.evidence.mean / diameter,
+                100.0 * disagreement.evidence.deviation / diameter);
+  }
+}
+
+}  // namespace pcl_symmetry::apps

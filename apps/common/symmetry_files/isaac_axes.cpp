@@ -1,0 +1,110 @@
+#include "common/symmetry_files/isaac_axes.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <regex>
+#include <sstream>
+
+#include "common/command_line/flag_values.h"
+#include "common/files/file_text.h"
+#include "core/base/constants.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+// Angle between an axis and a coordinate axis that counts as none. chosen: half refuses hand-aligned models, twice
+// moves the surface by a tenth of its size.
+constexpr double kAligned = 5.0 * kDegree;
+
+const std::string kNames = "xyz";
+
+/// The order of the turns of a group about a coordinate axis; 0 for any angle.
+int orderAbout(const ObjectSymmetries& symmetries, const Eigen::Vector3d& axis) {
+  if (symmetries.kind == RotationGroupKind::Spherical) return 0;
+  const auto is_along = [&](const Eigen::Vector3d& other) { return axis.cross(other).norm() < std::sin(kAligned); };
+  if (!symmetries.continuous.empty() && is_along(symmetries.continuous.front().axis)) return 0;
+  if (!symmetries.continuous.empty()) {
+    const bool is_across = std::abs(axis.dot(symmetries.continuous.front().axis)) < std::sin(kAligned);
+    return symmetries.kind == RotationGroupKind::Cylindrical && is_across ? 2 : 1;
+  }
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Eigen::Isometry3d& motion : symmetries.discrete) rotations.push_back(motion.linear());
+  for (const RotationAxis& found : axesOf(rotations))
+    if (is_along(found.direction)) return found.order;
+  return 1;
+}
+
+/// The number of rotations that the turns compose.
+std::size_t numComposed(const ListedSymmetries& listed) {
+  try {
+    return ObjectSymmetries::from(listed.discrete, {}).discrete.size() + 1;
+  } catch (const std::invalid_argument&) {
+    return 0;
+  }
+}
+
+}  // namespace
+
+IsaacAxes isaacAxes(const ObjectSymmetries& symmetries) {
+  IsaacAxes result;
+  for (int k = 0; k < 3; ++k) {
+    const int order = orderAbout(symmetries, Eigen::Vector3d::Unit(k));
+    if (order == 0) result.axes.push_back(kNames.substr(k, 1) + "_full");
+    for (int i = 1; i < order; ++i) result.axes.push_back(kNames.substr(k, 1) + "_" + shortest(360.0 * i / order));
+  }
+  const ListedSymmetries listed = symmetriesFromIsaac(result.axes, "axes");
+  if (symmetries.continuous.empty()) {
+    result.is_complete = numComposed(listed) == symmetries.discrete.size() + 1;
+  } else {
+    const ObjectSymmetries composed = ObjectSymmetries::from(listed.discrete, listed.continuous);
+    result.is_complete = composed.kind == symmetries.kind;
+  }
+  return result;
+}
+
+ListedSymmetries symmetriesFromIsaac(const std::vector<std::string>& axes, const std::string& where) {
+  ListedSymmetries listed;
+  listed.is_composed = true;
+  for (const std::string& text : axes) {
+    const std::size_t axis = text.size() > 2 && text[1] == '_' ? kNames.find(text[0]) : std::string::npos;
+    const std::string angle = axis == std::string::npos ? "" : text.substr(2);
+    char* end = nullptr;
+    const double degrees = std::strtod(angle.c_str(), &end);
+    const bool is_number = !angle.empty() && *end == '\0' && std::isfinite(degrees);
+    if (angle != "full" && !is_number)
+      throw InputError(where + ": " + text + ", must be x, y or z with an angle in degrees or full, such as z_180");
+    const Eigen::Vector3d direction = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis));
+    if (angle == "full")
+      listed.continuous.push_back({direction, Eigen::Vector3d::Zero()});
+    else
+      listed.discrete.emplace_back(Eigen::AngleAxisd(degrees * kDegree, direction));
+  }
+  return listed;
+}
+
+std::string isaacLine(const std::string& name, const std::vector<std::string>& axes) {
+  std::string line = name + ": [";
+  for (std::size_t i = 0; i < axes.size(); ++i) line += (i > 0 ? ", \"" : "\"") + axes[i] + "\"";
+  return line + "]";
+}
+
+std::map<std::string, ListedSymmetries> readIsaacAxes(const std::string& path) {
+  static const std::regex entry(R"(^\s*["']?(\w+)["']?\s*:\s*\[([^\]]*)\]\s*(#.*)?$)"),
+      string(R"(["']?(\w[\w.+-]*)["']?)");
+  std::map<std::string, ListedSymmetries> models;
+  std::istringstream lines(readWholeFile(path));
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch parts;
+    if (!std::regex_match(line, parts, entry)) continue;
+    const std::string list = parts[2];
+    std::vector<std::string> axes;
+    for (std::sregex_iterator i(list.begin(), list.end(), string), end; i != end; ++i) axes.push_back((*i)[1]);
+    const std::string name = parts[1] == "symmetry_axes" ? "" : parts[1].str();
+    models[name] = symmetriesFromIsaac(axes, path + ": " + parts[1].str());
+  }
+  if (models.empty()) throw InputError(path + ": must be JSON, or have lines such as symmetry_axes: [\"z_180\"]");
+  return models;
+}
+
+}  // namespace pcl_symmetry::apps
