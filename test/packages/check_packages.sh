@@ -33,7 +33,7 @@ fail() {
 # use_packages COMMAND...: COMMAND runs a command where the packages are.
 use_packages() {
   "$@" bash -euc '
-    python3 - <<END
+    /usr/bin/python3 - <<END
 import pcl_symmetry, numpy
 random = numpy.random.default_rng(1)
 points = random.normal(size=(4000, 3))
