@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -54,16 +55,19 @@ Eigen::Isometry3d turnAbout(const Eigen::Vector3d& axis, double angle, const Eig
 }
 
 /// The motions that keep the colours and are a group: the worst one goes until the rest is.
-ObjectSymmetries finiteGroup(std::vector<Eigen::Isometry3d> motions, const ColouredSurface& surface) {
-  motions.erase(
-      std::remove_if(motions.begin(), motions.end(), [&](const auto& motion) { return !surface.keeps(motion); }),
-      motions.end());
-  std::sort(motions.begin(), motions.end(),
-            [&](const auto& a, const auto& b) { return surface.changedShare(a) < surface.changedShare(b); });
-  for (; !motions.empty(); motions.pop_back()) {
+ObjectSymmetries finiteGroup(const std::vector<Eigen::Isometry3d>& motions, const ColouredSurface& surface) {
+  std::vector<std::pair<double, std::size_t>> kept;  // changed share and index
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const double changed = surface.changedShare(motions[i]);
+    if (changed <= kMostChanged) kept.emplace_back(changed, i);
+  }
+  std::sort(kept.begin(), kept.end());
+  for (; !kept.empty(); kept.pop_back()) {
+    std::vector<Eigen::Isometry3d> rest;
+    for (const auto& [changed, i] : kept) rest.push_back(motions[i]);
     try {
-      const ObjectSymmetries group = ObjectSymmetries::from(motions, {});
-      if (group.discrete.size() == motions.size()) return group;
+      const ObjectSymmetries group = ObjectSymmetries::from(rest, {});
+      if (group.discrete.size() == rest.size()) return group;
     } catch (const std::invalid_argument&) {
     }
   }
