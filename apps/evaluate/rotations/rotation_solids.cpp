@@ -262,7 +262,7 @@ void addRoundBodies(SolidList& list) {
 void addBladed(SolidList& list) {
   list.add("key", "blades", "C1", [](SolidBuilder& b) {
     b.swept(polygon(24, 0.5), -0.05, 0.05, 0.2).box({1.3, 0, 0}, {0.85, 0.12, 0.05});
-    b.box({1.5, 0.2, 0}, {0.08, 0.1, 0.05}).box({1.9, 0.25, 0}, {0.1, 0.15, 0.05});
+    b.box({1.4, 0.3, 0}, {0.12, 0.2, 0.05}).box({1.95, 0.4, 0}, {0.15, 0.3, 0.05});
   });
   list.add("propeller", "blades", "C3", [](SolidBuilder& b) {
     const Matrix3d pitch = Eigen::AngleAxisd(0.6, Vector3d::UnitX()).toRotationMatrix();

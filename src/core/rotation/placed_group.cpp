@@ -33,7 +33,8 @@ bool standsForAll(RotationGroupKind kind) {
   return kind == RotationGroupKind::Revolution || kind == RotationGroupKind::Spherical;
 }
 
-/// The mean of rotations that stand for all, or nothing where one of them fails clearly.
+/// The mean of rotations that stand for all, or nothing where one of them fails clearly. Their worst would be a matter
+/// of chance.
 std::optional<OffShares> meanShares(const RotationFit& fit, const RotationSet& set) {
   OffShares mean;
   for (std::size_t i = 0; i < set.num_judged; ++i) {

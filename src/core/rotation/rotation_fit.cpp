@@ -274,7 +274,8 @@ OffShares RotationFit::offShares(const Eigen::Matrix3d& rotation, const Eigen::V
   const Eigen::Matrix3f turn = rotation.cast<float>();
   const Eigen::Vector3f shift = (center - rotation * center).cast<float>();
   const auto tolerance = static_cast<float>(limits_.tolerance);
-  const auto far = static_cast<float>(kFar * limits_.tolerance + kDiscRadius * surface_->spacing);
+  // The closest sample lies beside the closest place of the surface.
+  const auto far = static_cast<float>(std::hypot(kFar * limits_.tolerance, kDiscRadius * surface_->spacing));
   std::size_t num_off = 0, num_far = 0;
   for (std::size_t k = 0; k < size; ++k) {
     const Eigen::Vector3f x = turn * points.col(surface_->order[k]) + shift;

@@ -32,6 +32,12 @@ constexpr double kFirstOverlap = 0.42;
 // Overlap behind that of the best turn at which a smaller fold is as likely. chosen: half prefers small angles, twice
 // takes folds that are none.
 constexpr double kBehind = 0.05;
+// Folds that are likely whatever others are: their turns tell best where an axis lies. derived: the orders of all axes
+// of the polyhedral groups, and of most objects.
+constexpr int kSmallFold = 6;
+// Overlap that half a turn may have beyond a turn that is one of a fold. chosen: chance between 256 points; at half
+// chance drops folds, at twice small angles pass.
+constexpr double kAllowance = 0.03;
 // Radians and radii, lines closer than this are one. chosen: half fits one axis twice, twice merges two axes.
 constexpr double kSameLine = 0.05;
 // Directions in one block of a thread. chosen: half adds overhead, twice leaves threads idle; results do not depend on
@@ -63,11 +69,15 @@ std::vector<int> peaks(const std::vector<double>& values) {
   return kept;
 }
 
-/// Overlaps of the turns by 2 pi / n about a line, at index n.
-std::vector<double> turnOverlaps(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
+/// Overlaps of the turns by 2 pi / n about a line, at index n; 0 where half of that turn overlaps better. Turns by
+/// small angles overlap well with any shape, and better the smaller they are.
+std::vector<double> foldOverlaps(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
   std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
-  for (int n = 2; n <= max_fold; ++n)
-    overlaps[n] = fit.overlap(rotationAbout(line.direction, 2.0 * kPi / n), line.center);
+  for (int n = 2; n <= max_fold; ++n) {
+    const double own = fit.overlap(rotationAbout(line.direction, 2.0 * kPi / n), line.center);
+    const double half = fit.overlap(rotationAbout(line.direction, kPi / n), line.center);
+    overlaps[n] = own >= half - kAllowance ? own : 0.0;
+  }
   return overlaps;
 }
 
@@ -126,12 +136,16 @@ double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
-int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
-  const std::vector<double> overlaps = turnOverlaps(fit, line, max_fold);
-  const double best = *std::max_element(overlaps.begin(), overlaps.end());
-  int n = 2;
-  while (overlaps[n] < best - kBehind) ++n;
-  return n;
+std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
+  const std::vector<double> overlaps = foldOverlaps(fit, line, max_fold);
+  const auto least_near_best = [&](int last) {
+    const double best = *std::max_element(overlaps.begin(), overlaps.begin() + last + 1);
+    int n = 2;
+    while (overlaps[n] < best - kBehind) ++n;
+    return n;
+  };
+  const int small = least_near_best(std::min(kSmallFold, max_fold)), any = least_near_best(max_fold);
+  return any == small ? std::vector{small} : std::vector{small, any};
 }
 
 AxisLineCandidate bestAcross(const RotationFit& fit, const AxisLineCandidate& line, double width, int num_angles,

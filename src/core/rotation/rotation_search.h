@@ -33,9 +33,10 @@ bool isKnown(const std::vector<AxisLineCandidate>& lines, const AxisLineCandidat
 /// Angle between two lines, in [0, pi/2].
 double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
-/// The least n in [2, \p max_fold] whose turn by 2 pi / n overlaps nearly as well with the surface as the best. Small
-/// angles say little of where an axis lies.
-int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
+/// Folds in [2, \p max_fold] whose turns by 2 pi / n overlap best with the surface, of those that overlap as well as half
+/// the turn: one of at most 6, and one of all where that is another.
+/// \return one or two, rising.
+std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
 
 /// The half turn, among those about axes perpendicular to a line, that overlaps most with the surface.
 /// \param width the axes have \p num_angles angles in [0, width), radians.

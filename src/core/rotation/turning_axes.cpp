@@ -17,6 +17,8 @@ namespace {
 // Overlap of the likeliest turn about a line before its fit. chosen: half fits many lines in vain, at twice (1)
 // sampling drops true axes.
 constexpr double kLeastTurnOverlap = 0.5;
+// Overlap that a turn by a smaller angle needs beyond one by a greater. chosen: chance between 256 points.
+constexpr double kClearlyBetter = 0.02;
 // Axes that are enough to place any finite group. chosen: half may miss the main axis, twice takes twice the time.
 constexpr std::size_t kMaxAxes = 12;
 // Turns that tell whether a line is an axis of revolution: multiples of 1/97 of a turn. derived: 97 is prime, so that
@@ -25,7 +27,14 @@ constexpr int kProfileTurns = 97;
 // Their order: those that come first are spread over half a turn. derived: 48 steps of 19 modulo 48 visit all.
 constexpr int kProfileStep = 19;
 // Folds of a line that are fitted, the greatest first. chosen: one may fail by chance, four are never needed.
-constexpr int kMostFolds = 3;
+constexpr std::size_t kMostFolds = 3;
+// Pieces around a line that are a pattern, and the excess of other turns that makes them one. chosen: two plugs of a
+// lamp are features, three spokes are not; at half of the excess, scratches are patterns, at twice thin spokes are
+// none.
+constexpr int kPattern = 3;
+constexpr double kLeastPattern = 0.5;
+// What the worst turn by any angle may exceed that of others by. chosen: as for the mean over all turns.
+constexpr double kWorstTurn = 1.25;
 
 /// What turns about a line map off the surface, judged by some of the points. Each turn is asked once.
 class TurnProfile {
@@ -52,12 +61,28 @@ private:
   std::map<std::pair<int, int>, OffShares> shares_;
 };
 
-/// The line moved to where its likeliest turn fits best; nothing where no turn fits.
-std::optional<RotationSet> fittedTurn(const RotationFit& fit, const AxisLineCandidate& start, int max_fold) {
-  RotationSet turn = singleTurn(start, likeliestFold(fit, start, max_fold));
-  if (fit.overlap(turn) < kLeastTurnOverlap) return std::nullopt;
-  turn = fit.roughlyFitted(turn);
-  if (fit.overlap(turn) < kRoughOverlap) return std::nullopt;
+/// The line of a turn, near the place where the search for it began.
+AxisLineCandidate lineOf(const RotationSet& turn, const AxisLineCandidate& start) {
+  const Eigen::Vector3d direction = axisOf(turn.rotations[0]);
+  return {direction, turn.center + direction.dot(start.center - turn.center) * direction};
+}
+
+/// The likeliest turn about a line moved to where it fits best; nothing where no turn fits, or where it ends at a line
+/// that was tried.
+std::optional<RotationSet> fittedTurn(const RotationFit& fit, const AxisLineCandidate& start, int max_fold,
+                                      const std::vector<AxisLineCandidate>& tried) {
+  RotationSet turn;
+  double overlap = 0.0;
+  for (const int fold : likelyFolds(fit, start, max_fold)) {
+    RotationSet other = singleTurn(start, fold);
+    if (fit.overlap(other) < kLeastTurnOverlap) continue;
+    other = fit.roughlyFitted(other);
+    const double its_overlap = fit.overlap(other);
+    if (its_overlap <= overlap + kClearlyBetter) continue;
+    overlap = its_overlap;
+    turn = std::move(other);
+  }
+  if (overlap < kRoughOverlap || isKnown(tried, lineOf(turn, start))) return std::nullopt;
   turn = fit.closelyFitted(turn);
   return fit.overlap(turn) < kFairOverlap ? std::nullopt : std::optional(turn);
 }
@@ -109,37 +134,44 @@ std::optional<TurningAxis> axisFrom(std::optional<PlacedGroup> group, int fold) 
 
 }  // namespace
 
-/// The line with all turns about it that are symmetries: all, or those of the greatest fold that holds.
+std::optional<TurningAxis> AxisFinder::foldAbout(const AxisLineCandidate& line, const std::vector<int>& folds) const {
+  for (std::size_t i = 0; i < folds.size() && i < kMostFolds; ++i) {
+    const RotationSet turns = cyclicSet(line, folds[i]);
+    auto axis = axisFrom(placedGroup(fit_, options_, RotationGroupKind::Cyclic, folds[i], turns), folds[i]);
+    if (axis) return axis;
+  }
+  return std::nullopt;
+}
+
+/// The line with all turns about it that are symmetries. Three or more equal pieces around a line are a pattern: their
+/// fold comes before turns by all angles, though the pieces together be small enough for a feature.
 std::optional<TurningAxis> AxisFinder::axisAbout(const AxisLineCandidate& line) {
   TurnProfile profile(fit_, line);
   const double most = greatestExcess(fit_.limits(), kSomeSamples);
   const auto [worst, excess] = failingTurn(profile, most);
-  if (excess <= most) {
-    auto axis = axisFrom(placedGroup(fit_, options_, RotationGroupKind::Revolution, 0, turnsAbout(line)), 0);
-    if (axis) return axis;
-  }
-  int num_tried = 0;
-  for (const int fold : foldsOf(fit_, profile, line, options_.max_fold)) {
-    if (num_tried++ == kMostFolds) break;
-    auto axis = axisFrom(placedGroup(fit_, options_, RotationGroupKind::Cyclic, fold, cyclicSet(line, fold)), fold);
-    if (!axis) continue;
+  const auto revolution = [&]() -> std::optional<TurningAxis> {
+    if (excess > kWorstTurn * most) return std::nullopt;
+    return axisFrom(placedGroup(fit_, options_, RotationGroupKind::Revolution, 0, turnsAbout(line)), 0);
+  };
+  std::vector<int> folds;
+  if (excess >= kLeastPattern) folds = foldsOf(fit_, profile, line, options_.max_fold);
+  const bool is_pattern = !folds.empty() && (folds.front() >= kPattern || excess > 1.0);
+  std::optional<TurningAxis> axis = is_pattern ? foldAbout(line, folds) : revolution();
+  if (!axis) axis = is_pattern ? revolution() : foldAbout(line, folds);
+  if (!axis || axis->fold > 0)
     rejected_.push_back({line, 0, 2.0 * kPi * worst / kProfileTurns, profile.shares(worst, kProfileTurns)});
-    return axis;
-  }
-  rejected_.push_back({line, 0, 2.0 * kPi * worst / kProfileTurns, profile.shares(worst, kProfileTurns)});
-  return std::nullopt;
+  return axis;
 }
 
 void AxisFinder::judge(const std::vector<AxisLineCandidate>& lines) {
   for (const AxisLineCandidate& start : lines) {
     if (isRound() || axes_.size() >= kMaxAxes) break;
     if (isKnown(tried_, start)) continue;
-    const std::optional<RotationSet> turn = fittedTurn(fit_, start, options_.max_fold);
-    if (!turn) continue;
-    const Eigen::Vector3d direction = axisOf(turn->rotations[0]);
-    const AxisLineCandidate line{direction,
-                                 turn->center + direction.dot(start.center - turn->center) * direction};
-    if (isKnown(tried_, line)) continue;
+    const std::optional<RotationSet> turn = fittedTurn(fit_, start, options_.max_fold, tried_);
+    const bool is_new = turn && !isKnown(tried_, lineOf(*turn, start));
+    tried_.push_back(start);
+    if (!is_new) continue;
+    const AxisLineCandidate line = lineOf(*turn, start);
     tried_.push_back(line);
     const OffShares shares = fit_.offShares(turn->rotations[0], turn->center, kSomeSamples);
     if (fit_.limits().excess(shares) > greatestExcess(fit_.limits(), kSomeSamples)) {

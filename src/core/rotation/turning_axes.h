@@ -39,6 +39,7 @@ public:
 
 private:
   std::optional<TurningAxis> axisAbout(const AxisLineCandidate& line);
+  std::optional<TurningAxis> foldAbout(const AxisLineCandidate& line, const std::vector<int>& folds) const;
 
   const RotationFit& fit_;
   const ObjectSymmetryOptions& options_;
