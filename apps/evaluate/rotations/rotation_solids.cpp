@@ -64,7 +64,7 @@ Outline slottedCircle(double radius, double half_width, double depth) {
 
 /// A quarter circle from the pole below to the equator.
 Outline bowlProfile(double outer, double inner) {
-  constexpr int kSteps = 24;
+  constexpr int kSteps = 24;  // chosen: half shows edges, twice adds faces
   Outline profile;
   for (int k = 0; k <= kSteps; ++k) {
     const double angle = 0.5 * kPi * k / kSteps;

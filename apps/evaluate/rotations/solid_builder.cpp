@@ -26,6 +26,7 @@ SolidBuilder& SolidBuilder::face(const std::vector<Vector3d>& corners) {
 }
 
 SolidBuilder& SolidBuilder::box(const Vector3d& center, const Vector3d& half, const Eigen::Matrix3d& turn) {
+  // derived: the faces of a box, by the bits of its corners.
   constexpr int kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (const auto& quad : kQuads) {
     std::vector<Vector3d> corners;
