@@ -11,6 +11,9 @@ namespace {
 
 // Spacings, edge of a cell. chosen: half takes four times the memory, twice lists twice as many discs in each cell.
 constexpr float kCellInSpacings = 1.5f;
+// Median spacings, greatest spacing that makes a disc. chosen: at half, unevenly dense surfaces get holes, at twice the
+// disc of an outlier covers much of a shape.
+constexpr float kMostSpacings = 3.0f;
 // Cells along the longest edge. derived: 96^3 cells of 4 bytes are 3.5 MB.
 constexpr float kMostCells = 96.0f;
 // Half the diagonal of a cell, cells. derived: sqrt(3) / 2.
@@ -20,15 +23,20 @@ constexpr float kHalfDiagonal = 0.8660254f;
 
 SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry, float disc_radius, float reach)
     : reach_(reach) {
+  const auto spacing = static_cast<float>(median(geometry.spacing));
+  float greatest = 0.0f;
+  for (Eigen::Index i = 0; i < samples.cols(); ++i) {
+    discs_.push_back({samples.col(i), geometry.normals.col(i),
+                      disc_radius * std::min(geometry.spacing[i], kMostSpacings * spacing)});
+    greatest = std::max(greatest, discs_.back().radius);
+  }
+  const float margin = reach + greatest;
   const Eigen::Vector3f low = samples.rowwise().minCoeff(), high = samples.rowwise().maxCoeff();
-  const float extent = (high - low).maxCoeff() + 2.0f * reach;
-  cell_size_ = std::max(kCellInSpacings * static_cast<float>(median(geometry.spacing)), extent / kMostCells);
-  origin_ = low.array() - reach;
-  size_ =
-      ((high - low).array() + 2.0f * reach).max(0.0f).cwiseQuotient(Eigen::Array3f::Constant(cell_size_)).cast<int>() +
-      1;
-  for (Eigen::Index i = 0; i < samples.cols(); ++i)
-    discs_.push_back({samples.col(i), geometry.normals.col(i), disc_radius * geometry.spacing[i]});
+  const float extent = (high - low).maxCoeff() + 2.0f * margin;
+  cell_size_ = std::max(kCellInSpacings * spacing, extent / kMostCells);
+  origin_ = low.array() - margin;
+  const Eigen::Array3f sides = (high - low).array() + 2.0f * margin;
+  size_ = (sides / cell_size_).cast<int>() + 1;
   // Counts, then places: two passes over the same cells.
   first_.assign(static_cast<std::size_t>(size_.prod()) + 1, 0);
   for (const Disc& disc : discs_) visitCells(disc, [&](std::size_t cell) { ++first_[cell + 1]; });
