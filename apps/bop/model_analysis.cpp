@@ -66,7 +66,10 @@ void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const 
   }
   if (given) {
     const int num_points = std::max(options.mesh_points, kEvidencePoints);
-    const SurfaceEvidence surface(sampled(shape, vertices, num_points, seed), options.tolerance * info.diameter);
+    const ObjectSymmetryOptions& limits = options.symmetries;
+    const double tolerance =
+        limits.absolute_tolerance > 0.0 ? limits.absolute_tolerance : limits.tolerance * info.diameter;
+    const SurfaceEvidence surface(sampled(shape, vertices, num_points, seed), tolerance);
     info.check = checkSymmetries(shifted(*given, shape.shift), info.symmetries, surface, info.diameter);
     for (Disagreement& disagreement : info.check->disagreements) disagreement.point += shape.shift;
   }

@@ -18,7 +18,6 @@ struct ModelOptions {
   int mesh_points = 10'000;
   bool use_colours = false;
   double colour_tolerance = kColourTolerance;  ///< difference in CIELAB
-  double tolerance = 0.01;                     ///< of the check, share of the diameter
 };
 
 /// What models_info.json says of a model.

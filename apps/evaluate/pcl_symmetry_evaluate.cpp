@@ -9,6 +9,7 @@
 #include "evaluate/recognition/recognition.h"
 #include "evaluate/registration/registration.h"
 #include "evaluate/retrieval/retrieval.h"
+#include "evaluate/rotations/rotations.h"
 #include "evaluate/segmentation/segmentation.h"
 
 namespace {
@@ -28,6 +29,7 @@ constexpr SubCommand kSubCommands[] = {
     {"recognition", "how well a scan tells which model of a database it shows", evaluateRecognition},
     {"registration", "how well scans are brought to models of their objects", evaluateRegistration},
     {"retrieval", "how well shapes find others of their class", evaluateRetrieval},
+    {"rotations", "how well groups of rotations of solids are found", evaluateRotations},
     {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation}};
 
 void printUsage() {

@@ -45,7 +45,11 @@ CommandLine commandLine(BopOptions& options) {
                        ", or a folder of them; obj_000012.ply is model 12, a name without a number takes the first "
                        "free one")
       .number("feature", options.models.symmetries.max_feature, Range::closed(0, 1),
-              "least share of the surface, as of a handle or a notch, that breaks a symmetry when it has no image")
+              "share of the surface, as of plugs and notches, that a symmetry may map off the surface")
+      .number("tolerance", options.models.symmetries.tolerance, Range::upTo(0, 0.1),
+              "how far a symmetric surface may be off, share of the greatest distance between two points")
+      .number("absolute_tolerance", options.models.symmetries.absolute_tolerance, Range::atLeast(0),
+              "the same in the unit of the input; 0: the share decides")
       .number("min_confidence", options.models.symmetries.min_confidence, Range::closed(0, 1),
               "least probability of rotations that are called symmetries")
       .flag("colour", options.models.use_colours, "only rotations that keep the colours of the vertices")

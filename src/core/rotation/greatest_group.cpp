@@ -20,14 +20,14 @@ constexpr double kStepAcross = 0.02;
 // of mass where the points are unevenly dense.
 constexpr int kNumStepsAlong = 25;
 
+/// Turns about axes in all directions have to hold: two axes of revolution could be one.
 std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                          const std::vector<TurningAxis>& axes) {
-  if (axes.size() < 2) return std::nullopt;
-  RotationSet set = turnsAbout(axes[0].line);
-  const RotationSet others = turnsAbout(axes[1].line);
-  set.rotations.insert(set.rotations.end(), others.rotations.begin(), others.rotations.end());
-  set.num_judged = set.rotations.size();
-  return placedGroup(fit, options, RotationGroupKind::Spherical, 0, set);
+                                          const TurningAxis& main) {
+  // The center lies on the axis; the samples, whose mean is about there, tell where.
+  const Eigen::Vector3d mass = centerOfMass(fit.points());
+  const Eigen::Vector3d center =
+      main.line.center + main.line.direction.dot(mass - main.line.center) * main.line.direction;
+  return placedGroup(fit, options, RotationGroupKind::Spherical, 0, turnsOfSphere(center));
 }
 
 std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
@@ -73,9 +73,14 @@ std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymm
 std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                            const RotationGroup& group, const std::vector<TurningAxis>& axes) {
   const std::vector<RotationAxis> own = axesOf(group.elements());
+  // Axes of one order are images of each other: one of each order stands for the first.
+  std::vector<RotationAxis> firsts;
+  for (const RotationAxis& axis : own)
+    if (std::none_of(firsts.begin(), firsts.end(), [&](const RotationAxis& a) { return a.order == axis.order; }))
+      firsts.push_back(axis);
   for (std::size_t i = 0; i < axes.size(); ++i)
     for (std::size_t j = i + 1; j < axes.size(); ++j)
-      for (const RotationAxis& a : own)
+      for (const RotationAxis& a : firsts)
         for (const RotationAxis& b : own)
           if (auto found = groupThrough(fit, options, group, axes[i], axes[j], a, b)) return found;
   return std::nullopt;
@@ -84,7 +89,7 @@ std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectS
 /// The greatest group of a body of revolution.
 PlacedGroup continuousGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                             const std::vector<TurningAxis>& axes) {
-  if (auto sphere = sphericalGroup(fit, options, axes)) return *sphere;
+  if (auto sphere = sphericalGroup(fit, options, axes.front())) return *sphere;
   if (auto cylinder = cylindricalGroup(fit, options, axes.front())) return *cylinder;
   return axes.front().group;
 }

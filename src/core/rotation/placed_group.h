@@ -13,23 +13,24 @@ struct PlacedGroup {
   int fold = 1;
   RotationSet set;  ///< all elements but the identity; for continuous groups, turns that stand for all
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the first rotation
-  RotationEvidence evidence;
+  OffShares shares;                                 ///< of the worst rotation; of rotations by any angle the mean
 };
 
-/// Overlap with the surface that a set of rotations has to reach before its fit. chosen: half fits many sets in vain,
-/// at 4/3 (1) sampling drops true ones.
-constexpr double kRoughOverlap = 0.75;
-/// Overlap after its rough fit. chosen: half fits closely in vain, beyond 1 nothing passes.
-constexpr double kFairOverlap = 0.85;
-/// Rough support of a set that goes on to be judged. chosen: half judges sets in vain, beyond 1 nothing passes.
-constexpr double kFairSupport = 0.85;
+/// Overlap with the surface that a set of rotations has to reach before its fit, and after its rough fit. chosen: half
+/// fits many sets in vain, at 4/3 features that may be ignored drop true ones.
+constexpr double kRoughOverlap = 0.6, kFairOverlap = 0.7;
+/// Points that tell whether a set is worth its fit. chosen: half drops true ones by chance, twice takes twice the time.
+constexpr int kSomeSamples = 600;
 
-/// Whether the surface supports rotations: confident enough, and no feature too large is mapped off the surface.
-bool holds(const RotationEvidence& evidence, const ObjectSymmetryOptions& options);
+/// The excess beyond which a set is given up that was judged by some of the points: three standard errors above 1.
+double greatestExcess(const RotationLimits& limits, int num_samples);
 
 /// The set moved to where it fits the surface best; nothing if the surface does not support it there.
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                        RotationGroupKind kind, int fold, RotationSet set);
+
+/// Whether an excess is clearly smaller than that of other rotations: else chance decides between them.
+bool beatsOthers(double excess, double others);
 
 /// The rotation that takes z to \p z, and x as near as can be to \p x.
 /// \param z,x not parallel.
@@ -52,5 +53,8 @@ RotationSet singleTurn(const AxisLineCandidate& line, int fold);
 
 /// Turns about a line that stand for all turns about it: their angles fit no polygon.
 RotationSet turnsAbout(const AxisLineCandidate& line);
+
+/// Rotations about a center that stand for all: axes in all directions, angles from a third of a turn to a half.
+RotationSet turnsOfSphere(const Eigen::Vector3d& center);
 
 }  // namespace pcl_symmetry

@@ -8,8 +8,7 @@
 
 #include "core/base/median.h"
 #include "core/base/parallel.h"
-#include "core/distance_transform/edt_correlation.h"
-#include "core/evidence/plane_support.h"
+#include "core/evidence/surface_distance.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
@@ -19,33 +18,35 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Log odds that rotations are symmetries, each summand of unit 1.
-///
-/// fitted: logistic regression for planes on whole clouds of 500 to 10 000 points, with noise of 0 to 2 % of the
-/// diagonal, of 200 models of the training half of the Princeton Shape Benchmark; the intercept was set by hand.
-struct RotationConfidence {
-  double intercept = 4.5, per_unexplained = -2.0, per_lost_score = -0.2;
-  double unexplained_per_roughness = 0.03;  ///< what uncertain normals leave of a symmetry
-  double unexplained_unit = 0.01, unexplained_unit_per_spacing = 0.3;
-  double lost_unit = 0.003, lost_unit_per_sq_spacing = 2.0;  ///< noise of the distance transform
-};
-constexpr RotationConfidence kConfidence{};  // fitted: see above
+// Tolerances, beyond which a piece of surface sticks out. chosen: a tenth of the diameter at the default, as in the
+// definition of symmetries by the BOP benchmark; at half, screws count as parts, at twice handles as features.
+constexpr double kFar = 10.0;
+// Share of the surface that may stick out, of that which may be off. chosen: at half, plugs break symmetries, at twice
+// a thin handle of a large mug does not.
+constexpr double kFarOfFeature = 0.125;
+// Least share that may stick out. derived: single samples at sharp edges are far by chance; 2 of 1000.
+constexpr double kLeastFar = 0.002;
+// How uncertain a share is: at least, and in standard errors of a share near the limit. chosen: half calls chance
+// certain, twice calls everything uncertain; decisions do not depend on it.
+constexpr double kShareUnit = 0.005, kStandardErrors = 0.5;
 
 // Points of overlap(). chosen: half lets chance hide axes, twice takes twice the time of the search.
 constexpr int kOverlapSamples = 256;
-// Points of rough fits, rough support and close fits. chosen: half makes the fits less exact and drops true axes by
-// chance, twice takes twice the time.
-constexpr int kFewSamples = 150, kSomeSamples = 1000, kManySamples = 3000;
-// Spacings, width of the weights at the end. chosen: as for planes; half leaves too few pairs, twice is less exact.
-constexpr double kFinalSigmaInSpacings = 3.0;
+// Points of rough and close fits. chosen: half makes the fits less exact and drops true axes by chance, twice takes
+// twice the time.
+constexpr int kFewSamples = 200, kManySamples = 1000;
+// Cells of the grid of closest samples. chosen: half misleads rough fits, twice takes eight times the time.
+constexpr int kGridCells = 32;
+// Steps from a sample to a closer neighbour. derived: a cell of the grid is a few spacings wide.
+constexpr int kMaxHops = 4;
+// Tolerances, and spacings, width of the weights of close fits at first; tolerances, and roughnesses, at last. chosen:
+// at half of the first, fits stay where rough fits end; at twice of the last, features move the axis.
+constexpr double kFirstTolerances = 2.0, kFirstSpacings = 1.0, kLastTolerances = 0.7, kLastRoughnesses = 3.0;
 // Iterations of the two fits. chosen: half cuts fits short, twice changes little as settled fits end early.
 constexpr int kRoughIterations = 8, kCloseIterations = 12;
 // Share of the greatest eigenvalue below which a direction is free, as turns of a cylinder about its axis are. chosen:
 // half lets sampling move free directions, twice freezes slender shapes.
 constexpr double kLeastStiffness = 1e-3;
-// Neighbours of four that have to be off the surface for a sample to belong to a feature. chosen: with 2 sampling alone
-// makes features, with 4 small features vanish.
-constexpr int kMostWitnesses = 3;
 // Radians and radii together, longest step. chosen: half takes more iterations, twice may leave the basin.
 constexpr double kLongestStep = 0.2;
 // Sigmas, a shorter step halves the width of the weights. chosen: half waits longer, twice narrows before the set
@@ -53,20 +54,19 @@ constexpr double kLongestStep = 0.2;
 constexpr double kRest = 0.1;
 // Radians and radii together, a shorter step ends the fit. chosen: a hundredth of the tolerance of 1 %; half takes an
 // iteration more, twice ends earlier.
-constexpr double kSettled = 1e-4;
+constexpr double kSettled = 2e-4;
 // Rotations of a large group that are fitted, spread over it. chosen: half may leave an axis free, twice takes twice
 // the time.
 constexpr std::size_t kMostFitted = 6;
-// Least overlap and support of a surface with itself. derived: guards the divisions for isolated points only.
+// Least overlap and share of a surface with itself. derived: guards the divisions for isolated points only.
 constexpr double kLeastOwn = 1e-3;
-// Radii, least spacing. derived: the rounding of float coordinates.
-constexpr double kLeastSpacing = 1e-6;
-// Sigmas, reach of the search for closest points. derived: beyond, weights exp(-9) are below 1.3e-4.
+// Radii, least tolerance and width. derived: the rounding of float coordinates.
+constexpr double kLeastLength = 1e-6;
+// Sigmas, reach of the weights. derived: beyond, weights exp(-9) are below 1.3e-4.
 constexpr double kReach = 3.0;
-
-double mean(const std::vector<float>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
+// How much farther off a disc a new sample lies than a sample that the disc was fitted to. derived: as for planes, the
+// root of (1 + l) / (1 - l) with l = 3 parameters / 9 points.
+constexpr float kNewSampleFactor = 1.41421356f;
 
 Eigen::Matrix3d turnBy(const Eigen::Vector3d& rotation_vector) {
   const double angle = rotation_vector.norm();
@@ -82,6 +82,12 @@ std::vector<std::size_t> spreadOver(std::size_t size, std::size_t most) {
 }
 
 }  // namespace
+
+double RotationLimits::excess(const OffShares& shares) const {
+  const double far = std::max(kLeastFar, kFarOfFeature * max_feature);
+  const double by_off = max_feature > 0.0 ? shares.off / max_feature : (shares.off > 0.0 ? 2.0 : 0.0);
+  return std::max(by_off, shares.far / far);
+}
 
 /// Least squares of the distances m . (x' - y) in small turns omega of all axes and moves t of the center: unknowns
 /// (omega, t).
@@ -108,40 +114,64 @@ struct RotationFit::NormalEquations {
   }
 };
 
-RotationFit::RotationFit(Points points, const GaussianEdt& edt, std::uint64_t seed, int num_threads)
-    : points_(std::move(points)),
-      edt_(edt),
-      num_threads_(num_threads),
-      search_(makeFlannSearch(points_)),
-      geometry_(localGeometry(points_, *search_, kNumSupportNeighbours, num_threads)),
-      spacing_(median(geometry_.spacing)),
-      roughness_(median(geometry_.roughness) / std::max(spacing_, kLeastSpacing)),
-      baseline_(std::max(mean(ownSupport(points_, geometry_)), kLeastOwn)),
-      sigma_(edt.sigma()),
-      final_sigma_(std::min(sigma_, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing_))),
-      few_(drawSamples(points_.cols(), kFewSamples, seed)),
-      some_(drawSamples(points_.cols(), kSomeSamples, seed + 1)),
-      many_(drawSamples(points_.cols(), kManySamples, seed + 3)),
-      all_(allOf(points_.cols())),
-      overlap_points_(pointsAt(points_, drawSamples(points_.cols(), kOverlapSamples, seed + 2))),
-      own_overlap_(1.0),
-      own_feature_(featureShare(ownSupport(points_, geometry_))) {
+RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
+                         int num_threads)
+    : edt_(edt), limits_(limits), own_share_(1.0), first_sigma_(0.0), last_sigma_(0.0), num_threads_(num_threads) {
+  const auto surface = std::make_shared<Surface>();
+  surface->points = std::move(points);
+  const Points& p = surface->points;
+  const auto search = makeFlannSearch(p);
+  surface->geometry = localGeometry(p, *search, kNumSupportNeighbours, num_threads);
+  const LocalGeometry& geometry = surface->geometry;
+  surface->spacing = median(geometry.spacing);
+  surface->roughness = median(geometry.roughness);
+  first_sigma_ = std::max({kLeastLength, kFirstTolerances * limits.tolerance, kFirstSpacings * surface->spacing});
+  last_sigma_ = std::max({kLeastLength, kLastTolerances * limits.tolerance, kLastRoughnesses * surface->roughness});
+  last_sigma_ = std::min(last_sigma_, first_sigma_);
+  const double farthest = std::max(reach, first_sigma_);
+  surface->discs = std::make_unique<SurfaceDiscs>(p, geometry, kDiscRadius, static_cast<float>(farthest));
+  surface->grid = std::make_unique<ClosestPointGrid>(p, kGridCells);
+  surface->own_distances.resize(static_cast<std::size_t>(p.cols()));
+  constexpr std::size_t kBlockSize = 512;  // points; chosen: smaller blocks cost more calls, larger ones idle threads
+  parallelRanges(surface->own_distances.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kNewSampleFactor);
+  });
+  surface->order = drawSamples(p.cols(), static_cast<int>(p.cols()) - 1, seed);
+  surface->overlap_points = pointsAt(p, drawSamples(p.cols(), kOverlapSamples, seed + 2));
   // Under a symmetry the closest sample of a rotated sample is as far away as the closest other sample of a sample.
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < points_.cols(); ++i) {
-    const double sq_distance = (points_.col(i) - points_.col(geometry_.nearest[i][0])).squaredNorm();
-    sum += std::exp(-sq_distance / (sigma_ * sigma_));
+  for (Eigen::Index i = 0; i < p.cols(); ++i) {
+    const double sq_distance = (p.col(i) - p.col(geometry.nearest[i][0])).squaredNorm();
+    sum += std::exp(-sq_distance / (edt.sigma() * edt.sigma()));
   }
-  own_overlap_ = std::max(sum / static_cast<double>(points_.cols()), kLeastOwn);
+  surface->own_overlap = std::max(sum / static_cast<double>(p.cols()), kLeastOwn);
+  surface_ = surface;
+  own_share_ = ownShare();
 }
 
-double RotationFit::overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const {
+RotationFit RotationFit::withLimits(RotationLimits limits) const {
+  RotationFit other = *this;
+  other.limits_ = limits;
+  other.own_share_ = other.ownShare();
+  return other;
+}
+
+double RotationFit::ownShare() const {
+  const std::vector<float>& distances = surface_->own_distances;
+  const auto within =
+      std::count_if(distances.begin(), distances.end(), [&](float distance) { return distance <= limits_.tolerance; });
+  return std::max(kLeastOwn, static_cast<double>(within) / static_cast<double>(distances.size()));
+}
+
+double RotationFit::overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center, int num_points) const {
+  const Points& points = surface_->overlap_points;
+  const Eigen::Index size = std::min<Eigen::Index>(points.cols(), num_points);
   const Eigen::Matrix3d turn = rotation / edt_.cellSize();
   const Eigen::Vector3d shift = (center - rotation * center - edt_.origin()) / edt_.cellSize();
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < overlap_points_.cols(); ++i)
-    sum += edt_.atCell(turn * overlap_points_.col(i).cast<double>() + shift);
-  return sum / (own_overlap_ * static_cast<double>(overlap_points_.cols()));
+  for (Eigen::Index i = 0; i < size; ++i) sum += edt_.atCell(turn * points.col(i).cast<double>() + shift);
+  return sum / (surface_->own_overlap * static_cast<double>(size));
 }
 
 double RotationFit::overlap(const RotationSet& set) const {
@@ -151,37 +181,64 @@ double RotationFit::overlap(const RotationSet& set) const {
 }
 
 RotationSet RotationFit::roughlyFitted(const RotationSet& set) const {
-  return fitted(set, spreadOver(set.num_judged, kMostFitted), few_,
-                {sigma_, std::max(final_sigma_, 0.5 * sigma_), kRoughIterations});
+  const double sigma = edt_.sigma();
+  return fitted(set, spreadOver(set.num_judged, kMostFitted), kFewSamples,
+                {sigma, std::max(std::min(sigma, first_sigma_), 0.5 * sigma), kRoughIterations, true});
 }
 
 RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
-  const std::vector<std::size_t> used = spreadOver(set.rotations.size(), kMostFitted);
-  return fitted(set, used, many_, {final_sigma_, final_sigma_, kCloseIterations});
+  return fitted(set, spreadOver(set.rotations.size(), kMostFitted), kManySamples,
+                {first_sigma_, last_sigma_, kCloseIterations, false});
+}
+
+/// The sample that the grid names for the cell of a point, or a neighbour that is closer.
+int RotationFit::closestSample(const Eigen::Vector3f& x) const {
+  const Points& points = surface_->points;
+  int closest = surface_->grid->closest(x);
+  float least = (points.col(closest) - x).squaredNorm();
+  for (int hop = 0; hop < kMaxHops; ++hop) {
+    const int from = closest;
+    for (const int j : surface_->geometry.nearest[from]) {
+      const float sq_distance = (points.col(j) - x).squaredNorm();
+      if (sq_distance >= least) continue;
+      least = sq_distance;
+      closest = j;
+    }
+    if (closest == from) break;
+  }
+  return closest;
 }
 
 /// x' = R (x - c) + c moves with R' = exp(omega) R exp(-omega) and c' = c + t
 /// by ((1 - R) omega) x (x' - c) + (1 - R) t.
-RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std::size_t i,
-                                                    const std::vector<int>& samples, double sigma) const {
+RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std::size_t i, int num_samples,
+                                                    const Annealing& annealing) const {
+  const Points& points = surface_->points;
+  const LocalGeometry& geometry = surface_->geometry;
   const Eigen::Matrix3d& rotation = set.rotations[i];
   const Eigen::Matrix3d moves = (Eigen::Matrix3d::Identity() - rotation).transpose();
-  const auto size = static_cast<Eigen::Index>(samples.size());
-  Points rotated(3, size);
-  for (Eigen::Index k = 0; k < size; ++k)
-    rotated.col(k) = set.image(i, points_.col(samples[k]).cast<double>()).cast<float>();
-  std::vector<int> closest(samples.size(), -1);
-  std::vector<float> sq_distances;
-  search_->searchWithin(rotated, static_cast<float>(kReach * kReach * sigma * sigma), closest, sq_distances);
+  const double sq_sigma = annealing.sigma * annealing.sigma;
+  const std::size_t size = std::min(surface_->order.size(), static_cast<std::size_t>(num_samples));
   NormalEquations sums;
-  for (Eigen::Index k = 0; k < size; ++k) {
-    if (closest[k] < 0) continue;
-    const Eigen::Vector3d x = rotated.col(k).cast<double>(), y = points_.col(closest[k]).cast<double>();
-    const Eigen::Vector3d normal = geometry_.normals.col(closest[k]).cast<double>();
-    const Eigen::Vector3d turned = rotation * geometry_.normals.col(samples[k]).cast<double>();
+  for (std::size_t k = 0; k < size; ++k) {
+    const int sample = surface_->order[k];
+    const Eigen::Vector3d x = set.image(i, points.col(sample).cast<double>());
+    const Eigen::Vector3f place = x.cast<float>();
+    SurfaceDiscs::Nearest nearest;
+    if (annealing.rough) {
+      nearest.disc = closestSample(place);
+      nearest.distance = (points.col(nearest.disc) - place).norm();
+    } else {
+      nearest = surface_->discs->nearest(place);
+    }
+    if (nearest.disc < 0 || nearest.distance > kReach * annealing.sigma) continue;
+    const Eigen::Vector3d y = points.col(nearest.disc).cast<double>();
+    const Eigen::Vector3d normal = geometry.normals.col(nearest.disc).cast<double>();
+    const Eigen::Vector3d turned = rotation * geometry.normals.col(sample).cast<double>();
     const double cosine = turned.dot(normal);
     const Eigen::Vector3d m = (normal + (cosine < 0.0 ? -turned : turned)).normalized();
-    const double weight = cosine * cosine * std::exp(-sq_distances[k] / (sigma * sigma));
+    const double weight =
+        cosine * cosine * std::exp(-static_cast<double>(nearest.distance) * nearest.distance / sq_sigma);
     Vector6d slope;
     slope << moves * (x - set.center).cross(m), moves * m;
     sums.h.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
@@ -190,12 +247,12 @@ RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std:
   return sums;
 }
 
-RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>& used, const std::vector<int>& samples,
+RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>& used, int num_samples,
                                 Annealing annealing) const {
   std::vector<NormalEquations> parts(used.size());
   for (int iteration = 0; iteration < annealing.max_iterations; ++iteration) {
     parallelBlocks(used.size(), num_threads_,
-                   [&](std::size_t k) { parts[k] = equations(set, used[k], samples, annealing.sigma); });
+                   [&](std::size_t k) { parts[k] = equations(set, used[k], num_samples, annealing); });
     NormalEquations sums;
     for (const NormalEquations& part : parts) sums.add(part);
     const Vector6d step = sums.step();
@@ -210,68 +267,59 @@ RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>&
   return set;
 }
 
-std::vector<float> RotationFit::support(const RotationSet& set, std::size_t i, const std::vector<int>& samples) const {
-  const auto size = static_cast<Eigen::Index>(samples.size());
-  Points rotated(3, size), normals(3, size);
-  for (Eigen::Index k = 0; k < size; ++k) {
-    rotated.col(k) = set.image(i, points_.col(samples[k]).cast<double>()).cast<float>();
-    normals.col(k) = (set.rotations[i] * geometry_.normals.col(samples[k]).cast<double>()).cast<float>();
+OffShares RotationFit::offShares(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center,
+                                 int num_samples) const {
+  const Points& points = surface_->points;
+  const std::size_t size = std::min(surface_->order.size(), static_cast<std::size_t>(num_samples));
+  const Eigen::Matrix3f turn = rotation.cast<float>();
+  const Eigen::Vector3f shift = (center - rotation * center).cast<float>();
+  const auto tolerance = static_cast<float>(limits_.tolerance);
+  // The closest sample lies beside the closest place of the surface.
+  const auto far = static_cast<float>(std::hypot(kFar * limits_.tolerance, kDiscRadius * surface_->spacing));
+  std::size_t num_off = 0, num_far = 0;
+  for (std::size_t k = 0; k < size; ++k) {
+    const Eigen::Vector3f x = turn * points.col(surface_->order[k]) + shift;
+    if (surface_->discs->isWithin(x, tolerance)) continue;
+    ++num_off;
+    num_far += (points.col(closestSample(x)) - x).squaredNorm() > far * far ? 1 : 0;
   }
-  std::vector<int> closest(samples.size(), -1);
-  std::vector<float> sq_distances;
-  search_->searchWithin(rotated, static_cast<float>(kReach * kReach * final_sigma_ * final_sigma_), closest,
-                        sq_distances);
-  return pointEvidence(rotated, normals, closest, points_, geometry_, nullptr).support;
+  const double share_off = static_cast<double>(num_off) / static_cast<double>(size);
+  return {std::max(0.0, 1.0 - (1.0 - share_off) / own_share_),
+          static_cast<double>(num_far) / static_cast<double>(size)};
 }
 
-/// The share of samples that are off the surface together with most of their neighbours: the pieces of all features
-/// together. Sampling leaves single samples off the surface.
-double RotationFit::featureShare(const std::vector<float>& support) const {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < support.size(); ++i) {
-    if (support[i] > 0.5f) continue;
-    int off = 0;
-    for (const int j : geometry_.nearest[i]) off += support[j] <= 0.5f ? 1 : 0;
-    count += off >= kMostWitnesses ? 1 : 0;
+OffShares RotationFit::worstShares(const RotationSet& set, int num_samples, double most) const {
+  constexpr std::size_t kAtATime = 4;  // derived: as many as threads are likely; the result does not depend on it
+  OffShares worst;
+  for (std::size_t begin = 0; begin < set.num_judged; begin += kAtATime) {
+    std::vector<OffShares> shares(std::min(kAtATime, set.num_judged - begin));
+    parallelBlocks(shares.size(), num_threads_,
+                   [&](std::size_t i) { shares[i] = offShares(set.rotations[begin + i], set.center, num_samples); });
+    for (const OffShares& other : shares) worst = {std::max(worst.off, other.off), std::max(worst.far, other.far)};
+    if (limits_.excess(worst) > most) break;
   }
-  return static_cast<double>(count) / static_cast<double>(support.size());
+  return worst;
 }
 
-double RotationFit::score(const RotationSet& set, std::size_t i) const {
-  const Eigen::Matrix3d& rotation = set.rotations[i];
-  const Eigen::Vector3d shift = (set.image(i, edt_.origin()) - edt_.origin()) / edt_.cellSize();
-  return correlation(
-      edt_, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return rotation * x + shift; }, rotation.col(0));
+double RotationFit::confidence(const OffShares& shares) const {
+  const double phi = limits_.max_feature;
+  const double unit =
+      kShareUnit + kStandardErrors * std::sqrt(phi * (1.0 - phi) / static_cast<double>(surface_->order.size()));
+  const double margin = phi > 0.0 ? phi * (1.0 - limits_.excess(shares)) : -shares.off;
+  return 1.0 / (1.0 + std::exp(-margin / unit));
 }
 
-double RotationFit::roughSupport(const RotationSet& set) const {
-  std::vector<double> supports(set.num_judged);
-  parallelBlocks(supports.size(), num_threads_, [&](std::size_t i) { supports[i] = mean(support(set, i, some_)); });
-  return *std::min_element(supports.begin(), supports.end()) / baseline_;
-}
-
-double RotationFit::confidence(double support, double score) const {
-  const RotationConfidence& fit = kConfidence;
-  const double unexplained = (1.0 - support - fit.unexplained_per_roughness * roughness_) /
-                             (fit.unexplained_unit + fit.unexplained_unit_per_spacing * spacing_);
-  const double lost = (1.0 - score) / (fit.lost_unit + fit.lost_unit_per_sq_spacing * spacing_ * spacing_);
-  return 1.0 / (1.0 + std::exp(-(fit.intercept + fit.per_unexplained * unexplained + fit.per_lost_score * lost)));
-}
-
-RotationEvidence RotationFit::evidence(const RotationSet& set) const {
-  std::vector<double> supports(set.num_judged), features(set.num_judged), scores(set.num_judged);
-  parallelBlocks(set.num_judged, num_threads_, [&](std::size_t i) {
-    const std::vector<float> point_support = support(set, i, all_);
-    supports[i] = mean(point_support);
-    features[i] = std::max(0.0, featureShare(point_support) - own_feature_);
-    scores[i] = score(set, i);
-  });
-  const auto mean_of = [](const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  };
-  const double support = mean_of(supports);
-  const double relative = std::min(1.0, support / baseline_);
-  return {relative, *std::max_element(features.begin(), features.end()), confidence(relative, mean_of(scores))};
+Eigen::Vector3d RotationFit::whereOff(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (Eigen::Index i = 0; i < points().cols(); ++i) {
+    const Eigen::Vector3d x = points().col(i).cast<double>();
+    const Eigen::Vector3d image = center + rotation * (x - center);
+    if (surface_->discs->isWithin(image.cast<float>(), static_cast<float>(limits_.tolerance))) continue;
+    sum += x;
+    ++count;
+  }
+  return count > 0 ? Eigen::Vector3d(sum / count) : center;
 }
 
 }  // namespace pcl_symmetry

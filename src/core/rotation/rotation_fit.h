@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <vector>
 
+#include "core/neighbours/closest_point_grid.h"
+#include "core/normals/surface_discs.h"
 #include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 
 namespace pcl_symmetry {
 
@@ -19,73 +22,107 @@ struct RotationSet {
   Eigen::Vector3d image(std::size_t i, const Eigen::Vector3d& x) const { return center + rotations[i] * (x - center); }
 };
 
-/// What the surface says about rotations.
-struct RotationEvidence {
-  double support = 0.0;  ///< share of the surface mapped onto the surface, as far as sampling lets it, in [0, 1]
-  /// Share of the surface that a rotation maps off it in one or more pieces together, in [0, 1]: the greatest of any
-  /// rotation. A piece is where most neighbouring samples are off; single samples are off by chance and do not count.
-  double feature = 0.0;
-  double confidence = 0.0;  ///< probability that the rotations together are symmetries, in [0, 1]
+/// How much of the surface a rotation maps off the surface, as shares of the area in [0, 1].
+struct OffShares {
+  double off = 0.0;  ///< more than the tolerance, relative to what the samples reach on themselves
+  double far = 0.0;  ///< more than ten tolerances: parts that stick out, such as a handle
+};
+
+/// What symmetric means: tolerance tau and feature share phi (ObjectSymmetryOptions).
+struct RotationLimits {
+  double tolerance;    ///< normalised frame
+  double max_feature;  ///< share of the surface that may be off
+
+  /// By how much a rotation fails: the greater of its two shares over what is allowed of each.
+  /// \return <= 1 for a symmetry.
+  double excess(const OffShares& shares) const;
 };
 
 /// The surface that rotations are compared with, fitted to and judged on.
 ///
-/// Rotations are treated as planes are: ISP (Section 4.4) with rotations in place of reflections, then the support of
-/// planes. All lengths are in the normalised frame.
+/// Rotations are fitted as planes are: ISP (Section 4.4) with rotations in place of reflections. They are judged by the
+/// share of the surface that they map to within the tolerance of the surface. All lengths are in the normalised frame.
 class RotationFit {
 public:
   /// \param points 3 x N, normalised to the unit ball about 0.
   /// \param edt distance transform of these points; must outlive this object.
+  /// \param tolerance normalised frame; the greatest that judges, unless fitsAt() says otherwise.
+  /// \param reach greatest tolerance that fits derived from this one judge at.
   /// \param seed of the samples.
   /// \param num_threads >= 0; 0 = one per core.
-  RotationFit(Points points, const GaussianEdt& edt, std::uint64_t seed, int num_threads);
+  RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
+              int num_threads);
 
-  const Points& points() const { return points_; }
+  /// The same surface judged at other limits.
+  /// \param limits tolerance at most the reach.
+  RotationFit withLimits(RotationLimits limits) const;
+
+  const Points& points() const { return surface_->points; }
+  const RotationLimits& limits() const { return limits_; }
 
   /// Mean of f at some rotated points: a rough and quick answer.
   /// \return about 1 for a symmetry.
-  double overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const;
+  double overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center,
+                 int num_points = std::numeric_limits<int>::max()) const;
   /// The least overlap of any rotation of a set, at most 1.
   double overlap(const RotationSet& set) const;
 
   /// The set turned and moved as a whole to where the rotated samples lie closest to the surface: few samples, wide
   /// weights.
   RotationSet roughlyFitted(const RotationSet& set) const;
-  /// The same with many samples and narrow weights.
+  /// The same with many samples and narrow weights: what is off by more than the tolerance hardly counts.
   RotationSet closelyFitted(const RotationSet& set) const;
 
-  /// The least support of the judged rotations, from some of the points.
-  double roughSupport(const RotationSet& set) const;
-  /// The evidence of the judged rotations together, from all points.
-  RotationEvidence evidence(const RotationSet& set) const;
+  /// What one rotation maps off the surface.
+  /// \param num_samples of the points, the same ones each time; at least as many as there are: all.
+  OffShares offShares(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center,
+                      int num_samples = std::numeric_limits<int>::max()) const;
+
+  /// The worst of the judged rotations of a set.
+  /// \param most stops at a rotation whose excess is greater.
+  OffShares worstShares(const RotationSet& set, int num_samples = std::numeric_limits<int>::max(),
+                        double most = std::numeric_limits<double>::infinity()) const;
+
+  /// Probability that rotations are symmetries at the limits, given what sampling leaves uncertain.
+  /// \return at least 1/2 where the excess is at most 1.
+  double confidence(const OffShares& shares) const;
+
+  /// Center of the samples that a rotation maps off the surface.
+  Eigen::Vector3d whereOff(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const;
 
 private:
   /// Widths of the Gaussian weights from first to last iteration.
   struct Annealing {
     double sigma, final_sigma;
     int max_iterations;
+    bool rough;  ///< closest samples by grid instead of closest discs
   };
   struct NormalEquations;
+  /// What does not depend on the tolerance.
+  struct Surface {
+    Points points;
+    LocalGeometry geometry;
+    std::unique_ptr<SurfaceDiscs> discs;
+    std::unique_ptr<ClosestPointGrid> grid;
+    std::vector<float> own_distances;
+    std::vector<int> order;  ///< a random order of the points
+    double spacing = 0.0, roughness = 0.0;
+    Points overlap_points;     ///< that overlap() asks about
+    double own_overlap = 1.0;  ///< that a perfect symmetry reaches with this sampling
+  };
 
-  NormalEquations equations(const RotationSet& set, std::size_t i, const std::vector<int>& samples, double sigma) const;
-  RotationSet fitted(RotationSet set, const std::vector<std::size_t>& used, const std::vector<int>& samples,
-                     Annealing annealing) const;
-  std::vector<float> support(const RotationSet& set, std::size_t i, const std::vector<int>& samples) const;
-  double confidence(double support, double score) const;
-  double featureShare(const std::vector<float>& support) const;
-  double score(const RotationSet& set, std::size_t i) const;
+  int closestSample(const Eigen::Vector3f& x) const;
+  double ownShare() const;
+  NormalEquations equations(const RotationSet& set, std::size_t i, int num_samples, const Annealing& annealing) const;
+  RotationSet fitted(RotationSet set, const std::vector<std::size_t>& used, int num_samples, Annealing annealing) const;
 
-  Points points_;
+  std::shared_ptr<const Surface> surface_;
   const GaussianEdt& edt_;
+  RotationLimits limits_;
+  double own_share_;    ///< of the samples within the tolerance of the discs of the others
+  double first_sigma_;  ///< of close fits
+  double last_sigma_;
   int num_threads_;
-  ClosestPointSearch::Ptr search_;
-  LocalGeometry geometry_;
-  double spacing_, roughness_, baseline_;     // as in PlaneEvidence
-  double sigma_, final_sigma_;                // of the weights: of the distance transform, and of the points' spacing
-  std::vector<int> few_, some_, many_, all_;  // samples of rough fits, rough support, close fits, and evidence
-  Points overlap_points_;                     // that overlap() asks about
-  double own_overlap_;                        // overlap that a perfect symmetry reaches with this sampling
-  double own_feature_;                        // feature that the surface has against itself
 };
 
 }  // namespace pcl_symmetry

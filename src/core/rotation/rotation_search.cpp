@@ -23,11 +23,21 @@ constexpr int kPrimes[] = {2, 3, 5, 7};
 constexpr std::size_t kKept = 6;
 // Radians, least angle between kept directions. chosen: half keeps one axis twice, twice merges axes of large groups.
 constexpr double kApart = 0.17;
-// Least overlap of a line. chosen: half tries lines in vain, at twice (1) none is left.
-constexpr double kLeastOverlap = 0.5;
-// Overlap behind that of the best turn at which folds are still likely. chosen: half loses folds by chance, twice takes
-// time.
-constexpr double kBehind = 0.1;
+// Least overlap of a line. chosen: half tries lines in vain, at 4/3 features that may be ignored hide lines.
+constexpr double kLeastOverlap = 0.6;
+// Points that are asked first, and the overlap that they need. chosen: 0.6 less three standard errors of 0.06; half
+// asks more directions in vain, at twice of the points most of the gain is lost.
+constexpr int kFirstPoints = 48;
+constexpr double kFirstOverlap = 0.42;
+// Overlap behind that of the best turn at which a smaller fold is as likely. chosen: half prefers small angles, twice
+// takes folds that are none.
+constexpr double kBehind = 0.05;
+// Folds that are likely whatever others are: their turns tell best where an axis lies. derived: the orders of all axes
+// of the polyhedral groups, and of most objects.
+constexpr int kSmallFold = 6;
+// Overlap that half a turn may have beyond a turn that is one of a fold. chosen: chance between 256 points; at half
+// chance drops folds, at twice small angles pass.
+constexpr double kAllowance = 0.03;
 // Radians and radii, lines closer than this are one. chosen: half fits one axis twice, twice merges two axes.
 constexpr double kSameLine = 0.05;
 // Directions in one block of a thread. chosen: half adds overhead, twice leaves threads idle; results do not depend on
@@ -36,6 +46,11 @@ constexpr std::size_t kBlockSize = 100;
 
 Eigen::Vector3d directionAt(int k, int count) {
   return spiralDirection(k, count, kGoldenAngle * k);
+}
+
+/// The overlap of a rotation; 0 where a part of the points already says that it is too small.
+double overlapOrLess(const RotationFit& fit, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) {
+  return fit.overlap(rotation, center, kFirstPoints) < kFirstOverlap ? 0.0 : fit.overlap(rotation, center);
 }
 
 /// The directions of the greatest values, apart from each other.
@@ -54,11 +69,15 @@ std::vector<int> peaks(const std::vector<double>& values) {
   return kept;
 }
 
-/// Overlaps of the turns by 2 pi / n about a line, at index n.
-std::vector<double> turnOverlaps(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
+/// Overlaps of the turns by 2 pi / n about a line, at index n; 0 where half of that turn overlaps better. Turns by
+/// small angles overlap well with any shape, and better the smaller they are.
+std::vector<double> foldOverlaps(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
   std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
-  for (int n = 2; n <= max_fold; ++n)
-    overlaps[n] = fit.overlap(rotationAbout(line.direction, 2.0 * kPi / n), line.center);
+  for (int n = 2; n <= max_fold; ++n) {
+    const double own = fit.overlap(rotationAbout(line.direction, 2.0 * kPi / n), line.center);
+    const double half = fit.overlap(rotationAbout(line.direction, kPi / n), line.center);
+    overlaps[n] = own >= half - kAllowance ? own : 0.0;
+  }
   return overlaps;
 }
 
@@ -71,8 +90,8 @@ std::vector<AxisLineCandidate> linesThrough(const Eigen::Vector3d& center, const
     std::vector<double> overlaps(static_cast<std::size_t>(num_directions));
     parallelRanges(overlaps.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
-        overlaps[k] =
-            fit.overlap(rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * kPi / prime), center);
+        overlaps[k] = overlapOrLess(
+            fit, rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * kPi / prime), center);
     });
     for (const int k : peaks(overlaps)) lines.push_back({directionAt(k, num_directions), center});
   }
@@ -81,17 +100,25 @@ std::vector<AxisLineCandidate> linesThrough(const Eigen::Vector3d& center, const
 
 }  // namespace
 
-std::vector<AxisLineCandidate> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold,
-                                                  int num_threads) {
+std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit) {
+  const Eigen::Vector3d mass = centerOfMass(fit.points());
+  return mass.norm() > kSameLine ? std::vector<Eigen::Vector3d>{mass, Eigen::Vector3d::Zero()} : std::vector{mass};
+}
+
+std::vector<AxisLineCandidate> principalLines(const RotationFit& fit) {
   const PrincipalAxes principal = principalAxes(fit.points());
   std::vector<AxisLineCandidate> lines;
-  std::vector<Eigen::Vector3d> centers{principal.center};
-  if (principal.center.norm() > kSameLine) {
-    lines.push_back({principal.center.normalized(), principal.center});
-    centers.push_back(Eigen::Vector3d::Zero());
-  }
-  for (const Eigen::Vector3d& center : centers) {
+  const std::vector<Eigen::Vector3d> centers = axisCenters(fit);
+  if (centers.size() > 1) lines.push_back({principal.center.normalized(), principal.center});
+  for (const Eigen::Vector3d& center : centers)
     for (int k = 0; k < 3; ++k) lines.push_back({principal.axes.col(k), center});
+  return lines;
+}
+
+std::vector<AxisLineCandidate> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold,
+                                                  int num_threads) {
+  std::vector<AxisLineCandidate> lines;
+  for (const Eigen::Vector3d& center : axisCenters(fit)) {
     const auto found = linesThrough(center, fit, num_directions, max_fold, num_threads);
     lines.insert(lines.end(), found.begin(), found.end());
   }
@@ -109,18 +136,16 @@ double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
-int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
-  const std::vector<double> overlaps = turnOverlaps(fit, line, max_fold);
-  return static_cast<int>(std::max_element(overlaps.begin(), overlaps.end()) - overlaps.begin());
-}
-
 std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
-  const std::vector<double> overlaps = turnOverlaps(fit, line, max_fold);
-  const double best = *std::max_element(overlaps.begin(), overlaps.end());
-  std::vector<int> folds;
-  for (int n = 2; n <= max_fold; ++n)
-    if (overlaps[n] >= best - kBehind) folds.push_back(n);
-  return folds;
+  const std::vector<double> overlaps = foldOverlaps(fit, line, max_fold);
+  const auto least_near_best = [&](int last) {
+    const double best = *std::max_element(overlaps.begin(), overlaps.begin() + last + 1);
+    int n = 2;
+    while (overlaps[n] < best - kBehind) ++n;
+    return n;
+  };
+  const int small = least_near_best(std::min(kSmallFold, max_fold)), any = least_near_best(max_fold);
+  return any == small ? std::vector{small} : std::vector{small, any};
 }
 
 AxisLineCandidate bestAcross(const RotationFit& fit, const AxisLineCandidate& line, double width, int num_angles,

@@ -12,13 +12,18 @@ struct AxisLineCandidate {
   Eigen::Vector3d center;     ///< a point of the line
 };
 
-/// Lines in all directions about which a turn of prime order overlaps most with the surface. The center of mass and the
-/// center of the bounding ball lie on every axis of a shape. The lines pass through the center of mass and, where the
-/// points are unevenly dense, through the center of the bounding ball, which is 0.
+/// Centers that axes may pass through: the center of mass and, where it lies elsewhere because points are unevenly
+/// dense, that of the bounding ball, which is 0.
+std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit);
+
+/// The principal axes of the points through these centers, and the line through both. A shape of revolution and one
+/// with a fold of 3 or more about a single axis have it there.
+std::vector<AxisLineCandidate> principalLines(const RotationFit& fit);
+
+/// Lines through these centers, in all directions, about which a turn of prime order overlaps most with the surface.
 /// \param num_directions of lines through each center, on a half sphere.
 /// \param max_fold greatest order of a rotation.
 /// \param num_threads >= 0; 0 = one per core.
-/// \return lines, the principal axes of the points first.
 std::vector<AxisLineCandidate> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold,
                                                   int num_threads);
 
@@ -28,11 +33,9 @@ bool isKnown(const std::vector<AxisLineCandidate>& lines, const AxisLineCandidat
 /// Angle between two lines, in [0, pi/2].
 double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
-/// The n in [2, \p max_fold] whose turn by 2 pi / n overlaps best with the surface.
-int likeliestFold(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
-
-/// All n in [2, \p max_fold] whose turns overlap nearly as well as the best.
-/// \return rising.
+/// Folds in [2, \p max_fold] whose turns by 2 pi / n overlap best with the surface, of those that overlap as well as half
+/// the turn: one of at most 6, and one of all where that is another.
+/// \return one or two, rising.
 std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
 
 /// The half turn, among those about axes perpendicular to a line, that overlaps most with the surface.

@@ -1,5 +1,6 @@
 #include "pcl_symmetry/core/rotation/rotational_symmetry.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "core/base/stopwatch.h"
 #include "core/geometry/point_samples.h"
 #include "core/neighbours/answerable_points.h"
+#include "core/neighbours/diameter.h"
 #include "core/neighbours/distinct_points.h"
 #include "core/rotation/greatest_group.h"
 #include "core/rotation/rotation_fit.h"
@@ -19,6 +21,9 @@ namespace pcl_symmetry {
 
 namespace {
 
+// Rejected rotations that are reported. chosen: a reader looks at a few.
+constexpr std::size_t kMostRejected = 5;
+
 /// The direction across an axis that is closest to a coordinate axis.
 Eigen::Vector3d directionAcross(const Eigen::Vector3d& axis) {
   int most_across = 0;
@@ -28,14 +33,14 @@ Eigen::Vector3d directionAcross(const Eigen::Vector3d& axis) {
 }
 
 /// A group of the normalised frame in the input frame.
-ObjectSymmetries inInputFrame(const PlacedGroup& group, const BoundingBall& ball) {
+ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, const BoundingBall& ball) {
   ObjectSymmetries result;
   result.kind = group.kind;
   result.fold = group.fold;
   result.center = ball.center + ball.radius * group.set.center;
   if (group.kind == RotationGroupKind::Cyclic && group.fold == 1) return result;
-  result.support = group.evidence.support;
-  result.confidence = group.evidence.confidence;
+  result.support = 1.0 - group.shares.off;
+  result.confidence = fit.confidence(group.shares);
   const auto motion = [&](const Eigen::Matrix3d& rotation) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = rotation;
@@ -54,6 +59,58 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const BoundingBall& ball
   return result;
 }
 
+/// What was tried and failed in the input frame, the least failure first.
+std::vector<RejectedRotation> inInputFrame(std::vector<RejectedTurn> turns, const RotationFit& fit,
+                                           const BoundingBall& ball) {
+  std::stable_sort(turns.begin(), turns.end(), [&](const RejectedTurn& a, const RejectedTurn& b) {
+    return fit.limits().excess(a.shares) < fit.limits().excess(b.shares);
+  });
+  if (turns.size() > kMostRejected) turns.resize(kMostRejected);
+  std::vector<RejectedRotation> rejected;
+  for (const RejectedTurn& turn : turns) {
+    const Eigen::Matrix3d rotation = rotationAbout(turn.line.direction, turn.angle);
+    const Eigen::Vector3d center = ball.center + ball.radius * turn.line.center;
+    RejectedRotation entry;
+    entry.turn.linear() = rotation;
+    entry.turn.translation() = center - rotation * center;
+    entry.axis = turn.line.direction;
+    entry.fold = turn.fold;
+    entry.off = turn.shares.off;
+    entry.far = turn.shares.far;
+    entry.where = ball.center + ball.radius * fit.whereOff(rotation, turn.line.center);
+    rejected.push_back(entry);
+  }
+  return rejected;
+}
+
+/// Finds groups at one or more tolerances; the lines that axes may lie on are searched once.
+class GroupSearch {
+public:
+  GroupSearch(const RotationFit& fit, const ObjectSymmetryOptions& options) : fit_(fit), options_(options) {}
+
+  struct Found {
+    PlacedGroup group;
+    std::vector<RejectedTurn> rejected;
+  };
+
+  Found at(const RotationFit& fit) {
+    AxisFinder finder(fit, options_);
+    if (principal_.empty()) principal_ = principalLines(fit_);
+    finder.judge(principal_);
+    if (!finder.isRound()) {
+      if (others_.empty())
+        others_ = axisLineCandidates(fit_, options_.num_directions, options_.max_fold, options_.num_threads);
+      finder.judge(others_);
+    }
+    return {greatestGroup(fit, options_, finder.axes()), finder.rejected()};
+  }
+
+private:
+  const RotationFit& fit_;
+  const ObjectSymmetryOptions& options_;
+  std::vector<AxisLineCandidate> principal_, others_;
+};
+
 }  // namespace
 
 void ObjectSymmetryOptions::validate() const {
@@ -61,6 +118,8 @@ void ObjectSymmetryOptions::validate() const {
   check(num_directions >= 100, "num_directions", num_directions, ">= 100");
   check(max_fold >= 2, "max_fold", max_fold, ">= 2");
   check(max_points >= 100, "max_points", max_points, ">= 100");
+  check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");
+  check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
   check(max_feature >= 0.0 && max_feature <= 1.0, "max_feature", max_feature, "in [0, 1]");
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
   checkNumThreads(num_threads);
@@ -82,17 +141,27 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryO
   edt_options.num_cells = options.num_cells;
   edt_options.num_threads = options.num_threads;
   const GaussianEdt edt(normalized, edt_options);
-  const RotationFit fit(normalized, edt, options.seed, options.num_threads);
+  const double tolerance = options.absolute_tolerance > 0.0 ? options.absolute_tolerance / ball.radius
+                                                            : options.tolerance * farthestPair(normalized);
+  const RotationLimits limits{tolerance, options.max_feature};
+  const double reach = (options.other_tolerances ? 2.0 : 1.0) * tolerance;
+  const RotationFit fit(normalized, edt, limits, reach, options.seed, options.num_threads);
   done("surface");
-  const std::vector<AxisLineCandidate> lines =
-      axisLineCandidates(fit, options.num_directions, options.max_fold, options.num_threads);
-  done("search");
-  const std::vector<TurningAxis> axes = turningAxes(fit, options, lines);
-  done("axes");
-  const PlacedGroup group = greatestGroup(fit, options, axes);
+  GroupSearch search(fit, options);
+  GroupSearch::Found found = search.at(fit);
   done("group");
-
-  ObjectSymmetries result = inInputFrame(group, ball);
+  ObjectSymmetries result = inInputFrame(found.group, fit, ball);
+  result.tolerance = tolerance * ball.radius;
+  result.rejected = inInputFrame(std::move(found.rejected), fit, ball);
+  if (options.other_tolerances) {
+    const auto name_at = [&](double factor) {
+      const PlacedGroup group = search.at(fit.withLimits({factor * tolerance, options.max_feature})).group;
+      return GroupName{group.kind, group.fold};
+    };
+    result.at_half_tolerance = name_at(0.5);
+    result.at_twice_tolerance = name_at(2.0);
+    done("other tolerances");
+  }
   result.timing_ms = std::move(timing_ms);
   return result;
 }

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "shapes/turning_shapes.h"
@@ -154,6 +156,97 @@ TEST(ObjectSymmetries, SmallFeaturesCountTogether) {
   EXPECT_EQ(groupOfBoxWithKnobs(0.08, {{0.5, 0.2}, {-0.7, 0.4}, {0.1, -0.45}}, 0.01), "C1");
 }
 
+/// A hemisphere with a wall, open at the top.
+TurningShape bowlShape() {
+  TurningShape shape = turningShape("bowl", RotationGroupKind::Revolution);
+  std::vector<Eigen::Vector2d> profile;
+  for (int k = 0; k <= 24; ++k) profile.emplace_back(std::sin(kPi * k / 48), -std::cos(kPi * k / 48));
+  for (int k = 24; k >= 0; --k) profile.emplace_back(0.92 * std::sin(kPi * k / 48), -0.92 * std::cos(kPi * k / 48));
+  shape.addLathe(profile, 96);
+  return shape;
+}
+
+/// A tire with spokes on one side.
+TurningShape rimShape(int num_spokes) {
+  TurningShape shape = turningShape("rim", RotationGroupKind::Cyclic, num_spokes);
+  shape.addLathe({{0.8, -0.2}, {1.0, -0.2}, {1.0, 0.2}, {0.8, 0.2}, {0.8, -0.2}}, 120);
+  shape.addLathe({{0.0, 0.05}, {0.2, 0.05}, {0.2, 0.25}, {0.0, 0.25}}, 120);
+  for (int k = 0; k < num_spokes; ++k)
+    shape.addBox({0.32, 0.09, 0.04}, Eigen::AngleAxisd(2.0 * kPi * k / num_spokes, Eigen::Vector3d::UnitZ()) *
+                                         Eigen::Isometry3d(Eigen::Translation3d(0.5, 0.0, 0.15)));
+  return shape;
+}
+
+/// A cylinder with a slot along its length, so wide that its floor and walls are 5 % of the surface.
+TurningShape keyedShaftShape() {
+  TurningShape shape = cylinderShape();
+  for (Eigen::Vector3d& vertex : shape.vertices)
+    if (vertex.head<2>().norm() > 0.5 && std::abs(std::atan2(vertex.y(), vertex.x())) < 0.13) vertex.x() = 0.5;
+  return shape;
+}
+
+std::string groupOf(const TurningShape& shape, int num_points, std::uint64_t seed,
+                    const std::function<void(ObjectSymmetryOptions&)>& change = nullptr) {
+  ObjectSymmetryOptions options;
+  options.seed = seed;
+  if (change) change(options);
+  return objectSymmetries(moved(shape.sampled(num_points, seed), randomPose(seed)).cloud(), options).name();
+}
+
+TEST(ObjectSymmetries, OfABowlAreNeverThoseOfASphere) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) EXPECT_EQ(groupOf(bowlShape(), 2000, seed), "Cinf") << seed;
+}
+
+/// Multiples of the fold, and folds of the round tire alone, map most of the surface onto the surface.
+TEST(ObjectSymmetries, OfARimHaveTheFoldOfItsSpokes) {
+  for (const std::uint64_t seed : {1, 2, 3}) EXPECT_EQ(groupOf(rimShape(5), 5000, seed), "C5") << seed;
+  EXPECT_EQ(groupOf(rimShape(7), 10'000, 1), "C7");
+}
+
+TEST(ObjectSymmetries, AreTheSameForAnyNumberOfPoints) {
+  for (const int num_points : {2000, 10'000, 30'000}) {
+    EXPECT_EQ(groupOf(keyedShaftShape(), num_points, 1), "Dinf") << num_points;
+    EXPECT_EQ(groupOf(prismShape(8, 0.8), num_points, 2), "D8") << num_points;
+  }
+}
+
+TEST(ObjectSymmetries, IgnoreKeywaysUpToTheStatedShare) {
+  EXPECT_EQ(groupOf(keyedShaftShape(), 10'000, 1, [](auto& o) { o.max_feature = 0.1; }), "Dinf");
+  EXPECT_EQ(groupOf(keyedShaftShape(), 10'000, 1, [](auto& o) { o.max_feature = 0.01; }), "C2");
+}
+
+/// A plate whose sides differ by 2 x 4 % of 1: a quarter turn maps the faces of two sides 4 % of 1 off, 1.4 % of the
+/// diameter.
+TEST(ObjectSymmetries, DependOnTheTolerance) {
+  const TurningShape plate = boxShape("plate", {1.0, 0.96, 0.4}, RotationGroupKind::Dihedral, 2);
+  const auto at = [&](double tolerance) { return groupOf(plate, 5000, 1, [=](auto& o) { o.tolerance = tolerance; }); };
+  EXPECT_EQ(at(0.01), "D2");
+  EXPECT_EQ(at(0.02), "D4");
+  EXPECT_EQ(groupOf(plate, 5000, 1, [](auto& o) { o.absolute_tolerance = 0.058; }), "D4");
+  ObjectSymmetryOptions options;
+  options.other_tolerances = true;
+  const ObjectSymmetries found = objectSymmetries(plate.sampled(5000, 1).cloud(), options);
+  EXPECT_EQ(found.name(), "D2");
+  ASSERT_TRUE(found.at_half_tolerance && found.at_twice_tolerance);
+  EXPECT_EQ(found.at_half_tolerance->name(), "D2");
+  EXPECT_EQ(found.at_twice_tolerance->name(), "D4");
+  EXPECT_NEAR(found.tolerance, 0.01 * 2.0 * std::sqrt(1.0 + 0.96 * 0.96 + 0.16), 0.0005);
+}
+
+/// The handle is what a turn about the axis of a cup maps off its surface.
+TEST(ObjectSymmetries, SayWhatFailedAndWhere) {
+  const TurningShape cup = cupShape(true);
+  const ObjectSymmetries found = objectSymmetries(cup.sampled(10'000, 1).cloud());
+  ASSERT_EQ(found.name(), "C1");
+  ASSERT_FALSE(found.rejected.empty());
+  const RejectedRotation& first = found.rejected.front();
+  EXPECT_GT(std::abs(first.axis.z()), 0.99);
+  EXPECT_GT(first.off, 0.02);
+  EXPECT_LT(first.off, 0.2);
+  EXPECT_GT(first.far, 0.0125);
+  EXPECT_GT(first.where.x(), 0.7) << "the handle is at x = 0.7 to 1.2";
+}
+
 TEST(ObjectSymmetries, DoNotNeedEvenSampling) {
   for (const TurningShape& shape :
        {boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2), cylinderShape(), propellerShape(3, true)}) {
@@ -242,6 +335,8 @@ TEST(ObjectSymmetries, OptionsNameFieldValueAndRule) {
   using Options = ObjectSymmetryOptions;
   EXPECT_EQ(message([](Options&) {}), "");
   EXPECT_EQ(message([](Options& o) { o.max_feature = 2.0; }), "max_feature = 2, must be in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.tolerance = 0.0; }), "tolerance = 0, must be in (0, 0.1]");
+  EXPECT_EQ(message([](Options& o) { o.absolute_tolerance = -1.0; }), "absolute_tolerance = -1, must be >= 0");
   EXPECT_EQ(message([](Options& o) { o.max_fold = 1; }), "max_fold = 1, must be >= 2");
   EXPECT_EQ(message([](Options& o) { o.num_directions = 10; }), "num_directions = 10, must be >= 100");
   EXPECT_EQ(message([](Options& o) { o.max_points = 5; }), "max_points = 5, must be >= 100");

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,12 +16,19 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 struct ObjectSymmetryOptions {
   int num_cells = 64;         ///< cells of the distance transform along each side, in [8, 512]
   int num_directions = 3000;  ///< directions of axes on a half sphere, >= 100; 3000 are 2.6 degrees apart
-  int max_fold = 24;          ///< greatest order of a rotation, >= 2
+  int max_fold = 60;          ///< greatest order of a rotation, >= 2
   int max_points = 10'000;    ///< number of points drawn from larger clouds, >= 100
-  /// Greatest share of the surface, in one or more pieces together, that a symmetry may map off the surface: a handle,
-  /// a notch. In [0, 1].
-  double max_feature = 0.01;
-  double min_confidence = 0.5;  ///< least confidence, as for planes, in [0, 1]
+  /// What symmetric means: how far a surface may be off, share of the greatest distance between two points, in (0,
+  /// 0.1]. A rotation is a symmetry if it maps at least 1 - max_feature of the surface to within this of the surface.
+  double tolerance = 0.01;
+  /// The same in input units, >= 0; 0 = tolerance decides.
+  double absolute_tolerance = 0.0;
+  /// Greatest share of the surface, in one or more pieces together, that a symmetry may map off the surface: a plug, a
+  /// notch, a screw. At most an eighth of it may be off by more than ten tolerances: handles are parts, not features.
+  /// In [0, 1].
+  double max_feature = 0.10;
+  bool other_tolerances = false;  ///< finds the groups at half and twice the tolerance too
+  double min_confidence = 0.5;    ///< least confidence, in [0, 1]; 0.5 is where the shares meet the limits
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -40,6 +48,24 @@ struct PoseDistance {
   double offset;  ///< input units: between the two places of ObjectSymmetries::center
 };
 
+/// Turns about a line that are no symmetries, and why.
+struct RejectedRotation {
+  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();  ///< one of them, x -> T x in the input frame
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();         ///< unit
+  int fold = 0;                                            ///< order of the turns; 0: by any angle
+  double off = 0.0;                                        ///< share of the surface beyond the tolerance, in [0, 1]
+  double far = 0.0;                                        ///< share beyond ten tolerances, in [0, 1]
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();         ///< center of what is off, input frame
+};
+
+/// A group by its name.
+struct GroupName {
+  RotationGroupKind kind = RotationGroupKind::Cyclic;
+  int fold = 1;
+
+  std::string name() const { return nameOf(kind, fold); }
+};
+
 /// The rotations that map a shape onto itself.
 ///
 /// A pose T maps the input frame to any other one, such as that of a camera. The pose T S looks like T for every
@@ -56,9 +82,14 @@ struct ObjectSymmetries {
   /// One axis for a body of revolution, three perpendicular ones for a sphere: turns about two of them generate all
   /// rotations.
   std::vector<ContinuousSymmetry> continuous;
-  /// Share of the surface that the rotations map onto the surface, as far as sampling lets it, in [0, 1].
+  /// Share of the surface that each rotation maps to within the tolerance of the surface, relative to what sampling and
+  /// noise allow, in [0, 1]; for rotations by any angle their mean.
   double support = 1.0;
-  double confidence = 1.0;  ///< probability that the rotations are symmetries, as for planes, in [0, 1]
+  double confidence = 1.0;  ///< probability that the rotations are symmetries at the limits, in [0, 1]
+  double tolerance = 0.0;   ///< that was decided at, input units
+  /// Groups at half and at twice the tolerance, with ObjectSymmetryOptions::other_tolerances.
+  std::optional<GroupName> at_half_tolerance, at_twice_tolerance;
+  std::vector<RejectedRotation> rejected;                 ///< what was tried and failed, the least failure first
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
   std::string reason;  ///< why there is no answer, set by detectObjectSymmetries() for clouds; empty where there is one
 
@@ -115,17 +146,15 @@ struct ObjectSymmetries {
 /// without any plane, such as propellers. It carries the paper's transform and refinement over from reflections to
 /// rotations, as its future work suggests (Section 6).
 ///
-/// The distance transform tells in which directions axes through the center of mass are likely. The rotations about
-/// these axes are refined and judged as planes are. The greatest group that explains them is then fitted as a whole,
-/// and has to pass the same test. What the surface cannot tell from a symmetry counts as one: a plate whose sides
-/// differ by a hundredth is square, a prism of 16 sides is round.
-/// \param points 3 x N, finite, input units; at least 20
-/// distinct ones, not all on a line, that show the object from all sides.
-/// \param options limits of the search.
-/// \return
-/// the group, in the input frame; C_1 for a shape without symmetry.
-/// \throws std::invalid_argument for bad options,
-/// values that are not finite, too few points and points on a line.
+/// The distance transform tells in which directions axes through the center of mass are likely. Turns about these axes
+/// are refined as planes are, and judged by the share of the surface that they map to within the tolerance of the
+/// surface. A fold has to beat the turns halfway between its own; where all turns hold, the axis is one of revolution.
+/// The greatest group that explains the axes is then fitted as a whole, and has to hold as a whole.
+/// \param points 3 x N, finite, input units; at least 20 distinct ones, not all on a line, that show the object from all
+/// sides.
+/// \param options what symmetric means, and limits of the search.
+/// \return the group, in the input frame; C_1 for a shape without symmetry.
+/// \throws std::invalid_argument for bad options, values that are not finite, too few points and points on a line.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
 
 }  // namespace pcl_symmetry
