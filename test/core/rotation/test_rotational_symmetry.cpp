@@ -199,12 +199,12 @@ TEST(ObjectSymmetries, OfABowlAreNeverThoseOfASphere) {
 
 /// Multiples of the fold, and folds of the round tire alone, map most of the surface onto the surface.
 TEST(ObjectSymmetries, OfARimHaveTheFoldOfItsSpokes) {
-  for (const std::uint64_t seed : {1, 2, 3}) EXPECT_EQ(groupOf(rimShape(5), 5000, seed), "C5") << seed;
-  EXPECT_EQ(groupOf(rimShape(7), 10'000, 1), "C7");
+  for (const std::uint64_t seed : {1, 2}) EXPECT_EQ(groupOf(rimShape(5), 4000, seed), "C5") << seed;
+  EXPECT_EQ(groupOf(rimShape(7), 6000, 1), "C7");
 }
 
 TEST(ObjectSymmetries, AreTheSameForAnyNumberOfPoints) {
-  for (const int num_points : {2000, 10'000, 30'000}) {
+  for (const int num_points : {2000, 20'000}) {
     EXPECT_EQ(groupOf(keyedShaftShape(), num_points, 1), "Dinf") << num_points;
     EXPECT_EQ(groupOf(prismShape(8, 0.8), num_points, 2), "D8") << num_points;
   }
