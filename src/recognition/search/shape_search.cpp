@@ -4,7 +4,6 @@
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
-#include <unordered_map>
 #include <utility>
 
 #include "core/base/parallel.h"
