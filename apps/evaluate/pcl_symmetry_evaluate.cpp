@@ -10,6 +10,7 @@
 #include "evaluate/registration/registration.h"
 #include "evaluate/retrieval/retrieval.h"
 #include "evaluate/segmentation/segmentation.h"
+#include "evaluate/shapes/shapes.h"
 
 namespace {
 
@@ -28,7 +29,8 @@ constexpr SubCommand kSubCommands[] = {
     {"recognition", "how well a scan tells which model of a database it shows", evaluateRecognition},
     {"registration", "how well scans are brought to models of their objects", evaluateRegistration},
     {"retrieval", "how well shapes find others of their class", evaluateRetrieval},
-    {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation}};
+    {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation},
+    {"shapes", "decisions on shapes made by code: folds, views, random clouds, composites", evaluateShapes}};
 
 void printUsage() {
   std::printf(
