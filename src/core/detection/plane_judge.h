@@ -76,7 +76,11 @@ private:
   double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
   Points matchedNormals(const IspStep& step) const;
-  Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step) const;
+  /// Whether the scanner saw that nothing is at a point, nor within \p rim beside it: the rim of what was seen is as
+  /// exact as its pixels.
+  bool isSeenEmpty(const Eigen::Vector3d& x, double rim) const;
+  /// \param rim of isSeenEmpty().
+  Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step, double rim) const;
   PlaneEvidence evidence(const PlaneShares& shares, const Agreement& agreement, double score) const;
   JudgedPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
                      const std::vector<int>& samples) const;
