@@ -15,7 +15,7 @@ namespace pcl_symmetry::apps {
 namespace {
 
 constexpr double kPartAngle = 3.0 * kDegree, kPartOffset = 0.02;  // radians, diagonals; derived: the limits of `planes`
-constexpr int kCompositeCases = 120;  // chosen: half has intervals of 1.4 times the width, twice takes four minutes
+constexpr int kCompositeCases = 40;  // chosen: half has intervals of 1.4 times the width, twice takes four minutes
 // Diameter of the smaller part, of the larger one. chosen: smaller parts are details, larger ones are as large.
 constexpr double kSmallest = 0.6;
 constexpr double kOverlap = 0.1;  // diameters; chosen: the parts touch in more than a point

@@ -35,6 +35,12 @@ constexpr double kHeld = 0.02;
 // although a plane explains all of it. chosen: cuts along a plane of symmetry are rare; at one, the plane across an
 // open cup is as good as its others, at a hundredth, cut prisms lose planes.
 constexpr double kNothingMissing = 0.01, kPieceMissing = 0.03, kOddsOfAPiece = 0.2;
+// Share of the points that a plane leaves in place if it says nothing. chosen: half, as a sheet may be noisy; a box as
+// thin as two tolerances keeps its plane at any value.
+constexpr double kStillShare = 0.5;
+// Tolerances within which points that resolve no surface are a sheet or a line. chosen: noise of 1 % of the length of a
+// line holds 97 % of the points within 2.7; at half, such lines have axes, at twice, thick noisy plates lose a plane.
+constexpr double kNoisyThinness = 3.0;
 constexpr double kLeastTelling = 1e-3;  // chosen: any small share; avoids a division by 0
 constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
 
@@ -46,6 +52,7 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       options_(options),
       tolerance_(options.absolute_tolerance > 0.0 ? options.absolute_tolerance / cloud.scale
                                                   : options.tolerance * cloud.extent),
+      thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_)),
       own_share_(std::max(kLeastOwnShare, shareWithin(ownSurfaceDistances(cloud.points, cloud.geometry), tolerance_))) {
 }
 
@@ -168,12 +175,25 @@ JudgedPlane PlaneJudge::judged(const ReflectionPlane& plane, const PlaneShares& 
   answer.deviation = agreed.deviation * cloud_.scale;
   answer.seen = cloud_.isScan() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - agreed.unknown;
   answer.confidence = planeConfidence(all);
-  answer.kind = kindOf(answer.confidence);
+  answer.kind = kindOf(answer, answer.confidence);
   return {std::move(answer), all};
 }
 
-PlaneKind PlaneJudge::kindOf(double confidence) const {
-  return confidence >= options_.min_confidence ? PlaneKind::Symmetry
+bool PlaneJudge::leavesAllInPlace(const ReflectionPlane& plane) const {
+  if (thinness_ == Thinness::Solid) return false;
+  if (thinness_ == Thinness::Line) return true;
+  const ReflectionPlane normalized = cloud_.toNormalized(plane);
+  const double still = (cloud_.isVolume() ? kNoisyThinness : 1.0) * tolerance_;
+  Eigen::Index num_moved = 0;
+  for (Eigen::Index i = 0; i < cloud_.points.cols(); ++i)
+    num_moved += 2.0 * std::abs(normalized.signedDistance(cloud_.points.col(i).cast<double>())) > still ? 1 : 0;
+  return static_cast<double>(num_moved) < (1.0 - kStillShare) * static_cast<double>(cloud_.points.cols());
+}
+
+PlaneKind PlaneJudge::kindOf(const ReflectionPlane& plane, double confidence) const {
+  // What moves nothing says nothing: a sheet is mapped onto itself by its own plane, whatever it is a part of.
+  const bool decides = confidence >= options_.min_confidence && !leavesAllInPlace(plane);
+  return decides                               ? PlaneKind::Symmetry
          : confidence >= options_.min_possible ? PlaneKind::Possible
                                                : PlaneKind::Approximate;
 }
@@ -187,7 +207,7 @@ std::vector<SymmetryPlane> PlaneJudge::preferringWhole(std::vector<SymmetryPlane
     if (!is_whole || !needs(plane, kPieceMissing)) continue;
     const double odds = kOddsOfAPiece * plane.confidence;
     plane.confidence = odds / (odds + 1.0 - plane.confidence);
-    plane.kind = kindOf(plane.confidence);
+    plane.kind = kindOf(plane, plane.confidence);
   }
   return planes;
 }
