@@ -11,6 +11,7 @@
 #include "evaluate/retrieval/retrieval.h"
 #include "evaluate/rotations/rotations.h"
 #include "evaluate/segmentation/segmentation.h"
+#include "evaluate/shapes/shapes.h"
 
 namespace {
 
@@ -30,7 +31,8 @@ constexpr SubCommand kSubCommands[] = {
     {"registration", "how well scans are brought to models of their objects", evaluateRegistration},
     {"retrieval", "how well shapes find others of their class", evaluateRetrieval},
     {"rotations", "how well groups of rotations of solids are found", evaluateRotations},
-    {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation}};
+    {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation},
+    {"shapes", "decisions on shapes made by code: folds, views, random clouds, composites", evaluateShapes}};
 
 void printUsage() {
   std::printf(

@@ -9,6 +9,7 @@
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
+#include "core/normals/revolution_of_normals.h"
 #include "core/refinement/plane_tolerance.h"
 
 namespace pcl_symmetry {
@@ -46,8 +47,7 @@ constexpr int kRoughSampleShare = 5;  // chosen: one sample in this many screens
 // of few points; a quarter, and cones with five petals pass for round.
 constexpr double kWorstShare = 0.5;
 constexpr int kRefineIterations = 6;  // chosen: as many as of a candidate in its second stage
-// Share of the points. chosen: where less of a reflection was seen, that says nothing, and the share tends to 1.
-constexpr double kUnseen = 0.02;
+constexpr double kLeastSeen = 0.01;   // chosen: any small share of the points; avoids a division by 0
 
 /// Plane \p k of a sequence of planes through a line whose angles no regular polygon has.
 ReflectionPlane planeThrough(const AxisLine& line, int k) {
@@ -106,22 +106,8 @@ std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
   return planes;
 }
 
-}  // namespace
-
-bool contains(const ReflectionPlane& plane, const AxisLine& line, double tolerance) {
-  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kContainedAngle) &&
-         std::abs(plane.signedDistance(line.origin())) <= tolerance;
-}
-
-std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& planes, const FamilyTest& test) {
-  if (planes.size() < 3) return std::nullopt;
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()),
-                                                              Eigen::EigenvaluesOnly);
-  if (solver.eigenvalues()[0] < kLeastSpread) return std::nullopt;  // all through one line
-  Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
-  const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
+/// The family of all planes through a point, or through one nearby.
+std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const FamilyTest& test) {
   const auto at = [&](int k) { return planeThrough(point, k, kTested); };
   if (meanShare(at, kScreening, least - kRoughFactor * test.allowance, test.rough_share) == 0.0) return std::nullopt;
   std::vector<ReflectionPlane> refined;
@@ -132,33 +118,72 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   return CenterFamily{point, share, planesAt(at)};
 }
 
-std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test) {
+/// The family of all planes through a line, or through one nearby.
+std::optional<AxisFamily> axisAt(const AxisLine& start, double least, const FamilyTest& test) {
+  AxisLine line = start;
+  const auto at = [&](int k) { return planeThrough(line, k); };
+  // The line through two rough planes may be off by a little: the refined line has to pass the full test.
+  if (meanShare(at, kScreening, least - kRoughFactor * test.allowance, test.rough_share) == 0.0) return std::nullopt;
+  std::vector<ReflectionPlane> refined;
+  for (int k = 0; k < kFitted; ++k) refined.push_back(test.refine(planeThrough(line, k)));
+  line = commonLine(refined);
+  double share = meanShare(at, kTested, least, test.share);
+  // Planes that map a scan to what was not seen drift when they are refined.
+  if (share < least) {
+    line = start;
+    share = meanShare(at, kTested, least, test.share);
+  }
+  if (share < least) return std::nullopt;
+  return AxisFamily{line, share, planesAt(at)};
+}
+
+}  // namespace
+
+bool contains(const ReflectionPlane& plane, const AxisLine& line, double tolerance) {
+  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kContainedAngle) &&
+         std::abs(plane.signedDistance(line.origin())) <= tolerance;
+}
+
+std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
+                                       const std::vector<Eigen::Vector3d>& guesses) {
+  if (planes.empty()) return std::nullopt;
+  std::vector<Eigen::Vector3d> points;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()),
+                                                              Eigen::EigenvaluesOnly);
+  const bool has_point = planes.size() >= 3 && solver.eigenvalues()[0] >= kLeastSpread;  // or else all hold one line
+  if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));
+  points.insert(points.end(), guesses.begin(), guesses.end());
+  const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
+  for (const Eigen::Vector3d& point : points)
+    if (std::optional<CenterFamily> center = centerAt(point, least, test)) return center;
+  return std::nullopt;
+}
+
+std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
+                                 const std::vector<AxisLine>& guesses) {
   std::vector<AxisFamily> axes;
   std::vector<AxisLine> tried;
+  const auto attempt = [&](const AxisLine& line, double best_share) {
+    const bool known = std::any_of(tried.begin(), tried.end(), [&](const AxisLine& other) {
+      return std::abs(other.direction().dot(line.direction())) > std::cos(kContainedAngle) &&
+             other.distance(line.origin()) < test.tolerance;
+    });
+    if (known) return;
+    tried.push_back(line);
+    std::optional<AxisFamily> axis = axisAt(line, std::max(test.min_share, best_share - test.allowance), test);
+    if (!axis) return;
+    tried.push_back(axis->line);
+    axes.push_back(std::move(*axis));
+  };
+  if (!planes.empty())
+    for (const AxisLine& guess : guesses) attempt(guess, test.share(planes[0]));
   const std::size_t size = std::min(planes.size(), kMostPlanes);
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const double angle = planes[i].angleTo(planes[j]);
-      if (angle < kLeastAngle) continue;
-      AxisLine line = commonLine({planes[i], planes[j]});
-      const bool known = std::any_of(tried.begin(), tried.end(), [&](const AxisLine& other) {
-        return std::abs(other.direction().dot(line.direction())) > std::cos(kContainedAngle) &&
-               other.distance(line.origin()) < test.tolerance;
-      });
-      if (known) continue;
-      tried.push_back(line);
-      const double least =
-          std::max(test.min_share, std::max(test.share(planes[i]), test.share(planes[j])) - test.allowance);
-      const auto at = [&](int k) { return planeThrough(line, k); };
-      // The line through two rough planes may be off by a little: the refined line has to pass the full test.
-      if (meanShare(at, kScreening, least - kRoughFactor * test.allowance, test.rough_share) == 0.0) continue;
-      std::vector<ReflectionPlane> refined;
-      for (int k = 0; k < kFitted; ++k) refined.push_back(test.refine(planeThrough(line, k)));
-      line = commonLine(refined);
-      const double share = meanShare(at, kTested, least, test.share);
-      if (share < least) continue;
-      tried.push_back(line);
-      axes.push_back({line, share, planesAt(at)});
+      if (planes[i].angleTo(planes[j]) < kLeastAngle) continue;
+      attempt(commonLine({planes[i], planes[j]}), std::max(test.share(planes[i]), test.share(planes[j])));
     }
   }
   std::stable_sort(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
@@ -168,11 +193,12 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
 namespace {
 
 FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const std::vector<int>& samples) {
-  const auto share_of = [&fit](const std::vector<int>& used) {
-    return [&fit, used](const ReflectionPlane& plane) {
+  // A plane that maps most of a scan to what was not seen says little: only what contradicts counts.
+  const auto share_of = [&fit, is_scan = cloud.isScan()](const std::vector<int>& used) {
+    return [&fit, used, is_scan](const ReflectionPlane& plane) {
       const PlaneShares shares = fit.shares(plane, used);
       const double support = fit.relativeSupport(shares);
-      return (support + kUnseen) / (std::min(1.0, support + shares.conflict) + kUnseen);
+      return is_scan ? 1.0 - shares.conflict : support / std::max(kLeastSeen, std::min(1.0, support + shares.conflict));
     };
   };
   FamilyTest test;
@@ -186,6 +212,18 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   test.allowance = fit.familyAllowance();
   test.tolerance = kFamilyTolerance;
   return test;
+}
+
+/// Where the normals say that families may be.
+struct FamilyGuesses {
+  std::vector<AxisLine> axes;
+  std::vector<Eigen::Vector3d> centers;
+};
+
+FamilyGuesses guessFamilies(const NormalizedCloud& cloud, const std::vector<int>& samples) {
+  if (cloud.isVolume()) return {};  // normals mean nothing
+  const Points& normals = cloud.geometry.normals;
+  return {{axisOfNormals(cloud.points, normals, samples)}, {centerOfNormals(cloud.points, normals, samples)}};
 }
 
 /// Different symmetries among planes, most confident first, normalised frame.
@@ -212,9 +250,10 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   found.planes = std::move(planes);
   const std::vector<ReflectionPlane> symmetries =
       symmetriesOf(found.planes, cloud, {options.merge_angle, options.merge_offset});
-  if (symmetries.size() < 2) return found;
+  if (symmetries.empty()) return found;
   const std::vector<int> samples = drawSamples(cloud.points.cols(), kFamilySamples, options.seed);
   const FamilyTest test = familyTest(cloud, fit, samples);
+  const FamilyGuesses guesses = guessFamilies(cloud, samples);
   const auto drop = [&](const auto& belongs) {
     found.planes.erase(std::remove_if(found.planes.begin(), found.planes.end(),
                                       [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); }),
@@ -226,7 +265,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     return judged.confidence >= options.min_confidence &&
            (cloud.isScan() || judged.least_confidence >= kWorstShare * options.min_confidence);
   };
-  if (const std::optional<CenterFamily> center = findCenter(symmetries, test)) {
+  if (const std::optional<CenterFamily> center = findCenter(symmetries, test, guesses.centers)) {
     const JudgedFamily judged = judge.judgeFamily(center->planes, samples);
     if (isFamily(judged)) {
       found.centers.push_back(
@@ -237,7 +276,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
       return found;
     }
   }
-  for (const AxisFamily& family : findAxes(symmetries, test)) {
+  for (const AxisFamily& family : findAxes(symmetries, test, guesses.axes)) {
     const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
     found.axes.push_back({family.line.origin() * cloud.scale + cloud.center, family.line.direction(), judged.confidence,

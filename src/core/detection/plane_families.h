@@ -45,11 +45,15 @@ struct CenterFamily {
 };
 
 /// \param planes symmetries found, best first.
-std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& planes, const FamilyTest& test);
+/// \param guesses points that may be one, beside the common point of the planes.
+std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
+                                       const std::vector<Eigen::Vector3d>& guesses = {});
 
 /// \param planes symmetries found, best first.
+/// \param guesses lines that may be one, tried before those that two planes share.
 /// \return best first.
-std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test);
+std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
+                                 const std::vector<AxisLine>& guesses = {});
 
 /// Whether a plane contains a line, within 3 degrees and \p tolerance.
 bool contains(const ReflectionPlane& plane, const AxisLine& line, double tolerance);

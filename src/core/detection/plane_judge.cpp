@@ -35,6 +35,13 @@ constexpr double kHeld = 0.02;
 // although a plane explains all of it. chosen: cuts along a plane of symmetry are rare; at one, the plane across an
 // open cup is as good as its others, at a hundredth, cut prisms lose planes.
 constexpr double kNothingMissing = 0.01, kPieceMissing = 0.03, kOddsOfAPiece = 0.2;
+// Share of the points that a plane leaves in place if it says nothing. chosen: half, as a sheet may be noisy; a box as
+// thin as two tolerances keeps its plane at any value.
+constexpr double kStillShare = 0.5;
+// Tolerances within which points that resolve no surface are a sheet or a line. chosen: noise of 1 % of the length of a
+// line holds 97 % of the points within 2.7; at half, such lines have axes, at twice, thick noisy plates lose a plane.
+constexpr double kNoisyThinness = 3.0;
+constexpr double kLeastTelling = 1e-3;  // chosen: any small share; avoids a division by 0
 constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
 
 }  // namespace
@@ -45,6 +52,7 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       options_(options),
       tolerance_(options.absolute_tolerance > 0.0 ? options.absolute_tolerance / cloud.scale
                                                   : options.tolerance * cloud.extent),
+      thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_)),
       own_share_(std::max(kLeastOwnShare, shareWithin(ownSurfaceDistances(cloud.points, cloud.geometry), tolerance_))) {
 }
 
@@ -90,8 +98,18 @@ Points PlaneJudge::matchedNormals(const IspStep& step) const {
   return normals;
 }
 
+bool PlaneJudge::isSeenEmpty(const Eigen::Vector3d& x, double rim) const {
+  const Visibility& visibility = *cloud_.visibility;
+  if (visibility.depthBehind(x) >= 0.0) return false;
+  if (rim <= 0.0) return true;
+  const Eigen::Vector3d ray = (x - visibility.viewpoint()).normalized(), u = ray.unitOrthogonal(), v = ray.cross(u);
+  for (const Eigen::Vector3d& aside : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)})
+    if (visibility.depthBehind(x + rim * aside) >= 0.0) return false;
+  return true;
+}
+
 PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const Reflected& reflected,
-                                            const IspStep& step) const {
+                                            const IspStep& step, double rim) const {
   const std::size_t size = reflected.distances.size();
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
@@ -99,8 +117,7 @@ PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const 
   std::vector<float> unknown(size, 0.0f);
   if (cloud_.isScan()) {
     for (std::size_t i = 0; i < size; ++i)
-      if (!matched[i])
-        unknown[i] = cloud_.visibility->depthBehind(reflected.points.col(i).cast<double>()) < 0.0 ? 0.0f : 1.0f;
+      if (!matched[i]) unknown[i] = isSeenEmpty(reflected.points.col(i).cast<double>(), rim) ? 0.0f : 1.0f;
   } else if (!cloud_.isVolume() && within < kSurelyWhole && static_cast<Eigen::Index>(size) == cloud_.points.cols()) {
     const double held = offsetStiffness(reflected.points, matchedNormals(step), matched, plane);
     const auto trust = static_cast<float>(std::clamp(held / kHeld - 1.0, 0.0, 1.0));
@@ -148,7 +165,7 @@ JudgedPlane PlaneJudge::judged(const ReflectionPlane& plane, const PlaneShares& 
   SymmetryPlane answer(cloud_.toInput(plane));
   answer.point_support = shares.point_support;
   answer.score = cloud_.score(answer);
-  const Agreement agreed = agreement(plane, reflected(plane, samples, step), step);
+  const Agreement agreed = agreement(plane, reflected(plane, samples, step), step, 0.0);
   const PlaneEvidence all = evidence(shares, agreed, answer.score);
   const ShareInterval interval = shareInterval(all);
   answer.support = seenSupport(all);
@@ -158,12 +175,25 @@ JudgedPlane PlaneJudge::judged(const ReflectionPlane& plane, const PlaneShares& 
   answer.deviation = agreed.deviation * cloud_.scale;
   answer.seen = cloud_.isScan() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - agreed.unknown;
   answer.confidence = planeConfidence(all);
-  answer.kind = kindOf(answer.confidence);
+  answer.kind = kindOf(answer, answer.confidence);
   return {std::move(answer), all};
 }
 
-PlaneKind PlaneJudge::kindOf(double confidence) const {
-  return confidence >= options_.min_confidence ? PlaneKind::Symmetry
+bool PlaneJudge::leavesAllInPlace(const ReflectionPlane& plane) const {
+  if (thinness_ == Thinness::Solid) return false;
+  if (thinness_ == Thinness::Line) return true;
+  const ReflectionPlane normalized = cloud_.toNormalized(plane);
+  const double still = (cloud_.isVolume() ? kNoisyThinness : 1.0) * tolerance_;
+  Eigen::Index num_moved = 0;
+  for (Eigen::Index i = 0; i < cloud_.points.cols(); ++i)
+    num_moved += 2.0 * std::abs(normalized.signedDistance(cloud_.points.col(i).cast<double>())) > still ? 1 : 0;
+  return static_cast<double>(num_moved) < (1.0 - kStillShare) * static_cast<double>(cloud_.points.cols());
+}
+
+PlaneKind PlaneJudge::kindOf(const ReflectionPlane& plane, double confidence) const {
+  // What moves nothing says nothing: a sheet is mapped onto itself by its own plane, whatever it is a part of.
+  const bool decides = confidence >= options_.min_confidence && !leavesAllInPlace(plane);
+  return decides                               ? PlaneKind::Symmetry
          : confidence >= options_.min_possible ? PlaneKind::Possible
                                                : PlaneKind::Approximate;
 }
@@ -177,7 +207,7 @@ std::vector<SymmetryPlane> PlaneJudge::preferringWhole(std::vector<SymmetryPlane
     if (!is_whole || !needs(plane, kPieceMissing)) continue;
     const double odds = kOddsOfAPiece * plane.confidence;
     plane.confidence = odds / (odds + 1.0 - plane.confidence);
-    plane.kind = kindOf(plane.confidence);
+    plane.kind = kindOf(plane, plane.confidence);
   }
   return planes;
 }
@@ -186,22 +216,27 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
                                      const std::vector<int>& samples) const {
   const double count = static_cast<double>(planes.size());
   JudgedFamily family;
-  double support = 0.0, conflict = 0.0, share = 0.0, unknown = 0.0;
+  double support = 0.0, conflict = 0.0, share = 0.0, telling = 0.0, best_score = 0.0;
   for (const ReflectionPlane& plane : planes) {
     const IspStep step = fit_.matches(plane, samples);
     const PlaneShares shares = fit_.shares(plane, samples, step);
-    const Agreement agreed = agreement(plane, reflected(plane, samples, step), step);
+    const Agreement agreed =
+        agreement(plane, reflected(plane, samples, step), step, cloud_.isScan() ? tolerance_ : 0.0);
     const double score = cloud_.score(cloud_.toInput(plane));
     support += shares.support / count;
     conflict += shares.conflict / count;
-    share += agreed.share / count;
-    unknown += agreed.unknown / count;
+    share += agreed.share * (1.0 - agreed.unknown) / count;
+    telling += (1.0 - agreed.unknown) / count;
+    best_score = std::max(best_score, score);
     family.score += score / count;
     family.least_confidence = std::min(family.least_confidence, planeConfidence(evidence(shares, agreed, score)));
   }
-  const PlaneEvidence together = evidence({support, conflict, {}}, {share, unknown, 0.0}, family.score);
-  family.confidence = planeConfidence(together);
-  family.support = seenSupport(together);
+  // Planes of a family say as much as the scan shows of them, and D falls with what it does not show: the plane that
+  // is shown best stands for it.
+  const Agreement together{share / std::max(kLeastTelling, telling), 1.0 - telling, 0.0};
+  const PlaneEvidence all = evidence({support, conflict, {}}, together, cloud_.isScan() ? best_score : family.score);
+  family.confidence = planeConfidence(all);
+  family.support = seenSupport(all);
   return family;
 }
 

@@ -3,6 +3,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/neighbours/thin_shape.h"
 #include "core/refinement/part_search.h"
 #include "core/refinement/plane_fit.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
@@ -76,17 +77,23 @@ private:
   double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
   Points matchedNormals(const IspStep& step) const;
-  Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step) const;
+  /// Whether the scanner saw that nothing is at a point, nor within \p rim beside it: the rim of what was seen is as
+  /// exact as its pixels.
+  bool isSeenEmpty(const Eigen::Vector3d& x, double rim) const;
+  /// \param rim of isSeenEmpty().
+  Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step, double rim) const;
   PlaneEvidence evidence(const PlaneShares& shares, const Agreement& agreement, double score) const;
   JudgedPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
                      const std::vector<int>& samples) const;
-  PlaneKind kindOf(double confidence) const;
+  bool leavesAllInPlace(const ReflectionPlane& plane) const;
+  PlaneKind kindOf(const ReflectionPlane& plane, double confidence) const;
   const std::vector<char>& borders() const;
 
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
   const DetectionOptions& options_;
   double tolerance_;
+  Thinness thinness_;
   double own_share_;  ///< within the tolerance, of the points themselves and the surface of the others
   mutable std::once_flag borders_found_;
   mutable std::vector<char> borders_;  ///< of the cloud; found where they are first asked for

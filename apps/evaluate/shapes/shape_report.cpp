@@ -1,0 +1,86 @@
+#include "evaluate/shapes/shape_report.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/base/random.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+constexpr int kMostFolds = 64;  // planes; chosen: above the 25 of the shapes with most folds
+
+}  // namespace
+
+std::uint64_t ShapeRowOptions::caseSeed(int i) const {
+  return RandomStream(seed, 2 * static_cast<std::uint64_t>(i) + (report ? 1 : 0))();
+}
+
+Proportion& ShapeReport::at(const std::string& row, std::size_t column) {
+  auto found = std::find_if(rows_.begin(), rows_.end(), [&](const auto& entry) { return entry.first == row; });
+  if (found == rows_.end()) found = rows_.insert(found, {row, std::vector<Proportion>(columns_.size())});
+  return found->second.at(column);
+}
+
+void ShapeReport::print() const {
+  constexpr int kNameWidth = 22, kWidth = 34;  // characters; chosen: the longest entry fits
+  std::printf("%-*s", kNameWidth, "");
+  for (const std::string& column : columns_) std::printf("| %-*s", kWidth, column.c_str());
+  std::printf("\n");
+  for (const auto& [name, rates] : rows_) {
+    std::printf("%-*s", kNameWidth, name.c_str());
+    for (const Proportion& rate : rates) std::printf("| %-*s", kWidth, rate.text().c_str());
+    std::printf("\n");
+  }
+  for (const std::string& line : notes_) std::printf("%s\n", line.c_str());
+}
+
+nlohmann::json ShapeReport::json() const {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const auto& [name, rates] : rows_) {
+    nlohmann::json row{{"row", name}};
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      const Interval interval = rates[i].wilson();
+      row[columns_[i]] = {
+          {"count", rates[i].count}, {"total", rates[i].total}, {"low", interval.low}, {"high", interval.high}};
+    }
+    rows.push_back(row);
+  }
+  return {{"rows", rows}, {"notes", notes_}};
+}
+
+std::string ShapeReport::csv() const {
+  std::string text;
+  for (const std::string& line : log_) text += line + "\n";
+  return text;
+}
+
+std::vector<SymmetryPlane> ShapeAnswers::symmetries() const {
+  std::vector<SymmetryPlane> found;
+  std::copy_if(planes.begin(), planes.end(), std::back_inserter(found),
+               [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; });
+  return found;
+}
+
+ShapeAnswers detectShape(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const DetectionOptions& options) {
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setOptions(options);
+  refinement.setInputCloud(cloud);
+  ShapeAnswers answers;
+  answers.planes = refinement.compute();
+  answers.axes = refinement.getAxes();
+  answers.centers = refinement.getCenters();
+  return answers;
+}
+
+DetectionOptions detectionOptions(const ShapeRowOptions& options) {
+  DetectionOptions detection;
+  detection.max_planes = kMostFolds;
+  detection.seed = options.seed + 1;
+  detection.num_threads = detection.edt.num_threads = options.threads;
+  return detection;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,82 @@
+/// What the kinds of generated shapes share: how they are run, and the table of their rates.
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "evaluate/shared/model_list.h"
+#include "evaluate/shared/proportion.h"
+#include "pcl_symmetry/core/detection/plane_detection.h"
+
+namespace pcl_symmetry::apps {
+
+struct ShapeRowOptions {
+  int num = 0;          ///< clouds; 0 = as many as the kind has by default
+  bool report = false;  ///< shapes of the report half: other curves, profiles and streams of random numbers
+  int num_points = 10'000;
+  std::vector<std::string> folders;  ///< of models, for the kinds that use them
+  ModelSelection selection;
+  std::uint64_t seed = 0;
+  int threads = 0;
+  std::function<void(double)> progress;  ///< called with the fraction that is done
+
+  int count(int by_default) const { return num > 0 ? num : by_default; }
+  /// A stream of random numbers for case \p i, another for each half.
+  std::uint64_t caseSeed(int i) const;
+};
+
+/// Rates in rows and columns, in the order in which rows are first named.
+class ShapeReport {
+public:
+  explicit ShapeReport(std::vector<std::string> columns) : columns_(std::move(columns)) {}
+
+  /// \param column index of the column.
+  Proportion& at(const std::string& row, std::size_t column);
+
+  /// A line below the table.
+  void note(const std::string& line) { notes_.push_back(line); }
+  /// A row of the CSV file, which tells single clouds.
+  void log(const std::string& line) { log_.push_back(line); }
+
+  void print() const;
+  nlohmann::json json() const;
+  std::string csv() const;
+
+private:
+  std::vector<std::string> columns_;
+  std::vector<std::pair<std::string, std::vector<Proportion>>> rows_;
+  std::vector<std::string> notes_, log_;
+};
+
+/// What the detector says of a cloud.
+struct ShapeAnswers {
+  std::vector<SymmetryPlane> planes;  ///< of all kinds
+  std::vector<SymmetryAxis> axes;
+  std::vector<SymmetryCenter> centers;
+
+  std::vector<SymmetryPlane> symmetries() const;
+  /// Whether anything is called a symmetry.
+  bool callSymmetric() const { return !symmetries().empty() || !axes.empty() || !centers.empty(); }
+};
+
+/// Runs SymmetryMaximaRefinement, as a user would: the viewpoint of the cloud counts.
+ShapeAnswers detectShape(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const DetectionOptions& options);
+
+/// The defaults of the library, with room for the planes of shapes of many folds.
+DetectionOptions detectionOptions(const ShapeRowOptions& options);
+
+// The kinds, each a table of its own.
+ShapeReport measureFolds(const ShapeRowOptions& options);
+ShapeReport measureViews(const ShapeRowOptions& options);
+ShapeReport measureRandomClouds(const ShapeRowOptions& options);
+ShapeReport measureComposites(const ShapeRowOptions& options);
+ShapeReport measurePointCounts(const ShapeRowOptions& options);
+
+}  // namespace pcl_symmetry::apps

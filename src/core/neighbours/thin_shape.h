@@ -1,0 +1,18 @@
+#pragma once
+
+#include "pcl_symmetry/core/geometry/point_set.h"
+
+namespace pcl_symmetry {
+
+/// What is left of a shape at a tolerance: reflections along its thin directions move nothing and say nothing.
+enum class Thinness {
+  Solid,
+  Sheet,  ///< 97 % of the points lie within the tolerance of one plane
+  Line    ///< 97 % of the points lie within the tolerance of one line
+};
+
+/// \param points 3 x N, finite, N >= 1.
+/// \param tolerance units of the points, > 0.
+Thinness thinnessOf(const PointsRef& points, double tolerance);
+
+}  // namespace pcl_symmetry

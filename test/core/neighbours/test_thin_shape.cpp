@@ -1,0 +1,33 @@
+/// Solids, sheets and lines, as far as a tolerance tells them apart.
+#include "core/neighbours/thin_shape.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/random.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+
+Points boxOf(const Eigen::Vector3f& size) {
+  Points points(3, 1000);
+  RandomStream random(1);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    for (int k = 0; k < 3; ++k) points(k, i) = size[k] * static_cast<float>(random.uniform() - 0.5);
+  return points;
+}
+
+TEST(Thinness, IsThatOfTheSizesBeyondTheTolerance) {
+  EXPECT_EQ(thinnessOf(boxOf({2.0f, 1.0f, 0.5f}), 0.02), Thinness::Solid);
+  EXPECT_EQ(thinnessOf(boxOf({2.0f, 1.0f, 0.03f}), 0.02), Thinness::Sheet);
+  EXPECT_EQ(thinnessOf(boxOf({2.0f, 0.02f, 0.02f}), 0.02), Thinness::Line);
+  EXPECT_EQ(thinnessOf(boxOf({2.0f, 1.0f, 0.03f}), 0.005), Thinness::Solid) << "another tolerance";
+}
+
+TEST(Thinness, AFewPointsBesideDoNotCount) {
+  Points points = boxOf({2.0f, 1.0f, 0.0f});
+  points(2, 500) = 0.5f;
+  EXPECT_EQ(thinnessOf(points, 0.02), Thinness::Sheet);
+}
+
+}  // namespace
