@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -65,7 +66,8 @@ protected:
     const std::string path = folder_ / "report.json";
     EXPECT_EQ(run("shapes " + arguments + " -quiet -json " + path), 0) << error_;
     std::map<std::string, json> rows;
-    for (const json& row : json::parse(contentOf(path))["rows"]) rows[row["row"]] = row;
+    const json report = json::parse(contentOf(path));
+    for (const json& row : report["rows"]) rows[row["row"]] = row;
     return rows;
   }
 };
