@@ -279,8 +279,14 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   for (const AxisFamily& family : findAxes(symmetries, test, guesses.axes)) {
     const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
-    found.axes.push_back({family.line.origin() * cloud.scale + cloud.center, family.line.direction(), judged.confidence,
-                          judged.score, judged.support});
+    // Nothing bounded turns about two parallel lines, but a thin disc seems to within the tolerance: the best is the
+    // axis.
+    const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& axis) {
+      return std::abs(axis.direction.dot(family.line.direction())) > std::cos(kContainedAngle);
+    });
+    if (!is_known)
+      found.axes.push_back({family.line.origin() * cloud.scale + cloud.center, family.line.direction(),
+                            judged.confidence, judged.score, judged.support});
     drop([&](const ReflectionPlane& plane) { return contains(plane, family.line, test.tolerance); });
   }
   return found;

@@ -150,6 +150,18 @@ TEST(Families, ACylinderOfManySidesIsOneAndAPrismIsNone) {
   }
 }
 
+TEST(Families, AThinDiscHasOneAxis) {
+  RandomStream random(1);
+  Points disc(3, 4000);
+  for (Eigen::Index i = 0; i < disc.cols(); ++i) {
+    const double angle = 2.0 * kPi * random.uniform(), r = std::sqrt(random.uniform());
+    disc.col(i) = Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), 0.001 * random.uniform()).cast<float>();
+  }
+  const Detection detection = detectPlanes(disc);
+  ASSERT_EQ(detection.axes.size(), 1u);
+  EXPECT_GT(std::abs(detection.axes[0].direction.z()), std::cos(0.5 * kDegree));
+}
+
 TEST(Families, AHandleLeavesACupItsOnePlane) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const Eigen::Isometry3d pose = randomPose(10 + seed);
