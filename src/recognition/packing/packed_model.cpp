@@ -51,7 +51,7 @@ std::vector<Quantised> sortedSteps(const PositionCloud& cloud, const Eigen::Vect
 /// Small steps up and down as small numbers.
 std::uint16_t folded(std::uint16_t from, std::uint16_t to) {
   const auto difference = static_cast<std::int16_t>(to - from);
-  return static_cast<std::uint16_t>((difference << 1) ^ (difference >> 15));
+  return static_cast<std::uint16_t>((2 * difference) ^ (difference >> 15));
 }
 
 std::uint16_t unfolded(std::uint16_t from, std::uint16_t code) {
