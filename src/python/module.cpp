@@ -310,7 +310,8 @@ void addShapeFunctions(py::module_& module) {
              py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0,
              "Canonical frame of a cloud (Section 5.1). Parameters as in planes(). Returns Frame.");
   module.def("rotations", &rotations, py::arg("points"), py::kw_only(), py::arg("seed") = 1, py::arg("threads") = 0,
-             "The group of rotations that map a whole object onto itself (Section 6). Returns Rotations.");
+             "The group of rotations that map a whole object onto itself (Section 6). Returns Rotations.\n"
+             "Raises ValueError for fewer than 20 distinct points, and for points on a line.");
   module.def("segment", &segment, py::arg("points"), py::arg("faces") = py::none(), py::kw_only(), py::arg("parts") = 0,
              py::arg("progress") = py::none(), py::arg("seed") = 1, py::arg("threads") = 0,
              "Cuts a surface into parts by its symmetries (Section 5.3).\n\n"

@@ -8,10 +8,10 @@
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/recognition/symmetry_database.h"
+#include "recognition/packing/packed_model.h"
 #include "recognition/search/shape_search.h"
 #include "recognition/search/view_search.h"
 #include "recognition/storage/model_store.h"
-#include "recognition/packing/packed_model.h"
 
 namespace pcl_symmetry::detail {
 

@@ -33,15 +33,16 @@ fail() {
 # use_packages COMMAND...: COMMAND runs a command where the packages are.
 use_packages() {
   "$@" bash -euc '
+    cd "$(mktemp -d)"
     /usr/bin/python3 - <<END
 import pcl_symmetry, numpy
 random = numpy.random.default_rng(1)
 points = random.normal(size=(4000, 3))
 points = (points / numpy.abs(points).max(axis=1, keepdims=True) * (1, 0.8, 0.5)).astype("float32")
-numpy.savetxt("/tmp/box.xyz", points)
+numpy.savetxt("box.xyz", points)
 assert len(pcl_symmetry.planes(points)) == 3
 END
-    pcl_symmetry_planes /tmp/box.xyz -quiet | grep -c symmetry | grep -qx 3
+    pcl_symmetry_planes box.xyz -quiet | grep -c symmetry | grep -qx 3
     pcl_symmetry_map -version
   '
 }

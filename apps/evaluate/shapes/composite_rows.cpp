@@ -18,8 +18,8 @@ constexpr double kPartAngle = 3.0 * kDegree, kPartOffset = 0.02;  // radians, di
 constexpr int kCompositeCases = 40;  // chosen: half has intervals of 1.4 times the width, twice takes four minutes
 // Diameter of the smaller part, of the larger one. chosen: smaller parts are details, larger ones are as large.
 constexpr double kSmallest = 0.6;
-constexpr double kOverlap = 0.1;  // diameters; chosen: the parts touch in more than a point
-constexpr int kMostFoldsOfPart = 4;
+constexpr double kOverlap = 0.1;     // diameters; chosen: the parts touch in more than a point
+constexpr int kMostFoldsOfPart = 4;  // chosen: parts of things have few; more planes cost time
 
 /// A part about its own center, with unit diagonal.
 struct Part {

@@ -29,11 +29,15 @@ void ShapeReport::print() const {
   std::printf("%-*s", kNameWidth, "");
   for (const std::string& column : columns_) std::printf("| %-*s", kWidth, column.c_str());
   std::printf("\n");
-  for (const auto& [name, rates] : rows_) {
-    std::printf("%-*s", kNameWidth, name.c_str());
-    for (const Proportion& rate : rates) std::printf("| %-*s", kWidth, rate.text().c_str());
+  const auto printRow = [&](const auto& row) {
+    std::printf("%-*s", kNameWidth, row.first.c_str());
+    for (const Proportion& rate : row.second) std::printf("| %-*s", kWidth, rate.text().c_str());
     std::printf("\n");
-  }
+  };
+  for (const auto& row : rows_)
+    if (row.first != "all") printRow(row);
+  for (const auto& row : rows_)
+    if (row.first == "all") printRow(row);
   for (const std::string& line : notes_) std::printf("%s\n", line.c_str());
 }
 

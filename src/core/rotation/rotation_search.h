@@ -33,8 +33,8 @@ bool isKnown(const std::vector<AxisLineCandidate>& lines, const AxisLineCandidat
 /// Angle between two lines, in [0, pi/2].
 double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
-/// Folds in [2, \p max_fold] whose turns by 2 pi / n overlap best with the surface, of those that overlap as well as half
-/// the turn: one of at most 6, and one of all where that is another.
+/// Folds in [2, \p max_fold] whose turns by 2 pi / n overlap best with the surface, of those that overlap as well as
+/// half the turn: one of at most 6, and one of all where that is another.
 /// \return one or two, rising.
 std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold);
 

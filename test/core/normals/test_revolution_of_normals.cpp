@@ -43,7 +43,8 @@ void expectTilted(const Eigen::ParametrizedLine<double, 3>& line, double most) {
 TEST(AxisOfNormals, IsThatOfACone) {
   for (const double width : {2.0 * kPi, kPi, 0.5 * kPi}) {
     const Oriented part = cone(kTilted, 0.3, 0.3 + width, 1000);
-    // The ridge of 1e-6 on shifts moves the axis: by 2e-5 where a quarter turn holds it weakly (measured), else by less.
+    // The ridge of 1e-6 on shifts moves the axis: by 2e-5 where a quarter turn holds it weakly (measured), else by
+    // less.
     expectTilted(axisOfNormals(part.points, part.normals, part.samples), 1e-4);
   }
 }
