@@ -33,6 +33,7 @@ struct CalibrationOptions {
   std::vector<std::string> folders;
   ModelSelection selection;
   double tolerance = 0.01;
+  int num_shapes = 144;
   std::optional<std::string> csv, output;
   CommonOptions common;
 };
@@ -42,6 +43,8 @@ CommandLine commandLine(CalibrationOptions& options) {
                    "calibrate_planes psb/train -classes train.cla -fold 0 -output src/core/evidence/confidence_fit.h");
   addModelFlags(line, options.folders, options.selection);
   line.number("tolerance", options.tolerance, Range::upTo(0, 0.1), "of a symmetry, as a share of the diameter")
+      .number("shapes", options.num_shapes, Range::closed(0, 100'000),
+              "number of clouds of shapes with folds, made by code")
       .text("csv", "FILE", options.csv, "a row for each plane: what the detector saw, and its true share")
       .text("output", "FILE.h", options.output, "C++ header with the numbers")
       .common(options.common, kThreads | kQuiet);
@@ -86,7 +89,8 @@ KindFit fitKind(const std::vector<EvidenceSample>& samples, EvidenceKind kind) {
 }
 
 std::string csvText(const std::vector<EvidenceSample>& samples) {
-  std::string text = "model,row,kind,share_on_mesh,share,unknown,support,score,spacing,roughness\n";
+  std::string text =
+      "model,row,kind,share_on_mesh,share,unknown,support,conflict,baseline,score,spacing,tolerance,roughness\n";
   for (const EvidenceSample& sample : samples) {
     const PlaneEvidence& e = sample.evidence;
     text += Row()
@@ -97,8 +101,11 @@ std::string csvText(const std::vector<EvidenceSample>& samples) {
                 .add(e.share)
                 .add(e.unknown)
                 .add(e.support)
+                .add(e.conflict)
+                .add(e.baseline)
                 .add(e.score)
                 .add(e.spacing)
+                .add(e.tolerance)
                 .add(e.roughness)
                 .end();
   }
@@ -175,22 +182,28 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   const Console console(options.common.quiet);
   const std::vector<Model> models = listModels(options.folders, options.selection);
-  Step step(console, "Sampling " + std::to_string(models.size()) + " models");
-  std::vector<std::vector<EvidenceSample>> of_models(models.size());
+  const std::size_t num_all = models.size() + static_cast<std::size_t>(options.num_shapes);
+  Step step(console,
+            "Sampling " + std::to_string(models.size()) + " models, " + std::to_string(options.num_shapes) + " shapes");
+  std::vector<std::vector<EvidenceSample>> all(num_all);
   std::vector<std::string> left_out(models.size());
-  parallelBlocks(models.size(), options.common.threads, [&](std::size_t i) {
+  parallelBlocks(num_all, options.common.threads, [&](std::size_t i) {
+    if (i >= models.size()) {
+      all[i] = sampleFoldedEvidence(static_cast<int>(i - models.size()), options.tolerance);
+      return;
+    }
     try {
-      of_models[i] = sampleEvidence(models[i], options.tolerance);
+      all[i] = sampleEvidence(models[i], options.tolerance);
     } catch (const std::exception& error) {
       left_out[i] = models[i].path + ": " + error.what();
     }
   });
   std::vector<EvidenceSample> samples;
   std::size_t num_models = 0;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    samples.insert(samples.end(), of_models[i].begin(), of_models[i].end());
-    num_models += of_models[i].empty() ? 0 : 1;
-    if (!left_out[i].empty()) console.warn("left out: " + left_out[i]);
+  for (std::size_t i = 0; i < num_all; ++i) {
+    samples.insert(samples.end(), all[i].begin(), all[i].end());
+    num_models += i >= models.size() || all[i].empty() ? 0 : 1;
+    if (i < models.size() && !left_out[i].empty()) console.warn("left out: " + left_out[i]);
   }
   step.done(std::to_string(samples.size()) + " planes of " + std::to_string(num_models) + " models");
   std::array<KindFit, 3> fits;

@@ -1,5 +1,6 @@
 #include "calibrate/evidence_samples.h"
 
+#include <array>
 #include <memory>
 
 #include "common/shape_input/shape_input.h"
@@ -12,6 +13,8 @@
 #include "core/neighbours/distinct_points.h"
 #include "core/transform/sampled_transform.h"
 #include "evaluate/mesh/mesh_reflection.h"
+#include "evaluate/shapes/shape_report.h"
+#include "evaluate/shapes/swept_shape.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
 
 namespace pcl_symmetry::apps {
@@ -21,6 +24,10 @@ namespace {
 constexpr int kTruthSamples = 4000;  // of the mesh. chosen: the standard error of a share of 0.97 is 0.003
 // Scans of each model. chosen: two views say more than one; more views of one model say little new.
 constexpr int kNumViews = 2;
+// Points of shapes with folds, in turn, each for as many shapes as there are bodies, noises and thinnings. chosen: as
+// of the clouds of models.
+constexpr std::array<int, 3> kFoldedPoints{10'000, 3000, 30'000};
+constexpr int kFoldedCases = 36;
 
 CloudRecipe recipe(const std::string& name, int num_points, double noise, double missing, int view) {
   CloudRecipe result;
@@ -62,9 +69,17 @@ std::vector<JudgedPlane> judgedCandidates(const Points& points, const Visibility
       refinement.full(refinement.close(refinement.coarse(gatherCandidates(cloud, map, options), grid))));
 }
 
+DetectionOptions optionsOf(double tolerance) {
+  DetectionOptions options;
+  options.num_threads = options.edt.num_threads = 1;
+  options.tolerance = tolerance;
+  return options;
+}
+
 /// A plane of a cloud in the frame of the model's scene.
-ReflectionPlane toScene(const ReflectionPlane& plane, const TestCloud& cloud, const TriangleScene& scene) {
-  const Eigen::Isometry3d T_model_cloud = cloud.T_cloud_model.inverse();
+ReflectionPlane toScene(const ReflectionPlane& plane, const Eigen::Isometry3d& T_cloud_model,
+                        const TriangleScene& scene) {
+  const Eigen::Isometry3d T_model_cloud = T_cloud_model.inverse();
   const Eigen::Vector3d normal = T_model_cloud.linear() * plane.normal();
   const Eigen::Vector3d point = T_model_cloud * (plane.offset() * plane.normal());
   return ReflectionPlane(normal, normal.dot(point - scene.center()) / scene.diagonal());
@@ -84,6 +99,20 @@ std::vector<CloudRecipe> calibrationRecipes() {
   return recipes;
 }
 
+std::vector<EvidenceSample> sampleFoldedEvidence(int i, double tolerance) {
+  ShapeRowOptions seeds;
+  const FoldedCloud folded = foldedCloud(i, seeds.caseSeed(i), seeds.report, kFoldedPoints[i / kFoldedCases % 3]);
+  const TriangleScene scene(folded.shape.mesh);
+  const MeshReflection truth(scene, kTruthSamples, 1);
+  const double mesh_tolerance = tolerance * diameter(truth.samples());
+  std::vector<EvidenceSample> samples;
+  const std::string row = "folds, noise " + std::to_string(folded.noise);
+  for (const JudgedPlane& judged : judgedCandidates(finitePoints(*folded.cloud), nullptr, optionsOf(tolerance)))
+    samples.push_back({folded.body + " " + std::to_string(i), row, judged.evidence,
+                       truth.share(toScene(judged.plane, folded.pose, scene), mesh_tolerance)});
+  return samples;
+}
+
 std::vector<EvidenceSample> sampleEvidence(const Model& model, double tolerance) {
   const Shape shape = loadShape(model.path);
   if (!shape.mesh) throw InputError(model.path + ": has no faces");
@@ -93,9 +122,7 @@ std::vector<EvidenceSample> sampleEvidence(const Model& model, double tolerance)
   TestCloudOptions cloud_options;
   cloud_options.random_views = true;
   const TestCloudMaker maker(*shape.mesh, model.key, cloud_options);
-  DetectionOptions options;
-  options.num_threads = options.edt.num_threads = 1;
-  options.tolerance = tolerance;
+  const DetectionOptions options = optionsOf(tolerance);
   std::vector<EvidenceSample> samples;
   for (const CloudRecipe& recipe : calibrationRecipes()) {
     const TestCloud cloud = maker.make(recipe);
@@ -104,8 +131,8 @@ std::vector<EvidenceSample> sampleEvidence(const Model& model, double tolerance)
     std::optional<Visibility> seen;
     if (recipe.view >= 0) seen = spaceSeenFrom(points, cloud.cloud->sensor_origin_.head<3>().cast<double>());
     for (const JudgedPlane& judged : judgedCandidates(points, seen ? &*seen : nullptr, options))
-      samples.push_back(
-          {model.name, recipe.name, judged.evidence, truth.share(toScene(judged.plane, cloud, scene), mesh_tolerance)});
+      samples.push_back({model.name, recipe.name, judged.evidence,
+                         truth.share(toScene(judged.plane, cloud.T_cloud_model, scene), mesh_tolerance)});
   }
   return samples;
 }

@@ -24,4 +24,8 @@ std::vector<CloudRecipe> calibrationRecipes();
 /// \return the candidates of all clouds of the model.
 std::vector<EvidenceSample> sampleEvidence(const Model& model, double tolerance);
 
+/// \param i number of a shape of the tuning half, see foldedCloud().
+/// \return the candidates of that cloud.
+std::vector<EvidenceSample> sampleFoldedEvidence(int i, double tolerance);
+
 }  // namespace pcl_symmetry::apps

@@ -2,12 +2,10 @@
 #include <array>
 #include <cmath>
 
-#include "common/scanner/virtual_scanner.h"
 #include "core/base/constants.h"
 #include "evaluate/shapes/shape_report.h"
 #include "evaluate/shapes/swept_shape.h"
 #include "evaluate/shared/table_text.h"
-#include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {
 
@@ -16,41 +14,8 @@ namespace {
 // Degrees and diagonals within which an answer is right: the bar of this evaluation.
 constexpr std::array<double, 2> kFoldAngles = {1.0, 5.0};  // derived: the limits that earlier figures were given for
 constexpr double kFoldOffset = 0.01;                       // derived: see above
-constexpr int kFewestFolds = 2, kMostFoldsOfShape = 24;    // derived: the range that is asked for
 constexpr int kFoldCases = 144;  // chosen: half has intervals of 1.4 times the width, twice takes four minutes
-// Least density of a thinned cloud, of that of its densest part. chosen: that of a scan at a slant of 75 degrees.
-constexpr double kThinnest = 0.25;
 enum FoldColumn : std::size_t { kRecall1, kPrecision1, kRecall5, kPrecision5, kSwallowed };
-
-struct FoldCase {
-  std::string body;
-  int noise;  ///< spacings
-  bool thinned;
-  int num_folds;
-};
-
-FoldCase foldCase(int i, RandomStream& random) {
-  FoldCase result;
-  const auto num_bodies = static_cast<int>(foldedBodies().size()) + 1;
-  const int body = i % num_bodies;
-  result.body = body + 1 < num_bodies ? foldedBodies()[body] : "round";
-  result.noise = i / num_bodies % 3;
-  result.thinned = i / num_bodies / 3 % 2 == 1;
-  result.num_folds = kFewestFolds + static_cast<int>(random.below(kMostFoldsOfShape - kFewestFolds + 1));
-  return result;
-}
-
-/// Keeps points with a probability that falls from one to kThinnest along a direction.
-void thinAlong(pcl::PointCloud<pcl::PointXYZ>& cloud, const Eigen::Vector3d& direction, const SweptShape& shape,
-               RandomStream& random) {
-  pcl::PointCloud<pcl::PointXYZ> kept;
-  for (const pcl::PointXYZ& point : cloud) {
-    const double along = (point.getVector3fMap().cast<double>() - shape.center).dot(direction) / (0.5 * shape.diagonal);
-    const double density = kThinnest + (1.0 - kThinnest) * std::clamp(0.5 * (1.0 + along), 0.0, 1.0);
-    if (random.uniform() < density) kept.push_back(point);
-  }
-  cloud = kept;
-}
 
 /// The true symmetries of a moved shape, and what answers are worth.
 class FoldTruth {
@@ -126,8 +91,9 @@ std::string foldRange(int num_folds) {
                            : "13 to 24 folds";
 }
 
-std::string logLine(const FoldCase& what, const SweptShape& shape, const ShapeAnswers& answers,
-                    const FoldCounts& strict, const FoldCounts& loose) {
+std::string logLine(const FoldedCloud& what, const ShapeAnswers& answers, const FoldCounts& strict,
+                    const FoldCounts& loose) {
+  const SweptShape& shape = what.shape;
   Row row;
   row.add(what.body).add(double(shape.num_folds)).add(double(what.noise)).add(what.thinned ? "thinned" : "even");
   row.add(shape.between);
@@ -148,19 +114,12 @@ ShapeReport measureFolds(const ShapeRowOptions& options) {
   const int count = options.count(kFoldCases);
   for (int i = 0; i < count; ++i) {
     options.progress(static_cast<double>(i) / count);
-    RandomStream random(options.caseSeed(i));
-    const FoldCase what = foldCase(i, random);
-    const auto names = roundBodies(options.report);
-    const SweptShape shape = what.body == "round" ? roundShape(names[random.below(names.size())], random)
-                                                  : foldedShape(what.body, what.num_folds, options.report, random);
-    auto cloud = sampleMesh(shape.mesh, options.num_points, random());
-    if (what.thinned) thinAlong(*cloud, randomPose(random(), 0.0).linear().col(0), shape, random);
-    const Eigen::Isometry3d pose = randomPose(random(), shape.diagonal);
-    moveAndBlur(*cloud, pose, what.noise * std::sqrt(areaOf(shape.mesh) / options.num_points), random);
-    const ShapeAnswers answers = detectShape(cloud, detectionOptions(options));
+    const FoldedCloud what = foldedCloud(i, options.caseSeed(i), options.report, options.num_points);
+    const SweptShape& shape = what.shape;
+    const ShapeAnswers answers = detectShape(what.cloud, detectionOptions(options));
     std::array<FoldCounts, 2> counts;
     for (std::size_t k = 0; k < counts.size(); ++k)
-      counts[k] = countsOf(shape, FoldTruth(shape, pose, kFoldAngles[k]), answers);
+      counts[k] = countsOf(shape, FoldTruth(shape, what.pose, kFoldAngles[k]), answers);
     std::vector<std::string> rows{"noise " + std::to_string(what.noise), foldRange(shape.num_folds), what.body, "all"};
     if (what.thinned) rows.emplace_back("thinned");
     for (const std::string& row : rows) {
@@ -170,7 +129,7 @@ ShapeReport measureFolds(const ShapeRowOptions& options) {
       add(report.at(row, kPrecision5), counts[1].precision);
       if (!shape.isNearlyRound()) report.at(row, kSwallowed).add(counts[1].swallowed);
     }
-    report.log(logLine(what, shape, answers, counts[0], counts[1]));
+    report.log(logLine(what, answers, counts[0], counts[1]));
   }
   return report;
 }

@@ -8,10 +8,12 @@
 
 #include "common/scanner/random_numbers.h"
 #include "common/scanner/triangle_scene.h"
+#include "common/scanner/virtual_scanner.h"
 #include "core/base/constants.h"
 #include "core/neighbours/diameter.h"
 #include "drawing/parametric_mesh.h"
 #include "evaluate/mesh/mesh_reflection.h"
+#include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {
 
@@ -30,6 +32,9 @@ constexpr double kLeastHeight = 0.5, kMostHeight = 2.5;
 // Share that sizes have to differ by where equal ones have more symmetries (cubes, regular tetrahedra). chosen: three
 // times what a plane of 97 % allows.
 constexpr double kUnlike = 0.15;
+constexpr int kFewestFolds = 2, kMostFolds = 24;  // derived: the range that is asked for
+// Least density of a thinned cloud, of that of its densest part. chosen: that of a scan at a slant of 75 degrees.
+constexpr double kThinnest = 0.25;
 
 double between(RandomStream& random, double low, double high) {
   return low + (high - low) * random.uniform();
@@ -115,6 +120,18 @@ Profile ovalProfile(double height, int num_steps = 48) {
   for (int i = 0; i <= num_steps; ++i)
     profile.emplace_back(std::sin(kPi * i / num_steps), -0.5 * height * std::cos(kPi * i / num_steps));
   return profile;
+}
+
+/// Keeps points with a probability that falls from one to kThinnest along a direction.
+void thinAlong(pcl::PointCloud<pcl::PointXYZ>& cloud, const Eigen::Vector3d& direction, const SweptShape& shape,
+               RandomStream& random) {
+  pcl::PointCloud<pcl::PointXYZ> kept;
+  for (const pcl::PointXYZ& point : cloud) {
+    const double along = (point.getVector3fMap().cast<double>() - shape.center).dot(direction) / (0.5 * shape.diagonal);
+    const double density = kThinnest + (1.0 - kThinnest) * std::clamp(0.5 * (1.0 + along), 0.0, 1.0);
+    if (random.uniform() < density) kept.push_back(point);
+  }
+  cloud = kept;
 }
 
 }  // namespace
@@ -233,6 +250,25 @@ SweptShape roundShape(const std::string& body, RandomStream& random) {
         {{0, 0}, {r, 0}, {0.8, 0.15 * h}, {1, 0.35 * h}, {0.95, 0.35 * h}, {0.75, 0.17 * h}, {r, 0.04}, {0, 0.04}});
   if (body == "can") return roundShape(body, {{0, 0}, {1, 0}, {1, s * h}, {0.9, s * h + 0.1}, {0, s * h + 0.1}});
   throw std::invalid_argument("body = " + body + ", must be one of roundBodies()");
+}
+
+FoldedCloud foldedCloud(int i, std::uint64_t seed, bool report, int num_points) {
+  RandomStream random(seed);
+  FoldedCloud result;
+  const auto num_bodies = static_cast<int>(foldedBodies().size()) + 1;
+  const int body = i % num_bodies;
+  result.body = body + 1 < num_bodies ? foldedBodies()[body] : "round";
+  result.noise = i / num_bodies % 3;
+  result.thinned = i / num_bodies / 3 % 2 == 1;
+  const int num_folds = kFewestFolds + static_cast<int>(random.below(kMostFolds - kFewestFolds + 1));
+  const auto names = roundBodies(report);
+  result.shape = result.body == "round" ? roundShape(names[random.below(names.size())], random)
+                                        : foldedShape(result.body, num_folds, report, random);
+  result.cloud = sampleMesh(result.shape.mesh, num_points, random());
+  if (result.thinned) thinAlong(*result.cloud, randomPose(random(), 0.0).linear().col(0), result.shape, random);
+  result.pose = randomPose(random(), result.shape.diagonal);
+  moveAndBlur(*result.cloud, result.pose, result.noise * std::sqrt(areaOf(result.shape.mesh) / num_points), random);
+  return result;
 }
 
 double areaOf(const pcl::PolygonMesh& mesh) {

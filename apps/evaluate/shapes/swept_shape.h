@@ -54,6 +54,21 @@ std::vector<std::string> roundBodies(bool report);
 /// \param body one of roundBodies(), or "ball".
 SweptShape roundShape(const std::string& body, RandomStream& random);
 
+/// A cloud of a shape with folds, or of a round one.
+struct FoldedCloud {
+  std::string body;  ///< one of foldedBodies(), or "round"
+  int noise = 0;     ///< standard deviation along each axis, spacings
+  bool thinned = false;
+  SweptShape shape;
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud;  ///< the points, moved by the pose
+  Eigen::Isometry3d pose;                     ///< of the shape
+};
+
+/// Bodies of 2 to 24 folds and round ones, with noise of 0, 1 and 2 spacings; half of them thinned along one direction.
+/// \param i decides on body, noise and thinning; all else is drawn from \p seed.
+/// \param report draws from the shapes of the report half.
+FoldedCloud foldedCloud(int i, std::uint64_t seed, bool report, int num_points);
+
 /// The area of a mesh, squared units of its frame.
 double areaOf(const pcl::PolygonMesh& mesh);
 

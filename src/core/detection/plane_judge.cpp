@@ -53,8 +53,11 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       tolerance_(options.absolute_tolerance > 0.0 ? options.absolute_tolerance / cloud.scale
                                                   : options.tolerance * cloud.extent),
       thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_)),
-      own_share_(std::max(kLeastOwnShare, shareWithin(ownSurfaceDistances(cloud.points, cloud.geometry), tolerance_))) {
-}
+      halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
+                               : std::nullopt),
+      own_share_(std::max(kLeastOwnShare, shareWithin(halves_ ? halves_->ownDistances()
+                                                              : ownSurfaceDistances(cloud.points, cloud.geometry),
+                                                      tolerance_))) {}
 
 std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {
   std::vector<SymmetryPlane> planes;
@@ -113,7 +116,8 @@ PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const 
   const std::size_t size = reflected.distances.size();
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
-  const double within = shareWithin(reflected.distances, tolerance_) / own_share_;
+  const double within =
+      shareWithin(halves_ ? halves_->reflectedDistances(plane) : reflected.distances, tolerance_) / own_share_;
   std::vector<float> unknown(size, 0.0f);
   if (cloud_.isScan()) {
     for (std::size_t i = 0; i < size; ++i)

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <mutex>
+#include <optional>
 #include <vector>
 
+#include "core/evidence/split_surface.h"
 #include "core/neighbours/thin_shape.h"
 #include "core/refinement/part_search.h"
 #include "core/refinement/plane_fit.h"
@@ -94,6 +96,7 @@ private:
   const DetectionOptions& options_;
   double tolerance_;
   Thinness thinness_;
+  std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
   double own_share_;  ///< within the tolerance, of the points themselves and the surface of the others
   mutable std::once_flag borders_found_;
   mutable std::vector<char> borders_;  ///< of the cloud; found where they are first asked for

@@ -1,0 +1,37 @@
+#include "core/evidence/split_surface.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/evidence/surface_distance.h"
+#include "core/geometry/point_samples.h"
+
+namespace pcl_symmetry {
+
+SplitSurface::SplitSurface(const Points& points, std::uint64_t seed, int num_threads) {
+  const Eigen::Index size = points.cols();
+  std::vector<int> second = drawSamples(size, static_cast<int>(size / 2), seed), first;
+  std::sort(second.begin(), second.end());
+  const std::vector<int> all = allOf(size);
+  std::set_difference(all.begin(), all.end(), second.begin(), second.end(), std::back_inserter(first));
+  first_ = pointsAt(points, first);
+  second_ = pointsAt(points, second);
+  search_ = makeFlannSearch(second_);
+  geometry_ = localGeometry(second_, *search_, kNumSupportNeighbours, num_threads);
+}
+
+std::vector<float> SplitSurface::reflectedDistances(const ReflectionPlane& plane) const {
+  Points reflected(3, first_.cols());
+  for (Eigen::Index i = 0; i < first_.cols(); ++i)
+    reflected.col(i) = plane.reflect(first_.col(i).cast<double>()).cast<float>();
+  return distances(reflected);
+}
+
+std::vector<float> SplitSurface::distances(const Points& points) const {
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  search_->search(points, 1, closest, sq_distances);
+  return surfaceDistances(points, closest, second_, geometry_);
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/normals/surface_normals.h"
+#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/geometry/reflection_plane.h"
+
+namespace pcl_symmetry {
+
+/// A cloud in two halves: how much of one half lies on the surface that the other describes.
+///
+/// Where noise exceeds the spacing, a point and the surface that was fitted to it are not independent, and no
+/// correction for that holds. The reflection of one half by a true plane is a new sample of the same noisy surface as
+/// the other half and lies on it exactly as often as the half itself.
+class SplitSurface {
+public:
+  /// \param points 3 x N, finite, N >= 4.
+  /// \param seed of the halves.
+  /// \param num_threads 0 = one per core.
+  SplitSurface(const Points& points, std::uint64_t seed, int num_threads);
+
+  /// \return distances of the first half from the surface of the second, units of the points, >= 0.
+  std::vector<float> ownDistances() const { return distances(first_); }
+  /// \return the same for the reflections of the first half.
+  std::vector<float> reflectedDistances(const ReflectionPlane& plane) const;
+
+private:
+  std::vector<float> distances(const Points& points) const;
+
+  Points first_, second_;
+  ClosestPointSearch::Ptr search_;  ///< of the second half
+  LocalGeometry geometry_;          ///< of the second half
+};
+
+}  // namespace pcl_symmetry
