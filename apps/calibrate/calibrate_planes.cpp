@@ -51,6 +51,15 @@ CommandLine commandLine(CalibrationOptions& options) {
   return line;
 }
 
+bool isNear(const EvidenceSample& sample) {
+  return sample.share >= kAsymmetric && sample.share < kSymmetric;
+}
+
+/// What a scan does not show cannot tell nearly symmetric planes from symmetries: of scans they are neither.
+bool counts(const EvidenceSample& sample) {
+  return !(kindOf(sample.evidence) == EvidenceKind::Scan && isNear(sample));
+}
+
 struct KindFit {
   Eigen::VectorXd coefficients;
   double low = 0.0, high = 0.0;  ///< errors of the share, units of shareUnit()
@@ -72,6 +81,7 @@ KindFit fitKind(const std::vector<EvidenceSample>& samples, EvidenceKind kind) {
     // Intervals are read where a plane may be a symmetry.
     if (sample.evidence.share > kAsymmetric)
       errors.push_back((sample.share - sample.evidence.share) / shareUnit(sample.evidence));
+    if (!counts(sample)) continue;
     rows.push_back(logOddsTerms(sample.evidence));
     outcomes.push_back(sample.share >= kSymmetric ? 1.0 : 0.0);
     ++(sample.share >= kSymmetric ? fit.num_symmetric : fit.num_asymmetric);
@@ -90,7 +100,8 @@ KindFit fitKind(const std::vector<EvidenceSample>& samples, EvidenceKind kind) {
 
 std::string csvText(const std::vector<EvidenceSample>& samples) {
   std::string text =
-      "model,row,kind,share_on_mesh,share,unknown,support,conflict,baseline,score,spacing,tolerance,roughness\n";
+      "model,row,kind,share_on_mesh,share,unknown,support,conflict,baseline,score,own_score,spacing,tolerance,"
+      "roughness\n";
   for (const EvidenceSample& sample : samples) {
     const PlaneEvidence& e = sample.evidence;
     text += Row()
@@ -104,6 +115,7 @@ std::string csvText(const std::vector<EvidenceSample>& samples) {
                 .add(e.conflict)
                 .add(e.baseline)
                 .add(e.score)
+                .add(e.own_score)
                 .add(e.spacing)
                 .add(e.tolerance)
                 .add(e.roughness)
@@ -141,12 +153,13 @@ double logOdds(const PlaneEvidence& evidence, const std::array<KindFit, 3>& fits
   return Eigen::Map<const Eigen::VectorXd>(terms.data(), coefficients.size()).dot(coefficients);
 }
 
-/// Whether the stated probabilities come true, nearly symmetric planes counted as none.
+/// Whether the stated probabilities come true, nearly symmetric planes of whole clouds counted as none.
 void printReliabilities(const std::vector<EvidenceSample>& samples, const std::array<KindFit, 3>& fits) {
   std::array<std::vector<Forecast>, 3> forecasts;
   for (const EvidenceSample& sample : samples)
-    forecasts[static_cast<std::size_t>(kindOf(sample.evidence))].push_back(
-        {1.0 / (1.0 + std::exp(-logOdds(sample.evidence, fits))), sample.share >= kSymmetric});
+    if (counts(sample))
+      forecasts[static_cast<std::size_t>(kindOf(sample.evidence))].push_back(
+          {1.0 / (1.0 + std::exp(-logOdds(sample.evidence, fits))), sample.share >= kSymmetric});
   std::vector<Reliability> groups;
   for (std::size_t kind = 0; kind < forecasts.size(); ++kind)
     groups.push_back(reliabilityOf(kKinds[kind], forecasts[kind], {}));

@@ -14,6 +14,15 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+namespace detail {
+
+/// What was found, and the points that were used.
+struct DetectedPlanes : Detection {
+  Points points = Points(3, 0);
+};
+
+}  // namespace detail
+
 /// Finds the planes of symmetry of a cloud: local maxima of the transform, refined by Iterative Symmetric Points
 /// (Section 4.4 of the paper).
 ///
@@ -102,31 +111,25 @@ public:
   std::vector<float> computePointSupport(const ReflectionPlane& plane) const;
 
   /// \return the axes of revolution that the last compute() found, best first, in the frame of the input.
-  const std::vector<SymmetryAxis>& getAxes() const { return axes_; }
+  const std::vector<SymmetryAxis>& getAxes() const { return found_.axes; }
   /// \return the centers of spheres that the last compute() found.
-  const std::vector<SymmetryCenter>& getCenters() const { return centers_; }
+  const std::vector<SymmetryCenter>& getCenters() const { return found_.centers; }
   /// \return where the last compute() found neither a symmetry nor a possible one, the plane that maps the greatest share
   /// of the surface to within the tolerance; empty otherwise, and where the input holds no answer.
-  const std::optional<SymmetryPlane>& getBestPlane() const { return best_; }
+  const std::optional<SymmetryPlane>& getBestPlane() const { return found_.best; }
   /// \return the tolerance that the last compute() decided at, input units.
-  double getUsedTolerance() const { return used_tolerance_; }
+  double getUsedTolerance() const { return found_.tolerance; }
   /// \return the map that was given, or else the map that the last compute() made.
-  const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : own_map_; }
+  const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : found_.map; }
   /// \return stages of the last compute() and their milliseconds, in order.
-  const std::vector<std::pair<std::string, double>>& getTiming() const { return timing_ms_; }
+  const std::vector<std::pair<std::string, double>>& getTiming() const { return found_.timing_ms; }
 
 protected:
   using pcl::PCLBase<PointT>::input_;
 
   void clearResults() override {
     ScanAnalysis<PointT>::clearResults();
-    own_map_ = {};
-    used_points_.resize(3, 0);
-    axes_.clear();
-    centers_.clear();
-    best_.reset();
-    used_tolerance_ = 0.0;
-    timing_ms_.clear();
+    found_ = {};
   }
 
 private:
@@ -138,14 +141,9 @@ private:
   DetectionOptions options_;
   SearchPtr search_;
   bool use_input_normals_ = true;
-  SymmetryMap map_, own_map_;  // given; made here
+  SymmetryMap map_;  // that was given
   std::shared_ptr<const GaussianEdt> edt_;
-  Points used_points_ = Points(3, 0);
-  std::vector<SymmetryAxis> axes_;
-  std::vector<SymmetryCenter> centers_;
-  std::optional<SymmetryPlane> best_;
-  double used_tolerance_ = 0.0;
-  std::vector<std::pair<std::string, double>> timing_ms_;
+  detail::DetectedPlanes found_;  // without the planes, which compute() returns
 };
 
 }  // namespace pcl_symmetry

@@ -32,7 +32,7 @@ constexpr double kLeastHeight = 0.5, kMostHeight = 2.5;
 // Share that sizes have to differ by where equal ones have more symmetries (cubes, regular tetrahedra). chosen: three
 // times what a plane of 97 % allows.
 constexpr double kUnlike = 0.15;
-constexpr int kFewestFolds = 2, kMostFolds = 24;  // derived: the range that is asked for
+constexpr int kFewestFolds = 2, kMostFoldsOfShape = 24;  // derived: the range that is asked for
 // Least density of a thinned cloud, of that of its densest part. chosen: that of a scan at a slant of 75 degrees.
 constexpr double kThinnest = 0.25;
 
@@ -260,7 +260,7 @@ FoldedCloud foldedCloud(int i, std::uint64_t seed, bool report, int num_points) 
   result.body = body + 1 < num_bodies ? foldedBodies()[body] : "round";
   result.noise = i / num_bodies % 3;
   result.thinned = i / num_bodies / 3 % 2 == 1;
-  const int num_folds = kFewestFolds + static_cast<int>(random.below(kMostFolds - kFewestFolds + 1));
+  const int num_folds = kFewestFolds + static_cast<int>(random.below(kMostFoldsOfShape - kFewestFolds + 1));
   const auto names = roundBodies(report);
   result.shape = result.body == "round" ? roundShape(names[random.below(names.size())], random)
                                         : foldedShape(result.body, num_folds, report, random);

@@ -2,7 +2,7 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
-#include <limits>
+#include <functional>
 #include <mutex>
 #include <optional>
 
@@ -13,11 +13,21 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
-/// \param points 3 x M, finite.
-/// \param samples 3 x N, finite, the surface that reflected points are compared with, same frame.
-/// \return the support for the plane at each of the points, in [0, 1].
-std::vector<float> pointSupport(const Points& points, const Points& samples, const ReflectionPlane& plane,
-                                int num_threads);
+using MakeSearch = std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>;
+
+/// What does not depend on the type of the points of SymmetryMaximaRefinement::compute().
+/// \param edt,map of these points; edt null: the map is computed.
+/// \param search null: the library's own.
+DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const SymmetryMap& map,
+                           const DetectionOptions& options, const MakeSearch& search,
+                           const std::optional<Visibility>& seen, const std::optional<Points>& normals);
+
+/// \param all finite points of a cloud.
+/// \param cloud_size points of the cloud.
+/// \param samples 3 x N, finite, the surface that reflected points are compared with, same frame; N = 0: no surface.
+/// \return the support for the plane at each point of the cloud, in [0, 1]; NaN where it is not known.
+std::vector<float> pointSupport(const SelectedPoints& all, std::size_t cloud_size, const Points& samples,
+                                const ReflectionPlane& plane, int num_threads);
 
 /// A pcl::search::Search that answers questions in the normalised frame of the refinement.
 ///
@@ -74,35 +84,22 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     Points points = this->selectInput(options_.seed);
     if (points.cols() == 0) return std::vector<SymmetryPlane>();
     const auto search = [&](const GaussianEdt& edt) -> ClosestPointSearch::Ptr {
-      if (!search_) return nullptr;
       return std::make_shared<detail::PCLPointSearch<PointT>>(search_, *input_, this->getUsedIndices(), edt);
     };
     const std::optional<Visibility> seen = this->seenSpace(points);
-    const Visibility* visibility = seen ? &*seen : nullptr;
     const std::optional<Points> normals =
         use_input_normals_ ? detail::normalsOf(*input_, this->getUsedIndices()) : std::nullopt;
-    const Points* given = normals ? &*normals : nullptr;
-    Detection detection = edt_ ? refineMaxima(points, *edt_, map_, options_, search(*edt_), visibility, given)
-                               : detectPlanes(points, options_, search, visibility, given);
-    used_points_ = std::move(points);
-    own_map_ = std::move(detection.map);
-    axes_ = std::move(detection.axes);
-    centers_ = std::move(detection.centers);
-    best_ = std::move(detection.best);
-    used_tolerance_ = detection.tolerance;
-    timing_ms_ = std::move(detection.timing_ms);
-    return std::move(detection.planes);
+    found_ = detail::foundPlanes(std::move(points), edt_.get(), map_, options_,
+                                 search_ ? detail::MakeSearch(search) : nullptr, seen, normals);
+    return std::move(found_.planes);
   });
 }
 
 template <typename PointT>
 std::vector<float> SymmetryMaximaRefinement<PointT>::computePointSupport(const ReflectionPlane& plane) const {
-  std::vector<float> support(input_ ? input_->size() : 0, std::numeric_limits<float>::quiet_NaN());
-  if (used_points_.cols() == 0) return support;
+  if (!input_) return {};
   const detail::SelectedPoints all = detail::selectPoints(*input_, nullptr, input_->size(), 0);
-  const std::vector<float> finite = detail::pointSupport(all.points, used_points_, plane, options_.num_threads);
-  for (std::size_t i = 0; i < finite.size(); ++i) support[all.indices[i]] = finite[i];
-  return support;
+  return detail::pointSupport(all, input_->size(), found_.points, plane, options_.num_threads);
 }
 
 }  // namespace pcl_symmetry

@@ -57,7 +57,10 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
                                : std::nullopt),
       own_share_(std::max(kLeastOwnShare, shareWithin(halves_ ? halves_->ownDistances()
                                                               : ownSurfaceDistances(cloud.points, cloud.geometry),
-                                                      tolerance_))) {}
+                                                      tolerance_))),
+      own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
+                                             options.num_threads)
+                         : 1.0) {}
 
 std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {
   std::vector<SymmetryPlane> planes;
@@ -161,6 +164,7 @@ PlaneEvidence PlaneJudge::evidence(const PlaneShares& shares, const Agreement& a
   evidence.share = agreement.share;
   evidence.tolerance = tolerance_;
   evidence.unknown = agreement.unknown;
+  evidence.own_score = own_score_;
   return evidence;
 }
 

@@ -98,6 +98,7 @@ private:
   Thinness thinness_;
   std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
   double own_share_;  ///< within the tolerance, of the points themselves and the surface of the others
+  double own_score_;  ///< PlaneEvidence::own_score
   mutable std::once_flag borders_found_;
   mutable std::vector<char> borders_;  ///< of the cloud; found where they are first asked for
 };

@@ -9,6 +9,7 @@ struct PlaneEvidence {
   double support = 0.0;    ///< mean over the points: the reflection lies on the surface, in [0, 1]
   double conflict = 0.0;   ///< mean over the points: the reflection lies where there is nothing, in [0, 1]
   double score = 0.0;      ///< D of equation 2, in [0, 1]
+  double own_score = 1.0;  ///< what noise leaves of D for a symmetry, in [0.5, 1]; 1 where points resolve a surface
   double baseline = 1.0;   ///< support of the points on the surface of all others: < 1 by sampling and noise
   double spacing = 0.0;    ///< median distance of the samples, divided by the radius of the points
   double roughness = 0.0;  ///< median distance of the samples from their tangent planes, divided by the spacing
@@ -34,7 +35,8 @@ enum class EvidenceKind {
 EvidenceKind kindOf(const PlaneEvidence& evidence);
 
 /// The summands of the log odds that a plane is a symmetry, before their coefficients. The first is 1; then
-/// come those that fall as the evidence gets better, then the spacing, which says what to expect of the others.
+/// come those that fall as the evidence gets better, then the spacing or the noise, which says what to expect of the
+/// others.
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence);
 
 /// Limits of a share.

@@ -1,10 +1,13 @@
 #include "core/evidence/split_surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "core/evidence/surface_distance.h"
 #include "core/geometry/point_samples.h"
+#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 
 namespace pcl_symmetry {
 
@@ -25,6 +28,19 @@ std::vector<float> SplitSurface::reflectedDistances(const ReflectionPlane& plane
   for (Eigen::Index i = 0; i < first_.cols(); ++i)
     reflected.col(i) = plane.reflect(first_.col(i).cast<double>()).cast<float>();
   return distances(reflected);
+}
+
+double SplitSurface::ownScore(int num_cells, double sigma, const BoundingBall& ball, int num_threads) const {
+  GaussianEdtOptions options;
+  options.num_cells = num_cells;
+  options.sigma = sigma;
+  options.center = ball.center;
+  options.radius = ball.radius;
+  options.num_threads = num_threads;
+  const GaussianEdt first(first_, options), second(second_, options);
+  const double product = std::inner_product(first.values().begin(), first.values().end(), second.values().begin(), 0.0);
+  const double half = product / std::sqrt(first.sqNorm() * second.sqNorm());
+  return 0.5 * (1.0 + std::clamp(half, 0.0, 1.0));
 }
 
 std::vector<float> SplitSurface::distances(const Points& points) const {

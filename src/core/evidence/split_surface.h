@@ -26,6 +26,13 @@ public:
   /// \return the same for the reflections of the first half.
   std::vector<float> reflectedDistances(const ReflectionPlane& plane) const;
 
+  /// What sampling and noise leave of D of equation 2 for a true plane: f of all points and f of their reflections
+  /// differ by noise alone. derived: the halves differ by noise of twice the variance, so that they lose twice as much.
+  /// \param num_cells,sigma of the distance transform that D is computed from; sigma in units of the points.
+  /// \param ball that it covers, frame of the points.
+  /// \return in [0.5, 1].
+  double ownScore(int num_cells, double sigma, const BoundingBall& ball, int num_threads) const;
+
 private:
   std::vector<float> distances(const Points& points) const;
 

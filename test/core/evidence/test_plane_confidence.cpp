@@ -27,6 +27,7 @@ PlaneEvidence evidenceOf(double score, double spacing, double roughness, bool pa
   evidence.partial = partial;
   evidence.volume = volume;
   evidence.share = 0.999;
+  if (volume) evidence.own_score = 0.985;
   return evidence;
 }
 
@@ -56,6 +57,10 @@ TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("unknown", [](PlaneEvidence& e, double t) { e.unknown = t; });
   expectFalls("score", [](PlaneEvidence& e, double t) { e.score = 1.0 - t; });
   expectFalls("support", [](PlaneEvidence& e, double t) { e.support = 1.0 - t; });
+  expectFalls("noise", [](PlaneEvidence& e, double t) {
+    e.score = std::max(0.0, e.score - 0.5 * t);
+    if (e.volume) e.own_score -= 0.4 * t;
+  });
 }
 
 TEST(PlaneConfidence, IsHighForSymmetriesAndLowForOthers) {

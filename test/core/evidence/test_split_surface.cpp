@@ -1,0 +1,57 @@
+#include "core/evidence/split_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/evidence/surface_distance.h"
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+constexpr double kTolerance = 0.04;
+
+/// A box with noise of more than its spacing (0.04), symmetric about x = 0.
+Points noisyBox(double noise) {
+  Points points(3, 6000);
+  RandomStream random(3);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    Eigen::Vector3d x(1 * (2.0 * random.uniform() - 1.0), 0.6 * (2.0 * random.uniform() - 1.0),
+                      0.3 * (2.0 * random.uniform() - 1.0));
+    const Eigen::Vector3d half(1.0, 0.6, 0.3);
+    const int side = static_cast<int>(random.below(3));
+    x[side] = random.below(2) == 0 ? half[side] : -half[side];
+    for (int k = 0; k < 3; ++k) x[k] += noise * gaussian(random);
+    points.col(i) = x.cast<float>();
+  }
+  return points;
+}
+
+TEST(SplitSurface, ATruePlaneReachesTheShareOfTheHalvesWhateverTheNoise) {
+  for (const double noise : {0.0, 0.03, 0.08}) {
+    SCOPED_TRACE(noise);
+    const SplitSurface halves(noisyBox(noise), 1, 1);
+    const double own = shareWithin(halves.ownDistances(), kTolerance);
+    const double mapped = shareWithin(halves.reflectedDistances({Eigen::Vector3d::UnitX(), 0.0}), kTolerance);
+    // derived: 3000 points each, four standard errors of a difference of shares.
+    EXPECT_NEAR(mapped, own, 4.0 * std::sqrt(2.0 * own * (1.0 - own) / 3000.0) + 0.002);
+    const double moved = shareWithin(halves.reflectedDistances({Eigen::Vector3d::UnitX(), 0.05}), kTolerance);
+    EXPECT_LT(moved, 0.97 * own) << "a plane that maps one side 0.1 away";
+  }
+}
+
+TEST(SplitSurface, OwnScoreFallsWithNoise) {
+  const BoundingBall ball{Eigen::Vector3d::Zero(), 1.3};
+  double before = 1.0;
+  for (const double noise : {0.0, 0.03, 0.08}) {
+    const double score = SplitSurface(noisyBox(noise), 1, 1).ownScore(32, 0.08, ball, 1);
+    EXPECT_LT(score, before);
+    EXPECT_GT(score, 0.8);
+    before = score;
+  }
+}
+
+}  // namespace
