@@ -15,10 +15,9 @@ struct ConfidenceFit {
 };
 
 // fitted: 178 models, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{
-    {{{3.966, -0.4897, -0.6866, -7.246, -0.758, -1.365},
-      {-0.7243, -2.254, -2.669},
-      {4.581, -21.27, -10.1, -26.58, -0.5119}}},
-    {{{-4.44, 1.14}, {-49.5, 1}, {-22.5, 0.795}}}};
+inline const ConfidenceFit kConfidenceFit{{{{4.15, -0.514, -0.7198, -7.801, -0.7792, -1.348},
+                                            {-0.2662, -2.484, -3.187},
+                                            {5.478, -0.7427, -1.632, -0.8914, -11.62}}},
+                                          {{{-3.94, 1.04}, {-49.5, 1}, {-20.3, 0.8}}}};
 
 }  // namespace pcl_symmetry
