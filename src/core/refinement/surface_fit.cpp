@@ -15,6 +15,20 @@ namespace {
 // Share of the surface. chosen: smaller values break families up by sampling noise, larger ones let bodies with a small
 // handle pass for families.
 constexpr double kSurfaceAllowance = 0.015;
+// Steps of a climb: radians, and radii of the offset; the first and the last. chosen: planes of scans that Iterative
+// Symmetric Points leaves are off by up to 0.05; at half of the first, they stay there; half of the last is below their
+// errors.
+constexpr double kFirstClimb = 0.02, kLastClimb = 0.0025;
+// Steps of a climb up, of all lengths. chosen: far planes are other planes; most take fewer than ten.
+constexpr int kMostClimbs = 24;
+// Merit that a climb has to gain. chosen: what few samples make of a plane at rest; at 0, good planes leave their place
+// by 0.1 degrees, at twice, some planes stay beside their place.
+constexpr double kLeastGain = 0.005;
+// Merit of planes that climb. chosen: planes of scans with less are no symmetries; at half, the climbs take longer.
+constexpr double kLeastClimbing = 0.5;
+// Merit of planes of whole clouds that nothing pulls at. chosen: that of a symmetry; planes of clouds that lack a
+// piece, and approximate ones, have less.
+constexpr double kAtRest = 0.93;
 
 }  // namespace
 
@@ -31,6 +45,8 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
     candidate.iterations += candidate.last.iterations;
     candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
     if (stage.undo_slides) undoSlide(candidate, start, used, stage.isp.final_sigma);
+    if (stage.climbs && candidate.merit >= kLeastClimbing && (cloud_.isScan() || candidate.merit < kAtRest))
+      climb(candidate, used, fewer);
   });
 }
 
@@ -44,6 +60,39 @@ void SurfaceFit::undoSlide(Candidate& candidate, const ReflectionPlane& start, c
   if (point_to_point_merit <= candidate.merit) return;
   candidate.plane = step.plane;
   candidate.merit = point_to_point_merit;
+  candidate.last.last = std::move(step);
+}
+
+/// Pairs whose true partners are hidden pull at a plane: it comes to rest beside the plane that explains most of what
+/// was
+/// seen. From there it climbs on the merit itself, in steps along its three parameters.
+void SurfaceFit::climb(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
+  const auto moved = [](const ReflectionPlane& plane, int parameter, double by) {
+    const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal();
+    if (parameter == 2) return ReflectionPlane(n, plane.offset() + by);
+    return ReflectionPlane((n + by * (parameter == 0 ? u : n.cross(u))).normalized(), plane.offset());
+  };
+  ReflectionPlane plane = candidate.plane;
+  double best = merit(shares(plane, fewer));
+  int num_climbs = 0;
+  for (double step = kFirstClimb; step >= kLastClimb; step *= 0.5) {
+    for (int fails = 0, k = 0; fails < 6 && num_climbs < kMostClimbs; k = (k + 1) % 6) {
+      const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
+      const double value = merit(shares(next, fewer));
+      ++fails;
+      if (value <= best) continue;
+      best = value;
+      plane = next;
+      ++num_climbs;
+      fails = 0;
+    }
+  }
+  if (num_climbs == 0) return;
+  IspStep step = iterateSymmetricPoints(cloud_.surface, samples, plane, cloud_.final_sigma, IspUpdate::PointToPoint);
+  const double value = merit(shares(plane, samples, step));
+  if (value <= candidate.merit + kLeastGain) return;
+  candidate.plane = plane;
+  candidate.merit = value;
   candidate.last.last = std::move(step);
 }
 

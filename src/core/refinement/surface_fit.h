@@ -22,6 +22,9 @@ public:
   PlaneEvidence evidence(double support, double conflict, double score) const override;
 
 private:
+  /// \param samples that the final merit is taken of.
+  /// \param fewer samples by which the plane climbs.
+  void climb(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const;
   void undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
                  double sigma) const;
 
