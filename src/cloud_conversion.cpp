@@ -198,8 +198,9 @@ SeenSpace spaceOfScene(const detail::ScannerOutput& scene, const Viewpoint& view
     if (!seen) throw std::invalid_argument("viewpoint: at all points of the scene, must see one");
     return {std::move(*seen), ViewpointSource::Given};
   }
+  // A default origin in the middle of a whole object would be seen once all around.
   if (auto seen = sceneSeenFrom(points, scene.stored.origin, max_pixels))
-    return {std::move(*seen), ViewpointSource::Stored};
+    if (!scene.stored.is_default || seen->numPictures() == 1) return {std::move(*seen), ViewpointSource::Stored};
   const std::optional<InferredView> view = inferView(points, scene.stored.origin);
   if (!view) return {};
   return {*Visibility::ofScene(points, view->position, max_pixels), ViewpointSource::Inferred};
@@ -222,6 +223,12 @@ SeenSpace SeenSpace::together(const std::vector<SeenSpace>& spaces) {
   }
   if (!views.empty()) all.visibility_ = Visibility::together(views);
   return all;
+}
+
+SeenSpace SeenSpace::withSupport(const Eigen::Vector4d& support, double margin) const {
+  SeenSpace result = *this;
+  if (visibility_) result.visibility_ = visibility_->withSupport(support, margin);
+  return result;
 }
 
 }  // namespace pcl_symmetry

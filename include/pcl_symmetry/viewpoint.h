@@ -81,8 +81,8 @@ public:
   SeenSpace(Visibility visibility, ViewpointSource source) : visibility_(std::move(visibility)), source_(source) {}
 
   /// Of a whole scene. An organized cloud shows it by its own pixels, any other cloud by a range image from the
-  /// viewpoint. Viewpoint::Mode::Auto believes sensor_origin_, also one of 0 0 0, where the scene can have been seen
-  /// from there: hardly any point lies behind others.
+  /// viewpoint. Viewpoint::Mode::Auto believes sensor_origin_ where the scene can have been seen from there: hardly any
+  /// point lies behind others. One of 0 0 0 must not be surrounded by points: a whole object may lie about it.
   /// \param scene all that the scanner measured; points that are not finite are pixels without a point.
   /// \param max_pixels of a range image, >= 16; it takes four bytes a pixel. Organized clouds keep theirs.
   /// \throws pcl::BadArgumentException for another max_pixels.
@@ -94,6 +94,11 @@ public:
   /// What several scanners saw, such as the scans of a turntable in one frame: free is what any of them saw to be free.
   /// \param spaces those without a viewpoint add nothing.
   static SeenSpace together(const std::vector<SeenSpace>& spaces);
+
+  /// The same for objects on a table, see Visibility::withSupport().
+  /// \param support unit normal towards the objects, then d: normal . x + d = 0 on the surface.
+  /// \param margin by which objects may seem to reach into it, input units, >= 0.
+  SeenSpace withSupport(const Eigen::Vector4d& support, double margin) const;
 
   /// \return null where there is no viewpoint.
   const Visibility* visibility() const { return visibility_ ? &*visibility_ : nullptr; }

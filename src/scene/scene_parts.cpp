@@ -28,6 +28,9 @@ constexpr double kBareShare = 0.25;
 // Points above or below a plane, as a share of its own, that show on which side the scene is. chosen: at half, flying
 // pixels decide, at twice, a single small object on a table is not seen.
 constexpr double kTellingShare = 0.01;
+// Plane distances behind a plane within which the other faces of a body begin. chosen: half misses flat boxes, twice
+// takes what lies under a low table for a part of it.
+constexpr double kAttached = 10.0;
 // Share of a plane's points beyond each end of its footprint. chosen: half takes in what stands beside it, twice misses
 // what stands at its rim.
 constexpr double kFootprintTrim = 0.05;
@@ -62,9 +65,10 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
   return Consensus{plane / plane.head<3>().norm(), std::move(inliers.indices)};
 }
 
-/// Points that lie over and under a plane, within its extent.
+/// Points that lie over and under a plane.
 struct Sides {
-  std::size_t above = 0, below = 0;
+  std::size_t above = 0, below = 0;  ///< within its extent
+  std::size_t attached = 0;          ///< close under it, also beyond its extent
 };
 
 Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const pcl::Indices& others, double distance) {
@@ -84,6 +88,7 @@ Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const p
   Sides sides;
   for (const pcl::index_t i : others) {
     const double height = along(i, n) + plane.coefficients[3], at_u = along(i, u), at_v = along(i, v);
+    sides.attached += height < -distance && height > -kAttached * distance ? 1 : 0;
     if (std::abs(height) <= distance || at_u < u_low || at_u > u_high || at_v < v_low || at_v > v_high) continue;
     ++(height > 0.0 ? sides.above : sides.below);
   }
@@ -148,10 +153,11 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
       plane->coefficients *= -1.0;
       std::swap(sides.above, sides.below);
     }
-    const bool tells =
-        static_cast<double>(sides.above + sides.below) > kTellingShare * static_cast<double>(plane->inliers.size());
-    // Behind the face of a box lies the rest of the box, or nothing that is seen; above a table lies what stands on it.
-    const bool supports_others = tells ? sides.above >= sides.below : share(plane->inliers.size()) >= kBareShare;
+    const double few = kTellingShare * static_cast<double>(plane->inliers.size());
+    const bool tells = static_cast<double>(sides.above + sides.below) > few;
+    // Above a table lies what stands on it. Behind the face of a box the other faces begin.
+    const bool is_bare = share(plane->inliers.size()) >= kBareShare && static_cast<double>(sides.attached) <= few;
+    const bool supports_others = tells ? sides.above >= sides.below : is_bare;
     if (!supports_others) continue;
     others = without(others, plane->inliers, scene->size());
     supports.push_back({plane->coefficients, std::move(plane->inliers)});

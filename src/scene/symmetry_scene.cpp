@@ -1,4 +1,4 @@
-#include "pcl_symmetry/symmetry_scene.h"
+#include "pcl_symmetry/scene/symmetry_scene.h"
 
 #include <algorithm>
 #include <utility>
@@ -20,6 +20,10 @@ using Cloud = SymmetryScene::Cloud;
 constexpr double kPlaneSpacings = 2.0, kPlaneRoughnesses = 4.0;
 // Spacings between points of one object. chosen: half breaks slanted surfaces up, twice joins neighbouring objects.
 constexpr double kClusterSpacings = 4.0;
+
+// Plane distances that an object may seem to reach into its support. chosen: half takes noise of its foot for a
+// contradiction, twice lets reflections sink into the table.
+constexpr double kSupportMargin = 2.0;
 
 /// The finite points that are near enough, seen along the rays of the sensor.
 pcl::Indices nearPoints(const Cloud& scene, const std::optional<Eigen::Vector3d>& viewpoint, double max_range) {
@@ -149,6 +153,10 @@ SceneAnalysis SymmetryScene::compute() const {
     return analysis;
   }
   analysis.supports = detail::findSupports(input_, points, viewpoint, analysis.plane_distance);
+  SeenSpace seen = *analysis.seen;
+  for (const SupportingPlane& support : analysis.supports)
+    seen = seen.withSupport(support.coefficients, kSupportMargin * analysis.plane_distance);
+  analysis.seen = std::make_shared<const SeenSpace>(std::move(seen));
   timed("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, input_->size());
   const std::vector<pcl::Indices> clusters = detail::findClusters(

@@ -28,7 +28,7 @@ struct SceneModel {
 };
 
 struct PlacedModel {
-  std::size_t model;               ///< index
+  std::size_t model;                ///< index
   Eigen::Isometry3d T_scene_model;  ///< the table is z = 0
 };
 
@@ -47,20 +47,20 @@ struct DepthCamera {
 /// Errors of a depth camera with structured light (Khoshelham and Elberink 2012): both grow with the square of the
 /// depth. At a factor of 0 there are none.
 struct DepthNoise {
-  double factor = 1.0;              ///< of all of them, >= 0
-  double deviation = 1.425e-3;      ///< standard deviation at a depth of 1 m, metres
-  double step = 2.85e-3;            ///< of the quantisation at a depth of 1 m, metres
-  double flying_share = 0.5;        ///< of the pixels at a depth edge whose depth lies between the two sides
-  double least_edge = 0.02;         ///< share of the depth: larger differences between neighbours are edges
+  double factor = 1.0;          ///< of all of them, >= 0
+  double deviation = 1.425e-3;  ///< standard deviation at a depth of 1 m, metres
+  double step = 2.85e-3;        ///< of the quantisation at a depth of 1 m, metres
+  double flying_share = 0.5;    ///< of the pixels at a depth edge whose depth lies between the two sides
+  double least_edge = 0.02;     ///< share of the depth: larger differences between neighbours are edges
 };
 
 struct SceneOptionsOfTable {
-  int most_objects = 12;                 ///< >= 1; each scene has one to this number
-  double gap = 0.005;                    ///< between the circles around objects, metres
-  double least_elevation = 15.0;         ///< of the camera, degrees
-  double greatest_elevation = 50.0;      ///< degrees
-  double least_distance = 0.9;           ///< of the camera from the middle of the table, metres
-  double greatest_distance = 1.3;        ///< metres
+  int most_objects = 12;             ///< >= 1; each scene has one to this number
+  double gap = 0.005;                ///< between the circles around objects, metres
+  double least_elevation = 10.0;     ///< of the camera, degrees
+  double greatest_elevation = 40.0;  ///< degrees
+  double least_distance = 0.9;       ///< of the camera from the middle of the table, metres
+  double greatest_distance = 1.3;    ///< metres
 };
 
 struct TableScene {

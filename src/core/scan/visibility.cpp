@@ -115,7 +115,16 @@ Visibility Visibility::together(const std::vector<Visibility>& views) {
   Visibility all;
   for (const Visibility& view : views)
     all.pictures_.insert(all.pictures_.end(), view.pictures_.begin(), view.pictures_.end());
+  for (const Visibility& view : views)
+    all.supports_.insert(all.supports_.end(), view.supports_.begin(), view.supports_.end());
   return all;
+}
+
+Visibility Visibility::withSupport(const Eigen::Vector4d& support, double margin) const {
+  Visibility result = *this;
+  result.supports_.push_back(support);
+  result.supports_.back()[3] += margin;
+  return result;
 }
 
 double Visibility::Picture::depthBehind(const Eigen::Vector3d& x) const {
@@ -129,6 +138,10 @@ double Visibility::Picture::depthBehind(const Eigen::Vector3d& x) const {
 double Visibility::depthBehind(const Eigen::Vector3d& x) const {
   double behind = std::numeric_limits<double>::infinity();
   for (const Picture& picture : pictures_) behind = std::min(behind, picture.depthBehind(x));
+  for (const Eigen::Vector4d& support : supports_) {
+    const double height = support.head<3>().dot(x) + support[3];
+    if (height < 0.0) behind = std::min(behind, height);
+  }
   return behind;
 }
 
@@ -151,6 +164,7 @@ Visibility Visibility::normalized(const Eigen::Vector3d& center, double scale) c
     picture.projection.col(3) = ((input.leftCols<3>() * center + input.col(3)) / scale).eval();
     picture.unit *= scale;
   }
+  for (Eigen::Vector4d& support : result.supports_) support[3] = (support.head<3>().dot(center) + support[3]) / scale;
   return result;
 }
 

@@ -60,6 +60,12 @@ public:
   /// \throws std::invalid_argument without a view.
   static Visibility together(const std::vector<Visibility>& views);
 
+  /// The same for objects on a table: none of them reaches into the table, so that space behind its surface is free of
+  /// them.
+  /// \param support unit normal n towards the objects, then d: n . x + d = 0 on the surface, frame of the points.
+  /// \param margin by which objects may seem to reach into it, input units, >= 0.
+  Visibility withSupport(const Eigen::Vector4d& support, double margin) const;
+
   /// Pixels of a picture that is made from points. chosen: 4 MB a picture; half as many pixels blur clouds of more than
   /// two million points, twice as many need 8 MB.
   static constexpr std::size_t kMaxPixels = 1u << 20;
@@ -106,6 +112,7 @@ private:
   Visibility() = default;
 
   std::vector<Picture> pictures_;
+  std::vector<Eigen::Vector4d> supports_;  // behind these planes is no object
 };
 
 /// Finds out from the points whether they were measured from a viewpoint: they lie in front of it, hardly any of them

@@ -68,7 +68,8 @@ struct SceneObject {
 };
 
 struct SceneAnalysis {
-  SeenSpace::ConstPtr seen;  ///< what the sensor saw, for further analyses
+  /// What the sensor saw, for further analyses; space behind supporting planes counts as free of objects.
+  SeenSpace::ConstPtr seen;
   std::vector<SupportingPlane> supports;
   std::vector<SceneObject> objects;                       ///< most points first
   double plane_distance = 0.0, cluster_distance = 0.0;    ///< that were used, input units

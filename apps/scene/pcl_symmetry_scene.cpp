@@ -12,8 +12,8 @@
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/shape_output.h"
-#include "pcl_symmetry/symmetry_scene.h"
-#include "scene/scene_report.h"
+#include "pcl_symmetry/scene/symmetry_scene.h"
+#include "scene/report/scene_report.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "scene/scene_report.h"
+#include "scene/report/scene_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,8 @@ constexpr std::size_t kDrawnPoints = 150'000;
 constexpr std::size_t kMostPanels = 8;
 // Pixels. chosen: a panel of an object is readable; half is not, twice makes large files.
 constexpr int kPanelWidth = 520, kPanelHeight = 440;
-// Colour of points that a symmetry added, as a segment: the one after that of the object.
+// Colour of points that a symmetry added, counted from that of the object. chosen: far from it among the eight colours;
+// at 8 it would be a lighter one of the same.
 constexpr int kAddedColor = 5;
 // Above the line of sight, as a share of the distance: the scene is looked at slightly from above, so that depths tell.
 // chosen: at 0 the picture is that of the sensor, at 1 it shows what the sensor did not see.

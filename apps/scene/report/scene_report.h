@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/shape_input/input_shape.h"
-#include "pcl_symmetry/symmetry_scene.h"
+#include "pcl_symmetry/scene/symmetry_scene.h"
 
 namespace pcl_symmetry::apps {
 
