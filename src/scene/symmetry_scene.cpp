@@ -21,6 +21,9 @@ constexpr double kPlaneSpacings = 2.0, kPlaneRoughnesses = 4.0;
 // Spacings between points of one object. chosen: half breaks slanted surfaces up, twice joins neighbouring objects.
 constexpr double kClusterSpacings = 4.0;
 
+// Share of an object's points above a plane that it stands on or before. chosen: half takes things that stick through a
+// plane for things on it, at 1 a single stray point decides.
+constexpr double kAboveShare = 0.98;
 // Plane distances that an object may seem to reach into its support. chosen: half takes noise of its foot for a
 // contradiction, twice lets reflections sink into the table.
 constexpr double kSupportMargin = 2.0;
@@ -52,11 +55,13 @@ std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const 
 
 class ObjectAnalysis {
 public:
-  ObjectAnalysis(const Cloud::ConstPtr& scene, const SeenSpace::ConstPtr& seen, const SceneOptions& options,
+  /// \param found has what the sensor saw and the supporting planes.
+  ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, const SceneOptions& options,
                  const SymmetryDatabase* database)
-      : scene_(scene), seen_(seen), options_(options), database_(database) {}
+      : scene_(scene), found_(found), options_(options), database_(database) {}
 
-  SceneObject analyse(const pcl::Indices& cluster) const {
+  SceneObject analyse(const pcl::Indices& cluster) {
+    seen_ = seenSpaceOf(cluster);
     SceneObject object;
     object.indices = cluster;
     findPlanes(object);
@@ -68,6 +73,20 @@ public:
   }
 
 private:
+  /// Behind a plane that carries or backs the object, none of the object is.
+  SeenSpace::ConstPtr seenSpaceOf(const pcl::Indices& cluster) const {
+    SeenSpace seen = *found_.seen;
+    const double margin = kSupportMargin * found_.plane_distance;
+    for (const SupportingPlane& support : found_.supports) {
+      const auto num_above = std::count_if(cluster.begin(), cluster.end(), [&](pcl::index_t i) {
+        return support.coefficients.dot((*scene_)[i].getVector3fMap().cast<double>().homogeneous().eval()) > -margin;
+      });
+      if (static_cast<double>(num_above) >= kAboveShare * static_cast<double>(cluster.size()))
+        seen = seen.withSupport(support.coefficients, margin);
+    }
+    return std::make_shared<const SeenSpace>(std::move(seen));
+  }
+
   template <typename Analysis>
   void prepare(Analysis& analysis, const SceneObject& object) const {
     analysis.setNumberOfThreads(options_.num_threads);
@@ -105,7 +124,8 @@ private:
   }
 
   const Cloud::ConstPtr& scene_;
-  const SeenSpace::ConstPtr& seen_;
+  const SceneAnalysis& found_;
+  SeenSpace::ConstPtr seen_;  // for the object that is analysed
   const SceneOptions& options_;
   const SymmetryDatabase* database_;
 };
@@ -153,17 +173,13 @@ SceneAnalysis SymmetryScene::compute() const {
     return analysis;
   }
   analysis.supports = detail::findSupports(input_, points, viewpoint, analysis.plane_distance);
-  SeenSpace seen = *analysis.seen;
-  for (const SupportingPlane& support : analysis.supports)
-    seen = seen.withSupport(support.coefficients, kSupportMargin * analysis.plane_distance);
-  analysis.seen = std::make_shared<const SeenSpace>(std::move(seen));
   timed("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, input_->size());
   const std::vector<pcl::Indices> clusters = detail::findClusters(
       input_, rest, analysis.supports, analysis.plane_distance, analysis.cluster_distance, options_.min_points);
   timed("clusters");
-  const ObjectAnalysis analyse(input_, analysis.seen, options_, database_.get());
-  for (const pcl::Indices& cluster : clusters) analysis.objects.push_back(analyse.analyse(cluster));
+  ObjectAnalysis objects(input_, analysis, options_, database_.get());
+  for (const pcl::Indices& cluster : clusters) analysis.objects.push_back(objects.analyse(cluster));
   timed("objects");
   return analysis;
 }

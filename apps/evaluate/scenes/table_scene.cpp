@@ -22,12 +22,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();  // derive
 constexpr double kPlaceOfOne = 0.02, kPlacePerRoot = 0.08;
 // Half the side of the table beyond that square, metres. chosen: room for the objects; any larger one will do.
 constexpr double kTableRim = 0.4;
+// Least depth of a ball, metres. chosen: avoids a division by 0; the camera stands much farther away.
+constexpr double kNearest = 1e-3;
 // Trials for a place. chosen: half leaves more objects out, twice takes time.
 constexpr int kTrials = 100;
 
 // Share of the scenes that are looked at along the line from an object to its nearest neighbour, and how far the camera
-// is beside that line, radians. chosen: from anywhere, one object in ten is hidden by more than 30 %; at half the angle
-// most are hidden by more than 70 %, at twice by less than 30 %.
+// is beside that line, radians. chosen: from anywhere few objects are hidden by more than 30 %; half the angle hides
+// more of fewer objects, twice is nearly anywhere.
 constexpr double kAlignedShare = 0.8, kJitter = 0.5;
 
 enum Stream : std::uint64_t { kObjects, kPlaces, kCamera, kNoise };
@@ -109,7 +111,7 @@ public:
     const Eigen::Vector3d center = T_model_camera_.inverse() * triangles_.center();
     const double radius = 0.5 * triangles_.diagonal();
     // The picture of a ball lies in that of a square around it at its nearest depth.
-    const double depth = std::max(center.z() - radius, 1e-3);
+    const double depth = std::max(center.z() - radius, kNearest);
     const double reach = radius * (1.0 + center.norm() / depth);
     for (int k = 0; k < 2; ++k) {
       const double size = k == 0 ? camera.width : camera.height;

@@ -68,8 +68,7 @@ struct SceneObject {
 };
 
 struct SceneAnalysis {
-  /// What the sensor saw, for further analyses; space behind supporting planes counts as free of objects.
-  SeenSpace::ConstPtr seen;
+  SeenSpace::ConstPtr seen;  ///< what the sensor saw, for further analyses
   std::vector<SupportingPlane> supports;
   std::vector<SceneObject> objects;                       ///< most points first
   double plane_distance = 0.0, cluster_distance = 0.0;    ///< that were used, input units
@@ -80,7 +79,8 @@ struct SceneAnalysis {
 ///
 /// Supporting planes are found by PCL's sample consensus and left out; the rest falls into clusters by PCL's Euclidean
 /// clustering, with distances that follow from the points. What the sensor saw is made once of the whole scene
-/// (SeenSpace), so that an object in front does not count as seen empty space beside the one behind it.
+/// (SeenSpace), so that an object in front does not count as seen empty space beside the one behind it. Space behind a
+/// supporting plane counts as free of the objects before it (SeenSpace::withSupport()).
 ///
 /// \code
 /// pcl_symmetry::SymmetryScene scene;

@@ -32,6 +32,10 @@ constexpr int kClosingPasses = 3;
 // share of the filled pixels; chosen: less leaves gaps between sparse points, more closes true openings such as handles
 constexpr double kSmallHole = 0.01;
 
+// Directions of four in which a pixel of the picture has filled ones. chosen: with 2, corners that no ray passed count
+// as seen, with 4, the sky between two objects does not.
+constexpr int kInsideSides = 3;
+
 /// Pixels of such a size that the filled ones have kPointsPerPixel points on average.
 PixelGrid fitPixels(const std::vector<Eigen::Array2d>& places, std::size_t max_pixels) {
   const double largest_side = std::floor(std::sqrt(static_cast<double>(max_pixels)));
@@ -143,6 +147,31 @@ RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels, std::size_
   for (int pass = 0; pass < kClosingPasses; ++pass) closeHoles(image.depths, grid.width, grid.height);
   closeGaps(image.depths, grid.width, grid.height, largest_hole);
   return image;
+}
+
+void forgetOutside(RangeImage& image) {
+  const int width = image.grid.width, height = image.grid.height;
+  // Of each pixel, the number of the four directions in which a filled pixel lies.
+  std::vector<char> num_sides(image.depths.size(), 0);
+  const auto walk = [&](std::size_t start, std::ptrdiff_t step, int count) {
+    bool met = false;
+    for (int k = 0; k < count; ++k) {
+      const std::size_t at = start + static_cast<std::size_t>(k * step);
+      met = met || image.depths[at] != Visibility::kBackground;
+      num_sides[at] = static_cast<char>(num_sides[at] + (met ? 1 : 0));
+    }
+  };
+  for (int v = 0; v < height; ++v) {
+    const std::size_t row = static_cast<std::size_t>(v) * width;
+    walk(row, 1, width);
+    walk(row + width - 1, -1, width);
+  }
+  for (int u = 0; u < width; ++u) {
+    walk(static_cast<std::size_t>(u), width, height);
+    walk(static_cast<std::size_t>(height - 1) * width + u, -width, height);
+  }
+  for (std::size_t i = 0; i < image.depths.size(); ++i)
+    if (num_sides[i] < kInsideSides) image.depths[i] = Visibility::kNoRay;
 }
 
 }  // namespace pcl_symmetry

@@ -61,4 +61,8 @@ SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
 /// \param largest_hole pixels: larger regions without a point stay background.
 RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels, std::size_t largest_hole);
 
+/// Turns empty pixels beyond the measured part of the picture to Visibility::kNoRay: those that have filled pixels in
+/// fewer than three of the four directions along rows and columns.
+void forgetOutside(RangeImage& image);
+
 }  // namespace pcl_symmetry

@@ -68,6 +68,7 @@ std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector
   const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, field);
   if (seen.places.empty() || static_cast<Eigen::Index>(seen.places.size()) < least_seen) return std::nullopt;
   RangeImage image = rangeImage(seen, max_pixels, kLargestSceneHole);
+  forgetOutside(image);
   return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
                     std::move(image.depths), Visibility::kNoRay);
 }
