@@ -36,7 +36,7 @@ std::vector<Group> groupsOf(const std::vector<SceneResult>& results) {
     });
     if (group == groups.end())
       group = groups.insert(groups.end(), Group{result.row, result.noise, *band, {}, {}, {}, {}, {}});
-    group->planes.push_back(&result.planes);
+    if (result.asked_planes) group->planes.push_back(&result.planes);
     if (!result.recognition) continue;
     const RecognitionResult& recognition = *result.recognition;
     if (recognition.is_known) {

@@ -23,9 +23,10 @@ struct RecognitionResult {
 /// One object of a scene, asked in one way.
 struct SceneResult {
   int scene = 0;
-  std::string row;         ///< what the detector was told of the others
-  double occlusion = 0.0;  ///< share of its pixels that others hide
-  double noise = 0.0;      ///< factor of the depth noise
+  std::string row;           ///< what the detector was told of the others
+  double occlusion = 0.0;    ///< share of its pixels that others hide
+  double noise = 0.0;        ///< factor of the depth noise
+  bool asked_planes = true;  ///< false: planes says what is known of the object, and no answer
   CloudResult planes;
   std::optional<RecognitionResult> recognition;
 };

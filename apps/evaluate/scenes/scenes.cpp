@@ -221,6 +221,7 @@ private:
              const Detect& detect, const Recognize& recognize) {
     const ReferenceSymmetries references = references_[object.model].transformed(object.T_scene_model);
     result.row = row;
+    result.asked_planes = !options_.no_planes;
     CloudResult planes;
     planes.model = models_[object.model].name;
     planes.num_points = cluster.size();
