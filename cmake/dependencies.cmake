@@ -6,9 +6,9 @@ find_package(OpenMP REQUIRED COMPONENTS CXX)
 # PCL 1.13 exports no imported targets, so its variables are wrapped in a function here. flann.pc drags in MPI and HDF5,
 # so FLANN comes from the target that PCL's finder defines or, without PCL, from FLANN's own configuration.
 if(PCL_SYMMETRY_BUILD_PCL)
-  set(pcl_components common search kdtree registration)
+  set(pcl_components common search kdtree registration segmentation)
   if(PCL_SYMMETRY_BUILD_APPS OR PCL_SYMMETRY_BUILD_TESTS)
-    list(APPEND pcl_components io octree features filters segmentation)
+    list(APPEND pcl_components io octree features filters)
   endif()
   if(PCL_SYMMETRY_BUILD_APPS)
     list(APPEND pcl_components visualization)

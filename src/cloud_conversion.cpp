@@ -11,6 +11,7 @@
 #include "core/base/check.h"
 #include "core/base/even_draw.h"
 #include "core/neighbours/answerable_points.h"
+#include "core/scan/single_view.h"
 #include "core/scan/viewpoint_inference.h"
 
 namespace pcl_symmetry::detail {
@@ -106,11 +107,11 @@ SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Store
     std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);
     if (!seen)
       throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
-    return {std::move(seen), ViewpointSource::Given};
+    return {std::move(*seen), ViewpointSource::Given};
   }
   if (!stored.is_default)
     if (std::optional<Visibility> seen = spaceSeenFrom(points, stored.origin))
-      return {std::move(seen), ViewpointSource::Stored};
+      return {std::move(*seen), ViewpointSource::Stored};
   std::optional<InferredView> view = inferView(points, stored.origin);
   if (!view) return {};
   return {std::move(view->seen), view->as_stored ? ViewpointSource::Stored : ViewpointSource::Inferred};
@@ -171,3 +172,63 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
 }
 
 }  // namespace pcl_symmetry::detail
+
+namespace pcl_symmetry {
+
+namespace {
+
+Points finiteOf(const Points& pixels) {
+  Points points(3, pixels.cols());
+  Eigen::Index size = 0;
+  for (Eigen::Index i = 0; i < pixels.cols(); ++i)
+    if (pixels.col(i).allFinite()) points.col(size++) = pixels.col(i);
+  points.conservativeResize(3, size);
+  return points;
+}
+
+SeenSpace spaceOfScene(const detail::ScannerOutput& scene, const Viewpoint& viewpoint, std::size_t max_pixels) {
+  const bool asks_data = viewpoint.mode == Viewpoint::Mode::Auto;
+  if (asks_data && scene.height > 1 && scene.width > 1)
+    if (auto seen = detail::seenByOrganizedCloud(scene.pixels, scene.width, scene.height))
+      return {std::move(*seen), ViewpointSource::Rays};
+  const Points points = finiteOf(scene.pixels);
+  if (points.cols() == 0) return {};
+  if (!asks_data) {
+    auto seen = Visibility::ofScene(points, viewpoint.position, max_pixels);
+    if (!seen) throw std::invalid_argument("viewpoint: at all points of the scene, must see one");
+    return {std::move(*seen), ViewpointSource::Given};
+  }
+  // A default origin in the middle of a whole object would be seen once all around.
+  if (auto seen = sceneSeenFrom(points, scene.stored.origin, max_pixels))
+    if (!scene.stored.is_default || seen->numPictures() == 1) return {std::move(*seen), ViewpointSource::Stored};
+  const std::optional<InferredView> view = inferView(points, scene.stored.origin);
+  if (!view) return {};
+  return {*Visibility::ofScene(points, view->position, max_pixels), ViewpointSource::Inferred};
+}
+
+}  // namespace
+
+SeenSpace::SeenSpace(const detail::ScannerOutput& scene, const Viewpoint& viewpoint, std::size_t max_pixels) {
+  if (viewpoint.mode == Viewpoint::Mode::None) return;
+  *this = detail::withBadArguments([&] { return spaceOfScene(scene, viewpoint, max_pixels); });
+}
+
+SeenSpace SeenSpace::together(const std::vector<SeenSpace>& spaces) {
+  std::vector<Visibility> views;
+  SeenSpace all;
+  for (const SeenSpace& space : spaces) {
+    if (!space.visibility_) continue;
+    if (views.empty()) all.source_ = space.source_;
+    views.push_back(*space.visibility_);
+  }
+  if (!views.empty()) all.visibility_ = Visibility::together(views);
+  return all;
+}
+
+SeenSpace SeenSpace::withSupport(const Eigen::Vector4d& support, double margin) const {
+  SeenSpace result = *this;
+  if (visibility_) result.visibility_ = visibility_->withSupport(support, margin);
+  return result;
+}
+
+}  // namespace pcl_symmetry

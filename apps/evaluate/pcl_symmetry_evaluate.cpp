@@ -10,6 +10,7 @@
 #include "evaluate/registration/registration.h"
 #include "evaluate/retrieval/retrieval.h"
 #include "evaluate/rotations/rotations.h"
+#include "evaluate/scenes/scenes.h"
 #include "evaluate/segmentation/segmentation.h"
 #include "evaluate/shapes/shapes.h"
 
@@ -32,6 +33,7 @@ constexpr SubCommand kSubCommands[] = {
     {"retrieval", "how well shapes find others of their class", evaluateRetrieval},
     {"rotations", "how well groups of rotations of solids are found", evaluateRotations},
     {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation},
+    {"scenes", "planes and models of objects among others, seen by a depth camera", evaluateScenes},
     {"shapes", "decisions on shapes made by code: folds, views, random clouds, composites", evaluateShapes}};
 
 void printUsage() {

@@ -4,7 +4,6 @@
 #include <pcl/point_types.h>
 
 #include <cstdint>
-#include <optional>
 
 #include "pcl_symmetry/core/registration/symmetric_completion.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -31,6 +30,12 @@ template <typename PointT>
 CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
                                           const CompletionOptions& options = {}, const Viewpoint& viewpoint = {});
 
+/// The same for a cluster of a scene.
+/// \param seen what the scanners saw of the scene, frame of the cloud.
+template <typename PointT>
+CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
+                                          const CompletionOptions& options, const SeenSpace& seen);
+
 namespace detail {
 
 /// \return the point with its position, its normal and the viewpoint that it carries reflected.
@@ -49,30 +54,44 @@ PointT reflectPoint(PointT point, const ReflectionPlane& plane) {
   return point;
 }
 
-}  // namespace detail
-
-template <typename PointT>
-CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
-                                          const CompletionOptions& options, const Viewpoint& viewpoint) {
-  return detail::withBadArguments([&] {
+/// \param find_seen gives what the scanner saw of all finite points of the cloud, a SeenSpace.
+template <typename PointT, typename FindSeen>
+CompletedCloud<PointT> completeCloud(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
+                                     const CompletionOptions& options, const FindSeen& find_seen) {
+  return withBadArguments([&] {
     options.validate();
     CompletedCloud<PointT> completed;
     completed.cloud = cloud;
     completed.cloud.width = static_cast<std::uint32_t>(cloud.size());
     completed.cloud.height = 1;
-    const detail::SelectedPoints all = detail::selectPoints(cloud, nullptr, cloud.size(), 0);
+    const SelectedPoints all = selectPoints(cloud, nullptr, cloud.size(), 0);
     if (all.points.cols() == 0) {
-      detail::warnOfNoAnswer("completeBySymmetry", "cloud: no finite point");
+      warnOfNoAnswer("completeBySymmetry", "cloud: no finite point");
       return completed;
     }
-    const std::optional<Visibility> seen = detail::seenSpace(cloud, all.points, viewpoint);
-    for (const int i : completingPoints(all.points, plane, options, seen ? &*seen : nullptr)) {
+    const SeenSpace seen = find_seen(all.points);
+    for (const int i : completingPoints(all.points, plane, options, seen.visibility())) {
       completed.sources.push_back(all.indices[i]);
       completed.added.push_back(static_cast<pcl::index_t>(completed.cloud.size()));
-      completed.cloud.push_back(detail::reflectPoint(cloud[all.indices[i]], plane));
+      completed.cloud.push_back(reflectPoint(cloud[all.indices[i]], plane));
     }
     return completed;
   });
+}
+
+}  // namespace detail
+
+template <typename PointT>
+CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
+                                          const CompletionOptions& options, const Viewpoint& viewpoint) {
+  return detail::completeCloud(cloud, plane, options,
+                               [&](const Points& points) { return detail::findSeenSpace(cloud, points, viewpoint); });
+}
+
+template <typename PointT>
+CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
+                                          const CompletionOptions& options, const SeenSpace& seen) {
+  return detail::completeCloud(cloud, plane, options, [&](const Points&) { return seen; });
 }
 
 }  // namespace pcl_symmetry

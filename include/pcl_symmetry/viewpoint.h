@@ -1,8 +1,17 @@
 #pragma once
 
+#include <pcl/point_cloud.h>
+
 #include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/scan/visibility.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -24,6 +33,82 @@ enum class ViewpointSource {
   Rays,     ///< from the rows and columns of an organized cloud
   Stored,   ///< from sensor_origin_, and the points can have been seen from there
   Inferred  ///< from the density of the points: that of a scan falls with the slant and the distance of the surface
+};
+
+namespace detail {
+
+/// The pose that a cloud stores for its sensor.
+struct StoredPose {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< frame of the points
+  bool is_default = true;  ///< nobody may have set it: at 0 0 0, not turned. That is no evidence by itself.
+};
+
+template <typename PointT>
+StoredPose storedPose(const pcl::PointCloud<PointT>& cloud) {
+  const Eigen::Vector3d origin = cloud.sensor_origin_.template head<3>().template cast<double>();
+  return {origin, origin.isZero(0.0) && cloud.sensor_orientation_.vec().isZero(0.0f)};
+}
+
+/// A cloud as its scanner delivered it.
+struct ScannerOutput {
+  Points pixels;          ///< 3 x (width * height), row by row, not finite where there is no point
+  int width, height = 1;  ///< height 1: points without order
+  StoredPose stored;
+
+  template <typename PointT>
+  explicit ScannerOutput(const pcl::PointCloud<PointT>& cloud)
+      : pixels(3, static_cast<Eigen::Index>(cloud.size())),
+        width(static_cast<int>(cloud.width)),
+        height(static_cast<int>(cloud.height)),
+        stored(storedPose(cloud)) {
+    for (std::size_t i = 0; i < cloud.size(); ++i) pixels.col(static_cast<Eigen::Index>(i)) = cloud[i].getVector3fMap();
+  }
+};
+
+}  // namespace detail
+
+/// What scanners saw of a scene: free, measured and unknown space. It is made once and shared by the analyses of all
+/// objects of the scene: ScanAnalysis::setSeenSpace(), SymmetryDatabase::recognize(), completeBySymmetry().
+///
+/// In front of a surface space is free, behind any surface it is unknown, whatever object the surface belongs to, and
+/// outside the picture it is unknown.
+class SeenSpace {
+public:
+  using ConstPtr = std::shared_ptr<const SeenSpace>;
+
+  /// Nothing is known: clouds show their objects from all sides.
+  SeenSpace() = default;
+  SeenSpace(Visibility visibility, ViewpointSource source) : visibility_(std::move(visibility)), source_(source) {}
+
+  /// Of a whole scene. An organized cloud shows it by its own pixels, any other cloud by a range image from the
+  /// viewpoint. Viewpoint::Mode::Auto believes sensor_origin_ where the scene can have been seen from there: hardly any
+  /// point lies behind others. One of 0 0 0 must not be surrounded by points: a whole object may lie about it.
+  /// \param scene all that the scanner measured; points that are not finite are pixels without a point.
+  /// \param max_pixels of a range image, >= 16; it takes four bytes a pixel. Organized clouds keep theirs.
+  /// \throws pcl::BadArgumentException for another max_pixels.
+  template <typename PointT>
+  explicit SeenSpace(const pcl::PointCloud<PointT>& scene, const Viewpoint& viewpoint = {},
+                     std::size_t max_pixels = Visibility::kMaxPixels)
+      : SeenSpace(detail::ScannerOutput(scene), viewpoint, max_pixels) {}
+
+  /// What several scanners saw, such as the scans of a turntable in one frame: free is what any of them saw to be free.
+  /// \param spaces those without a viewpoint add nothing.
+  static SeenSpace together(const std::vector<SeenSpace>& spaces);
+
+  /// The same for objects on a table, see Visibility::withSupport().
+  /// \param support unit normal towards the objects, then d: normal . x + d = 0 on the surface.
+  /// \param margin by which objects may seem to reach into it, input units, >= 0.
+  SeenSpace withSupport(const Eigen::Vector4d& support, double margin) const;
+
+  /// \return null where there is no viewpoint.
+  const Visibility* visibility() const { return visibility_ ? &*visibility_ : nullptr; }
+  ViewpointSource source() const { return source_; }
+
+private:
+  SeenSpace(const detail::ScannerOutput& scene, const Viewpoint& viewpoint, std::size_t max_pixels);
+
+  std::optional<Visibility> visibility_;
+  ViewpointSource source_ = ViewpointSource::None;
 };
 
 }  // namespace pcl_symmetry

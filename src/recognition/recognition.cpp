@@ -74,6 +74,24 @@ void fillConfidences(Recognition& found, double min_merit) {
   }
 }
 
+/// \param scan_points fewer of the points, for poses.
+/// \param find_seen gives what the scanner saw.
+template <typename FindSeen>
+Recognition recognizeIn(DatabaseParts& database, const Points& points, const Points& scan_points,
+                        const RecognitionOptions& options, const FindSeen& find_seen) {
+  RecognitionOptions used = options;
+  used.registration.num_threads = options.num_threads;
+  detail::withBadArguments([&] { used.validate(); });
+  return detail::emptyWithoutAnswer(points, [&] {
+    const std::optional<Visibility> seen = detail::withBadArguments(find_seen);
+    Recognition found = seen ? fitLikeViews(database, points, scan_points, *seen, used)
+                             : fitLikeShapes(database, points, scan_points, used);
+    keepFitting(found, options.min_merit);
+    fillConfidences(found, options.min_merit);
+    return found;
+  });
+}
+
 }  // namespace
 
 CloudRegistrationOptions RecognitionOptions::quickRegistration() {
@@ -99,20 +117,16 @@ void RecognitionOptions::validate() const {
 
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
                                         const Viewpoint& viewpoint) const {
-  RecognitionOptions used = options;
-  used.registration.num_threads = options.num_threads;
-  detail::withBadArguments([&] { used.validate(); });
   const Points points = detail::finitePoints(scan, parts_->options.max_points);
-  return detail::emptyWithoutAnswer(points, [&] {
-    const Points scan_points = detail::finitePoints(scan, kScanPoints);
-    const std::optional<Visibility> seen =
-        detail::withBadArguments([&] { return detail::seenSpace(scan, points, viewpoint); });
-    Recognition found = seen ? fitLikeViews(*parts_, points, scan_points, *seen, used)
-                             : fitLikeShapes(*parts_, points, scan_points, used);
-    keepFitting(found, options.min_merit);
-    fillConfidences(found, options.min_merit);
-    return found;
-  });
+  return recognizeIn(*parts_, points, detail::finitePoints(scan, kScanPoints), options,
+                     [&] { return detail::seenSpace(scan, points, viewpoint); });
+}
+
+Recognition SymmetryDatabase::recognize(const Cloud& scene, const pcl::Indices& cluster,
+                                        const RecognitionOptions& options, const SeenSpace::ConstPtr& seen) const {
+  const Points points = detail::selectPoints(scene, &cluster, parts_->options.max_points, 1).points;
+  return recognizeIn(*parts_, points, detail::selectPoints(scene, &cluster, kScanPoints, 1).points, options,
+                     [&] { return detail::visibilityOf(seen ? *seen : SeenSpace(scene)); });
 }
 
 std::vector<Recognition> SymmetryDatabase::recognize(const std::vector<Cloud>& clusters,

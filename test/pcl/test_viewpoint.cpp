@@ -14,6 +14,7 @@
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "shapes/scans.h"
+#include "shapes/table.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -58,7 +59,7 @@ bool recognised(const Cloud::ConstPtr& cloud) {
 
 ViewpointSource sourceOf(const Cloud::ConstPtr& cloud) {
   return detail::findSeenSpace(*cloud, detail::selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{})
-      .source;
+      .source();
 }
 
 bool contains(const std::vector<SymmetryPlane>& planes, const ReflectionPlane& plane, const Eigen::Vector3d& about) {
@@ -286,6 +287,79 @@ TEST(PlanarSymmetryTransform, TakesAwayWhatFreeSpaceRulesOut) {
   automatic.setGridSize(32);
   automatic.setInputCloud(organized(scan));
   EXPECT_NE(automatic.compute().values, without.values);
+}
+
+/// The part of the first box's far side that the second box hides.
+int numTakenForFree(const SeenSpace& seen, const test::Table& table) {
+  const Visibility truth = table.scan.visibility();
+  const test::Block& box = table.blocks.blocks[1];
+  RandomStream random(1);
+  int num_free = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d unit(test::symmetric(random), test::symmetric(random), test::symmetric(random));
+    const Eigen::Vector3d x = box.center + 1.2 * box.half.cwiseProduct(unit);
+    if (truth.depthBehind(x) > 0.1) num_free += seen.visibility()->depthBehind(x) < 0.0 ? 1 : 0;
+  }
+  return num_free;
+}
+
+TEST(SeenSpace, IndicesNameAPartOfWhatTheScannerSaw) {
+  const test::Table table;
+  auto whole = unorganized(table.scan);
+  setOrigin(*whole, table.scan.viewpoint);
+  // The pixels of the box, counted among those that met something.
+  auto indices = pcl::make_shared<pcl::Indices>();
+  pcl::index_t at = 0;
+  for (std::size_t i = 0; i < table.ids.size(); ++i) {
+    if (table.ids[i] == 1) indices->push_back(at);
+    if (table.scan.pixels.col(static_cast<Eigen::Index>(i)).allFinite()) ++at;
+  }
+  Cloud alone(*whole, *indices);
+  setOrigin(alone, table.scan.viewpoint);
+  const Points points = detail::selectPoints(alone, nullptr, alone.size(), 0).points;
+  const SeenSpace before = detail::findSeenSpace(alone, points, Viewpoint{});
+  const SeenSpace after = detail::findSeenSpace(*whole, points, Viewpoint{}, true);
+  ASSERT_TRUE(before.visibility() && after.visibility());
+  EXPECT_EQ(after.source(), ViewpointSource::Stored);
+  EXPECT_GT(numTakenForFree(before, table), 50);
+  EXPECT_LT(numTakenForFree(after, table), 5);
+
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setMaxPoints(1000);
+  refinement.setInputCloud(whole);
+  refinement.setIndices(indices);
+  const std::vector<SymmetryPlane> own = refinement.compute();
+  EXPECT_EQ(refinement.getViewpointSource(), ViewpointSource::Stored);
+  refinement.setSeenSpace(std::make_shared<const SeenSpace>(*whole));
+  const std::vector<SymmetryPlane> shared = refinement.compute();
+  ASSERT_EQ(own.size(), shared.size()) << "what is made once is what each analysis makes";
+  for (std::size_t i = 0; i < own.size(); ++i) EXPECT_EQ(own[i].coefficients(), shared[i].coefficients());
+}
+
+TEST(SeenSpace, AScannerAtTheOriginOfItsSceneIsBelieved) {
+  const test::Table table;
+  auto cloud = unorganized(table.scan);
+  pcl::transformPointCloud(*cloud, *cloud, table.scan.T_camera_object.cast<float>().matrix());
+  EXPECT_EQ(SeenSpace(*cloud).source(), ViewpointSource::Stored);
+  EXPECT_EQ(SeenSpace(*organized(table.scan)).source(), ViewpointSource::Rays);
+  EXPECT_EQ(SeenSpace(*cloud, {Viewpoint::Mode::None, {}}).visibility(), nullptr);
+  EXPECT_EQ(SeenSpace(*cloud, {Viewpoint::Mode::Given, {0.0, 0.0, -0.1}}).source(), ViewpointSource::Given);
+  EXPECT_EQ(SeenSpace(Cloud()).visibility(), nullptr);
+  const Cloud one(1, 1, pcl::PointXYZ(0.0f, 0.0f, 0.0f));
+  EXPECT_THROW(SeenSpace(one, {Viewpoint::Mode::Given, Eigen::Vector3d::Zero()}), pcl::BadArgumentException);
+}
+
+TEST(SeenSpace, AWholeObjectIsNoScene) {
+  EXPECT_EQ(SeenSpace(*test::toCloud(test::box(4000, Sampling::Random, 1))).visibility(), nullptr);
+}
+
+TEST(SeenSpace, ScannersTellMoreTogether) {
+  const test::Table table;
+  const auto one = organized(table.scan), two = organized(test::scan(table.blocks, {-0.3, 1.7, 0.9}, 0.0, 320, 240));
+  const SeenSpace both = SeenSpace::together({SeenSpace(*one), SeenSpace(), SeenSpace(*two)});
+  ASSERT_TRUE(both.visibility());
+  EXPECT_EQ(both.visibility()->numPictures(), 2u);
+  EXPECT_EQ(SeenSpace::together({}).visibility(), nullptr);
 }
 
 }  // namespace

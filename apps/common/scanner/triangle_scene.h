@@ -60,4 +60,8 @@ private:
   RTCScene scene_ = nullptr;
 };
 
+/// \param origin,direction of a unit ray, in the frame of TriangleScene::triangles().
+/// \return the distance to the first triangle along the ray, infinite if there is none.
+double distanceAlong(const TriangleScene& scene, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+
 }  // namespace pcl_symmetry::apps

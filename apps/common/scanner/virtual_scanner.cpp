@@ -102,31 +102,13 @@ void VirtualScannerOptions::validate() const {
 struct VirtualScanner::Scene : TriangleScene {
   using TriangleScene::TriangleScene;
 
-  /// \return the distance to the first triangle along a unit ray, infinite if there is none.
-  double distanceAlong(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
-    RTCRayHit query{};
-    const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>();
-    query.ray.org_x = o.x(), query.ray.org_y = o.y(), query.ray.org_z = o.z();
-    query.ray.dir_x = d.x(), query.ray.dir_y = d.y(), query.ray.dir_z = d.z();
-    query.ray.tfar = std::numeric_limits<float>::infinity();
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    intersect(embree(), query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::numeric_limits<double>::infinity();
-    const Triangle& triangle = triangles()[query.hit.primID];
-    const Eigen::Vector3d normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
-    const double distance = normal.dot(triangle.a - origin) / normal.dot(direction);
-    const double coarse = query.ray.tfar;
-    return std::abs(distance - coarse) < 1e-3 ? distance : coarse;
-  }
-
   Picture takePicture(const Camera& camera, int num_threads) const {
     std::vector<double> distances(static_cast<std::size_t>(camera.resolution) * camera.resolution);
 #pragma omp parallel for schedule(dynamic, 8) num_threads(num_threads > 0 ? num_threads : omp_get_max_threads())
     for (int row = 0; row < camera.resolution; ++row) {
       for (int column = 0; column < camera.resolution; ++column) {
         distances[static_cast<std::size_t>(row) * camera.resolution + column] =
-            distanceAlong(camera.origin, camera.rayThrough(column, row));
+            distanceAlong(*this, camera.origin, camera.rayThrough(column, row));
       }
     }
     return {camera, std::move(distances)};

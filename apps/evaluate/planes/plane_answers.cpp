@@ -79,11 +79,12 @@ PlaneAnswers answersFromText(const std::string& path) {
 
 }  // namespace
 
-PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed, int num_threads) {
-  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+namespace {
+
+/// \param refinement has its input.
+PlaneAnswers answersOf(SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, std::uint64_t seed, int num_threads) {
   refinement.setRandomSeed(seed);
   refinement.setNumberOfThreads(num_threads);
-  refinement.setInputCloud(cloud);
   PlaneAnswers result;
   try {
     Stopwatch watch;
@@ -102,6 +103,23 @@ PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud
     result.failed = true;
   }
   return result;
+}
+
+}  // namespace
+
+PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed, int num_threads) {
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(cloud);
+  return answersOf(refinement, seed, num_threads);
+}
+
+PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& scene, const pcl::Indices& cluster,
+                           const SeenSpace::ConstPtr& seen, std::uint64_t seed, int num_threads) {
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(scene);
+  refinement.setIndices(pcl::make_shared<pcl::Indices>(cluster));
+  refinement.setSeenSpace(seen);
+  return answersOf(refinement, seed, num_threads);
 }
 
 PlaneAnswers readAnswers(const std::string& folder, const std::string& name) {

@@ -3,6 +3,7 @@
 
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+#include <pcl/types.h>
 
 #include <cstdint>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "evaluate/planes/plane_matching.h"
+#include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry::apps {
 
@@ -23,6 +25,12 @@ struct PlaneAnswers {
 /// \param num_threads 0 = all.
 /// \return failed where it throws.
 PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed, int num_threads);
+
+/// The same for an object of a scene.
+/// \param cluster its points, indices into the scene.
+/// \param seen what the scanner saw of the scene.
+PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& scene, const pcl::Indices& cluster,
+                           const SeenSpace::ConstPtr& seen, std::uint64_t seed, int num_threads);
 
 /// Reads folder/name.json, as pcl_symmetry_planes writes it, or else folder/name.txt with a line `a b c d [score]` for
 /// each plane a x + b y + c z + d = 0, best first, # comments. The confidence, or else the score, ranks answers; where

@@ -31,13 +31,14 @@ struct RigidMap {
   Eigen::Vector3d direction(const Eigen::Vector3d& d) const { return motion.linear() * d; }
 };
 
-/// From the frame of the scene to that of its mesh.
-struct SceneToMesh {
-  const TriangleScene& scene;
+/// Moves and enlarges: from the frame of the scene to that of its mesh, for one.
+struct Enlargement {
+  Eigen::Vector3d center;  ///< where the origin comes to lie
+  double factor;
   ReflectionPlane plane(const ReflectionPlane& p) const {
-    return ReflectionPlane(p.normal(), scene.diagonal() * p.offset() + p.normal().dot(scene.center())).canonical();
+    return ReflectionPlane(p.normal(), factor * p.offset() + p.normal().dot(center)).canonical();
   }
-  Eigen::Vector3d point(const Eigen::Vector3d& p) const { return scene.center() + scene.diagonal() * p; }
+  Eigen::Vector3d point(const Eigen::Vector3d& p) const { return center + factor * p; }
   Eigen::Vector3d direction(const Eigen::Vector3d& d) const { return d; }
 };
 
@@ -84,6 +85,13 @@ ReferenceSymmetries ReferenceSymmetries::transformed(const Eigen::Isometry3d& mo
   return moved;
 }
 
+ReferenceSymmetries ReferenceSymmetries::scaled(const Eigen::Vector3d& origin, double factor) const {
+  ReferenceSymmetries larger = *this;
+  mapAll(larger, Enlargement{-factor * origin, factor});
+  for (double* length : {&larger.diagonal, &larger.diameter, &larger.tolerance}) *length *= factor;
+  return larger;
+}
+
 ReferenceSymmetries findReferenceSymmetries(const pcl::PolygonMesh& mesh, const ReferenceOptions& options) {
   options.validate();
   const TriangleScene scene(mesh);
@@ -92,7 +100,7 @@ ReferenceSymmetries findReferenceSymmetries(const pcl::PolygonMesh& mesh, const 
   in_diagonals.tolerance_in_diagonals = true;
   if (!options.tolerance_in_diagonals) in_diagonals.tolerance *= diameter;
   ReferenceSymmetries symmetries = searchReferences(scene, in_diagonals);
-  mapAll(symmetries, SceneToMesh{scene});
+  mapAll(symmetries, Enlargement{scene.center(), scene.diagonal()});
   symmetries.diagonal = scene.diagonal();
   symmetries.diameter = scene.diagonal() * diameter;
   symmetries.tolerance = scene.diagonal() * in_diagonals.tolerance;

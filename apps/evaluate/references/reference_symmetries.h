@@ -71,6 +71,9 @@ struct ReferenceSymmetries {
 
   /// The same symmetries of the mesh after a rigid motion; center moves along, the diagonal stays.
   ReferenceSymmetries transformed(const Eigen::Isometry3d& motion) const;
+
+  /// The same symmetries of the mesh moved by -\p origin and then made larger by \p factor.
+  ReferenceSymmetries scaled(const Eigen::Vector3d& origin, double factor) const;
 };
 
 /// Tries all planes, two degrees and one per cent of the diagonal apart, by reflecting points of the mesh; refines the

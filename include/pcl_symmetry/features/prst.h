@@ -108,7 +108,8 @@ protected:
     points_ = detail::selectPoints(*input_, indices_.get(), max_points_, parameters_.seed).points;
     const std::string reason = detail::reasonForNoAnswer(points_);
     if (!reason.empty()) return warnOfNoAnswer(reason);
-    seen_ = detail::withBadArguments([&] { return detail::seenSpace(*input_, points_, viewpoint_); });
+    const bool is_part = this->use_indices_ && indices_->size() < input_->size();
+    seen_ = detail::withBadArguments([&] { return detail::seenSpace(*input_, points_, viewpoint_, is_part); });
     all_indices_ = indices_;
     indices_ = pcl::make_shared<pcl::Indices>(1, 0);
     return true;

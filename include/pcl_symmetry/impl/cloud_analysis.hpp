@@ -92,6 +92,9 @@ private:
 /// falls with the slant and the distance of the surface. A sensor_origin_ of 0 0 0 without a turn may be a default: the
 /// density has to confirm it. Reflections that land in space that the scanner saw to be empty then speak against a
 /// plane; reflections that land behind the surface do not count.
+///
+/// Where setIndices() names a part of the cloud, what the scanner saw is made of the whole cloud: another object in
+/// front hides what lies behind it, and space beyond the cloud is unknown.
 template <typename PointT>
 class ScanAnalysis : public CloudAnalysis<PointT> {
 public:
@@ -100,6 +103,12 @@ public:
   void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
   void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
   const Viewpoint& getViewpoint() const { return viewpoint_; }
+
+  /// Gives what the scanners of a scene saw, made once for the analyses of all its objects, in place of what the
+  /// viewpoint and the input tell.
+  /// \param seen in the frame of the input; null (default): each analysis finds out for itself.
+  void setSeenSpace(const SeenSpace::ConstPtr& seen) { seen_space_ = seen; }
+  const SeenSpace::ConstPtr& getSeenSpace() const { return seen_space_; }
 
   /// \return whether the last analysis used a viewpoint.
   bool usedViewpoint() const { return viewpoint_source_ != ViewpointSource::None; }
@@ -121,15 +130,18 @@ protected:
   /// \return what the scanner saw; nothing without a viewpoint.
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.
   std::optional<Visibility> seenSpace(const Points& points) {
-    detail::SeenSpace seen = detail::findSeenSpace(*this->input_, points, viewpoint_);
-    viewpoint_source_ = seen.source;
+    const bool is_part = this->use_indices_ && this->indices_->size() < this->input_->size();
+    const SeenSpace seen =
+        seen_space_ ? *seen_space_ : detail::findSeenSpace(*this->input_, points, viewpoint_, is_part);
+    viewpoint_source_ = seen.source();
     used_viewpoint_.reset();
-    if (seen.visibility) used_viewpoint_ = seen.visibility->viewpoint();
-    return std::move(seen.visibility);
+    if (seen.visibility()) used_viewpoint_ = seen.visibility()->viewpoint();
+    return detail::visibilityOf(seen);
   }
 
 private:
   Viewpoint viewpoint_;
+  SeenSpace::ConstPtr seen_space_;
   ViewpointSource viewpoint_source_ = ViewpointSource::None;
   std::optional<Eigen::Vector3d> used_viewpoint_;
 };

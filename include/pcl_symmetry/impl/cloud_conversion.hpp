@@ -129,24 +129,6 @@ std::optional<Points> normalsOf(const pcl::PointCloud<PointT>& cloud, const pcl:
 /// \return nothing where the rows and columns are not those of such a camera.
 std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height);
 
-/// What a scanner saw of a cloud, and where that is known from.
-struct SeenSpace {
-  std::optional<Visibility> visibility;  ///< nothing where there is no viewpoint
-  ViewpointSource source = ViewpointSource::None;
-};
-
-/// The pose that a cloud stores for its sensor.
-struct StoredPose {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< frame of the points
-  bool is_default = true;  ///< nobody may have set it: at 0 0 0, not turned. That is no evidence by itself.
-};
-
-template <typename PointT>
-StoredPose storedPose(const pcl::PointCloud<PointT>& cloud) {
-  const Eigen::Vector3d origin = cloud.sensor_origin_.template head<3>().template cast<double>();
-  return {origin, origin.isZero(0.0) && cloud.sensor_orientation_.vec().isZero(0.0f)};
-}
-
 /// Seen, free and unknown space of points without rows and columns.
 /// \param points 3 x N, finite, N >= 1.
 /// \param stored is used by Viewpoint::Mode::Auto: where the points can be seen from there; a default one only where the
@@ -156,28 +138,32 @@ SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Store
 
 /// Seen, free and unknown space of a cloud.
 /// \param points the points of the cloud that are analysed, 3 x N, finite, N >= 1.
+/// \param is_part the analysed points are a part of the cloud: the others may hide it.
 /// \throws std::invalid_argument where the points surround a viewpoint that was given.
 template <typename PointT>
-SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& points, const Viewpoint& viewpoint) {
+SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& points, const Viewpoint& viewpoint,
+                        bool is_part = false) {
+  if (viewpoint.mode == Viewpoint::Mode::None) return {};
+  if (is_part) return SeenSpace(cloud, viewpoint);
   if (viewpoint.mode == Viewpoint::Mode::Auto && cloud.isOrganized() && cloud.width > 1) {
-    Points pixels(3, static_cast<Eigen::Index>(cloud.size()));
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      pixels.col(static_cast<Eigen::Index>(i)) =
-          pcl::isXYZFinite(cloud[i])
-              ? Eigen::Vector3f(cloud[i].getVector3fMap())
-              : Eigen::Vector3f(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
-    if (auto seen = seenByOrganizedCloud(pixels, static_cast<int>(cloud.width), static_cast<int>(cloud.height)))
-      return {std::move(seen), ViewpointSource::Rays};
+    const ScannerOutput scanned(cloud);
+    if (auto seen = seenByOrganizedCloud(scanned.pixels, scanned.width, scanned.height))
+      return {std::move(*seen), ViewpointSource::Rays};
   }
   return seenFrom(points, viewpoint, storedPose(cloud));
+}
+
+/// \return nothing where there is no viewpoint.
+inline std::optional<Visibility> visibilityOf(const SeenSpace& seen) {
+  return seen.visibility() ? std::optional<Visibility>(*seen.visibility()) : std::nullopt;
 }
 
 /// findSeenSpace() for those who do not ask where the viewpoint is known from.
 /// \return nothing where there is no viewpoint.
 template <typename PointT>
 std::optional<Visibility> seenSpace(const pcl::PointCloud<PointT>& cloud, const Points& points,
-                                    const Viewpoint& viewpoint) {
-  return findSeenSpace(cloud, points, viewpoint).visibility;
+                                    const Viewpoint& viewpoint, bool is_part = false) {
+  return visibilityOf(findSeenSpace(cloud, points, viewpoint, is_part));
 }
 
 }  // namespace detail

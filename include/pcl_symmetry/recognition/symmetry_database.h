@@ -211,6 +211,14 @@ public:
   Recognition recognize(const Cloud& scan, const RecognitionOptions& options = {},
                         const Viewpoint& viewpoint = {}) const;
 
+  /// The same for an object of a scene.
+  /// \param scene all that the scanner measured.
+  /// \param cluster the points of the object, indices into the scene. Other objects in front may hide much of it.
+  /// \param seen what the scanners saw of the scene, made once for all its clusters; null: it is made of \p scene.
+  /// \throws pcl::BadArgumentException for bad options, and for indices that the scene does not have.
+  Recognition recognize(const Cloud& scene, const pcl::Indices& cluster, const RecognitionOptions& options = {},
+                        const SeenSpace::ConstPtr& seen = nullptr) const;
+
   /// The same for each of many clusters.
   /// \param progress after each; where it returns false the rest stays unknown.
   std::vector<Recognition> recognize(const std::vector<Cloud>& clusters, const RecognitionOptions& options = {},

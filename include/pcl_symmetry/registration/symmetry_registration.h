@@ -57,6 +57,10 @@ public:
   /// Where the scanner of each cloud stood; by default the data decide, see ScanAnalysis.
   void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = viewpoint; }
   void setTargetViewpoint(const Viewpoint& viewpoint) { target_viewpoint_ = viewpoint; }
+  /// Gives what the scanners of a scene saw, made once for all its objects, in place of what the viewpoint tells.
+  /// \param seen in the frame of that cloud; null (default): each align() finds out for itself.
+  void setSourceSeenSpace(const SeenSpace::ConstPtr& seen) { source_seen_space_ = seen; }
+  void setTargetSeenSpace(const SeenSpace::ConstPtr& seen) { target_seen_space_ = seen; }
 
   /// \param min_merit a pose of at least this getScore().merit() has converged, in [-1, 1]; default 0.4: scans of
   /// benchmark models, also scans with noise and holes, reach 0.5 at their own model and stay below 0.32 at models of
@@ -122,6 +126,7 @@ private:
   void findPose(const Points& source, const Points& target, const Matrix4& guess);
 
   Viewpoint source_viewpoint_, target_viewpoint_;
+  SeenSpace::ConstPtr source_seen_space_, target_seen_space_;
   CloudRegistrationOptions options_;
   // chosen: a lower value calls models of other kinds a fit, a higher one refuses scans with noise and holes.
   double min_merit_ = 0.4;

@@ -95,4 +95,14 @@ std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Ve
   return spaceSeenFrom(points, viewpoint, SingleViewLimits{kMostHidden, kMostLayered});
 }
 
+std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                        std::size_t max_pixels) {
+  const double radius = boundingBall(points).radius;
+  if (!(radius > 0.0)) return std::nullopt;
+  std::optional<Visibility> visibility = Visibility::ofScene(points, viewpoint, max_pixels);
+  if (!visibility || visibility->hiddenShare(points, kHiddenMargin * radius) > kMostHidden) return std::nullopt;
+  if (layeredShare(points, viewpoint) > kMostLayered) return std::nullopt;
+  return visibility;
+}
+
 }  // namespace pcl_symmetry

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <optional>
 
 #include "pcl_symmetry/core/scan/visibility.h"
 
@@ -15,6 +17,15 @@ struct SingleViewLimits {
 /// spaceSeenFrom() with limits of its own.
 std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                         const SingleViewLimits& limits);
+
+/// Finds out from the points of a scene whether they were measured from a viewpoint. Unlike that of one object, a scene
+/// may surround the viewpoint.
+/// \param points 3 x N, finite.
+/// \param viewpoint in the frame of the points.
+/// \param max_pixels as in Visibility::ofScene().
+/// \return the space seen from the viewpoint; nothing if the points were not measured from there.
+std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                        std::size_t max_pixels);
 
 /// Share of the points that form layers as seen from a viewpoint.
 ///

@@ -6,157 +6,80 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
+#include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/geometry/viewing_frame.h"
+#include "core/scan/range_image.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-using Places = std::vector<Eigen::Array2d>;  // coordinates of points in the picture plane at depth one
+// derived: the empty pixels around a picture leave none of fewer.
+constexpr std::size_t kLeastPixels = 16;
+// pixels; chosen: a gap between samples of one surface. A scene holds many objects: a share of the picture, as for
+// one object, would close the space between them. Half leaves holes in sparse surfaces, twice closes handles.
+constexpr std::size_t kLargestSceneHole = 25;
+// length of the mean of unit vectors; chosen: rays all around have no direction in common. Any tiny value will do.
+constexpr double kLeastMean = 1e-6;
 
-// Rays at more than 75 degrees to the middle make no picture. chosen: a wider cone stretches the picture at its rim by
-// 1 / cos^2, a narrower one refuses viewpoints close to the object.
-const double kLeastCosine = std::cos(75.0 * kPi / 180.0);
-// chosen: a surface that faces the viewer has half the average density, which leaves exp(-2), one pixel in seven, empty
-// and can be closed. Half as many leave holes in surfaces, twice as many blur the silhouette.
-constexpr double kPointsPerPixel = 4.0;
-// pixels; chosen: bounds a picture to 4 MB. Half as many blur clouds of more than a million points, twice as many need
-// 16 MB.
-constexpr int kLargestSide = 1024;
-// share of the squared longest side; chosen: points along a line get pixels with an area. Any tiny value will do.
-constexpr double kLeastArea = 1e-6;
-// chosen: fewer may leave the size off by more than its accuracy, more take time
-constexpr int kPixelSizeRounds = 4;
-// share of the size; chosen: it leaves the points in a pixel off by 10 %, twice as much by 20 %, half takes more rounds
-constexpr double kPixelSizeAccuracy = 0.05;
-// neighbours of eight; chosen: fewer widen the silhouette, more leave holes open
-constexpr int kClosingNeighbours = 5;
-// chosen: each pass narrows holes by a pixel on each side. Fewer leave holes, more fill true notches.
-constexpr int kClosingPasses = 3;
-// share of the filled pixels; chosen: less leaves gaps between sparse points, more closes true openings such as handles
-constexpr double kSmallHole = 0.01;
+/// Takes points of the input frame to the frame of a camera.
+Visibility::Projection cameraAt(const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input) {
+  Visibility::Projection projection;
+  projection.leftCols<3>() = R_camera_input;
+  projection.col(3) = -R_camera_input * viewpoint;
+  return projection;
+}
 
-/// The pixels of a picture. Pixel (u, v) contains the places about its integer coordinates; one empty pixel at least
-/// surrounds the filled ones.
-struct PixelGrid {
-  Eigen::Array2d low;  ///< least coordinates of the places
-  double size;         ///< of a pixel, at depth one
-  int width = 1, height = 1;
-
-  int column(const Eigen::Array2d& p) const { return static_cast<int>((p.x() - low.x()) / size) + 1; }
-  int row(const Eigen::Array2d& p) const { return static_cast<int>((p.y() - low.y()) / size) + 1; }
-  std::size_t at(const Eigen::Array2d& p) const { return static_cast<std::size_t>(row(p)) * width + column(p); }
-  std::size_t numPixels() const { return static_cast<std::size_t>(width) * height; }
-
-  /// Takes places at depth one to pixels.
-  Eigen::Matrix3d toPixels() const {
-    Eigen::Matrix3d to_pixels = Eigen::Matrix3d::Identity();
-    to_pixels(0, 0) = to_pixels(1, 1) = 1.0 / size;
-    to_pixels(0, 2) = 0.5 - low.x() / size;
-    to_pixels(1, 2) = 0.5 - low.y() / size;
-    return to_pixels;
-  }
+/// Rays from a viewpoint to points.
+struct Rays {
+  Eigen::Index count = 0;  ///< points at the viewpoint have none
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
 };
 
-/// \return the points as seen by the camera; nothing where one lies outside its cone.
-std::optional<Places> placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
-                                 const Eigen::Matrix3d& R_camera_input) {
-  Places places(points.cols());
+Rays raysTo(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
+  Rays rays;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d ray = R_camera_input * (points.col(i).cast<double>() - viewpoint);
-    if (!(ray.z() > kLeastCosine * ray.norm())) return std::nullopt;
-    places[i] = ray.head<2>().array() / ray.z();
+    const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint;
+    if (!(ray.norm() > 0.0)) continue;
+    rays.mean += ray.normalized();
+    ++rays.count;
   }
-  return places;
+  if (rays.count > 0) rays.mean /= static_cast<double>(rays.count);
+  return rays;
 }
 
-/// Pixels of such a size that the filled ones have kPointsPerPixel points on average.
-PixelGrid fitPixels(const Places& places) {
-  Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Eigen::Array2d& place : places) {
-    low = low.min(place);
-    high = high.max(place);
-  }
-  const Eigen::Array2d extent = high - low;
-  const double longest = extent.maxCoeff(), num_points = static_cast<double>(places.size());
-  PixelGrid grid{low, std::sqrt(std::max(extent.prod(), kLeastArea * longest * longest) / num_points)};
-  for (int round = 1;; ++round) {
-    grid.size = std::max(grid.size, longest / (kLargestSide - 4));
-    if (!(grid.size > 0.0)) grid.size = 1.0;
-    grid.width = grid.column(high) + 2;
-    grid.height = grid.row(high) + 2;
-    std::vector<char> filled(grid.numPixels(), 0);
-    for (const Eigen::Array2d& place : places) filled[grid.at(place)] = 1;
-    const auto num_filled = std::count(filled.begin(), filled.end(), 1);
-    const double wanted = std::sqrt(kPointsPerPixel * static_cast<double>(num_filled) / num_points);
-    const bool settled = wanted > 1.0 - kPixelSizeAccuracy && wanted < 1.0 + kPixelSizeAccuracy;
-    if (round == kPixelSizeRounds || settled) return grid;
-    grid.size *= wanted;
-  }
+/// The six directions of a cube, as rotations of a camera that looks at the first one.
+std::vector<Eigen::Matrix3d> cubeFaces() {
+  std::vector<Eigen::Matrix3d> faces;
+  for (int quarter = 0; quarter < 4; ++quarter)
+    faces.push_back(Eigen::AngleAxisd(0.5 * kPi * quarter, Eigen::Vector3d::UnitY()).toRotationMatrix());
+  for (const double side : {-1.0, 1.0})
+    faces.push_back(Eigen::AngleAxisd(0.5 * kPi * side, Eigen::Vector3d::UnitX()).toRotationMatrix());
+  return faces;
 }
 
-/// Calls visit(index) for the pixels around (u, v) and itself that lie in the picture.
-template <typename Visit>
-void visitAround(int u, int v, int width, int height, const Visit& visit) {
-  for (int y = std::max(0, v - 1); y <= std::min(height - 1, v + 1); ++y)
-    for (int x = std::max(0, u - 1); x <= std::min(width - 1, u + 1); ++x)
-      visit(static_cast<std::size_t>(y) * width + x);
-}
-
-/// Fills empty pixels that most neighbours surround, with the depth nearest to the viewer: space counts as free only if
-/// a point lies behind it.
-void closeHoles(std::vector<float>& depths, int width, int height) {
-  const std::vector<float> before = depths;
-  for (int v = 1; v + 1 < height; ++v) {
-    for (int u = 1; u + 1 < width; ++u) {
-      const std::size_t at = static_cast<std::size_t>(v) * width + u;
-      if (before[at] != Visibility::kBackground) continue;
-      int num_filled = 0;
-      float nearest = Visibility::kBackground;
-      visitAround(u, v, width, height, [&](std::size_t near) {
-        num_filled += before[near] != Visibility::kBackground ? 1 : 0;
-        nearest = std::min(nearest, before[near]);
-      });
-      if (num_filled >= kClosingNeighbours) depths[at] = nearest;
-    }
-  }
-}
-
-/// Closes small holes whole, with the depth of their nearest border. A gap between sparse points does not show that the
-/// scanner looked through.
-void closeGaps(std::vector<float>& depths, int width, int height) {
-  const auto is_empty = [&](std::size_t at) { return depths[at] == Visibility::kBackground; };
-  const auto num_empty = std::count(depths.begin(), depths.end(), Visibility::kBackground);
-  const double largest = kSmallHole * static_cast<double>(depths.size() - static_cast<std::size_t>(num_empty));
-  std::vector<char> visited(depths.size(), 0);
-  std::vector<std::size_t> region;
-  for (std::size_t start = 0; start < depths.size(); ++start) {
-    if (visited[start] || !is_empty(start)) continue;
-    region.assign(1, start);
-    visited[start] = 1;
-    float nearest = Visibility::kBackground;
-    for (std::size_t next = 0; next < region.size(); ++next) {
-      const int u = static_cast<int>(region[next] % width), v = static_cast<int>(region[next] / width);
-      visitAround(u, v, width, height, [&](std::size_t to) {
-        if (!is_empty(to)) nearest = std::min(nearest, depths[to]);
-        if (visited[to] || !is_empty(to)) return;
-        visited[to] = 1;
-        region.push_back(to);
-      });
-    }
-    if (static_cast<double>(region.size()) <= largest)
-      for (const std::size_t at : region) depths[at] = nearest;
-  }
+/// The picture that a camera sees of points; nothing where it sees none, or not all that it has to see.
+std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                    const Eigen::Matrix3d& R_camera_input, FieldOfView field, std::size_t max_pixels,
+                                    Eigen::Index least_seen) {
+  const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, field);
+  if (seen.places.empty() || static_cast<Eigen::Index>(seen.places.size()) < least_seen) return std::nullopt;
+  RangeImage image = rangeImage(seen, max_pixels, kLargestSceneHole);
+  forgetOutside(image);
+  return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
+                    std::move(image.depths), Visibility::kNoRay);
 }
 
 }  // namespace
 
-Visibility::Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside)
-    : projection_(projection), width_(width), height_(height), depths_(std::move(depths)), outside_(outside) {
-  if (width < 1 || height < 1 || depths_.size() != static_cast<std::size_t>(width) * height)
-    throw std::invalid_argument("depths: size " + std::to_string(depths_.size()) + ", must be width * height > 0");
+Visibility::Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside) {
+  if (width < 1 || height < 1 || depths.size() != static_cast<std::size_t>(width) * height)
+    throw std::invalid_argument("depths: size " + std::to_string(depths.size()) + ", must be width * height > 0");
+  pictures_.push_back(
+      {projection, width, height, std::make_shared<const std::vector<float>>(std::move(depths)), outside});
 }
 
 std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
@@ -164,35 +87,68 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   const Eigen::Vector3d forward = (boundingBall(points).center - viewpoint).normalized();
   if (!forward.allFinite() || forward.norm() < 0.5) return std::nullopt;
   const Eigen::Matrix3d R_camera_input = viewingFrame(forward);
-  const std::optional<Places> places = placesSeen(points, viewpoint, R_camera_input);
-  if (!places) return std::nullopt;
-
-  const PixelGrid grid = fitPixels(*places);
-  std::vector<float> depths(grid.numPixels(), kBackground);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    float& depth = depths[grid.at((*places)[i])];
-    depth = std::min(depth, static_cast<float>(forward.dot(points.col(i).cast<double>() - viewpoint)));
-  }
-  for (int pass = 0; pass < kClosingPasses; ++pass) closeHoles(depths, grid.width, grid.height);
-  closeGaps(depths, grid.width, grid.height);
-
-  Projection projection;
-  projection.leftCols<3>() = R_camera_input;
-  projection.col(3) = -R_camera_input * viewpoint;
+  const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, FieldOfView::Cone);
+  if (static_cast<Eigen::Index>(seen.places.size()) < points.cols()) return std::nullopt;
+  RangeImage image = rangeImage(seen, kMaxPixels, std::numeric_limits<std::size_t>::max());
   // Rays beside the object met nothing either: their space is free.
-  return Visibility(grid.toPixels() * projection, grid.width, grid.height, std::move(depths), kBackground);
+  return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
+                    std::move(image.depths), kBackground);
+}
+
+std::optional<Visibility> Visibility::ofScene(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                              std::size_t max_pixels) {
+  check(max_pixels >= kLeastPixels, "max_pixels", max_pixels, ">= 16");
+  const Rays rays = raysTo(points, viewpoint);
+  if (rays.count == 0) return std::nullopt;
+  const Eigen::Vector3d forward =
+      rays.mean.norm() > kLeastMean ? Eigen::Vector3d(rays.mean.normalized()) : Eigen::Vector3d::UnitX();
+  const Eigen::Matrix3d ahead = viewingFrame(forward);
+  if (auto one = pictureOf(points, viewpoint, ahead, FieldOfView::Cone, max_pixels, rays.count)) return one;
+  std::vector<Visibility> faces;
+  for (const Eigen::Matrix3d& turn : cubeFaces())
+    if (auto face = pictureOf(points, viewpoint, turn * ahead, FieldOfView::CubeFace, max_pixels, 1))
+      faces.push_back(std::move(*face));
+  return together(faces);
+}
+
+Visibility Visibility::together(const std::vector<Visibility>& views) {
+  if (views.empty()) throw std::invalid_argument("number of views = 0, must be >= 1");
+  Visibility all;
+  for (const Visibility& view : views)
+    all.pictures_.insert(all.pictures_.end(), view.pictures_.begin(), view.pictures_.end());
+  for (const Visibility& view : views)
+    all.supports_.insert(all.supports_.end(), view.supports_.begin(), view.supports_.end());
+  return all;
+}
+
+Visibility Visibility::withSupport(const Eigen::Vector4d& support, double margin) const {
+  Visibility result = *this;
+  result.supports_.push_back(support);
+  result.supports_.back()[3] += margin;
+  return result;
+}
+
+double Visibility::Picture::depthBehind(const Eigen::Vector3d& x) const {
+  const Eigen::Vector3d image = projection.leftCols<3>() * x + projection.col(3);
+  if (!(image.z() > 0.0)) return std::numeric_limits<double>::infinity();
+  const double u = image.x() / image.z() + 0.5, v = image.y() / image.z() + 0.5;
+  const bool inside = u >= 0.0 && v >= 0.0 && u < width && v < height;
+  return image.z() - static_cast<double>(inside ? depth(static_cast<int>(u), static_cast<int>(v)) : outside);
 }
 
 double Visibility::depthBehind(const Eigen::Vector3d& x) const {
-  const Eigen::Vector3d image = projection_.leftCols<3>() * x + projection_.col(3);
-  if (!(image.z() > 0.0)) return std::numeric_limits<double>::infinity();
-  const double u = image.x() / image.z() + 0.5, v = image.y() / image.z() + 0.5;
-  const bool inside = u >= 0.0 && v >= 0.0 && u < width_ && v < height_;
-  return image.z() - static_cast<double>(inside ? depth(static_cast<int>(u), static_cast<int>(v)) : outside_);
+  double behind = std::numeric_limits<double>::infinity();
+  for (const Picture& picture : pictures_) behind = std::min(behind, picture.depthBehind(x));
+  for (const Eigen::Vector4d& support : supports_) {
+    const double height = support.head<3>().dot(x) + support[3];
+    if (height < 0.0) behind = std::min(behind, height);
+  }
+  return behind;
 }
 
 Eigen::Vector3d Visibility::viewpoint() const {
-  return -projection_.leftCols<3>().inverse() * projection_.col(3);
+  const Projection& projection = pictures_.front().projection;
+  return -projection.leftCols<3>().inverse() * projection.col(3);
 }
 
 double Visibility::hiddenShare(const PointsRef& points, double margin) const {
@@ -204,8 +160,12 @@ double Visibility::hiddenShare(const PointsRef& points, double margin) const {
 
 Visibility Visibility::normalized(const Eigen::Vector3d& center, double scale) const {
   Visibility result = *this;
-  result.projection_.col(3) = (projection_.leftCols<3>() * center + projection_.col(3)) / scale;
-  for (float& depth : result.depths_) depth = static_cast<float>(depth / scale);
+  for (Picture& picture : result.pictures_) {
+    const Projection& input = picture.projection;
+    picture.projection.col(3) = ((input.leftCols<3>() * center + input.col(3)) / scale).eval();
+    picture.unit *= scale;
+  }
+  for (Eigen::Vector4d& support : result.supports_) support[3] = (support.head<3>().dot(center) + support[3]) / scale;
   return result;
 }
 

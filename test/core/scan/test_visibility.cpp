@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "shapes/scans.h"
+#include "shapes/table.h"
 
 namespace {
 
@@ -170,6 +171,113 @@ TEST(Visibility, HiddenShareTellsAScanFromAWhole) {
   const double hidden = Visibility::fromPoints(whole, kViewpoint)->hiddenShare(whole, 0.1);
   EXPECT_GT(hidden, 0.3);
   EXPECT_LT(hidden, 0.6);
+}
+
+/// The points of some pixels.
+Points pointsOf(const Scan& scan, const std::vector<int>& pixels) {
+  Points points(3, static_cast<Eigen::Index>(pixels.size()));
+  for (std::size_t i = 0; i < pixels.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = scan.pixels.col(pixels[i]);
+  return points;
+}
+
+TEST(Visibility, AnObjectInFrontHidesWhatLiesBehindIt) {
+  const Table table;
+  const Visibility alone = *Visibility::fromPoints(pointsOf(table.scan, table.pixelsOf(1)), table.scan.viewpoint);
+  const auto scene = Visibility::ofScene(table.scan.cloud(), table.scan.viewpoint);
+  ASSERT_TRUE(scene);
+  const Visibility truth = table.scan.visibility();
+  int num_hidden = 0, num_hidden_alone = 0, num_known = 0;
+  const Block& box = table.blocks.blocks[1];
+  RandomStream random(1);
+  for (int i = 0; i < 4000; ++i) {
+    const Eigen::Vector3d unit(symmetric(random), symmetric(random), symmetric(random));
+    const Eigen::Vector3d x = box.center + 1.2 * box.half.cwiseProduct(unit);
+    if (truth.depthBehind(x) > 0.1) {  // the box in front is 0.16 deep and 0.25 before
+      ++num_hidden;
+      num_hidden_alone += alone.depthBehind(x) >= 0.0 ? 1 : 0;
+      num_known += scene->depthBehind(x) < 0.0 ? 1 : 0;
+    }
+  }
+  ASSERT_GT(num_hidden, 500);
+  EXPECT_LT(num_hidden_alone, 0.9 * num_hidden) << "the cluster alone takes hidden space for seen empty";
+  EXPECT_LT(num_known, 0.01 * num_hidden) << "but for the borders of pixels";
+}
+
+TEST(Visibility, OutsideThePictureOfASceneNothingIsKnown) {
+  const Table table;
+  const auto scene = Visibility::ofScene(table.scan.cloud(), table.scan.viewpoint);
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(scene->numPictures(), 1u);
+  for (const Eigen::Vector3d& x :
+       {Eigen::Vector3d(3.0, 0.0, 0.0), Eigen::Vector3d(-3.0, 0.0, 0.5), Eigen::Vector3d(0.0, 0.0, 9.0)})
+    EXPECT_EQ(scene->depthBehind(x), kInfinity);
+  EXPECT_LT(scene->depthBehind({0.0, -0.8, 0.5}), 0.0) << "between the camera and the table";
+}
+
+TEST(Visibility, AScannerMayStandInTheMiddleOfItsScene) {
+  const Points room = 3.0f * spherePoints();
+  const Eigen::Vector3d viewpoint(0.3, -0.2, 0.1);
+  const auto seen = Visibility::ofScene(room, viewpoint);
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->numPictures(), 6u);
+  RandomStream random(4);
+  int num_wrong = 0;
+  constexpr int kTrials = 5000;
+  for (int i = 0; i < kTrials; ++i) {
+    const Eigen::Vector3d direction = randomDirection(random);
+    num_wrong += seen->depthBehind(2.5 * direction) < 0.0 ? 0 : 1;
+    num_wrong += seen->depthBehind(3.5 * direction) > 0.0 ? 0 : 1;
+  }
+  EXPECT_LT(num_wrong, 0.01 * 2 * kTrials) << "but at the rims of the pictures, where cells are cut";
+}
+
+TEST(Visibility, FreeIsWhatAnyScannerSawToBeFree) {
+  const Table table;
+  const Scan other = scan(table.blocks, {-0.3, 1.7, 0.9}, 0.0, 320, 240);
+  const Visibility one = table.scan.visibility(), two = other.visibility(), both = Visibility::together({one, two});
+  EXPECT_EQ(both.numPictures(), 2u);
+  const Eigen::Vector3d center(0.1, 0.2, 0.3);
+  const double scale = 2.5;
+  const Visibility moved = both.normalized(center, scale);
+  RandomStream random(5);
+  int num_more = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d x = 0.6 * Eigen::Vector3d(symmetric(random), symmetric(random), symmetric(random));
+    const bool is_free = both.depthBehind(x) < 0.0;
+    EXPECT_EQ(is_free, one.depthBehind(x) < 0.0 || two.depthBehind(x) < 0.0);
+    if (std::abs(both.depthBehind(x)) > 1e-5) {
+      EXPECT_EQ(is_free, moved.depthBehind((x - center) / scale) < 0.0);
+    }
+    num_more += is_free && !(one.depthBehind(x) < 0.0) ? 1 : 0;
+  }
+  EXPECT_GT(num_more, 50) << "the second scanner sees behind the boxes";
+  EXPECT_THROW(Visibility::together({}), std::invalid_argument);
+}
+
+TEST(Visibility, ASceneKeepsToItsPixels) {
+  const Points points = spherePoints().colwise() + Eigen::Vector3f(0.0f, 0.0f, 5.0f);
+  for (const std::size_t max_pixels : {std::size_t{16}, std::size_t{1000}, std::size_t{10'000}}) {
+    const auto seen = Visibility::ofScene(points, Eigen::Vector3d::Zero(), max_pixels);
+    ASSERT_TRUE(seen);
+    EXPECT_LE(static_cast<std::size_t>(seen->width()) * static_cast<std::size_t>(seen->height()), max_pixels);
+  }
+  EXPECT_THROW(Visibility::ofScene(points, Eigen::Vector3d::Zero(), 15), std::invalid_argument);
+  EXPECT_FALSE(Visibility::ofScene(Points(3, 0), Eigen::Vector3d::Zero()));
+  EXPECT_FALSE(Visibility::ofScene(Points::Zero(3, 5), Eigen::Vector3d::Zero())) << "all points at the viewpoint";
+}
+
+TEST(Visibility, NoObjectReachesIntoItsTable) {
+  const Table table;
+  constexpr double kMargin = 0.01;
+  const Visibility seen = table.scan.visibility();
+  const Visibility on_table = seen.withSupport(Eigen::Vector4d::UnitZ(), kMargin);
+  const Eigen::Vector3d center(0.2, -0.1, 0.4), below(0.0, 0.1, -0.1);
+  EXPECT_GT(seen.depthBehind(below), 0.0) << "hidden by the table";
+  EXPECT_NEAR(on_table.depthBehind(below), -0.1 + kMargin, 1e-12);
+  EXPECT_NEAR(on_table.normalized(center, 2.0).depthBehind((below - center) / 2.0), (-0.1 + kMargin) / 2.0, 1e-12);
+  const Eigen::Vector3d inside(0.0, 0.1, 0.1), at_foot(0.0, 0.1, -0.5 * kMargin);
+  EXPECT_EQ(on_table.depthBehind(inside), seen.depthBehind(inside));
+  EXPECT_EQ(on_table.depthBehind(at_foot), seen.depthBehind(at_foot));
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,9 +14,12 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// What a range scanner saw: space in front of the surface on each ray is free, space behind it is unknown.
 ///
-/// It is a picture of depths with the projection that made it. A reflected point in free space speaks against the
-/// plane; a reflected point in unknown space says nothing. Departure from the paper, which takes scans for whole
-/// objects: their best planes then often lie beside the true ones.
+/// It is a picture of depths with the projection that made it, or several of them: free is what any of them shows to be
+/// free. A reflected point in free space speaks against the plane; a reflected point in unknown space says nothing.
+/// Departure from the paper, which takes scans for whole objects: their best planes then often lie beside the true
+/// ones.
+///
+/// Copies share their pictures.
 class Visibility {
 public:
   using Projection = Eigen::Matrix<double, 3, 4>;
@@ -40,6 +45,31 @@ public:
   /// around one direction.
   static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
+  /// The range image of a scene, of which the analysed points are a part: whatever hides them is in it too. Space
+  /// beyond the picture is unknown. Points all around the viewpoint give six pictures, the faces of a cube; where the
+  /// points lie in a cone of 75 degrees around one direction there is one.
+  /// \param points 3 x N, finite: all that the scanner measured.
+  /// \param viewpoint in the frame of the points.
+  /// \param max_pixels of each picture, >= 16: larger scenes get larger pixels. A picture takes four bytes a pixel.
+  /// \return nothing without a point other than the viewpoint.
+  static std::optional<Visibility> ofScene(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                           std::size_t max_pixels = kMaxPixels);
+
+  /// What several scanners saw of one scene: free is what any of them saw to be free.
+  /// \param views in one frame, at least one.
+  /// \throws std::invalid_argument without a view.
+  static Visibility together(const std::vector<Visibility>& views);
+
+  /// The same for objects on a table: none of them reaches into the table, so that space behind its surface is free of
+  /// them.
+  /// \param support unit normal n towards the objects, then d: n . x + d = 0 on the surface, frame of the points.
+  /// \param margin by which objects may seem to reach into it, input units, >= 0.
+  Visibility withSupport(const Eigen::Vector4d& support, double margin) const;
+
+  /// Pixels of a picture that is made from points. chosen: 4 MB a picture; half as many pixels blur clouds of more than
+  /// two million points, twice as many need 8 MB.
+  static constexpr std::size_t kMaxPixels = 1u << 20;
+
   /// \param x in the frame of the points.
   /// \return distance of the point behind the surface, along its ray, input units: negative in free space, -infinity
   /// where the ray met nothing, +infinity where no ray passed.
@@ -54,20 +84,35 @@ public:
   /// \return the same visibility for coordinates (x - center) / scale.
   Visibility normalized(const Eigen::Vector3d& center, double scale) const;
 
-  /// \return the point where all rays meet, in the frame of the points.
+  /// \return the point where all rays of the first picture meet, in the frame of the points.
   Eigen::Vector3d viewpoint() const;
 
-  int width() const { return width_; }
-  int height() const { return height_; }
-  /// \return depth of a pixel, input units.
-  float depth(int u, int v) const { return depths_[static_cast<std::size_t>(v) * width_ + u]; }
+  /// \return number of pictures, >= 1.
+  std::size_t numPictures() const { return pictures_.size(); }
+  /// Columns and rows of the first picture.
+  int width() const { return pictures_.front().width; }
+  int height() const { return pictures_.front().height; }
+  /// \return depth of a pixel of the first picture, input units.
+  float depth(int u, int v) const { return pictures_.front().depth(u, v); }
 
 private:
-  Projection projection_;
-  int width_;
-  int height_;
-  std::vector<float> depths_;
-  float outside_;
+  struct Picture {
+    Projection projection;
+    int width, height;
+    std::shared_ptr<const std::vector<float>> depths;  // in the units that the picture was taken in
+    float outside;
+    double unit = 1.0;  // of this frame, in units of the depths
+
+    float depth(int u, int v) const {
+      return static_cast<float>((*depths)[static_cast<std::size_t>(v) * width + u] / unit);
+    }
+    double depthBehind(const Eigen::Vector3d& x) const;
+  };
+
+  Visibility() = default;
+
+  std::vector<Picture> pictures_;
+  std::vector<Eigen::Vector4d> supports_;  // behind these planes is no object
 };
 
 /// Finds out from the points whether they were measured from a viewpoint: they lie in front of it, hardly any of them

@@ -67,8 +67,14 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   options.rotation_epsilon = transformation_rotation_epsilon_;
   if (corr_dist_threshold_ < std::sqrt(std::numeric_limits<double>::max()))
     options.max_correspondence = corr_dist_threshold_;
-  const CloudRegistration result = registerClouds(source, detail::seenSpace(*input_, source, source_viewpoint_), target,
-                                                  detail::seenSpace(*target_, target, target_viewpoint_),
+  const bool is_part = this->use_indices_ && indices_->size() < input_->size();
+  const std::optional<Visibility> source_seen = source_seen_space_
+                                                    ? detail::visibilityOf(*source_seen_space_)
+                                                    : detail::seenSpace(*input_, source, source_viewpoint_, is_part);
+  const std::optional<Visibility> target_seen = target_seen_space_
+                                                    ? detail::visibilityOf(*target_seen_space_)
+                                                    : detail::seenSpace(*target_, target, target_viewpoint_);
+  const CloudRegistration result = registerClouds(source, source_seen, target, target_seen,
                                                   Eigen::Isometry3d(guess.template cast<double>()), options);
   score_ = result.score;
   timing_ms_ = result.timing_ms;

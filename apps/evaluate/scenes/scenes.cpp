@@ -1,0 +1,318 @@
+#include "evaluate/scenes/scenes.h"
+
+#include <pcl/common/point_tests.h>
+#include <pcl/conversions.h>
+
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/console.h"
+#include "common/files/json_values.h"
+#include "common/shape_input/shape_input.h"
+#include "common/shape_output/cloud_fields.h"
+#include "common/shape_output/shape_output.h"
+#include "core/base/random.h"
+#include "evaluate/references/reference_cache.h"
+#include "evaluate/registration/motion_error.h"
+#include "evaluate/scenes/scene_report.h"
+#include "evaluate/scenes/table_scene.h"
+#include "evaluate/shared/model_flags.h"
+#include "evaluate/shared/model_list.h"
+#include "pcl_symmetry/mesh_sampling.h"
+#include "pcl_symmetry/recognition/symmetry_database.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+// Diagonals of the models, metres. chosen: things that stand on tables; at half, few pixels show them.
+constexpr double kLeastDiagonal = 0.15, kGreatestDiagonal = 0.30;
+// Greatest error of a right pose, as a share of the diameter.
+// derived: the limit of the benchmark for object poses (BOP, maximum symmetry-aware surface distance).
+constexpr double kRightPose = 0.05;
+// Metres that an object may seem to reach into the table. chosen: three deviations of the depth at 1 m; half takes
+// noise for a contradiction, twice lets reflections sink into the table.
+constexpr double kTableMargin = 0.004;
+// Points of a model in the database. chosen: as many as in `recognition`.
+constexpr int kModelPoints = 20'000;
+
+struct EvaluateScenesOptions {
+  std::vector<std::string> folders;
+  ModelSelection selection;
+  ReferenceOptions references;
+  std::optional<std::string> references_path, export_folder, csv;
+  std::vector<double> noise = {0.0, 1.0};
+  int num_scenes = 100, min_points = 300, leave_out = 0, most_in_band = 0;
+  bool no_planes = false;
+  SceneOptionsOfTable table;
+  MatchLimits limits;
+  OperatingPoint operating_point;
+  RecognitionOptions recognition;
+  CommonOptions common;
+};
+
+CommandLine commandLine(EvaluateScenesOptions& o) {
+  CommandLine line(
+      "pcl_symmetry_evaluate scenes",
+      "Puts meshes on a table, looks at them with a depth camera, and measures how well planes and models of "
+      "objects are found that others hide in part. Clusters are the true ones.",
+      "pcl_symmetry_evaluate scenes psb/train -max 100 -scenes 100 -references references.json");
+  addModelFlags(line, o.folders, o.selection);
+  line.text("references", "FILE", o.references_path,
+            "reference planes: read for the meshes in it, extended by the others")
+      .number("scenes", o.num_scenes, Range::closed(1, 1'000'000), "number of scenes")
+      .number("objects", o.table.most_objects, Range::closed(1, 100), "greatest number of objects of a scene")
+      .numbers("noise", o.noise, Range::closed(0, 10),
+               "factors of the depth noise of a structured-light camera; 0 = exact depths")
+      .number("min_points", o.min_points, Range::closed(20, 1'000'000), "least number of points of an object")
+      .number("most_in_band", o.most_in_band, Range::closed(0, 1'000'000),
+              "objects of a band of occlusion after which others of it are passed over; 0 = none are")
+      .number("leave_out", o.leave_out, Range::closed(0, 1'000'000),
+              "also ask a database which model an object is; every N-th model is left out of it; 0 = do not ask")
+      .number("min_merit", o.recognition.min_merit, Range::closed(-1, 1), "least merit of the pose of a known model")
+      .flag("no_planes", o.no_planes, "only ask the database")
+      .number("min_confidence", o.operating_point.min_confidence, Range::closed(0, 1),
+              "least confidence of an answer that decides")
+      .text("export", "DIR", o.export_folder,
+            "write every scene as PCD with the field object, and ground_truth.json with poses and planes")
+      .text("csv", "FILE", o.csv, "a row for each object")
+      .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  return line;
+}
+
+class ScenesEvaluation {
+public:
+  explicit ScenesEvaluation(const EvaluateScenesOptions& options)
+      : options_(options),
+        console_(options.common.quiet),
+        cache_(options.references_path.value_or(""), options.references),
+        database_(":memory:", databaseOptions(options)) {}
+
+  void run() {
+    load();
+    if (options_.leave_out > 0) build();
+    if (options_.export_folder) boost::filesystem::create_directories(*options_.export_folder);
+    Step step(console_, "Looking at " + std::to_string(options_.num_scenes) + " scenes");
+    for (int i = 0; i < options_.num_scenes; ++i) {
+      step.progress(static_cast<double>(i) / options_.num_scenes);
+      const std::uint64_t seed = RandomStream(options_.common.seed, static_cast<std::uint64_t>(i))();
+      const TableScene scene = drawScene(models_, options_.table, seed);
+      for (const double noise : options_.noise) evaluate(i, scene, noise, seed);
+    }
+    step.done(std::to_string(results_.size()) + " objects");
+    report();
+  }
+
+private:
+  static DatabaseOptions databaseOptions(const EvaluateScenesOptions& options) {
+    DatabaseOptions database;
+    database.num_threads = options.common.threads;
+    return database;
+  }
+
+  void load() {
+    const std::vector<Model> models = listModels(options_.folders, options_.selection);
+    Step step(console_, "Loading " + std::to_string(models.size()) + " models");
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
+      try {
+        add(models[i]);
+      } catch (const std::exception& error) {
+        left_out_.push_back(models[i].path + ": " + error.what());
+      }
+    }
+    cache_.save();
+    step.done(std::to_string(models_.size()) + " models");
+    for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
+    if (models_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
+  }
+
+  void add(const Model& model) {
+    const Shape shape = loadShape(model.path);
+    if (!shape.mesh) throw InputError("has no faces");
+    const TriangleScene own(*shape.mesh);
+    RandomStream random(options_.common.seed, models_.size());
+    const double diagonal = kLeastDiagonal + (kGreatestDiagonal - kLeastDiagonal) * random.uniform();
+    SceneModel scene_model(model.name, *shape.mesh, diagonal);
+    std::optional<ReferenceSymmetries> references = cache_.find(model.key, shape.mesh->polygons.size());
+    if (!references) {
+      references = findReferenceSymmetries(*shape.mesh, options_.references);
+      cache_.add(model.key, shape.mesh->polygons.size(), *references);
+    }
+    models_.push_back(std::move(scene_model));
+    references_.push_back(references->scaled(own.center(), diagonal / own.diagonal()));
+  }
+
+  bool isLeftOut(std::size_t model) const {
+    const auto every = static_cast<std::size_t>(options_.leave_out);
+    return every < 1 || model % every == every - 1;
+  }
+
+  void build() {
+    Step step(console_, "Building a database");
+    for (std::size_t i = 0; i < models_.size(); ++i) {
+      step.progress(static_cast<double>(i) / static_cast<double>(models_.size()));
+      if (!isLeftOut(i))
+        database_.add(models_[i].name, *sampleMesh(models_[i].mesh, kModelPoints, options_.common.seed + 1));
+    }
+    database_.rebuild();
+    step.done(std::to_string(database_.size()) + " models");
+  }
+
+  void evaluate(int number, const TableScene& scene, double noise, std::uint64_t seed) {
+    DepthNoise camera;
+    camera.factor = noise;
+    const SceneImage image = renderScene(models_, scene, camera, seed);
+    if (options_.export_folder) exportScene(number, scene, image, noise);
+    std::vector<pcl::Indices> clusters(scene.objects.size());
+    for (std::size_t i = 0; i < image.ids.size(); ++i)
+      if (image.ids[i] >= 0 && pcl::isXYZFinite((*image.cloud)[i]))
+        clusters[static_cast<std::size_t>(image.ids[i])].push_back(static_cast<pcl::index_t>(i));
+    const auto seen = std::make_shared<const SeenSpace>(*image.cloud);
+    const auto on_table = std::make_shared<const SeenSpace>(seen->withSupport(Eigen::Vector4d::UnitZ(), kTableMargin));
+    for (std::size_t k = 0; k < clusters.size(); ++k) {
+      if (image.cropped[k] || clusters[k].size() < static_cast<std::size_t>(options_.min_points)) continue;
+      if (!isWanted(image.occlusion(k), noise)) continue;
+      // The cluster alone: as a user who cuts it out and keeps the viewpoint gives it.
+      auto alone = pcl::make_shared<Cloud>(*image.cloud, clusters[k]);
+      alone->sensor_origin_ = image.cloud->sensor_origin_;
+      alone->sensor_orientation_ = image.cloud->sensor_orientation_;
+      SceneResult result;
+      result.scene = number;
+      result.noise = noise;
+      result.occlusion = image.occlusion(k);
+      judge(
+          scene.objects[k], "alone", *alone, std::move(result),
+          [&] { return detectAnswers(alone, options_.common.seed + 1, options_.common.threads); },
+          [&] { return database_.recognize(*alone, recognition()); });
+      for (const auto& [row, space] : {std::make_pair("scene", seen), std::make_pair("table", on_table)})
+        judge(
+            scene.objects[k], row, *alone, results_.back(),
+            [&, space = space] {
+              return detectAnswers(image.cloud, clusters[k], space, options_.common.seed + 1, options_.common.threads);
+            },
+            [&, space = space] { return database_.recognize(*image.cloud, clusters[k], recognition(), space); });
+    }
+  }
+
+  /// Counts the objects of each band.
+  bool isWanted(double occlusion, double noise) {
+    const std::optional<std::size_t> band = bandOf(occlusion);
+    if (!band) return false;
+    const int number = ++num_in_band_[{noise, *band}];
+    return options_.most_in_band == 0 || number <= options_.most_in_band;
+  }
+
+  RecognitionOptions recognition() const {
+    RecognitionOptions options = options_.recognition;
+    options.num_threads = options_.common.threads;
+    return options;
+  }
+
+  /// \param result knows scene, noise and occlusion.
+  template <typename Detect, typename Recognize>
+  void judge(const PlacedModel& object, const std::string& row, const Cloud& cluster, SceneResult result,
+             const Detect& detect, const Recognize& recognize) {
+    const ReferenceSymmetries references = references_[object.model].transformed(object.T_scene_model);
+    result.row = row;
+    result.asked_planes = !options_.no_planes;
+    CloudResult planes;
+    planes.model = models_[object.model].name;
+    planes.num_points = cluster.size();
+    planes.kind = references.kind;
+    planes.best_share = references.best_share;
+    planes.operating_point = options_.operating_point;
+    if (!options_.no_planes) planes.answers = detect();
+    planes.match = matchAnswers(planes.answers.answers, references, options_.limits);
+    result.planes = std::move(planes);
+    result.recognition.reset();
+    if (options_.leave_out > 0) result.recognition = judged(object, recognize);
+    results_.push_back(std::move(result));
+  }
+
+  template <typename Recognize>
+  RecognitionResult judged(const PlacedModel& object, const Recognize& recognize) const {
+    RecognitionResult result;
+    result.is_known = !isLeftOut(object.model);
+    Stopwatch watch;
+    const Recognition found = recognize();
+    result.milliseconds = watch.lap();
+    if (found.empty()) return result;
+    result.answer = found.front().name;
+    result.merit = found.front().score.merit();
+    result.confidence = found.front().confidence;
+    result.is_right = result.answer == models_[object.model].name;
+    const ReferenceSymmetries& symmetries = references_[object.model];
+    const MotionError error = motionError(found.front().T_model_scan, object.T_scene_model.inverse(), symmetries);
+    // No point of the model is farther off than this.
+    const double farthest = error.distance + symmetries.diagonal * std::sin(0.5 * error.angle);
+    result.right_pose = result.is_right && farthest < kRightPose * symmetries.diameter;
+    return result;
+  }
+
+  void exportScene(int number, const TableScene& scene, const SceneImage& image, double noise) {
+    char name[64];
+    std::snprintf(name, sizeof(name), "scene_%04d_noise_%g", number, noise);
+    pcl::PCLPointCloud2 fields;
+    pcl::toPCLPointCloud2(*image.cloud, fields);
+    const std::vector<float> ids(image.ids.begin(), image.ids.end());
+    saveCloud((boost::filesystem::path(*options_.export_folder) / (std::string(name) + ".pcd")).string(),
+              withFields(fields, {"object"}, {ids}), image.cloud->sensor_origin_, image.cloud->sensor_orientation_);
+    nlohmann::json objects = nlohmann::json::array();
+    for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+      const PlacedModel& object = scene.objects[k];
+      objects.push_back({{"object", k},
+                         {"model", models_[object.model].name},
+                         {"diagonal", references_[object.model].diagonal},
+                         {"T_scene_model", rowMajor(object.T_scene_model)},
+                         {"num_visible", image.num_visible[k]},
+                         {"num_alone", image.num_alone[k]},
+                         {"symmetries", toJson(references_[object.model].transformed(object.T_scene_model))}});
+    }
+    ground_truth_[name] = objects;
+  }
+
+  void report() const {
+    if (options_.export_folder)
+      writeText((boost::filesystem::path(*options_.export_folder) / "ground_truth.json").string(),
+                nlohmann::json{{"scenes", ground_truth_}}.dump(1) + "\n");
+    std::fputs(sceneTable(results_).c_str(), stdout);
+    if (options_.csv) writeText(*options_.csv, sceneCSV(results_));
+    if (!options_.common.json_path) return;
+    const nlohmann::json summary{{"models", models_.size()},
+                                 {"scenes", options_.num_scenes},
+                                 {"seed", options_.common.seed},
+                                 {"left_out", left_out_},
+                                 {"rows", sceneJson(results_)}};
+    writeText(*options_.common.json_path, summary.dump(2) + "\n");
+  }
+
+  const EvaluateScenesOptions& options_;
+  const Console console_;
+  ReferenceCache cache_;
+  SymmetryDatabase database_;
+  std::vector<SceneModel> models_;
+  std::vector<ReferenceSymmetries> references_;  ///< of the models
+  std::vector<std::string> left_out_;
+  std::vector<SceneResult> results_;
+  std::map<std::pair<double, std::size_t>, int> num_in_band_;  ///< by noise
+  nlohmann::json ground_truth_ = nlohmann::json::object();
+};
+
+}  // namespace
+
+int evaluateScenes(int argc, char** argv) {
+  EvaluateScenesOptions options;
+  if (!commandLine(options).parse(argc, argv)) return 0;
+  if (options.no_planes && options.leave_out < 1) throw UsageError("-no_planes needs -leave_out");
+  ScenesEvaluation(options).run();
+  return 0;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,198 @@
+#include "scene/scene_parts.h"
+
+#include <pcl/segmentation/extract_clusters.h>
+#include <pcl/segmentation/sac_segmentation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "core/base/median.h"
+#include "core/normals/surface_normals.h"
+
+namespace pcl_symmetry::detail {
+
+namespace {
+
+// Points that the scale is measured at. chosen: the median of 1000 is certain to 4 %; half 6 %, twice costs time.
+constexpr std::size_t kScaleSamples = 1000;
+// Planes that are tried. chosen: a table, a floor, three walls and a large box; half leaves walls among the objects.
+constexpr int kMostPlanes = 6;
+// Share of the points. chosen: at half, faces of boxes are tried, at twice, tables under many objects are missed.
+constexpr double kLeastShare = 0.08;
+// Share of the points from which a plane that nothing stands on is a support. chosen: at half, lids of large boxes are,
+// at twice, empty tables are reported as objects.
+constexpr double kBareShare = 0.25;
+// Points above or below a plane, as a share of its own, that show on which side the scene is. chosen: at half, flying
+// pixels decide, at twice, a single small object on a table is not seen.
+constexpr double kTellingShare = 0.01;
+// Plane distances behind a plane within which the other faces of a body begin. chosen: half misses flat boxes, twice
+// takes what lies under a low table for a part of it.
+constexpr double kAttached = 10.0;
+// Share of a plane's points beyond each end of its footprint. chosen: half takes in what stands beside it, twice misses
+// what stands at its rim.
+constexpr double kFootprintTrim = 0.05;
+// Iterations of the sample consensus. chosen: a plane of 8 % of the points needs 10^4 draws of three for certainty, of
+// 20 % it needs 600; PCL stops early where a great plane is found. Half misses small tables, twice takes twice the
+// time.
+constexpr int kConsensusIterations = 1000;
+// Plane distances within which the rest of a bent or noisy plane lies, and the share of a cluster in it. chosen: half
+// reports pieces of the table, twice drops flat objects such as books.
+constexpr double kRemainder = 2.0, kRemainderShare = 0.9;
+
+/// A plane that sample consensus found among some points.
+struct Consensus {
+  Eigen::Vector4d coefficients;
+  pcl::Indices inliers;  // into the scene
+};
+
+std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
+                                       double distance) {
+  pcl::SACSegmentation<pcl::PointXYZ> segmentation;
+  segmentation.setModelType(pcl::SACMODEL_PLANE);
+  segmentation.setMethodType(pcl::SAC_RANSAC);
+  segmentation.setMaxIterations(kConsensusIterations);
+  segmentation.setDistanceThreshold(distance);
+  segmentation.setInputCloud(scene);
+  segmentation.setIndices(pcl::make_shared<pcl::Indices>(points));
+  pcl::PointIndices inliers;
+  pcl::ModelCoefficients coefficients;
+  segmentation.segment(inliers, coefficients);
+  if (inliers.indices.empty() || coefficients.values.size() != 4) return std::nullopt;
+  const Eigen::Vector4d plane = Eigen::Map<const Eigen::Vector4f>(coefficients.values.data()).cast<double>();
+  return Consensus{plane / plane.head<3>().norm(), std::move(inliers.indices)};
+}
+
+/// Points that lie over and under a plane.
+struct Sides {
+  std::size_t above = 0, below = 0;  ///< within its extent
+  std::size_t attached = 0;          ///< close under it, also beyond its extent
+};
+
+Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const pcl::Indices& others, double distance) {
+  const Eigen::Vector3d n = plane.coefficients.head<3>(), u = n.unitOrthogonal(), v = n.cross(u);
+  const auto along = [&](pcl::index_t i, const Eigen::Vector3d& axis) {
+    return axis.dot(scene[i].getVector3fMap().cast<double>());
+  };
+  const auto extent = [&](const Eigen::Vector3d& axis) {
+    std::vector<double> places;
+    for (const pcl::index_t i : plane.inliers) places.push_back(along(i, axis));
+    std::sort(places.begin(), places.end());
+    const auto trim = static_cast<std::size_t>(kFootprintTrim * static_cast<double>(places.size() - 1));
+    return std::pair<double, double>(places[trim], places[places.size() - 1 - trim]);
+  };
+  const auto [u_low, u_high] = extent(u);
+  const auto [v_low, v_high] = extent(v);
+  Sides sides;
+  for (const pcl::index_t i : others) {
+    const double height = along(i, n) + plane.coefficients[3], at_u = along(i, u), at_v = along(i, v);
+    sides.attached += height < -distance && height > -kAttached * distance ? 1 : 0;
+    if (std::abs(height) <= distance || at_u < u_low || at_u > u_high || at_v < v_low || at_v > v_high) continue;
+    ++(height > 0.0 ? sides.above : sides.below);
+  }
+  return sides;
+}
+
+pcl::Indices without(const pcl::Indices& points, const pcl::Indices& removed, std::size_t scene_size) {
+  std::vector<char> gone(scene_size, 0);
+  for (const pcl::index_t i : removed) gone[static_cast<std::size_t>(i)] = 1;
+  pcl::Indices rest;
+  for (const pcl::index_t i : points)
+    if (!gone[static_cast<std::size_t>(i)]) rest.push_back(i);
+  return rest;
+}
+
+bool isRemainder(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster, const SupportingPlane& support,
+                 double distance) {
+  const auto num_near = std::count_if(cluster.begin(), cluster.end(), [&](pcl::index_t i) {
+    const double height = support.coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval());
+    return std::abs(height) <= kRemainder * distance;
+  });
+  return static_cast<double>(num_near) > kRemainderShare * static_cast<double>(cluster.size());
+}
+
+}  // namespace
+
+SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
+  Points surface(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    surface.col(static_cast<Eigen::Index>(i)) = scene[points[i]].getVector3fMap();
+  const std::size_t stride = 1 + (points.size() - 1) / kScaleSamples;
+  Points places(3, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
+  for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
+  const auto search = makeFlannSearch(surface);
+  const int num_neighbours = static_cast<int>(std::min<std::size_t>(kNumSupportNeighbours + 1, points.size()));
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  search->search(places, num_neighbours, closest, sq_distances);
+  std::vector<float> spacing(static_cast<std::size_t>(places.cols()));
+  for (std::size_t i = 0; i < spacing.size(); ++i)
+    // As LocalGeometry::spacing: pi r^2 holds the neighbours within r.
+    spacing[i] =
+        std::sqrt(static_cast<float>(kPi) * sq_distances[(i + 1) * static_cast<std::size_t>(num_neighbours) - 1] /
+                  static_cast<float>(std::max(1, num_neighbours - 1)));
+  return {median(std::move(spacing)), median(localRoughness(surface, *search, places))};
+}
+
+std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
+                                          const std::optional<Eigen::Vector3d>& viewpoint, double distance) {
+  std::vector<SupportingPlane> supports;
+  pcl::Indices candidates = points, others = points;
+  for (int round = 0; round < kMostPlanes; ++round) {
+    std::optional<Consensus> plane = greatestPlane(scene, candidates, distance);
+    const auto share = [&](std::size_t count) {
+      return static_cast<double>(count) / static_cast<double>(points.size());
+    };
+    if (!plane || share(plane->inliers.size()) < kLeastShare) break;
+    candidates = without(candidates, plane->inliers, scene->size());
+    if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;
+    Sides sides = sidesOf(*scene, *plane, others, distance);
+    if (!viewpoint && sides.below > sides.above) {
+      plane->coefficients *= -1.0;
+      std::swap(sides.above, sides.below);
+    }
+    const double few = kTellingShare * static_cast<double>(plane->inliers.size());
+    const bool tells = static_cast<double>(sides.above + sides.below) > few;
+    // Above a table lies what stands on it. Behind the face of a box the other faces begin.
+    const bool is_bare = share(plane->inliers.size()) >= kBareShare && static_cast<double>(sides.attached) <= few;
+    const bool supports_others = tells ? sides.above >= sides.below : is_bare;
+    if (!supports_others) continue;
+    others = without(others, plane->inliers, scene->size());
+    supports.push_back({plane->coefficients, std::move(plane->inliers)});
+  }
+  return supports;
+}
+
+pcl::Indices withoutSupports(const pcl::Indices& points, const std::vector<SupportingPlane>& supports,
+                             std::size_t scene_size) {
+  pcl::Indices rest = points;
+  for (const SupportingPlane& support : supports) rest = without(rest, support.indices, scene_size);
+  return rest;
+}
+
+std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
+                                       const std::vector<SupportingPlane>& supports, double plane_distance,
+                                       double distance, int min_points) {
+  if (points.empty()) return {};
+  pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
+  extraction.setClusterTolerance(distance);
+  extraction.setMinClusterSize(min_points);
+  extraction.setInputCloud(scene);
+  extraction.setIndices(pcl::make_shared<pcl::Indices>(points));
+  std::vector<pcl::PointIndices> found;
+  extraction.extract(found);
+  std::vector<pcl::Indices> clusters;
+  for (pcl::PointIndices& cluster : found) {
+    const bool is_remainder = std::any_of(supports.begin(), supports.end(), [&](const SupportingPlane& support) {
+      return isRemainder(*scene, cluster.indices, support, plane_distance);
+    });
+    if (!is_remainder) clusters.push_back(std::move(cluster.indices));
+  }
+  std::stable_sort(clusters.begin(), clusters.end(),
+                   [](const pcl::Indices& a, const pcl::Indices& b) { return a.size() > b.size(); });
+  return clusters;
+}
+
+}  // namespace pcl_symmetry::detail

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "pcl_symmetry/scene/symmetry_scene.h"
+
+namespace pcl_symmetry::detail {
+
+/// How far points of one surface are apart: what distances of a scene follow from.
+struct SurfaceScale {
+  double spacing = 0.0;    ///< of neighbouring points, median, input units
+  double roughness = 0.0;  ///< root mean square distance of neighbours from their tangent plane, median
+};
+
+/// \param points indices of finite points, at least one.
+SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices& points);
+
+/// The greatest planes of a scene that carry or back other points.
+/// \param points indices of finite points.
+/// \param viewpoint of the sensor; nothing: the normals point to where most of the other points are.
+/// \param distance of points that belong to a plane, > 0.
+std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
+                                          const std::optional<Eigen::Vector3d>& viewpoint, double distance);
+
+/// \return those of the points that belong to no support.
+pcl::Indices withoutSupports(const pcl::Indices& points, const std::vector<SupportingPlane>& supports,
+                             std::size_t scene_size);
+
+/// Points closer to each other than \p distance, without what is left of the supporting planes.
+/// \param points indices of finite points that belong to no supporting plane.
+/// \param plane_distance of the supporting planes.
+/// \return clusters of at least \p min_points, most points first.
+std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
+                                       const std::vector<SupportingPlane>& supports, double plane_distance,
+                                       double distance, int min_points);
+
+}  // namespace pcl_symmetry::detail

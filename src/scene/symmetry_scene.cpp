@@ -1,0 +1,187 @@
+#include "pcl_symmetry/scene/symmetry_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/check.h"
+#include "core/base/stopwatch.h"
+#include "pcl_symmetry/symmetry_alignment.h"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "scene/scene_parts.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+using Cloud = SymmetryScene::Cloud;
+
+// Spacings and roughnesses of the points: distance of points of a supporting plane. chosen: half leaves a film of the
+// table under the objects, twice takes off their feet.
+constexpr double kPlaneSpacings = 2.0, kPlaneRoughnesses = 4.0;
+// Spacings between points of one object. chosen: half breaks slanted surfaces up, twice joins neighbouring objects.
+constexpr double kClusterSpacings = 4.0;
+
+// Share of an object's points above a plane that it stands on or before. chosen: half takes things that stick through a
+// plane for things on it, at 1 a single stray point decides.
+constexpr double kAboveShare = 0.98;
+// Plane distances that an object may seem to reach into its support. chosen: half takes noise of its foot for a
+// contradiction, twice lets reflections sink into the table.
+constexpr double kSupportMargin = 2.0;
+
+/// The finite points that are near enough, seen along the rays of the sensor.
+pcl::Indices nearPoints(const Cloud& scene, const std::optional<Eigen::Vector3d>& viewpoint, double max_range) {
+  pcl::Indices points;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    if (!pcl::isXYZFinite(scene[i])) continue;
+    const Eigen::Vector3d from = viewpoint.value_or(Eigen::Vector3d::Zero());
+    if (max_range > 0.0 && (scene[i].getVector3fMap().cast<double>() - from).norm() > max_range) continue;
+    points.push_back(static_cast<pcl::index_t>(i));
+  }
+  return points;
+}
+
+/// The plane that shows most of the far side of an object.
+std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const Visibility* seen) {
+  const bool has_plane = !object.planes.empty() && object.planes.front().kind == PlaneKind::Symmetry;
+  if (!object.axes.empty() && seen) {
+    const SymmetryAxis& axis = object.axes.front();
+    const Eigen::Vector3d towards = seen->viewpoint() - axis.point;
+    const Eigen::Vector3d across = towards - towards.dot(axis.direction) * axis.direction;
+    if (across.norm() > 0.0) return ReflectionPlane(across.normalized(), across.normalized().dot(axis.point));
+  }
+  if (!has_plane) return std::nullopt;
+  return object.planes.front();
+}
+
+class ObjectAnalysis {
+public:
+  /// \param found has what the sensor saw and the supporting planes.
+  ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, const SceneOptions& options,
+                 const SymmetryDatabase* database)
+      : scene_(scene), found_(found), options_(options), database_(database) {}
+
+  SceneObject analyse(const pcl::Indices& cluster) {
+    seen_ = seenSpaceOf(cluster);
+    SceneObject object;
+    object.indices = cluster;
+    findPlanes(object);
+    if (!object.reason.empty()) return object;
+    if (options_.frames) findFrame(object);
+    if (options_.complete) complete(object);
+    if (database_) object.models = database_->recognize(*scene_, cluster, options_.recognition, seen_);
+    return object;
+  }
+
+private:
+  /// Behind a plane that carries or backs the object, none of the object is.
+  SeenSpace::ConstPtr seenSpaceOf(const pcl::Indices& cluster) const {
+    SeenSpace seen = *found_.seen;
+    const double margin = kSupportMargin * found_.plane_distance;
+    for (const SupportingPlane& support : found_.supports) {
+      const auto num_above = std::count_if(cluster.begin(), cluster.end(), [&](pcl::index_t i) {
+        return support.coefficients.dot((*scene_)[i].getVector3fMap().cast<double>().homogeneous().eval()) > -margin;
+      });
+      if (static_cast<double>(num_above) >= kAboveShare * static_cast<double>(cluster.size()))
+        seen = seen.withSupport(support.coefficients, margin);
+    }
+    return std::make_shared<const SeenSpace>(std::move(seen));
+  }
+
+  template <typename Analysis>
+  void prepare(Analysis& analysis, const SceneObject& object) const {
+    analysis.setNumberOfThreads(options_.num_threads);
+    analysis.setMaxPoints(static_cast<std::size_t>(options_.max_points));
+    analysis.setInputCloud(scene_);
+    analysis.setIndices(pcl::make_shared<pcl::Indices>(object.indices));
+    analysis.setSeenSpace(seen_);
+  }
+
+  void findPlanes(SceneObject& object) const {
+    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+    refinement.setOptions(options_.detection);
+    prepare(refinement, object);
+    object.planes = refinement.compute();
+    object.axes = refinement.getAxes();
+    object.centers = refinement.getCenters();
+    object.reason = refinement.getReason();
+  }
+
+  void findFrame(SceneObject& object) const {
+    SymmetryAlignment<pcl::PointXYZ> alignment;
+    alignment.setOptions(options_.frame);
+    prepare(alignment, object);
+    SymmetryFrame frame = alignment.compute();
+    if (!frame.equivalent.empty()) object.frame = std::move(frame);
+  }
+
+  void complete(SceneObject& object) const {
+    object.completed_by = completingPlane(object, seen_->visibility());
+    if (!object.completed_by) return;
+    const Cloud cluster(*scene_, object.indices);
+    const CompletedCloud<pcl::PointXYZ> completed =
+        completeBySymmetry(cluster, *object.completed_by, options_.completion, *seen_);
+    pcl::copyPointCloud(completed.cloud, completed.added, object.added);
+  }
+
+  const Cloud::ConstPtr& scene_;
+  const SceneAnalysis& found_;
+  SeenSpace::ConstPtr seen_;  // for the object that is analysed
+  const SceneOptions& options_;
+  const SymmetryDatabase* database_;
+};
+
+}  // namespace
+
+void SceneOptions::validate() const {
+  check(plane_distance >= 0.0, "plane_distance", plane_distance, ">= 0");
+  check(cluster_distance >= 0.0, "cluster_distance", cluster_distance, ">= 0");
+  check(min_points >= 20, "min_points", min_points, ">= 20");
+  check(max_range >= 0.0, "max_range", max_range, ">= 0");
+  check(max_points >= 100, "max_points", max_points, ">= 100");
+  detection.validate();
+  frame.validate();
+  completion.validate();
+  recognition.validate();
+  checkNumThreads(num_threads);
+}
+
+void SymmetryScene::setOptions(const SceneOptions& options) {
+  detail::changeOptions(options_, [&](SceneOptions& changed) { changed = options; });
+}
+
+SceneAnalysis SymmetryScene::compute() const {
+  SceneAnalysis analysis;
+  Stopwatch watch;
+  const auto timed = [&](const char* stage) { analysis.timing_ms.emplace_back(stage, watch.lap()); };
+  if (input_) analysis.seen = std::make_shared<const SeenSpace>(*input_, viewpoint_);
+  std::optional<Eigen::Vector3d> viewpoint;
+  if (analysis.seen && analysis.seen->visibility()) viewpoint = analysis.seen->visibility()->viewpoint();
+  const pcl::Indices points = input_ ? nearPoints(*input_, viewpoint, options_.max_range) : pcl::Indices();
+  if (points.empty()) {
+    detail::warnOfNoAnswer("SymmetryScene", input_ ? "scene: no finite point" : "scene: not set");
+    return analysis;
+  }
+  timed("seen_space");
+  const detail::SurfaceScale scale = detail::surfaceScale(*input_, points);
+  analysis.plane_distance = options_.plane_distance > 0.0
+                                ? options_.plane_distance
+                                : kPlaneSpacings * scale.spacing + kPlaneRoughnesses * scale.roughness;
+  analysis.cluster_distance =
+      options_.cluster_distance > 0.0 ? options_.cluster_distance : kClusterSpacings * scale.spacing;
+  if (!(analysis.plane_distance > 0.0 && analysis.cluster_distance > 0.0)) {
+    detail::warnOfNoAnswer("SymmetryScene", "scene: all points at one place");
+    return analysis;
+  }
+  analysis.supports = detail::findSupports(input_, points, viewpoint, analysis.plane_distance);
+  timed("supports");
+  const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, input_->size());
+  const std::vector<pcl::Indices> clusters = detail::findClusters(
+      input_, rest, analysis.supports, analysis.plane_distance, analysis.cluster_distance, options_.min_points);
+  timed("clusters");
+  ObjectAnalysis objects(input_, analysis, options_, database_.get());
+  for (const pcl::Indices& cluster : clusters) analysis.objects.push_back(objects.analyse(cluster));
+  timed("objects");
+  return analysis;
+}
+
+}  // namespace pcl_symmetry

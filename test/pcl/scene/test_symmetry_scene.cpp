@@ -1,0 +1,123 @@
+/// Objects of a scene: supports out, clusters, what symmetry says of each.
+#include "pcl_symmetry/scene/symmetry_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "pcl/support/error_message.h"
+#include "shapes/table.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using Cloud = SymmetryScene::Cloud;
+
+Cloud::Ptr organized(const test::Scan& scan) {
+  auto cloud = pcl::make_shared<Cloud>(scan.width, scan.height);
+  for (std::size_t i = 0; i < cloud->size(); ++i)
+    (*cloud)[i].getVector3fMap() = scan.pixels.col(static_cast<Eigen::Index>(i));
+  cloud->is_dense = false;
+  return cloud;
+}
+
+/// Fewer points than by default, to save time.
+SceneAnalysis analysed(const Cloud::ConstPtr& cloud, bool frames = false) {
+  SymmetryScene scene;
+  SceneOptions options;
+  options.max_points = 1000;
+  options.frames = frames;
+  scene.setOptions(options);
+  scene.setInputCloud(cloud);
+  return scene.compute();
+}
+
+/// Two boxes apart, with room between them in the picture.
+const test::Table& twoBoxes() {
+  static const test::Table table({{-0.35, 0.1, 0.0}, {0.25, 0.0, 0.0}});
+  return table;
+}
+
+TEST(SymmetryScene, TakesTheTableOutAndFindsWhatStandsOnIt) {
+  const SceneAnalysis scene = analysed(organized(twoBoxes().scan), true);
+  ASSERT_EQ(scene.supports.size(), 1u);
+  EXPECT_LT((scene.supports[0].coefficients - Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)).norm(), 0.02)
+      << "towards the viewer";
+  ASSERT_EQ(scene.objects.size(), 2u);
+  EXPECT_EQ(scene.seen->source(), ViewpointSource::Rays);
+  std::set<int> found;
+  for (const SceneObject& object : scene.objects) {
+    std::set<int> ids;
+    for (const pcl::index_t i : object.indices) ids.insert(twoBoxes().ids[static_cast<std::size_t>(i)]);
+    ASSERT_EQ(ids.size(), 1u) << "points of one box and none of the table";
+    found.insert(*ids.begin());
+    ASSERT_TRUE(object.frame);
+    const test::Block& box = twoBoxes().blocks.blocks[static_cast<std::size_t>(*ids.begin())];
+    EXPECT_LT((object.frame->center - box.center).norm(), 0.25 * box.half.norm());
+    for (const SymmetryPlane& plane : object.planes)
+      if (plane.kind == PlaneKind::Symmetry) {
+        EXPECT_GT(plane.normal().cwiseAbs().maxCoeff(), std::cos(3.0 * M_PI / 180.0)) << "across an axis of the box";
+      }
+  }
+  EXPECT_EQ(found, (std::set<int>{1, 2}));
+}
+
+TEST(SymmetryScene, CompletesIntoSpaceThatWasNotSeen) {
+  const SceneAnalysis scene = analysed(organized(twoBoxes().scan));
+  const Visibility truth = twoBoxes().scan.visibility();
+  for (const SceneObject& object : scene.objects) {
+    EXPECT_EQ(object.completed_by.has_value(), !object.planes.empty() && object.planes[0].kind == PlaneKind::Symmetry);
+    std::size_t num_in_front = 0;
+    for (const pcl::PointXYZ& point : object.added)
+      num_in_front += truth.depthBehind(point.getVector3fMap().cast<double>()) < -0.05 ? 1 : 0;
+    EXPECT_LE(static_cast<double>(num_in_front), 0.02 * static_cast<double>(object.added.size()));
+  }
+}
+
+TEST(SymmetryScene, AnUnorganizedSceneGivesTheSameObjects) {
+  auto points = pcl::make_shared<Cloud>();
+  for (const pcl::PointXYZ& point : *organized(twoBoxes().scan))
+    if (pcl::isXYZFinite(point)) points->push_back(point);
+  points->sensor_origin_ << twoBoxes().scan.viewpoint.cast<float>(), 0.0f;
+  const SceneAnalysis scene = analysed(points);
+  EXPECT_EQ(scene.seen->source(), ViewpointSource::Stored);
+  EXPECT_EQ(scene.supports.size(), 1u);
+  EXPECT_EQ(scene.objects.size(), 2u);
+}
+
+TEST(SymmetryScene, TheTableAloneIsNoObject) {
+  const test::Scan empty = test::scan({{{{0.0, 0.0, -0.02}, {0.7, 0.7, 0.02}}}, {}}, {0.1, -1.6, 1.0}, 0.0, 160, 120);
+  const SceneAnalysis scene = analysed(organized(empty));
+  EXPECT_EQ(scene.supports.size(), 1u);
+  EXPECT_TRUE(scene.objects.empty());
+}
+
+TEST(SymmetryScene, ALargeBoxIsNoTable) {
+  // Its front is more than half of the picture; what lies behind the front is the rest of the box.
+  const test::Scan box = test::scan(test::blockBox(), {0.8, -2.5, 1.2}, 0.0, 160, 120);
+  const SceneAnalysis scene = analysed(organized(box));
+  ASSERT_EQ(scene.objects.size(), 1u);
+  EXPECT_GT(scene.objects[0].indices.size(), 0.9 * static_cast<double>(box.cloud().cols()));
+}
+
+TEST(SymmetryScene, DataWithoutAnswerGiveNoObject) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(SymmetryScene().compute().objects.empty());
+  EXPECT_TRUE(analysed(pcl::make_shared<Cloud>()).objects.empty());
+  EXPECT_TRUE(analysed(pcl::make_shared<Cloud>(50, 1, pcl::PointXYZ(none, 0.0f, 0.0f))).objects.empty());
+  EXPECT_TRUE(analysed(pcl::make_shared<Cloud>(500, 1, pcl::PointXYZ(1.0f, 2.0f, 3.0f))).objects.empty());
+}
+
+TEST(SymmetryScene, RefusesBadOptions) {
+  SymmetryScene scene;
+  SceneOptions options;
+  options.min_points = 3;
+  EXPECT_EQ(test::messageOf([&] { scene.setOptions(options); }), "min_points = 3, must be >= 20");
+  EXPECT_EQ(scene.getOptions().min_points, SceneOptions().min_points) << "as before";
+}
+
+}  // namespace
+}  // namespace pcl_symmetry
