@@ -37,7 +37,7 @@ protected:
   }
 
   static void add(ModelStore& store, const std::string& name, const std::string& part = "a part of a model") {
-    store.add({name, 7, {"source of " + name, "", {}}, 1}, {part, part, part, 1}, 0, "");
+    store.add({name, 7, {"source of " + name, "", {}}, 1}, {part, part, part, 1}, 0, {});
   }
   static std::string messageOf(const std::function<void()>& body) {
     try {
