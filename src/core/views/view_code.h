@@ -10,8 +10,9 @@
 
 namespace pcl_symmetry {
 
-/// Values of a code. measured: of 274 scans of models of the Princeton Shape Benchmark (fold 1 of the training half), the
-/// scanned model is the nearest of 902 for 74 % with 24 values and 70 % with 16, and among the nearest 50 for 99.6 and 100 %.
+/// Values of a code. measured: of 274 scans of models of the Princeton Shape Benchmark (fold 1 of the training half),
+/// the scanned model is the nearest of 902 for 74 % with 24 values and 70 % with 16, and among the nearest 50 for 99.6
+/// and 100 %.
 constexpr int kViewCodeSize = 24;
 
 /// A view in few bytes, the same for all turns of its picture.
@@ -19,7 +20,8 @@ struct ViewCode {
   std::array<std::int8_t, kViewCodeSize> values;  ///< in steps of kViewCodeStep
   std::int16_t size;                              ///< logarithm of View::radius in steps of kViewSizeStep
 };
-/// Step of the values of a code. derived: components of a vector of magnitudes of unit norm lie within 1 of those of another.
+/// Step of the values of a code. derived: components of a vector of magnitudes of unit norm lie within 1 of those of
+/// another.
 constexpr float kViewCodeStep = 1.0f / 127.0f;
 /// Step of the logarithm of a radius. chosen: 0.1 %; half and twice change no order, and 16 bits hold a factor of 1e14.
 constexpr float kViewSizeStep = 1e-3f;

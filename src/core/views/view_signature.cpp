@@ -26,9 +26,9 @@ constexpr double kOuterRing = 2.3;
 // Samples on a ring, and turns that are compared. chosen: 7.5 degrees, which ICP removes; half misses narrow parts of
 // the outline, twice takes twice the time.
 constexpr int kNumAngles = 48;
-// Weight of the magnitudes in ViewAgreement::distance. measured: of 274 scans of models of the Princeton Shape Benchmark (fold
-// 1 of the training half), the scanned model is among the nearest ten of 902 for 94.5 % at 0, 94.9 at 0.5, 97.8 at 0.7 and
-// 97.4 at 1, where poses are no longer ordered.
+// Weight of the magnitudes in ViewAgreement::distance. measured: of 274 scans of models of the Princeton Shape
+// Benchmark (fold 1 of the training half), the scanned model is among the nearest ten of 902 for 94.5 % at 0, 94.9 at
+// 0.5, 97.8 at 0.7 and 97.4 at 1, where poses are no longer ordered.
 constexpr float kTurnlessWeight = 0.7f;
 constexpr int kRow = 2 * kViewRings;  // values of the real or imaginary part of a harmonic. derived: outline and depth
 
@@ -181,8 +181,7 @@ ViewAgreement ViewComparison::compare(const float* values, float enough) const {
       correlation[a] += real[m] * turns().cosines[m][a] - imaginary[m] * turns().sines[m][a];
   const auto at = std::max_element(correlation.begin(), correlation.end());
   if (*at <= least) return best;
-  best.distance =
-      kTurnlessWeight * turnless + (1.0f - kTurnlessWeight) * std::sqrt(std::max(0.0f, 2.0f - 2.0f * *at));
+  best.distance = kTurnlessWeight * turnless + (1.0f - kTurnlessWeight) * std::sqrt(std::max(0.0f, 2.0f - 2.0f * *at));
   best.turn = -2.0 * kPi * static_cast<double>(at - correlation.begin()) / kNumAngles;
   return best;
 }

@@ -51,10 +51,10 @@ Eigen::VectorXf turnlessValues(const Eigen::VectorXf& values);
 
 /// How alike two views are at their best turn.
 struct ViewAgreement {
-  /// L2 distances of the signatures at the best turn and of their turnlessValues(), weighted 0.3 and 0.7, in [0, 2]. What
-  /// a scan lacks moves the phases of harmonics more than their magnitudes.
+  /// L2 distances of the signatures at the best turn and of their turnlessValues(), weighted 0.3 and 0.7, in [0, 2].
+  /// What a scan lacks moves the phases of harmonics more than their magnitudes.
   float distance = 2.0f;
-  double turn = 0.0;      ///< radians about z, from the first view's picture to the second's
+  double turn = 0.0;  ///< radians about z, from the first view's picture to the second's
 };
 
 /// Compares one view with many, at all turns of the picture in steps of 7.5 degrees.

@@ -22,8 +22,8 @@ struct FittedForms {
   static FittedForms unpacked(const PackedProjection& packed);
 };
 
-/// Models whose forms are made at a time where they are not stored. chosen: their views take 50 MB; half and twice take the
-/// same time.
+/// Models whose forms are made at a time where they are not stored. chosen: their views take 50 MB; half and twice take
+/// the same time.
 constexpr std::size_t kModelsAtOnce = 512;
 
 /// True where there are no references, or less than half of those that would be taken now.

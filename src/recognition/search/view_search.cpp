@@ -13,9 +13,9 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-// Models whose views are compared in full. measured: of 274 scans of models of the Princeton Shape Benchmark (fold 1 of the
-// training half) among 902 models, the scanned one is among the 50 models with the nearest codes for 99.6 %, and among 100
-// for all.
+// Models whose views are compared in full. measured: of 274 scans of models of the Princeton Shape Benchmark (fold 1 of
+// the training half) among 902 models, the scanned one is among the 50 models with the nearest codes for 99.6 %, and
+// among 100 for all.
 constexpr std::size_t kViewCandidates = 100;
 
 ViewIndex indexOf(const std::vector<StoredModel>& models, const ViewSearch::ViewReader& read, int num_threads) {

@@ -18,8 +18,8 @@ struct ModelOfView {
   std::vector<Eigen::Isometry3d> T_model_scan;  ///< poses of the nearest views, nearest first
 };
 
-/// Finds models that a scan can show by their views: those with the nearest codes, whose views are then read and compared
-/// in full. In a small database all views are compared.
+/// Finds models that a scan can show by their views: those with the nearest codes, whose views are then read and
+/// compared in full. In a small database all views are compared.
 class ViewSearch {
 public:
   /// Reads the views of a model, called by several threads at once.

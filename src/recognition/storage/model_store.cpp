@@ -212,8 +212,8 @@ void ModelStore::each(const std::string& table, const std::string& what, std::in
     const std::int64_t model = row.integer(0);
     const std::string data = row.blob(1);
     if (checksumOf(table, model, data) != row.integer(2))
-      failIO(file_, what + " of model " + std::to_string(model) +
-                        " is damaged, pcl_symmetry_database rebuild makes new ones");
+      failIO(file_,
+             what + " of model " + std::to_string(model) + " is damaged, pcl_symmetry_database rebuild makes new ones");
     take(model, data);
   }
 }
@@ -307,9 +307,10 @@ void ModelStore::addForms(std::int64_t projection, const std::vector<PackedForms
 /// Forms of models or of a projection that are gone are passed over.
 void ModelStore::insertForms(std::int64_t projection, const std::vector<PackedForms>& forms) {
   const auto insert = [&](const std::string& table, std::string PackedForms::*data) {
-    SQLiteStatement statement = connection_->prepare(
-        "INSERT OR REPLACE INTO " + table + " SELECT ?1, ?2, ?3, ?4 WHERE EXISTS (SELECT 1 FROM models WHERE id = ?1) " +
-        "AND EXISTS (SELECT 1 FROM projections WHERE id = ?2)");
+    SQLiteStatement statement =
+        connection_->prepare("INSERT OR REPLACE INTO " + table +
+                             " SELECT ?1, ?2, ?3, ?4 WHERE EXISTS (SELECT 1 FROM models WHERE id = ?1) " +
+                             "AND EXISTS (SELECT 1 FROM projections WHERE id = ?2)");
     for (const PackedForms& packed : forms)
       statement.bind(1, packed.model)
           .bind(2, projection)
