@@ -209,6 +209,8 @@ void VariantSource::fill(const std::string& file, int count, const Variation& va
       for (MadeVariant& variant : made(model, first, std::min(kChunk, num_variants - first), clouds, variation))
         target.add(variant.info, variant.packed, id, std::move(variant.forms));
   }
+  // Tables lie one behind the other, as after a build, which makes forms at its end.
+  detail::SQLiteConnection(file, detail::SQLiteAccess::Change, 10.0).run("VACUUM");
 }
 
 }  // namespace pcl_symmetry::benchmark

@@ -1,6 +1,5 @@
 #include "common/processes/shared_work.h"
 
-#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <exception>
@@ -26,12 +25,9 @@ constexpr std::int64_t kNone = -1;  // no item. derived: no index
 // Pause between two looks for messages. chosen: a model takes tens of milliseconds; half and twice take the same time.
 constexpr std::chrono::milliseconds kPause(1);
 
-/// Set for each process by OpenMPI, MPICH and its relatives, and srun.
+/// OpenMPI, MPICH and its relatives, and srun set a variable for each process.
 bool isStartedByMPI() {
-  constexpr std::array<const char*, 3> kVariables{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"};
-  for (const char* name : kVariables)
-    if (std::getenv(name)) return true;
-  return false;
+  return std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE") || std::getenv("PMIX_RANK");
 }
 
 }  // namespace
