@@ -73,8 +73,8 @@ FittedForms DatabaseParts::storedForms() {
 std::shared_ptr<const ShapeSearch> DatabaseParts::shapes() {
   const std::lock_guard<std::mutex> lock(mutex);
   const std::uint64_t version = store.version();
-  if (!shapes_ || shapes_version_ != version)
-    shapes_ = std::make_shared<const ShapeSearch>(store, storedForms(), options);
+  if (shapes_version_ != version) shapes_.reset();  // first: both together would take twice the memory
+  if (!shapes_) shapes_ = std::make_shared<const ShapeSearch>(store, storedForms(), options);
   shapes_version_ = version;
   return shapes_;
 }
@@ -82,7 +82,8 @@ std::shared_ptr<const ShapeSearch> DatabaseParts::shapes() {
 std::shared_ptr<const ViewSearch> DatabaseParts::views() {
   const std::lock_guard<std::mutex> lock(mutex);
   const std::uint64_t version = store.version();
-  if (!views_ || views_version_ != version) views_ = std::make_shared<const ViewSearch>(store, storedForms(), options);
+  if (views_version_ != version) views_.reset();
+  if (!views_) views_ = std::make_shared<const ViewSearch>(store, storedForms(), options);
   views_version_ = version;
   return views_;
 }

@@ -144,7 +144,7 @@ std::vector<double> matchAll(const SymmetryDatabase& database, const std::vector
   return distances;
 }
 
-void recognizeAll(const SymmetryDatabase& database, const std::string& folder) {
+void recognizeAll(const SymmetryDatabase& database, const std::string& folder, const RecognitionOptions& options) {
   std::vector<fs::path> scans;
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".pcd" && database.contains(entry.path().stem().string()))
@@ -155,9 +155,9 @@ void recognizeAll(const SymmetryDatabase& database, const std::string& folder) {
   for (std::size_t i = 0; i < scans.size(); ++i) {
     SymmetryDatabase::Cloud cloud;
     if (pcl::io::loadPCDFile(scans[i].string(), cloud) != 0) throw std::runtime_error(scans[i].string());
-    if (i == 0) timed("recognize, first", [&] { database.recognize(cloud); });
+    if (i == 0) timed("recognize, first", [&] { database.recognize(cloud, options); });
     Recognition found;
-    times.add([&] { found = database.recognize(cloud); });
+    times.add([&] { found = database.recognize(cloud, options); });
     unknown += found.empty() ? 1 : 0;
     right += !found.empty() && sourceOf(found[0].name) == scans[i].stem().string() ? 1 : 0;
   }
@@ -165,13 +165,14 @@ void recognizeAll(const SymmetryDatabase& database, const std::string& folder) {
   std::printf("the scanned model comes first: %zu of %zu, unknown: %zu\n", right, scans.size(), unknown);
 }
 
-void measure(const std::string& file, const std::vector<Query>& queries, const std::string& scans) {
+void measure(const std::string& file, const std::vector<Query>& queries, const std::string& scans,
+             const RecognitionOptions& options) {
   std::unique_ptr<SymmetryDatabase> database;
   timed("open", [&] { database = std::make_unique<SymmetryDatabase>(file); });
   const std::vector<double> distances = matchAll(*database, queries);
   if (!scans.empty()) {
     database = std::make_unique<SymmetryDatabase>(file);
-    recognizeAll(*database, scans);
+    recognizeAll(*database, scans, options);
   }
   const SymmetryDatabase::Cloud cloud = cloudOf(queries[0].points);
   timed("add", [&] { database->add("added", cloud); });
@@ -189,7 +190,7 @@ void measure(const std::string& file, const std::vector<Query>& queries, const s
 
 int main(int argc, char** argv) {
   if (argc < 4 || std::atoi(argv[2]) < 1) {
-    std::fprintf(stderr, "usage: benchmark_database_size DATABASE MODELS FILE [SCANS], MODELS >= 1\n");
+    std::fprintf(stderr, "usage: benchmark_database_size DATABASE MODELS FILE [SCANS [CANDIDATES]], MODELS >= 1\n");
     return 2;
   }
   const std::string file = argv[3];
@@ -201,6 +202,8 @@ int main(int argc, char** argv) {
   }
   const std::size_t size = SymmetryDatabase(file).size();
   std::printf("%zu models, %ju bytes each\n", size, static_cast<std::uintmax_t>(fs::file_size(file)) / size);
-  measure(file, queriesOf(source), argc > 4 ? argv[4] : "");
+  RecognitionOptions options;
+  if (argc > 5) options.num_candidates = std::atoi(argv[5]);
+  measure(file, queriesOf(source), argc > 4 ? argv[4] : "", options);
   return 0;
 }

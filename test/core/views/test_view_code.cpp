@@ -57,7 +57,7 @@ TEST(ViewCode, TurnsOfThePictureDoNotChangeIt) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, forward).toRotationMatrix();
     const View turned = viewOf(turn.cast<float>() * points, forward);
     EXPECT_GT((turned.values - view.values).norm(), 0.3) << angle;
-    EXPECT_LT((turnlessValues(turned.values) - own).norm(), 0.1) << angle;  // the cells of the picture
+    EXPECT_LT((turnlessValues(turned.values) - own).norm(), 0.15) << angle;  // the cells of the picture
     const ViewCode a = coder.codeOf(view), b = coder.codeOf(turned);
     for (std::size_t k = 0; k < kViewCodeSize; ++k) EXPECT_NEAR(a.values[k], b.values[k], 0.15f / kViewCodeStep);
   }
