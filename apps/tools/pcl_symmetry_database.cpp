@@ -13,9 +13,11 @@
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
+#include "common/processes/shared_work.h"
 #include "common/shape_output/shape_output.h"
 #include "database/database_listing.h"
 #include "database/model_files.h"
+#include "database/shared_build.h"
 
 namespace {
 
@@ -53,7 +55,8 @@ CommandLine commandLine(DatabaseToolOptions& options) {
 
 class DatabaseTool {
 public:
-  explicit DatabaseTool(const DatabaseToolOptions& options) : options_(options), console_(options.common.quiet) {}
+  DatabaseTool(const DatabaseToolOptions& options, SharedWork& processes)
+      : options_(options), processes_(processes), console_(options.common.quiet || !processes.isFirst()) {}
 
   /// \return the exit code.
   int run() {
@@ -63,8 +66,8 @@ public:
     database_options.unit = options_.unit.value_or("");
     const bool makes_file = isBuild() || options_.command == "import";
     if (!makes_file && !fs::exists(options_.file)) throw InputError(options_.file + ": there is no such file");
+    if (isBuild()) return build(database_options);
     SymmetryDatabase database(options_.file, database_options);
-    if (isBuild()) return build(database);
     if (options_.command == "import") return import(database);
     if (options_.command == "export") return exportClouds(database);
     if (options_.command == "list" || options_.command == "info") return show(database);
@@ -82,14 +85,18 @@ private:
                                          : name + ": " + reason));
   }
 
-  int build(SymmetryDatabase& database) const {
+  int build(const DatabaseOptions& database_options) const {
     const std::vector<ModelFile> files = modelFiles(options_.arguments, options_.names == "path");
     std::vector<std::string> tags;
     if (options_.tag) tags.push_back(*options_.tag);
     Step step(console_, "Describing " + std::to_string(files.size()) + " models");
-    const BuildReport report =
-        database.build(modelInputs(files, options_.common.mesh_points, options_.common.librarySeed(), tags),
-                       [&](double share) { return step.progress(share), true; });
+    const std::vector<ModelInput> inputs =
+        modelInputs(files, options_.common.mesh_points, options_.common.librarySeed(), tags);
+    const auto progress = [&](double share) { return step.progress(share), true; };
+    const BuildReport report = processes_.isShared()
+                                   ? buildShared(processes_, options_.file, database_options, inputs, progress)
+                                   : SymmetryDatabase(options_.file, database_options).build(inputs, progress);
+    if (!processes_.isFirst()) return 0;
     step.done(std::to_string(report.num_added) + " models" +
               (report.num_kept > 0 ? ", " + std::to_string(report.num_kept) + " kept" : ""));
     return finish(report, {{"kept", report.num_kept}});
@@ -194,10 +201,11 @@ private:
   }
 
   const DatabaseToolOptions& options_;
+  SharedWork& processes_;
   const Console console_;
 };
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, SharedWork& processes) {
   DatabaseToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
@@ -215,11 +223,14 @@ int run(int argc, char** argv) {
     throw UsageError("missing argument behind the database");
   if (command->second == Nothing && !options.arguments.empty())
     throw UsageError("too many arguments behind the database");
-  return DatabaseTool(options).run();
+  if (processes.isShared() && options.command != "build" && options.command != "add")
+    throw UsageError("command = " + options.command + ", must be build or add where several processes share it");
+  return DatabaseTool(options, processes).run();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(argc, argv, run);
+  SharedWork processes;
+  return processes.end(runTool(argc, argv, [&](int count, char** words) { return run(count, words, processes); }));
 }

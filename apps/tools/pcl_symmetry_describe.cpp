@@ -12,6 +12,7 @@
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
+#include "common/processes/shared_work.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/shape_output.h"
@@ -109,28 +110,39 @@ std::vector<std::string> outputPaths(const DescribeOptions& options) {
   return paths;
 }
 
-int run(int argc, char** argv) {
+/// \return what is wrong with the input, or nothing.
+std::string describeFile(const std::string& input, const std::string& output, const DescribeOptions& options) {
+  try {
+    const pcl::PCLPointCloud2 blob =
+        namingFile(input, [&] { return describe(loadInput(input, options.num_points, kMeshSeed), options); });
+    saveCloud(output, blob, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity(), PCDEncoding::Binary);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+int run(int argc, char** argv, SharedWork& processes) {
   DescribeOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  const Console console(options.common.quiet);
+  const Console console(options.common.quiet || !processes.isFirst());
   const std::vector<std::string> outputs = outputPaths(options);
   std::vector<std::string> failures(options.inputs.size());
   std::mutex mutex;
   std::size_t num_done = 0;
   Step step(console, "Describing " + std::to_string(options.inputs.size()) + " shapes");
-  parallelBlocks(options.inputs.size(), options.common.threads, [&](std::size_t i) {
-    const std::string& input = options.inputs[i];
-    try {
-      const pcl::PCLPointCloud2 blob =
-          namingFile(input, [&] { return describe(loadInput(input, options.num_points, kMeshSeed), options); });
-      saveCloud(outputs[i], blob, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity(), PCDEncoding::Binary);
-    } catch (const InputError& error) {
-      failures[i] = error.what();
-    }
+  const auto work = [&](std::size_t i) { return describeFile(options.inputs[i], outputs[i], options); };
+  const auto take = [&](std::size_t i, const std::string& failure) {
     const std::lock_guard<std::mutex> lock(mutex);
+    failures[i] = failure;
     step.progress(static_cast<double>(++num_done) / static_cast<double>(options.inputs.size()));
-  });
+  };
+  if (processes.isShared())
+    processes.run(options.inputs.size(), work, take);
+  else
+    parallelBlocks(options.inputs.size(), options.common.threads, [&](std::size_t i) { take(i, work(i)); });
+  if (!processes.isFirst()) return 0;
   failures.erase(std::remove(failures.begin(), failures.end(), ""), failures.end());
   step.done(std::to_string(options.inputs.size() - failures.size()) + " descriptors");
   for (const std::string& failure : failures) console.error(failure);
@@ -140,5 +152,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runTool(argc, argv, run);
+  SharedWork processes;
+  return processes.end(runTool(argc, argv, [&](int count, char** words) { return run(count, words, processes); }));
 }

@@ -60,23 +60,21 @@ DescribedModel describedModel(const Points& points, const DatabaseOptions& optio
   return model;
 }
 
-NumberedForms DatabaseParts::storedForms() {
+FittedForms DatabaseParts::storedForms() {
   const std::int64_t id = store.projectionId();
   if (id == forms_.id) return forms_;
-  NumberedForms forms{id, nullptr};
   try {
-    if (id != 0) forms.forms = std::make_shared<const CompactForms>(CompactForms::unpacked(store.projection()->values));
+    return forms_ = id == 0 ? FittedForms() : FittedForms::unpacked(store.projection().value());
   } catch (const std::invalid_argument& error) {
     failIO(store.file(), std::string("the projection ") + error.what());
   }
-  return forms_ = std::move(forms);
 }
 
 std::shared_ptr<const ShapeSearch> DatabaseParts::shapes() {
   const std::lock_guard<std::mutex> lock(mutex);
   const std::uint64_t version = store.version();
-  if (!shapes_ || shapes_version_ != version)
-    shapes_ = std::make_shared<const ShapeSearch>(store, storedForms(), options);
+  if (shapes_version_ != version) shapes_.reset();  // first: both together would take twice the memory
+  if (!shapes_) shapes_ = std::make_shared<const ShapeSearch>(store, storedForms(), options);
   shapes_version_ = version;
   return shapes_;
 }
@@ -84,7 +82,8 @@ std::shared_ptr<const ShapeSearch> DatabaseParts::shapes() {
 std::shared_ptr<const ViewSearch> DatabaseParts::views() {
   const std::lock_guard<std::mutex> lock(mutex);
   const std::uint64_t version = store.version();
-  if (!views_ || views_version_ != version) views_ = std::make_shared<const ViewSearch>(store, options.num_threads);
+  if (views_version_ != version) views_.reset();
+  if (!views_) views_ = std::make_shared<const ViewSearch>(store, storedForms(), options);
   views_version_ = version;
   return views_;
 }
@@ -107,8 +106,11 @@ Points DatabaseParts::points(const StoredModel& model, std::size_t max_points) {
 
 void DatabaseParts::add(const ModelInfo& info, const PackedModel& model, const Eigen::MatrixXf& signatures) {
   const std::lock_guard<std::mutex> lock(mutex);
-  const NumberedForms stored = storedForms();
-  store.add(info, model, stored.id, stored.forms ? stored.forms->formOf(signatures, 0).packed() : "");
+  const FittedForms stored = storedForms();
+  PackedForms forms;
+  if (stored.id != 0)
+    forms = {0, stored.forms->formOf(signatures, 0).packed(), stored.coder->codesOf(unpackedViews(model.views))};
+  store.add(info, model, stored.id, std::move(forms));
 }
 
 void DatabaseParts::save() {
@@ -119,8 +121,9 @@ void DatabaseParts::save() {
     if (!isOutgrown(static_cast<std::size_t>(store.numReferences()), size, options.num_references)) {
       const std::vector<StoredModel> without = store.modelsWithoutForms();
       if (without.empty()) return;
-      const NumberedForms stored = storedForms();
-      store.addForms(stored.id, formsOfModels(store, without, *stored.forms, options.num_threads));
+      const FittedForms stored = storedForms();
+      store.addForms(stored.id,
+                     formsOfModels(store, without, stored.forms.get(), stored.coder.get(), options.num_threads));
       return;
     }
   }
@@ -130,9 +133,10 @@ void DatabaseParts::save() {
 void DatabaseParts::rebuild() {
   const std::lock_guard<std::mutex> lock(mutex);
   if (store.size() == 0) return;
-  const auto forms = fitForms(store, options.num_references, options.num_threads);
-  store.setProjection({0, forms->numReferences(), forms->packed()},
-                      formsOfModels(store, store.models(), *forms, options.num_threads));
+  const FittedForms fitted{0, fitForms(store, options.num_references, options.num_threads),
+                           fitViewCoder(store, options.num_references, options.num_threads)};
+  store.setProjection(fitted.packed(), formsOfModels(store, store.models(), fitted.forms.get(), fitted.coder.get(),
+                                                     options.num_threads));
 }
 
 }  // namespace pcl_symmetry::detail

@@ -24,8 +24,11 @@ struct DatabaseParts {
   /// Of the state that is read now.
   std::shared_ptr<const ShapeSearch> shapes();
   std::shared_ptr<const ViewSearch> views();
-  /// The projection of the store; null forms without one. The mutex must be held.
-  NumberedForms storedForms();
+  /// What is fitted in the store; null forms where there is nothing. The mutex must be held.
+  FittedForms storedForms();
+
+  /// Views of a model.
+  std::vector<View> viewsOf(const StoredModel& model) { return detail::viewsOf(store, model, mutex); }
 
   PositionCloud cloud(const StoredModel& model);
   /// The points of a model, at most \p max_points.
@@ -45,7 +48,7 @@ private:
   std::shared_ptr<const ShapeSearch> shapes_;
   std::shared_ptr<const ViewSearch> views_;
   std::uint64_t shapes_version_ = 0, views_version_ = 0;  // of the store when they were read
-  NumberedForms forms_;
+  FittedForms forms_;
 };
 
 /// Seconds since 1970 (UTC).

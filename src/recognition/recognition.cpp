@@ -17,6 +17,7 @@ namespace {
 
 using detail::DatabaseParts;
 using detail::PosedScan;
+using detail::StoredModel;
 
 // Exponent of the soft maximum of merits. chosen: a merit that is 0.05 lower counts 1 / e; half the value spreads the
 // confidence over similar models, twice gives it to the best one alone.
@@ -35,7 +36,8 @@ Recognition fitLikeViews(DatabaseParts& database, const Points& points, const Po
   search.num_threads = options.num_threads;
   const View view = viewOf(points, boundingBall(points).center - seen.viewpoint());
   PosedScan scan(scan_points, seen, options.registration);
-  for (const auto& [model, T_model_scan] : database.views()->nearest(view, search))
+  const auto read = [&](const StoredModel& model) { return database.viewsOf(model); };
+  for (const auto& [model, T_model_scan] : database.views()->nearest(view, search, read))
     scan.bringTo(model.name, database.points(model, kModelPoints), T_model_scan);
   return scan.refined(options.num_refined);
 }

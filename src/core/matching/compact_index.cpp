@@ -1,19 +1,49 @@
 #include "core/matching/compact_index.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/simd.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Forms per block of work. chosen: the products of a block, 200 kB, stay in the cache; half costs overhead per block,
-// twice exceeds small caches.
-constexpr std::size_t kForms = 2048;
+// Forms whose leading components are compared at once. chosen: half has too few sums at a time for the processor, twice
+// too many for its registers.
+constexpr std::size_t kForms = 64;
+constexpr std::size_t kBlock =
+    64;  // times kForms: work of a thread. chosen: half costs overhead, twice leaves threads idle
+
+/// Rotations of a query, as the leading components are compared with them.
+struct LeadingQueries {
+  std::size_t count, rows;      // rows: the leading components, and one for the squared norm of the form
+  std::vector<float> values;    // count x rows
+  std::vector<float> sq_norms;  // halves
+};
+
+/// -1/2 of the squared distances of kForms forms to the nearest query.
+/// \param leading rows x kForms.
+PCL_SYMMETRY_MULTIVERSION
+void nearnessOfForms(const float* leading, const LeadingQueries& queries, float* nearness) {
+  for (std::size_t i = 0; i < kForms; ++i) nearness[i] = -std::numeric_limits<float>::max();
+  for (std::size_t q = 0; q < queries.count; ++q) {
+    float sums[kForms];
+    for (std::size_t i = 0; i < kForms; ++i) sums[i] = -queries.sq_norms[q];
+    const float* values = queries.values.data() + q * queries.rows;
+    for (std::size_t row = 0; row < queries.rows; ++row) {
+      const float value = values[row];
+      const float* forms = leading + row * kForms;
+      for (std::size_t i = 0; i < kForms; ++i) sums[i] += value * forms[i];
+    }
+    for (std::size_t i = 0; i < kForms; ++i) nearness[i] = nearness[i] < sums[i] ? sums[i] : nearness[i];
+  }
+}
 
 /// The least distance of each shape among the forms.
 /// \param forms rising indices of forms.
@@ -52,10 +82,16 @@ CompactIndex::CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const C
   check(typical_.size() == static_cast<std::size_t>(numShapes()), "number of typical distances",
         static_cast<double>(typical_.size()), "that of the shapes");
   for (const float distance : typical_) check(distance > 0.0f, "typical distance", distance, "> 0");
-  const Eigen::Index num_leading = std::min<Eigen::Index>(compact_.rows(), options.num_leading);
-  leading_.resize(num_leading + 1, compact_.cols());
-  leading_.topRows(num_leading) = compact_.topRows(num_leading);
-  leading_.row(num_leading) = -0.5f * compact_.topRows(num_leading).colwise().squaredNorm();
+  num_leading_ = std::min<Eigen::Index>(compact_.rows(), options.num_leading);
+  const auto rows = static_cast<std::size_t>(num_leading_) + 1;
+  leading_.assign((static_cast<std::size_t>(compact_.cols()) + kForms - 1) / kForms * kForms * rows, 0.0f);
+  for (Eigen::Index i = 0; i < compact_.cols(); ++i) {
+    const auto form = static_cast<std::size_t>(i);
+    float* values = leading_.data() + form / kForms * kForms * rows + form % kForms;
+    for (Eigen::Index row = 0; row < num_leading_; ++row)
+      values[static_cast<std::size_t>(row) * kForms] = compact_(row, i);
+    values[(rows - 1) * kForms] = -0.5f * compact_.col(i).head(num_leading_).squaredNorm();
+  }
 }
 
 Eigen::Index CompactIndex::numShapes() const {
@@ -67,18 +103,23 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
   std::vector<int> forms(static_cast<std::size_t>(compact_.cols()));
   std::iota(forms.begin(), forms.end(), 0);
   if (count >= forms.size()) return forms;
-  const Eigen::Index num_leading = leading_.rows() - 1;
-  Eigen::MatrixXf queries(num_leading + 1, rotations.cols());
-  queries.topRows(num_leading) = rotations.topRows(num_leading);
-  queries.row(num_leading).setOnes();
-  const Eigen::VectorXf sq_norms = 0.5f * rotations.topRows(num_leading).colwise().squaredNorm().transpose();
+  LeadingQueries queries{
+      static_cast<std::size_t>(rotations.cols()), static_cast<std::size_t>(num_leading_) + 1, {}, {}};
+  for (Eigen::Index q = 0; q < rotations.cols(); ++q) {
+    const auto values = rotations.col(q).head(num_leading_);
+    queries.values.insert(queries.values.end(), values.data(), values.data() + num_leading_);
+    queries.values.push_back(1.0f);
+    queries.sq_norms.push_back(0.5f * values.squaredNorm());
+  }
   std::vector<float> nearness(forms.size());  // -1/2 of the squared scaled distance to the nearest rotation
-  parallelRanges(forms.size(), kForms, options_.num_threads, [&](std::size_t begin, std::size_t end) {
-    const auto first = static_cast<Eigen::Index>(begin), size = static_cast<Eigen::Index>(end - begin);
-    Eigen::MatrixXf products = queries.transpose() * leading_.middleCols(first, size);
-    products.colwise() -= sq_norms;
-    Eigen::Map<Eigen::RowVectorXf>(nearness.data() + begin, size) = products.colwise().maxCoeff();
-    for (std::size_t i = begin; i < end; ++i) nearness[i] /= typical_[i / static_cast<std::size_t>(forms_per_shape_)];
+  const std::size_t num_pieces = (forms.size() + kForms - 1) / kForms;
+  parallelRanges(num_pieces, kBlock, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+    std::array<float, kForms> nearest;
+    for (std::size_t piece = begin; piece < end; ++piece) {
+      nearnessOfForms(leading_.data() + piece * kForms * queries.rows, queries, nearest.data());
+      for (std::size_t i = piece * kForms; i < std::min(forms.size(), (piece + 1) * kForms); ++i)
+        nearness[i] = nearest[i % kForms] / typical_[i / static_cast<std::size_t>(forms_per_shape_)];
+    }
   });
   std::nth_element(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(count), forms.end(), [&](int a, int b) {
     const float near_a = nearness[static_cast<std::size_t>(a)], near_b = nearness[static_cast<std::size_t>(b)];

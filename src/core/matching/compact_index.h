@@ -20,7 +20,7 @@ struct CompactIndexOptions {
 
 /// Finds the nearest of many shapes by their compact forms, see SignatureProjection.
 ///
-/// The leading components of all forms are compared as one product of matrices, then all components of the candidates.
+/// The leading components of all forms are compared, then all components of the candidates.
 /// Randomised k-d trees (FLANN) take longer and find fewer of the true neighbours, as each query has 24 rotations in
 /// hundreds of dimensions.
 class CompactIndex {
@@ -49,7 +49,9 @@ private:
   std::vector<int> candidates(const Eigen::MatrixXf& rotations, std::size_t count) const;
 
   Eigen::MatrixXf compact_;
-  Eigen::MatrixXf leading_;  // leading components of the forms; last row: -1/2 of their squared norm
+  Eigen::Index num_leading_ = 0;
+  // Leading components and -1/2 of their squared norm: of the first forms one number after the other, and so on.
+  std::vector<float> leading_;
   int forms_per_shape_ = 1;
   std::vector<float> typical_;  // of the shapes
   CompactIndexOptions options_;

@@ -161,16 +161,21 @@ SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, 
 
 Eigen::MatrixXf SignatureProjection::project(const Eigen::Ref<const Eigen::MatrixXf>& signatures) const {
   check(signatures.rows() == mean_.size(), "size of a signature", signatures.rows(), "that of the projection");
-  Eigen::MatrixXf compact = basis_.transpose() * (signatures.colwise() - mean_);
-  for (Eigen::Index i = 0; i < compact.cols(); ++i) compact.col(i).stableNormalize();
+  Eigen::MatrixXf compact(numDimensions(), signatures.cols());
+  // Column by column: a product of matrices would copy the basis, which takes longer than to use it.
+  for (Eigen::Index i = 0; i < compact.cols(); ++i) {
+    const Eigen::VectorXf difference = signatures.col(i) - mean_;
+    compact.col(i).noalias() = basis_.transpose() * difference;
+    compact.col(i).stableNormalize();
+  }
   return compact;
 }
 
 Eigen::MatrixXf SignatureProjection::rotations(const Eigen::Ref<const Eigen::MatrixXf>& compact) const {
   check(compact.rows() == basis_.cols(), "size of a compact form", compact.rows(), "that of the projection");
   Eigen::MatrixXf result(numDimensions(), kNumAxisRotations * compact.cols());
-  for (Eigen::Index i = 0; i < compact.cols(); ++i)
-    for (int r = 0; r < kNumAxisRotations; ++r)
+  for (int r = 0; r < kNumAxisRotations; ++r)
+    for (Eigen::Index i = 0; i < compact.cols(); ++i)
       result.col(kNumAxisRotations * i + r) = (turns_[static_cast<std::size_t>(r)] * compact.col(i)).stableNormalized();
   return result;
 }

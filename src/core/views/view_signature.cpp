@@ -26,6 +26,10 @@ constexpr double kOuterRing = 2.3;
 // Samples on a ring, and turns that are compared. chosen: 7.5 degrees, which ICP removes; half misses narrow parts of
 // the outline, twice takes twice the time.
 constexpr int kNumAngles = 48;
+// Weight of the magnitudes in ViewAgreement::distance. measured: of 274 scans of models of the Princeton Shape
+// Benchmark (fold 1 of the training half), the scanned model is among the nearest ten of 902 for 94.5 % at 0, 94.9 at
+// 0.5, 97.8 at 0.7 and 97.4 at 1, where poses are no longer ordered.
+constexpr float kTurnlessWeight = 0.7f;
 constexpr int kRow = 2 * kViewRings;  // values of the real or imaginary part of a harmonic. derived: outline and depth
 
 /// Cosines and sines of m times the angle of each turn.
@@ -137,9 +141,25 @@ std::vector<View> viewsAround(const PointsRef& points, int num_views, int num_th
   return views;
 }
 
-ViewComparison::ViewComparison(const View& view) : values_(view.values) {}
+Eigen::VectorXf turnlessValues(const Eigen::VectorXf& values) {
+  Eigen::VectorXf turnless(kTurnlessViewSize);
+  turnless.head<kRow>() = values.head<kRow>();
+  for (int m = 1; m <= kViewHarmonics; ++m)
+    turnless.segment<kRow>(kRow * m) =
+        (values.segment<kRow>(realPart(m)).array().square() + values.segment<kRow>(imaginaryPart(m)).array().square())
+            .sqrt();
+  return turnless;
+}
+
+ViewComparison::ViewComparison(const View& view) : values_(view.values), turnless_(turnlessValues(view.values)) {}
 
 ViewAgreement ViewComparison::compare(const float* values, float enough) const {
+  ViewAgreement best;
+  const Eigen::Map<const Eigen::VectorXf> other(values, kViewSignatureSize);
+  const float turnless = (turnlessValues(other) - turnless_).norm();
+  if (turnless >= enough) return best;  // it is the smaller one of the two distances
+  // From this distance of the signatures on, what is left is not needed.
+  const float enough_of_all = (enough - kTurnlessWeight * turnless) / (1.0f - kTurnlessWeight);
   // Re conj(V_m) Q_m exp(i m a) is what harmonic m adds to the correlation with the picture turned by a.
   const float* own = values_.data();
   std::array<float, kViewHarmonics + 1> real, imaginary;
@@ -152,8 +172,7 @@ ViewAgreement ViewComparison::compare(const float* values, float enough) const {
     imaginary[m] = dot(vr, qi) - dot(vi, qr);
     greatest += std::sqrt(real[m] * real[m] + imaginary[m] * imaginary[m]);
   }
-  ViewAgreement best;
-  const float least = 1.0f - 0.5f * enough * enough;
+  const float least = 1.0f - 0.5f * enough_of_all * enough_of_all;
   if (greatest <= least) return best;
   std::array<float, kNumAngles> correlation;
   correlation.fill(real[0]);
@@ -162,7 +181,7 @@ ViewAgreement ViewComparison::compare(const float* values, float enough) const {
       correlation[a] += real[m] * turns().cosines[m][a] - imaginary[m] * turns().sines[m][a];
   const auto at = std::max_element(correlation.begin(), correlation.end());
   if (*at <= least) return best;
-  best.distance = std::sqrt(std::max(0.0f, 2.0f - 2.0f * *at));
+  best.distance = kTurnlessWeight * turnless + (1.0f - kTurnlessWeight) * std::sqrt(std::max(0.0f, 2.0f - 2.0f * *at));
   best.turn = -2.0 * kPi * static_cast<double>(at - correlation.begin()) / kNumAngles;
   return best;
 }

@@ -14,6 +14,9 @@ constexpr int kViewHarmonics = 8;
 /// Values of a view. derived: outline and depth, per ring a mean and the real and imaginary parts of the harmonics.
 constexpr int kViewSignatureSize = 2 * kViewRings * (2 * kViewHarmonics + 1);
 
+/// Values of a view that turns of its picture leave. derived: per ring a mean and the magnitude of each harmonic.
+constexpr int kTurnlessViewSize = 2 * kViewRings * (kViewHarmonics + 1);
+
 /// What a shape looks like from far away on one side (not in the paper): its outline and its depths.
 ///
 /// Signatures need the symmetry of the whole shape, and a scan hides it. Views tell which model a scan shows, and from
@@ -41,10 +44,17 @@ View viewOf(const PointsRef& points, const Eigen::Vector3d& forward);
 /// \throws std::invalid_argument for points without extent.
 std::vector<View> viewsAround(const PointsRef& points, int num_views = 80, int num_threads = 0);
 
+/// Means of the rings and magnitudes of the harmonics, in the order of View::values: the same for all turns.
+/// \param values View::values.
+/// \return kTurnlessViewSize values. Their L2 distance is at most that of the signatures at any turn.
+Eigen::VectorXf turnlessValues(const Eigen::VectorXf& values);
+
 /// How alike two views are at their best turn.
 struct ViewAgreement {
-  float distance = 2.0f;  ///< L2 distance of the signatures, in [0, 2]
-  double turn = 0.0;      ///< radians about z, from the first view's picture to the second's
+  /// L2 distances of the signatures at the best turn and of their turnlessValues(), weighted 0.3 and 0.7, in [0, 2].
+  /// What a scan lacks moves the phases of harmonics more than their magnitudes.
+  float distance = 2.0f;
+  double turn = 0.0;  ///< radians about z, from the first view's picture to the second's
 };
 
 /// Compares one view with many, at all turns of the picture in steps of 7.5 degrees.
@@ -59,7 +69,7 @@ public:
   ViewAgreement compare(const float* values, float enough) const;
 
 private:
-  Eigen::VectorXf values_;
+  Eigen::VectorXf values_, turnless_;
 };
 
 /// The pose in which a model looks like a scan.

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
-#include "core/base/parallel.h"
 #include "core/matching/shape_description.h"
-#include "recognition/packing/packed_model.h"
 #include "recognition/storage/io_error.h"
 
 namespace pcl_symmetry::detail {
@@ -19,86 +17,49 @@ namespace {
 // neighbours of noisy queries, twice takes 5 ms more.
 constexpr int kShapeCandidates = 2048;
 
-Eigen::MatrixXf signaturesOf(ModelStore& store, const StoredModel& model, std::mutex& mutex) {
-  const std::string bytes = [&] {
-    const std::lock_guard<std::mutex> lock(mutex);
-    return store.part(ModelPart::Signatures, model);
-  }();
-  try {
-    Eigen::MatrixXf signatures = unpackedSignatures(bytes);
-    if (signatures.rows() == kSignatureSize && signatures.cols() == kFormsPerModel) return signatures;
-    throw std::invalid_argument("have another size than those of this library");
-  } catch (const std::invalid_argument& error) {
-    failIO(store.file(), "the signatures of model '" + model.name + "' " + error.what());
-  }
-}
-
 }  // namespace
 
-bool isOutgrown(std::size_t num_references, std::size_t num_models, int max_references) {
-  return num_references == 0 || 2 * num_references < std::min(num_models, static_cast<std::size_t>(max_references));
-}
-
-std::shared_ptr<const CompactForms> fitForms(ModelStore& store, int max_references, int num_threads) {
-  const std::vector<StoredModel>& all = store.models();
-  const std::size_t count = std::min(all.size(), static_cast<std::size_t>(max_references));
-  std::vector<std::int64_t> ids;
-  for (std::size_t r = 0; r < count; ++r) ids.push_back(all[r * all.size() / count].id);
-  Eigen::MatrixXf signatures(kSignatureSize, kFormsPerModel * static_cast<Eigen::Index>(count));
-  std::mutex mutex;
-  parallelBlocks(count, num_threads, [&](std::size_t r) {
-    signatures.middleCols<kFormsPerModel>(kFormsPerModel * static_cast<Eigen::Index>(r)) =
-        signaturesOf(store, all[r * all.size() / count], mutex);
-  });
-  return std::make_shared<const CompactForms>(CompactForms::fit(std::move(ids), signatures, num_threads));
-}
-
-std::vector<PackedForms> formsOfModels(ModelStore& store, const std::vector<StoredModel>& models,
-                                       const CompactForms& forms, int num_threads) {
-  std::vector<PackedForms> packed(models.size());
-  std::mutex mutex;
-  parallelBlocks(models.size(), num_threads, [&](std::size_t i) {
-    packed[i] = {models[i].id, forms.formOf(signaturesOf(store, models[i], mutex), models[i].id).packed()};
-  });
-  return packed;
-}
-
-ShapeSearch::ShapeSearch(ModelStore& store, NumberedForms stored, const DatabaseOptions& options)
-    : num_threads_(options.num_threads), forms_(std::move(stored.forms)), models_(store.models()) {
+ShapeSearch::ShapeSearch(ModelStore& store, const FittedForms& stored, const DatabaseOptions& options)
+    : num_threads_(options.num_threads), forms_(stored.forms), models_(store.models()) {
   if (models_.empty()) return;
-  const auto num_references = static_cast<std::size_t>(forms_ ? forms_->numReferences() : 0);
-  std::vector<StoredModel> without = models_;
-  std::vector<PackedForms> packed;
-  if (isOutgrown(num_references, models_.size(), options.num_references)) {
-    forms_ = fitForms(store, options.num_references, num_threads_);
-  } else {
-    packed.reserve(models_.size());
-    without = store.modelsWithoutForms();
-    store.eachForms(stored.id, [&](PackedForms forms) { packed.push_back(std::move(forms)); });
-  }
-  for (PackedForms& made : formsOfModels(store, without, *forms_, num_threads_)) packed.push_back(std::move(made));
-
   std::sort(models_.begin(), models_.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  std::sort(packed.begin(), packed.end(), [](const auto& a, const auto& b) { return a.model < b.model; });
-  if (packed.size() != models_.size())
-    failIO(store.file(), "has other compact forms than models, pcl_symmetry_database rebuild makes new ones");
-  Eigen::MatrixXf compact(forms_->numDimensions(), kFormsPerModel * static_cast<Eigen::Index>(packed.size()));
-  std::vector<float> typical;
-  for (std::size_t i = 0; i < packed.size(); ++i) {
+  const auto num_references = static_cast<std::size_t>(forms_ ? forms_->numReferences() : 0);
+  const bool outgrown = isOutgrown(num_references, models_.size(), options.num_references);
+  if (outgrown) forms_ = fitForms(store, options.num_references, num_threads_);
+  makeIndex(store, outgrown ? 0 : stored.id, options);
+}
+
+/// \param stored the projection whose forms are read, 0: all forms are made.
+void ShapeSearch::makeIndex(ModelStore& store, std::int64_t stored, const DatabaseOptions& options) {
+  Eigen::MatrixXf compact(forms_->numDimensions(), kFormsPerModel * static_cast<Eigen::Index>(models_.size()));
+  std::vector<float> typical(models_.size(), 0.0f);
+  const auto take = [&](std::int64_t id, const std::string& bytes) {
+    const auto model =
+        std::lower_bound(models_.begin(), models_.end(), id, [](const auto& a, std::int64_t b) { return a.id < b; });
     try {
-      const CompactForm form = CompactForm::unpacked(packed[i].forms);
-      if (packed[i].model != models_[i].id || form.compact.rows() != compact.rows())
+      const CompactForm form = CompactForm::unpacked(bytes);
+      if (model == models_.end() || model->id != id || form.compact.rows() != compact.rows())
         throw std::invalid_argument("is that of another model or projection");
-      compact.middleCols<kFormsPerModel>(kFormsPerModel * static_cast<Eigen::Index>(i)) = form.compact;
-      typical.push_back(form.typical);
+      const auto i = model - models_.begin();
+      compact.middleCols<kFormsPerModel>(kFormsPerModel * i) = form.compact;
+      typical[static_cast<std::size_t>(i)] = form.typical;
     } catch (const std::invalid_argument& error) {
-      failIO(store.file(), "the compact form of model '" + models_[i].name + "' " + error.what());
+      failIO(store.file(), "the compact form of model " + std::to_string(id) + " " + error.what());
     }
-    packed[i].forms = {};
+  };
+  if (stored != 0) store.eachForms(stored, take);
+  const std::vector<StoredModel> without = stored != 0 ? store.modelsWithoutForms() : models_;
+  for (std::size_t first = 0; first < without.size(); first += kModelsAtOnce) {
+    const auto begin = without.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::vector<StoredModel> part(begin, begin + std::min(kModelsAtOnce, without.size() - first));
+    for (const PackedForms& made : formsOfModels(store, part, forms_.get(), nullptr, num_threads_))
+      take(made.model, made.forms);
   }
+  if (std::count(typical.begin(), typical.end(), 0.0f) > 0)
+    failIO(store.file(), "has other compact forms than models, pcl_symmetry_database rebuild makes new ones");
   CompactIndexOptions index;
   index.num_candidates = kShapeCandidates;
-  index.num_threads = num_threads_;
+  index.num_threads = options.num_threads;
   index_ = CompactIndex(std::move(compact), kFormsPerModel, index, std::move(typical));
 }
 

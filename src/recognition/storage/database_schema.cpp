@@ -29,7 +29,7 @@ struct Table {
 };
 // chosen: a table for each part of a model, so that a query reads what it needs. Columns: the model, the bytes, their
 // checksum.
-constexpr std::array<Table, 7> kTables = {{
+constexpr std::array<Table, 9> kTables = {{
     {"facts", "CREATE TABLE facts (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
     {"models",
      "CREATE TABLE models (id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL UNIQUE, time INTEGER NOT NULL, "
@@ -50,6 +50,12 @@ constexpr std::array<Table, 7> kTables = {{
     {"compact",
      "CREATE TABLE compact (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, projection INTEGER NOT NULL "
      "REFERENCES projections ON DELETE CASCADE, data BLOB NOT NULL, checksum INTEGER NOT NULL)"},
+    {"view_coders",
+     "CREATE TABLE view_coders (projection INTEGER PRIMARY KEY REFERENCES projections ON DELETE CASCADE, "
+     "data BLOB NOT NULL, checksum INTEGER NOT NULL)"},
+    {"view_codes",
+     "CREATE TABLE view_codes (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, projection INTEGER "
+     "NOT NULL REFERENCES projections ON DELETE CASCADE, data BLOB NOT NULL, checksum INTEGER NOT NULL)"},
 }};
 
 /// Tables whose definition is not the one that this library wrote.
@@ -69,7 +75,7 @@ void compareBlobs(const SQLiteConnection& connection, const std::string& table, 
   while (row.next())
     if (checksumOf(table, row.integer(0), row.blob(1)) != row.integer(2))
       damages.push_back("the " + table + " of number " + std::to_string(row.integer(0)) + " are damaged");
-  if (key != "model" || table == "compact") return;
+  if (table != "clouds" && table != "signatures" && table != "views") return;
   SQLiteStatement missing =
       connection.prepare("SELECT name FROM models WHERE id NOT IN (SELECT model FROM " + table + ")");
   while (missing.next()) damages.push_back("the " + table + " of model '" + missing.text(0) + "' are missing");
@@ -143,9 +149,10 @@ std::vector<std::string> damagesOf(const SQLiteConnection& connection, std::vect
     while (row.next())
       if (row.text(0) != "ok") damages.push_back("structure of the file: " + row.text(0));
   }
-  for (const char* table : {"clouds", "signatures", "views", "compact"})
+  for (const char* table : {"clouds", "signatures", "views", "compact", "view_codes"})
     compareBlobs(connection, table, "model", damages);
   compareBlobs(connection, "projections", "id", damages);
+  compareBlobs(connection, "view_coders", "projection", damages);
   return damages;
 }
 

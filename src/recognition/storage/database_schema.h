@@ -11,8 +11,9 @@ namespace pcl_symmetry::detail {
 
 /// Tables of a database, and what may be opened. Every function throws pcl::IOException, which names file and reason.
 
-/// Grows by 1 when tables or the bytes in them change. derived: 1 and 2 were folders of files.
-constexpr int kSchemaVersion = 3;
+/// Grows by 1 when tables or the bytes in them change. derived: 1 and 2 were folders of files, 3
+/// had no codes of views.
+constexpr int kSchemaVersion = 4;
 /// The name of a database that has no file. chosen: SQLite's own.
 constexpr const char* kNoFile = ":memory:";
 constexpr const char* kSelectModels =

@@ -167,7 +167,8 @@ std::vector<StoredModel> ModelStore::modelsWithoutForms() {
   std::vector<StoredModel> models;
   if (!startReading()) return models;
   SQLiteStatement row = connection_->prepare(
-      "SELECT id, name FROM models WHERE id NOT IN (SELECT model FROM compact WHERE projection = ?) ORDER BY id");
+      "SELECT id, name FROM models WHERE id NOT IN (SELECT model FROM compact WHERE projection = ?1) "
+      "OR id NOT IN (SELECT model FROM view_codes WHERE projection = ?1) ORDER BY id");
   row.bind(1, projectionId());
   while (row.next()) models.push_back({row.integer(0), row.text(1)});
   return models;
@@ -191,24 +192,38 @@ std::optional<PackedProjection> ModelStore::projection() {
   SQLiteStatement row =
       connection_->prepare("SELECT id, num_references, data, checksum FROM projections ORDER BY id DESC LIMIT 1");
   if (!row.next()) return std::nullopt;
-  PackedProjection projection{row.integer(0), static_cast<int>(row.integer(1)), row.blob(2)};
-  if (checksumOf("projections", projection.id, projection.values) != row.integer(3))
+  PackedProjection projection{row.integer(0), static_cast<int>(row.integer(1)), row.blob(2), ""};
+  SQLiteStatement coder = connection_->prepare("SELECT data, checksum FROM view_coders WHERE projection = ?");
+  const bool found = coder.bind(1, projection.id).next();
+  if (found) projection.view_coder = coder.blob(0);
+  if (!found || checksumOf("view_coders", projection.id, projection.view_coder) != coder.integer(1) ||
+      checksumOf("projections", projection.id, projection.values) != row.integer(3))
     failIO(file_, "the projection is damaged, pcl_symmetry_database rebuild makes a new one");
   return projection;
 }
 
-void ModelStore::eachForms(std::int64_t projection, const std::function<void(PackedForms)>& take) {
+void ModelStore::each(const std::string& table, const std::string& what, std::int64_t projection,
+                      const EachBytes& take) {
   if (!startReading()) return;
   SQLiteStatement row =
-      connection_->prepare("SELECT model, data, checksum FROM compact WHERE projection = ? ORDER BY model");
+      connection_->prepare("SELECT model, data, checksum FROM " + table + " WHERE projection = ? ORDER BY model");
   row.bind(1, projection);
   while (row.next()) {
-    PackedForms forms{row.integer(0), row.blob(1)};
-    if (checksumOf("compact", forms.model, forms.forms) != row.integer(2))
-      failIO(file_, "the compact form of model " + std::to_string(forms.model) +
-                        " is damaged, pcl_symmetry_database rebuild makes new ones");
-    take(std::move(forms));
+    const std::int64_t model = row.integer(0);
+    const std::string data = row.blob(1);
+    if (checksumOf(table, model, data) != row.integer(2))
+      failIO(file_,
+             what + " of model " + std::to_string(model) + " is damaged, pcl_symmetry_database rebuild makes new ones");
+    take(model, data);
   }
+}
+
+void ModelStore::eachForms(std::int64_t projection, const EachBytes& take) {
+  each("compact", "the compact form", projection, take);
+}
+
+void ModelStore::eachViewCodes(std::int64_t projection, const EachBytes& take) {
+  each("view_codes", "the code of views", projection, take);
 }
 
 template <typename Body>
@@ -223,7 +238,7 @@ void ModelStore::change(const Body& body) {
 }
 
 std::int64_t ModelStore::add(const ModelInfo& info, const PackedModel& model, std::int64_t projection,
-                             const std::string& forms) {
+                             PackedForms forms) {
   std::int64_t id = 0;
   change([&] {
     connection_->prepare("DELETE FROM models WHERE name = ?").bind(1, info.name).run();
@@ -249,7 +264,8 @@ std::int64_t ModelStore::add(const ModelInfo& info, const PackedModel& model, st
           .bind(3, checksumOf(tableOf(kind), id, data))
           .run();
     }
-    if (projection != 0) insertForms(projection, {{id, forms}});
+    forms.model = id;
+    if (projection != 0) insertForms(projection, {forms});
   });
   return id;
 }
@@ -275,6 +291,11 @@ void ModelStore::setProjection(const PackedProjection& projection, const std::ve
         .bindBlob(3, projection.values)
         .bind(4, checksumOf("projections", id, projection.values))
         .run();
+    connection_->prepare("INSERT INTO view_coders VALUES (?, ?, ?)")
+        .bind(1, id)
+        .bindBlob(2, projection.view_coder)
+        .bind(3, checksumOf("view_coders", id, projection.view_coder))
+        .run();
     insertForms(id, forms);
   });
 }
@@ -285,15 +306,20 @@ void ModelStore::addForms(std::int64_t projection, const std::vector<PackedForms
 
 /// Forms of models or of a projection that are gone are passed over.
 void ModelStore::insertForms(std::int64_t projection, const std::vector<PackedForms>& forms) {
-  SQLiteStatement insert = connection_->prepare(
-      "INSERT OR REPLACE INTO compact SELECT ?1, ?2, ?3, ?4 WHERE EXISTS (SELECT 1 FROM models WHERE id = ?1) "
-      "AND EXISTS (SELECT 1 FROM projections WHERE id = ?2)");
-  for (const PackedForms& packed : forms)
-    insert.bind(1, packed.model)
-        .bind(2, projection)
-        .bindBlob(3, packed.forms)
-        .bind(4, checksumOf("compact", packed.model, packed.forms))
-        .run();
+  const auto insert = [&](const std::string& table, std::string PackedForms::*data) {
+    SQLiteStatement statement =
+        connection_->prepare("INSERT OR REPLACE INTO " + table +
+                             " SELECT ?1, ?2, ?3, ?4 WHERE EXISTS (SELECT 1 FROM models WHERE id = ?1) " +
+                             "AND EXISTS (SELECT 1 FROM projections WHERE id = ?2)");
+    for (const PackedForms& packed : forms)
+      statement.bind(1, packed.model)
+          .bind(2, projection)
+          .bindBlob(3, packed.*data)
+          .bind(4, checksumOf(table, packed.model, packed.*data))
+          .run();
+  };
+  insert("compact", &PackedForms::forms);
+  insert("view_codes", &PackedForms::view_codes);
 }
 
 std::vector<std::string> ModelStore::damages() {

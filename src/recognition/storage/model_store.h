@@ -26,15 +26,18 @@ struct StoredModel {
   std::string name;
 };
 
-/// A projection as bytes of CompactForms, and compact forms that were made with it.
+/// What is fitted to a database, as bytes: CompactForms, and the ViewCoder as packedMatrix().
 struct PackedProjection {
   std::int64_t id = 0;
   int num_references = 0;
   std::string values;
+  std::string view_coder;
 };
+/// What was made of a model with it: bytes of a CompactForm, and packedViewCodes().
 struct PackedForms {
   std::int64_t model = 0;
   std::string forms;
+  std::string view_codes;
 };
 
 /// The file of a database. Every function throws pcl::IOException, which names the file and the reason.
@@ -43,6 +46,9 @@ struct PackedForms {
 /// was changed is on the disk when a function returns, all of it or nothing.
 class ModelStore {
 public:
+  /// Takes the id of a model and its bytes.
+  using EachBytes = std::function<void(std::int64_t, const std::string&)>;
+
   /// Nothing is written before the first change: a file that is missing is an empty database.
   /// \param file ":memory:" = no file.
   /// \param unit stored in a new database.
@@ -70,15 +76,17 @@ public:
   std::vector<StoredModel> modelsWithoutForms();
   std::optional<PackedProjection> projection();
   /// Compact forms of a projection, by rising id of the model.
-  void eachForms(std::int64_t projection, const std::function<void(PackedForms)>& take);
+  void eachForms(std::int64_t projection, const EachBytes& take);
+  /// Codes of views, in the same way.
+  void eachViewCodes(std::int64_t projection, const EachBytes& take);
 
   /// Adds a model or replaces that of its name.
-  /// \param forms compact forms and the projection that they were made with; 0: none.
+  /// \param forms of this model, of any id, and the projection that they were made with; 0: none.
   /// \return the id of the new model.
-  std::int64_t add(const ModelInfo& info, const PackedModel& model, std::int64_t projection, const std::string& forms);
+  std::int64_t add(const ModelInfo& info, const PackedModel& model, std::int64_t projection, PackedForms forms);
   /// \return whether there was such a model.
   bool remove(const std::string& name);
-  /// Replaces the projection and all compact forms. Models that are gone are passed over.
+  /// Replaces the projection and all that was made with it. Models that are gone are passed over.
   void setProjection(const PackedProjection& projection, const std::vector<PackedForms>& forms);
   /// Adds forms that are missing. Nothing happens where the projection is no longer the stored one.
   void addForms(std::int64_t projection, const std::vector<PackedForms>& forms);
@@ -95,6 +103,7 @@ private:
   void checkSchema() const;
   template <typename Body>
   void change(const Body& body);
+  void each(const std::string& table, const std::string& what, std::int64_t projection, const EachBytes& take);
   void insertForms(std::int64_t projection, const std::vector<PackedForms>& forms);
 
   std::string file_, unit_;

@@ -2,8 +2,10 @@
 #include <pcl/io/pcd_io.h>
 
 #include <boost/filesystem.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "apps/support/lathe_mesh.h"
 #include "apps/support/temporary_folder.h"
@@ -11,6 +13,7 @@
 #include "core/descriptors/shape_signature.h"
 #include "core/descriptors/symmetry_descriptor.h"
 #include "pcl_symmetry/features/point_types.h"
+#include "recognition/storage/model_store.h"
 
 namespace {
 
@@ -156,6 +159,50 @@ TEST_F(DatabaseTools, GoOnTakeFoldersAndTellWhatTheyHold) {
   ASSERT_EQ(database("build " + (folder_ / "third.db") + " @" + (folder_ / "list.txt") + " -points 2000"), 0) << error_;
   ASSERT_EQ(database("list " + (folder_ / "third.db")), 0) << error_;
   EXPECT_EQ(output_, "a\nb\nvase\n");
+}
+
+/// What a database holds of each model, but the time.
+std::map<std::string, std::vector<std::string>> contentsOf(const std::string& file) {
+  detail::ModelStore store(file, 10.0, "");
+  std::map<std::string, std::vector<std::string>> contents;
+  for (const detail::StoredModel& model : store.models()) {
+    const ModelInfo info = store.find(model.name).value().second;
+    std::vector<std::string>& parts = contents[model.name];
+    parts = {info.source.path, info.source.checksum, std::to_string(info.num_points)};
+    for (const auto part : {detail::ModelPart::Cloud, detail::ModelPart::Signatures, detail::ModelPart::Views})
+      parts.push_back(store.part(part, model));
+  }
+  contents["projection"] = {std::to_string(store.projectionId())};
+  return contents;
+}
+
+TEST_F(DatabaseTools, ProcessesShareABuild) {
+#ifndef MPI_RUN
+  GTEST_SKIP() << "the tools are built without MPI";
+#else
+  const std::string processes = MPI_RUN " -n 2 --allow-run-as-root --oversubscribe --bind-to none ";
+  const std::string files = " " + (folder_ / "vase.off") + " " + (folder_ / "box.off") + " " +
+                            (folder_ / "nothing.off") + " " + (folder_ / "tetrahedron.off") + " -points 2000";
+  const std::string shared = folder_ / "shared.db", one = folder_ / "one.db";
+  ASSERT_EQ(database("build " + one + files), 1);
+  const std::string said = error_;
+  const auto build = [&](const std::string& more) {
+    return run(processes + "./pcl_symmetry_database build " + shared + files + more);
+  };
+  EXPECT_NE(build(" -quiet"), 0) << "a file is missing";
+  EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
+  EXPECT_EQ(contentsOf(shared), contentsOf(one));
+  EXPECT_NE(build(" -json " + (folder_ / "again.json")), 0);
+  EXPECT_EQ(json::parse(contentOf(folder_ / "again.json"))["kept"], 3) << "it goes on where it was";
+  const std::string out = folder_ / "out", alone = folder_ / "alone";
+  const std::string inputs = " " + (folder_ / "vase.off") + " " + (folder_ / "box.off") + " -points 2000";
+  ASSERT_EQ(run(processes + "./pcl_symmetry_describe " + out + inputs), 0) << error_;
+  ASSERT_EQ(run("./pcl_symmetry_describe " + alone + inputs), 0) << error_;
+  for (const char* name : {"/vase.pcd", "/box.pcd"}) EXPECT_EQ(contentOf(out + name), contentOf(alone + name));
+  // Where the first process cannot go on, none waits.
+  EXPECT_NE(run(processes + "./pcl_symmetry_database build " + (folder_ / "no/folder.db") + files), 0);
+  EXPECT_NE(error_.find("there is no folder"), std::string::npos) << error_;
+#endif
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 
 #include "pcl/support/damaged_database.h"
 #include "pcl/support/interrupted_writer.h"
+#include "recognition/storage/database_schema.h"
 #include "recognition/storage/model_store.h"
 
 namespace pcl_symmetry {
@@ -37,7 +38,7 @@ protected:
   }
 
   static void add(ModelStore& store, const std::string& name, const std::string& part = "a part of a model") {
-    store.add({name, 7, {"source of " + name, "", {}}, 1}, {part, part, part, 1}, 0, "");
+    store.add({name, 7, {"source of " + name, "", {}}, 1}, {part, part, part, 1}, 0, {});
   }
   static std::string messageOf(const std::function<void()>& body) {
     try {
@@ -59,7 +60,9 @@ protected:
 
 TEST_F(DatabaseSafety, KilledWritersLoseNothing) {
   test::InterruptedWriter writer(file_);
-  for (std::uint64_t i = 0; i < 20; ++i) EXPECT_EQ(writer.run(test::Interruption::Kill, i), "") << i;
+  // On a busy machine many are killed before their first change.
+  for (std::uint64_t i = 0; i < 20 || (i < 200 && writer.numChanges() == 0); ++i)
+    EXPECT_EQ(writer.run(test::Interruption::Kill, i), "") << i;
   EXPECT_GT(writer.numChanges(), 0u);
 }
 
@@ -170,12 +173,13 @@ TEST_F(DatabaseSafety, RefusesOtherVersions) {
     add(store, "first");
   }
   const std::string whole = bytesOf(file_);
-  for (const char version : {2, 4}) {
+  for (const char version : {detail::kSchemaVersion - 1, detail::kSchemaVersion + 1}) {
     std::string other = whole;
     other[63] = version;  // the last byte of user_version in the header
     std::ofstream(file_, std::ios::binary) << other;
     const std::string message = messageOf([&] { ModelStore(file_, 1.0, ""); });
-    EXPECT_NE(message.find(version == 2 ? "an older library wrote" : "a newer library wrote"), std::string::npos);
+    EXPECT_NE(message.find(version < detail::kSchemaVersion ? "an older library wrote" : "a newer library wrote"),
+              std::string::npos);
   }
 }
 

@@ -13,6 +13,7 @@
 
 #include "pcl/support/error_message.h"
 #include "pcl/support/kinds.h"
+#include "recognition/storage/model_store.h"
 
 namespace pcl_symmetry {
 
@@ -119,6 +120,47 @@ TEST_F(SymmetryDatabaseTest, RecognizesAViewWithItsPose) {
     EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.05) << kind.name;
   }
   EXPECT_TRUE(database.recognize(seenFrom(ball(), {0.0f, 0.0f, 6.0f}), optionsForRandomPoints()).empty());
+}
+
+/// The models of a file under \p count names each.
+void fillWithCopies(const std::string& from, const std::string& to, int count) {
+  detail::ModelStore source(from, 10.0, ""), target(to, 10.0, "");
+  for (const detail::StoredModel& model : source.models()) {
+    const detail::PackedModel packed{source.part(detail::ModelPart::Cloud, model),
+                                     source.part(detail::ModelPart::Signatures, model),
+                                     source.part(detail::ModelPart::Views, model), 5000};
+    for (int i = 0; i < count; ++i)
+      target.add({model.name + std::to_string(i), 0, {}, packed.num_points}, packed, 0, {});
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreCompared) {
+  DatabaseOptions options;
+  options.num_views = 20;
+  options.num_references = 20;
+  const std::string few = folder_ + "/few.db";
+  {
+    SymmetryDatabase database(few, options);
+    fill(database);
+  }
+  fillWithCopies(few, file_, 26);
+  RecognitionOptions recognition = optionsForRandomPoints();
+  recognition.num_candidates = 2;
+  recognition.num_refined = 1;
+  const Cloud view = seenFrom(rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const auto nameIn = [&](const SymmetryDatabase& database) {
+    const Recognition found = database.recognize(view, recognition);
+    return found.empty() ? "" : found[0].name;
+  };
+  SymmetryDatabase database(file_, options);
+  ASSERT_EQ(database.size(), 104u);
+  const std::string made = nameIn(database);
+  EXPECT_EQ(made.substr(0, 5), "plate") << "its codes are made";
+  database.save();
+  EXPECT_EQ(nameIn(database), made) << "its codes are stored";
+  database.add("another", rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 1));
+  EXPECT_EQ(nameIn(SymmetryDatabase(file_, options)), made) << "codes of a new model are stored with it";
+  EXPECT_TRUE(SymmetryDatabase::check(file_).empty());
 }
 
 TEST_F(SymmetryDatabaseTest, ChangesAreStoredAtOnce) {

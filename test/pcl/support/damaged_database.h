@@ -17,8 +17,9 @@ public:
   explicit DamagedDatabase(std::string file) : file_(std::move(file)) {
     {
       detail::ModelStore store(file_, 1.0, "m");
-      for (const char* name : {"cube", "beam", "a longer name", "gone"}) store.add(infoOf(name), modelOf(name), 0, "");
-      store.setProjection({0, 3, partOf("projection")}, {{1, partOf("form")}, {2, partOf("form")}});
+      for (const char* name : {"cube", "beam", "a longer name", "gone"}) store.add(infoOf(name), modelOf(name), 0, {});
+      store.setProjection({0, 3, partOf("projection"), partOf("coder")},
+                          {{1, partOf("form"), partOf("codes")}, {2, partOf("form"), partOf("codes")}});
       store.remove("gone");
     }
     std::ifstream stream(file_, std::ios::binary);
@@ -64,8 +65,11 @@ private:
         if (info && info->second.source.path != "source of " + model.name) return "another source of " + model.name;
       }
       if (store.projection() && store.projection()->values != partOf("projection")) return "another projection";
-      store.eachForms(1, [](const detail::PackedForms& forms) {
-        if (forms.forms != partOf("form")) throw std::runtime_error("another compact form");
+      store.eachForms(1, [](std::int64_t, const std::string& bytes) {
+        if (bytes != partOf("form")) throw std::runtime_error("another compact form");
+      });
+      store.eachViewCodes(1, [](std::int64_t, const std::string& bytes) {
+        if (bytes != partOf("codes")) throw std::runtime_error("other codes of views");
       });
       for (const std::string& name : names)
         if (name != "cube" && name != "beam" && name != "a longer name") return "a model " + name;

@@ -72,10 +72,10 @@ private:
         if (!say((adds ? "add " : "remove ") + name + " " + value)) return;
         const std::string part(1000 + random.below(20'000), static_cast<char>('a' + i % 26));
         if (adds)
-          store.add({name, 0, {value, "", {}}, 1}, {part, part, part, 1}, 0, "");
+          store.add({name, 0, {value, "", {}}, 1}, {part, part, part, 1}, 0, {});
         else
           store.remove(name);
-        if (i % 16 == 0) store.setProjection({0, 1, part}, {});
+        if (i % 16 == 0) store.setProjection({0, 1, part, part}, {});
         if (!say("done")) return;
       }
     } catch (const std::exception& error) {
