@@ -15,7 +15,7 @@
 
 #include <algorithm>
 
-#include "common/pictures/picture_actors.h"
+#include "common/drawing/picture_actors.h"
 #include "common/shape_output/shape_output.h"
 #include "core/base/constants.h"
 

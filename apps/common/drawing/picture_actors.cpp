@@ -1,4 +1,4 @@
-#include "common/pictures/picture_actors.h"
+#include "common/drawing/picture_actors.h"
 
 #include <pcl/common/point_tests.h>
 #include <pcl/conversions.h>
