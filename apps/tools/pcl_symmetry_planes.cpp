@@ -12,6 +12,7 @@
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
 #include "common/files/json_values.h"
+#include "common/html/scene_page.h"
 #include "common/pictures/picture.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
@@ -29,7 +30,7 @@ constexpr std::size_t kMaxPanels = 9;
 
 struct PlanesOptions {
   BatchOptions batch;
-  std::optional<std::string> png_path, support_path;
+  std::optional<std::string> png_path, html_path, support_path;
   DetectionOptions detection;
   CommonOptions common;
 };
@@ -42,9 +43,11 @@ const std::vector<std::string> kColumns = {"number",     "kind",  "a",       "b"
 CommandLine commandLine(PlanesOptions& options) {
   CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of clouds and meshes.",
                    "pcl_symmetry_planes chair.pcd -json planes.json -png planes.png");
-  options.batch.outputs = {&options.png_path, &options.support_path};
+  options.batch.outputs = {&options.png_path, &options.html_path, &options.support_path};
   line.positionals("input", options.batch.inputs, kManyInputs)
       .picture("png", options.png_path, "picture: cloud, planes and support, best planes first")
+      .text("html", "FILE", options.html_path,
+            "page with the same in three dimensions, for any browser, without network")
       .text("support", "FILE", options.support_path,
             "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane")
       .flag("approximate", options.detection.approximate,
@@ -307,7 +310,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   const double searching_ms = searching.done(summary);
   findings.timing_ms.emplace_back("load", input.loading_ms);
   findings.timing_ms.emplace_back("total", searching_ms);
-  if (options.support_path || options.png_path)
+  if (options.support_path || options.png_path || options.html_path)
     for (const SymmetryPlane& plane : findings.planes)
       findings.support.push_back(refinement.computePointSupport(plane));
   return findings;
@@ -333,6 +336,9 @@ void analyse(const PlanesOptions& options, FileJob& job) {
   job.report({tableOf(findings, input.shift()), describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));
   if (options.png_path) draw(job.console(), input, findings, job.output(*options.png_path));
+  if (options.html_path)
+    writePage(makeScene(input.points, findings), {job.path(), tableOf(findings, input.shift())},
+              job.output(*options.html_path));
 }
 
 int run(int argc, char** argv) {

@@ -13,6 +13,7 @@
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
+#include "common/html/scene_page.h"
 #include "common/pictures/picture.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/shape_input.h"
@@ -29,7 +30,7 @@ using namespace pcl_symmetry::apps;
 struct SegmentOptions {
   BatchOptions batch;
   std::string input;
-  std::optional<std::string> output, png_path;
+  std::optional<std::string> output, png_path, html_path;
   std::optional<Eigen::Vector3d> up;
   std::string method = "merging", evidence = "all";
   int depth = SplittingOptions().depth, num_parts = 0, size = 800;
@@ -40,13 +41,14 @@ struct SegmentOptions {
 CommandLine commandLine(SegmentOptions& o) {
   CommandLine line("pcl_symmetry_segment", "Cuts a cloud or mesh into parts by its symmetries.",
                    "pcl_symmetry_segment bull.off bull.seg -json tree.json -png parts.png");
-  o.batch.outputs = {&o.output, &o.png_path};
+  o.batch.outputs = {&o.output, &o.png_path, &o.html_path};
   line.positional("input", o.input, kOneOrManyInputs)
       .positional(
           "output", o.output,
           ".pcd or .ply: points with their segment in the field label; .ply of a mesh: with its faces coloured; "
           ".seg: the segment of each face, one a line")
       .picture("png", o.png_path, "picture: parts in colours")
+      .text("html", "FILE", o.html_path, "page with the same in three dimensions, for any browser, without network")
       .direction("up", o.up, "direction that is up in the picture, input frame (0,0,1)")
       .number("size", o.size, Range::closed(16, 4096), "edge of the picture, pixels")
       .choice("method", o.method, {"merging", "splitting"},
@@ -111,7 +113,7 @@ nlohmann::json describe(const std::string& path, const Shape& shape, const std::
   return json;
 }
 
-void drawParts(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels, const std::string& path) {
+PictureScene sceneOf(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels) {
   PictureScene scene;
   scene.points = shape.points;
   scene.mesh = shape.mesh;
@@ -119,7 +121,7 @@ void drawParts(const SegmentOptions& o, const Shape& shape, const std::vector<in
   panel.segments = labels;
   scene.panels = {panel};
   if (o.up) standUpright(scene, *o.up);
-  renderPicture(scene, path, o.size, o.size);
+  return scene;
 }
 
 Shape load(const FileJob& job, const SegmentOptions& o) {
@@ -168,10 +170,15 @@ void analyse(const SegmentOptions& options, FileJob& job) {
   job.report({"", describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms),
               rowsOf(segments)});
   if (options.output) saveLabelled(job.output(*options.output), shape, labels);
+  if (options.html_path) {
+    PictureScene scene = sceneOf(options, shape, labels);
+    scene.panels[0].label = std::to_string(segments.size()) + (segments.size() == 1 ? " part" : " parts");
+    writePage(scene, {job.path(), ""}, job.output(*options.html_path));
+  }
   if (!options.png_path) return;
   const std::string picture = job.output(*options.png_path);
   Step drawing(job.console(), "Drawing " + picture);
-  drawParts(options, shape, labels, picture);
+  renderPicture(sceneOf(options, shape, labels), picture, options.size, options.size);
   drawing.done();
 }
 

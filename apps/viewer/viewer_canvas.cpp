@@ -16,6 +16,7 @@
 #include <algorithm>
 
 #include "common/drawing/picture_actors.h"
+#include "common/patches/patch_geometry.h"
 #include "common/shape_output/shape_output.h"
 #include "core/base/constants.h"
 

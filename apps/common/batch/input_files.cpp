@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
-#include <sstream>
+#include <fstream>
 #include <utility>
 
 #include "common/files/file_text.h"
@@ -53,14 +53,27 @@ void addPattern(const std::string& pattern, std::vector<InputFile>& files) {
   if (code != 0) throw InputError(pattern + ": no file has such a name");
 }
 
-std::vector<std::string> linesOf(const std::string& path) {
-  std::istringstream text(readWholeFile(path));
-  std::vector<std::string> lines;
+void addArgument(const std::string& argument, std::vector<InputFile>& files);
+
+void addList(const std::string& path, std::vector<InputFile>& files) {
+  checkReadableFile(path);
+  std::ifstream text(path, std::ios::binary);
   for (std::string line; std::getline(text, line);) {
     boost::algorithm::trim(line);
-    if (!line.empty() && line.front() != '#') lines.push_back(line);
+    if (!line.empty() && line.front() != '#') addArgument(line, files);
   }
-  return lines;
+}
+
+void addArgument(const std::string& argument, std::vector<InputFile>& files) {
+  if (isList(argument)) {
+    addList(argument.substr(1), files);
+  } else if (isFolder(argument)) {
+    addFolder(argument, files);
+  } else if (isPattern(argument)) {
+    addPattern(argument, files);
+  } else {
+    files.push_back({argument, ""});
+  }
 }
 
 }  // namespace
@@ -78,17 +91,7 @@ bool standsForSeveral(const std::string& argument) {
 
 std::vector<InputFile> inputFiles(const std::vector<std::string>& arguments) {
   std::vector<InputFile> files;
-  for (const std::string& argument : arguments) {
-    if (isList(argument)) {
-      for (InputFile& file : inputFiles(linesOf(argument.substr(1)))) files.push_back(std::move(file));
-    } else if (isFolder(argument)) {
-      addFolder(argument, files);
-    } else if (isPattern(argument)) {
-      addPattern(argument, files);
-    } else {
-      files.push_back({argument, ""});
-    }
-  }
+  for (const std::string& argument : arguments) addArgument(argument, files);
   return files;
 }
 

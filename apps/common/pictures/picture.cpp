@@ -11,6 +11,16 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
+void checkSize(int width, int height) {
+  for (const int edge : {width, height}) {
+    if (edge < 16 || edge > 16384) {
+      throw std::invalid_argument("picture edge = " + std::to_string(edge) + ", must be >= 16 and <= 16384");
+    }
+  }
+}
+
+}  // namespace
+
 void checkScene(const PictureScene& scene) {
   if (!scene.points) throw std::invalid_argument("points is not set");
   if (scene.panels.empty()) throw std::invalid_argument("panels is empty, must hold at least one");
@@ -40,16 +50,6 @@ void checkScene(const PictureScene& scene) {
     throw std::invalid_argument("view and up must be finite and not parallel");
   }
 }
-
-void checkSize(int width, int height) {
-  for (const int edge : {width, height}) {
-    if (edge < 16 || edge > 16384) {
-      throw std::invalid_argument("picture edge = " + std::to_string(edge) + ", must be >= 16 and <= 16384");
-    }
-  }
-}
-
-}  // namespace
 
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up) {
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);

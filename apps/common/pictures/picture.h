@@ -58,6 +58,9 @@ struct PictureScene {
 /// Turns the view so that \p up is to it what z was; any length but zero.
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 
+/// \throws std::invalid_argument for a scene that does not fit together.
+void checkScene(const PictureScene& scene);
+
 /// Renders off screen and writes a PNG whole. Uses the display if there is one, or else a private Xvfb.
 /// \param width, height of the whole picture in pixels, 16 to 16384.
 /// \throws std::invalid_argument for a scene that does not fit together, InputError if nothing can draw or the file

@@ -13,7 +13,7 @@ namespace {
 
 using namespace pcl_symmetry::apps;
 
-std::string boxOFF(double length) {
+std::string boxOfLength(double length) {
   std::ostringstream text;
   text << "OFF\n8 6 12\n";
   for (const double x : {-1.0, 1.0})
@@ -28,9 +28,9 @@ class Pipelines : public ToolTest {
 protected:
   explicit Pipelines(const std::string& tool) : ToolTest(toolPath(tool)) {
     boost::filesystem::create_directory(folder_ / "in");
-    folder_.write("in/a.off", boxOFF(2));
+    folder_.write("in/a.off", boxOfLength(2));
     folder_.write("in/b.off", "no shape");
-    folder_.write("in/c.off", boxOFF(3));
+    folder_.write("in/c.off", boxOfLength(3));
   }
 
   std::vector<nlohmann::json> lines(const std::string& text) const {
@@ -107,9 +107,9 @@ TEST_F(PlanesPipelines, ReadStandardInputAndWriteStandardOutput) {
   EXPECT_NE(error_.find("standard input: is of no known kind"), std::string::npos) << error_;
   EXPECT_EQ(run("- -quiet </dev/null"), 1);
   EXPECT_NE(error_.find("standard input: is empty"), std::string::npos) << error_;
-  const std::string cut = folder_.write("cut.off", "OFF\n3 1 0\n0 0 0\n");
+  const std::string cut = folder_.write("cut.off", "OFF\n3 1 0\n0 0 0\n0 0 0\n");
   EXPECT_EQ(run("- -quiet <" + cut), 1);
-  EXPECT_NE(error_.find("standard input: x of vertex 1 is missing"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("standard input: x of vertex 2 is missing"), std::string::npos) << error_;
 }
 
 TEST_F(SegmentPipelines, TakeAFolder) {
