@@ -48,9 +48,16 @@ void addFolder(const std::string& folder, std::vector<InputFile>& files) {
 void addPattern(const std::string& pattern, std::vector<InputFile>& files) {
   glob_t found{};
   const int code = ::glob(pattern.c_str(), 0, nullptr, &found);
-  for (std::size_t i = 0; code == 0 && i < found.gl_pathc; ++i) files.push_back({found.gl_pathv[i], ""});
+  const std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + (code == 0 ? found.gl_pathc : 0));
   ::globfree(&found);
   if (code != 0) throw InputError(pattern + ": no file has such a name");
+  for (const std::string& path : paths) {
+    if (isFolder(path)) {
+      addFolder(path, files);
+    } else {
+      files.push_back({path, ""});
+    }
+  }
 }
 
 void addArgument(const std::string& argument, std::vector<InputFile>& files);

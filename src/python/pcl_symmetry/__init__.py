@@ -50,3 +50,17 @@ __all__ = [
     "transform",
     "viewpoints",
 ]
+
+# What needs the libraries of PCL is loaded when it is first used: an import takes longer for it.
+_WITH_PCL = ("Database", "Match", "PoseScore", "Recognized", "Registration", "register")
+__all__ += list(_WITH_PCL)
+
+
+def __getattr__(name):
+    if name not in _WITH_PCL:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from . import _recognition
+
+    for each in _WITH_PCL:
+        globals()[each] = getattr(_recognition, each)
+    return globals()[name]
