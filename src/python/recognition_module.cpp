@@ -35,7 +35,7 @@ Eigen::Isometry3d motionOf(const RowMajor4& matrix) {
   return motion;
 }
 
-CloudRegistration registerPoints(const py::array& source, const py::array& target, const RowMajor4& guess,
+CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target, const RowMajor4& guess,
                                  const py::object& source_viewpoint, const py::object& target_viewpoint,
                                  std::uint64_t seed, int threads) {
   const InputPoints source_input("source", source, 0, seed), target_input("target", target, 0, seed);
@@ -128,7 +128,7 @@ void addDatabase(py::module_& module) {
       .def("__contains__", &SymmetryDatabase::contains)
       .def(
           "add",
-          [](SymmetryDatabase& database, const std::string& name, const py::array& points) {
+          [](SymmetryDatabase& database, const std::string& name, const AnyArray& points) {
             const Cloud cloud = cloudOf("points", points);
             const py::gil_scoped_release release;
             database.add(name, cloud);
@@ -136,11 +136,12 @@ void addDatabase(py::module_& module) {
           py::arg("name"), py::arg("points"), "Stores a model, (N, 3) points all around it; on the disk on return.")
       .def("remove", &SymmetryDatabase::remove, py::arg("name"))
       .def(
-          "cloud", [](const SymmetryDatabase& database, const std::string& name) { return rowsOf(database.cloud(name)); },
+          "cloud",
+          [](const SymmetryDatabase& database, const std::string& name) { return rowsOf(database.cloud(name)); },
           py::arg("name"), "(N, 3) points of a model")
       .def(
           "match",
-          [](const SymmetryDatabase& database, const py::array& points, int num_nearest, const py::object& viewpoint) {
+          [](const SymmetryDatabase& database, const AnyArray& points, int num_nearest, const py::object& viewpoint) {
             const Cloud cloud = cloudOf("points", points);
             const Viewpoint from = viewpointOf(viewpoint);
             const py::gil_scoped_release release;
@@ -150,7 +151,7 @@ void addDatabase(py::module_& module) {
           "The models most like a cloud, in any pose and size: list of Match, nearest first.")
       .def(
           "recognize",
-          [](const SymmetryDatabase& database, const py::array& points, const py::object& viewpoint, int threads) {
+          [](const SymmetryDatabase& database, const AnyArray& points, const py::object& viewpoint, int threads) {
             const Cloud cloud = cloudOf("points", points);
             const Viewpoint from = viewpointOf(viewpoint);
             RecognitionOptions options;

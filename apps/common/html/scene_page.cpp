@@ -61,7 +61,7 @@ public:
                         {"up", numbers(scene_.up)},
                         {"plain_point", plain(kPlainPointColor)},
                         {"plain_mesh", plain(kPlainMeshColor)},
-                        {"point_size", 0.4 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, kept_.size())))},
+                        {"point_size", 0.5 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, kept_.size())))},
                         {"points", positions()},
                         {"normals", normals()},
                         {"mesh", triangles_.empty() ? "" : base64(triangles_)},

@@ -51,9 +51,9 @@ __all__ = [
     "viewpoints",
 ]
 
-# What needs the libraries of PCL is loaded when it is first used: an import takes longer for it.
+# What needs the libraries of PCL, which take longer to load, is loaded when it is first used. It is missing where the library
+# was built without PCL.
 _WITH_PCL = ("Database", "Match", "PoseScore", "Recognized", "Registration", "register")
-__all__ += list(_WITH_PCL)
 
 
 def __getattr__(name):
