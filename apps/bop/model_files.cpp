@@ -6,21 +6,17 @@
 #include <cctype>
 #include <map>
 
-#include "common/shape_input/shape_input.h"
+#include "common/batch/input_files.h"
+#include "common/files/shape_file_kinds.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
-bool isShape(const boost::filesystem::path& path) {
-  const std::string ending = boost::algorithm::to_lower_copy(path.extension().string());
-  return !ending.empty() && (std::string(" ") + kShapeFiles + ",").find(" " + ending) != std::string::npos;
-}
-
 std::vector<std::string> shapesIn(const std::string& folder) {
   std::vector<std::string> all, numbered;
   for (const auto& entry : boost::filesystem::directory_iterator(folder)) {
-    if (!isShape(entry.path())) continue;
+    if (!hasShapeExtension(entry.path().string())) continue;
     all.push_back(entry.path().string());
     if (boost::algorithm::starts_with(entry.path().filename().string(), "obj_")) numbered.push_back(all.back());
   }

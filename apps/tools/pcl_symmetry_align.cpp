@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/batch/run_on_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
@@ -30,6 +31,7 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct AlignOptions {
+  BatchOptions batch;
   std::string input;
   std::optional<std::string> output, target;
   bool complete = false;
@@ -42,13 +44,15 @@ CommandLine commandLine(AlignOptions& options) {
       "Turns a cloud into the frame of its symmetry: center to the origin, axes to x, y and z, best first. "
       "With -target, brings it to another cloud instead, from any pose.",
       "pcl_symmetry_align scan.pcd aligned.pcd -target model.ply -json pose.json");
-  line.positional("input", options.input, kShapeFiles)
+  options.batch.outputs = {&options.output};
+  line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the cloud after the transform")
       .text("target", "FILE", options.target, "cloud or mesh that the input is brought to")
       .flag("complete", options.complete,
             "reflect the cloud across its best plane of symmetry, except into space that was seen to be empty; the "
             "field reflected_of of an added point is the index of its source, and -1 for all others")
       .common(options.common, kShapeFlags);
+  options.batch.addTo(line);
   return line;
 }
 
@@ -127,6 +131,7 @@ void complete(const Console& console, const InputShape& input, const CommonOptio
 struct Motion {
   Eigen::Isometry3d transform;
   bool converged = true;
+  std::string text;
   nlohmann::json json;
 };
 
@@ -152,10 +157,15 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
   return result;
 }
 
-void print(const Eigen::Isometry3d& motion, int digits) {
-  for (int row = 0; row < 4; ++row)
-    std::printf("%12.6f %12.6f %12.6f %12.*g\n", motion(row, 0), motion(row, 1), motion(row, 2), digits,
-                motion(row, 3));
+std::string linesOf(const Eigen::Isometry3d& motion, int digits) {
+  std::string lines;
+  for (int row = 0; row < 4; ++row) {
+    char text[96];
+    std::snprintf(text, sizeof(text), "%12.6f %12.6f %12.6f %12.*g\n", motion(row, 0), motion(row, 1), motion(row, 2),
+                  digits, motion(row, 3));
+    lines += text;
+  }
+  return lines;
 }
 
 nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
@@ -175,26 +185,38 @@ nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift
   return json;
 }
 
-void print(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
-  std::printf("center %s\n", spelled(shiftedBack(frame.center, shift), lengthDigits(shift)).c_str());
-  for (int k = 0; k < 3; ++k)
-    std::printf("axis %d %9.6f %9.6f %9.6f  score %.3f%s\n", k + 1, frame.axes(0, k), frame.axes(1, k),
-                frame.axes(2, k), frame.scores[k], frame.revolution_axis == k ? "  axis of revolution" : "");
+std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
+  std::string lines = "center " + spelled(shiftedBack(frame.center, shift), lengthDigits(shift)) + "\n";
+  for (int k = 0; k < 3; ++k) {
+    char text[128];
+    std::snprintf(text, sizeof(text), "axis %d %9.6f %9.6f %9.6f  score %.3f%s\n", k + 1, frame.axes(0, k),
+                  frame.axes(1, k), frame.axes(2, k), frame.scores[k],
+                  frame.revolution_axis == k ? "  axis of revolution" : "");
+    lines += text;
+  }
+  return lines;
 }
 
 Motion toOwnFrame(const Console& console, const InputShape& input, const CommonOptions& common) {
   const SymmetryFrame frame = computeFrame(console, input, common);
-  print(frame, input.shift());
   return {shiftedBack(frame.T_canonical_input, input.shift(), Eigen::Vector3d::Zero()), true,
-          describe(frame, input.shift())};
+          linesOf(frame, input.shift()), describe(frame, input.shift())};
 }
 
 Motion toTarget(const Console& console, const InputShape& input, const std::string& target_path,
                 const CommonOptions& common) {
   const InputShape target = loadInput(console, target_path, common);
-  const Motion motion = registerTo(console, input, target, common);
-  if (motion.converged) print(motion.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
+  Motion motion = registerTo(console, input, target, common);
+  if (motion.converged)
+    motion.text = linesOf(motion.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
   return motion;
+}
+
+/// The transform, row by row.
+std::vector<std::vector<nlohmann::json>> rowsOf(const Motion& motion) {
+  std::vector<nlohmann::json> row{motion.converged};
+  for (const double value : rowMajor(motion.transform)) row.emplace_back(value);
+  return {row};
 }
 
 void save(const Console& console, const Shape& shape, pcl::PCLPointCloud2 fields, const Eigen::Isometry3d& motion,
@@ -209,26 +231,32 @@ void save(const Console& console, const Shape& shape, pcl::PCLPointCloud2 fields
   step.done(std::to_string(static_cast<std::size_t>(fields.width) * fields.height) + " points");
 }
 
+void analyse(const AlignOptions& options, FileJob& job) {
+  const Console& console = job.console();
+  CommonOptions common = options.common;
+  common.threads = job.numThreads();
+  const InputShape input = loadInput(console, job.path(), common);
+  Motion motion =
+      options.target ? toTarget(console, input, *options.target, common) : toOwnFrame(console, input, common);
+  job.report({motion.text, motion.json, rowsOf(motion)});
+  if (!motion.converged) throw InputError(job.path() + ": does not fit " + *options.target + " in any pose");
+  pcl::PCLPointCloud2 fields = input.fields();
+  if (options.complete) complete(console, input, common, fields);
+  if (options.output) save(console, input.shape, std::move(fields), motion.transform, job.output(*options.output));
+}
+
 int run(int argc, char** argv) {
   AlignOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.output) checkCloudExtension(*options.output);
-  const Console console(options.common.quiet);
   // What the classes have to say is said here, in one line.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-
-  const InputShape input = loadInput(console, options.input, options.common);
-  const Motion motion = options.target ? toTarget(console, input, *options.target, options.common)
-                                       : toOwnFrame(console, input, options.common);
-  if (motion.converged) {
-    pcl::PCLPointCloud2 fields = input.fields();
-    if (options.complete) complete(console, input, options.common, fields);
-    if (options.output) save(console, input.shape, std::move(fields), motion.transform, *options.output);
-  }
-  if (options.common.json_path) writeText(*options.common.json_path, motion.json.dump(2) + "\n");
-  if (!motion.converged) throw InputError(options.input + ": does not fit " + *options.target + " in any pose");
-  return 0;
+  options.batch.inputs = {options.input};
+  std::vector<std::string> columns{"converged"};
+  for (const char row : {'0', '1', '2', '3'})
+    for (const char column : {'0', '1', '2', '3'}) columns.push_back(std::string("t") + row + column);
+  return runOnFiles(options.batch, options.common, columns, [&](FileJob& job) { analyse(options, job); });
 }
 
 }  // namespace

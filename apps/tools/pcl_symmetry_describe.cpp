@@ -6,8 +6,11 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "common/batch/batch_options.h"
+#include "common/batch/input_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
@@ -45,7 +48,7 @@ CommandLine commandLine(DescribeOptions& options) {
                    "Describes shapes by their symmetry, to tell how alike they are: one PCD file of descriptors each.",
                    "pcl_symmetry_describe descriptors models/*.off");
   line.positional("folder", options.output, "folder of the descriptors; made if it is not there")
-      .positionals("inputs", options.inputs, std::string(kShapeFiles) + ", of names that differ")
+      .positionals("inputs", options.inputs, std::string(kManyInputs) + "; of names that differ")
       .choice("type", options.type, {"signature", "prst", "prsd", "gedt"},
               "signatures in two frames, or one of the paper's descriptors")
       .flag("input_axes", options.input_axes,
@@ -127,6 +130,9 @@ int run(int argc, char** argv, SharedWork& processes) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   const Console console(options.common.quiet || !processes.isFirst());
+  std::vector<std::string> paths;
+  for (const InputFile& file : inputFiles(options.inputs)) paths.push_back(file.path);
+  options.inputs = std::move(paths);
   const std::vector<std::string> outputs = outputPaths(options);
   std::vector<std::string> failures(options.inputs.size());
   std::mutex mutex;

@@ -1,11 +1,5 @@
 /// The transform mapped back to space: for each point of a cloud and each cell of a volume the greatest symmetry of any
 /// plane through it.
-#include <vtkFloatArray.h>
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkXMLImageDataWriter.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,12 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "common/batch/run_on_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
 #include "common/pictures/picture.h"
 #include "common/pictures/raster_image.h"
+#include "common/pictures/volume_image.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/cloud_fields.h"
@@ -35,6 +31,7 @@ using namespace pcl_symmetry::apps;
 const Eigen::Vector3d kSurfaceColor(0.84, 0.37, 0.0);  // vermilion: apart from every grey, for all eyes
 
 struct MapOptions {
+  BatchOptions batch;
   std::string input;
   std::optional<std::string> output, volume_path, slices_path, png_path;
   int cells = 96, size = 300;
@@ -44,7 +41,8 @@ struct MapOptions {
 CommandLine commandLine(MapOptions& options) {
   CommandLine line("pcl_symmetry_map", "Writes the greatest symmetry of any plane through each point.",
                    "pcl_symmetry_map bull.off bull_symmetry.pcd -volume bull.vti -slices bull_slices.png");
-  line.positional("input", options.input, kShapeFiles)
+  options.batch.outputs = {&options.output, &options.volume_path, &options.slices_path, &options.png_path};
+  line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the points with one more field, intensity, about 0 to 1")
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
       .picture("slices", options.slices_path,
@@ -53,6 +51,7 @@ CommandLine commandLine(MapOptions& options) {
       .number("cells", options.cells, Range::closed(8, 512), "cells of the volume along its longest edge")
       .number("size", options.size, Range::closed(16, 4096), "edge of each picture, pixels")
       .common(options.common, kShapeFlags | kSigma);
+  options.batch.addTo(line);
   return line;
 }
 
@@ -98,30 +97,15 @@ struct Volume {
   Eigen::Vector3d center(int x, int y, int z) const { return origin + cell_size * Eigen::Vector3d(x, y, z); }
 };
 
-void writeVolume(const SymmetryMap& map, const Volume& volume, const Eigen::Vector3d& shift, int threads,
-                 const std::string& path) {
+void writeSymmetry(const SymmetryMap& map, const Volume& volume, const Eigen::Vector3d& shift, int threads,
+                   const std::string& path) {
   Points centers(3, static_cast<Eigen::Index>(volume.size.cast<std::int64_t>().prod()));
   Eigen::Index i = 0;
   for (int z = 0; z < volume.size.z(); ++z)
     for (int y = 0; y < volume.size.y(); ++y)
       for (int x = 0; x < volume.size.x(); ++x) centers.col(i++) = volume.center(x, y, z).cast<float>();
   const std::vector<float> values = pointSymmetry(map, centers, threads);
-  vtkNew<vtkFloatArray> array;
-  array->SetName("symmetry");
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(volume.size.x(), volume.size.y(), volume.size.z());
-  const Eigen::Vector3d origin = shiftedBack(volume.origin, shift);
-  image->SetOrigin(origin.data());
-  image->SetSpacing(volume.cell_size, volume.cell_size, volume.cell_size);
-  image->GetPointData()->SetScalars(array);
-  writeAtomically(path, [&](const std::string& temporary) {
-    vtkNew<vtkXMLImageDataWriter> writer;
-    writer->SetInputData(image);
-    writer->SetFileName(temporary.c_str());
-    if (!writer->Write()) throw InputError(path + ": cannot be written");
-  });
+  writeVolume({"symmetry", volume.size, shiftedBack(volume.origin, shift), volume.cell_size, values}, path);
 }
 
 /// A slice through the middle of the volume across one axis, seen along it.
@@ -181,13 +165,13 @@ RasterImage drawSlices(const SymmetryMap& map, const Volume& volume, const Point
   return sideBySide(images);
 }
 
-SymmetryMap transformOf(const InputShape& input, const CommonOptions& common) {
+SymmetryMap transformOf(const InputShape& input, const CommonOptions& common, int threads) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   return namingFile(input.path, [&] {
     transform.setGridSize(common.grid);
     if (common.sigma) transform.setSigma(*common.sigma);
     transform.setRandomSeed(common.librarySeed());
-    transform.setNumberOfThreads(common.threads);
+    transform.setNumberOfThreads(threads);
     transform.setViewpoint(shifted(common.viewpoint, input.shift()));
     transform.setInputCloud(input.points);
     const SymmetryMap map = transform.compute();
@@ -231,43 +215,53 @@ void drawPoints(const MappedCloud& mapped, const std::string& path, int size) {
   renderPicture(scene, path, size, size);
 }
 
+/// What is written of the space around the points.
+void writeSpace(const MapOptions& options, const FileJob& job, const InputShape& input, const SymmetryMap& map,
+                const Points& points) {
+  const Volume volume(points, options.cells);
+  if (options.volume_path) {
+    const std::string path = job.output(*options.volume_path);
+    Step writing(job.console(), "Writing " + path);
+    writeSymmetry(map, volume, input.shift(), job.numThreads(), path);
+    writing.done(std::to_string(volume.size.prod()) + " cells");
+  }
+  if (options.slices_path)
+    writeImage(drawSlices(map, volume, points, options.size, job.numThreads()), job.output(*options.slices_path));
+}
+
+void analyse(const MapOptions& options, FileJob& job) {
+  const InputShape input = loadInput(job.console(), job.path(), options.common);
+  Step transforming(job.console(), "Transforming");
+  const SymmetryMap map = transformOf(input, options.common, job.numThreads());
+  const double transforming_ms = transforming.done(std::to_string(map.values.size()) + " planes");
+
+  Step mapping(job.console(), "Mapping back to points");
+  const MappedCloud mapped(input.points, map, job.numThreads());
+  const double mapping_ms = mapping.done(std::to_string(mapped.symmetry.size()) + " points");
+
+  char text[96];
+  std::snprintf(text, sizeof(text), "symmetry of the planes through the points: %.3f to %.3f\n", mapped.least,
+                mapped.greatest);
+  job.report({text,
+              {{"file", job.path()},
+               {"num_points", mapped.symmetry.size()},
+               {"least", mapped.least},
+               {"greatest", mapped.greatest},
+               {"timing_ms", {{"transform", transforming_ms}, {"points", mapping_ms}}}},
+              {{mapped.symmetry.size(), mapped.least, mapped.greatest}}});
+  if (options.output) savePoints(input, mapped, job.output(*options.output));
+  writeSpace(options, job, input, map, mapped.finite.points);
+  if (options.png_path) drawPoints(mapped, job.output(*options.png_path), options.size);
+}
+
 int run(int argc, char** argv) {
   MapOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.output) checkCloudExtension(*options.output);
-  const Console console(options.common.quiet);
-  const int threads = options.common.threads;
-
-  const InputShape input = loadInput(console, options.input, options.common);
-  Step transforming(console, "Transforming");
-  const SymmetryMap map = transformOf(input, options.common);
-  const double transforming_ms = transforming.done(std::to_string(map.values.size()) + " planes");
-
-  Step mapping(console, "Mapping back to points");
-  const MappedCloud mapped(input.points, map, threads);
-  const double mapping_ms = mapping.done(std::to_string(mapped.symmetry.size()) + " points");
-
-  std::printf("symmetry of the planes through the points: %.3f to %.3f\n", mapped.least, mapped.greatest);
-  if (options.common.json_path) {
-    const nlohmann::json json{{"file", options.input},
-                              {"num_points", mapped.symmetry.size()},
-                              {"least", mapped.least},
-                              {"greatest", mapped.greatest},
-                              {"timing_ms", {{"transform", transforming_ms}, {"points", mapping_ms}}}};
-    writeText(*options.common.json_path, json.dump(2) + "\n");
-  }
-  if (options.output) savePoints(input, mapped, *options.output);
-  const Volume volume(mapped.finite.points, options.cells);
-  if (options.volume_path) {
-    Step writing(console, "Writing " + *options.volume_path);
-    writeVolume(map, volume, input.shift(), threads, *options.volume_path);
-    writing.done(std::to_string(volume.size.prod()) + " cells");
-  }
-  if (options.slices_path)
-    writeImage(drawSlices(map, volume, mapped.finite.points, options.size, threads), *options.slices_path);
-  if (options.png_path) drawPoints(mapped, *options.png_path, options.size);
-  return 0;
+  options.batch.inputs = {options.input};
+  return runOnFiles(options.batch, options.common, {"points", "least", "greatest"},
+                    [&](FileJob& job) { analyse(options, job); });
 }
 
 }  // namespace

@@ -6,11 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/batch/run_on_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
 #include "common/files/json_values.h"
+#include "common/html/scene_page.h"
 #include "common/pictures/picture.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
@@ -27,17 +29,25 @@ using namespace pcl_symmetry::apps;
 constexpr std::size_t kMaxPanels = 9;
 
 struct PlanesOptions {
-  std::string input;
-  std::optional<std::string> png_path, support_path;
+  BatchOptions batch;
+  std::optional<std::string> png_path, html_path, support_path;
   DetectionOptions detection;
   CommonOptions common;
 };
 
+// one row a plane, axis or center; what does not apply is empty
+const std::vector<std::string> kColumns = {"number",     "kind",  "a",       "b",     "c",    "d",
+                                           "x",          "y",     "z",       "dx",    "dy",   "dz",
+                                           "confidence", "share", "support", "score", "seen", "deviation"};
+
 CommandLine commandLine(PlanesOptions& options) {
-  CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of a cloud or mesh.",
+  CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of clouds and meshes.",
                    "pcl_symmetry_planes chair.pcd -json planes.json -png planes.png");
-  line.positional("input", options.input, kShapeFiles)
+  options.batch.outputs = {&options.png_path, &options.html_path, &options.support_path};
+  line.positionals("input", options.batch.inputs, kManyInputs)
       .picture("png", options.png_path, "picture: cloud, planes and support, best planes first")
+      .text("html", "FILE", options.html_path,
+            "page with the same in three dimensions, for any browser, without network")
       .text("support", "FILE", options.support_path,
             "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane")
       .flag("approximate", options.detection.approximate,
@@ -50,6 +60,7 @@ CommandLine commandLine(PlanesOptions& options) {
               "the same in input units; 0 = -tolerance decides")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "largest number of planes reported")
       .common(options.common, kShapeFlags | kSigma);
+  options.batch.addTo(line);
   return line;
 }
 
@@ -99,36 +110,82 @@ const char* toString(ViewpointSource source) {
   return "none";
 }
 
-/// How far the best plane of a shape without symmetry is off.
-void printBest(const SymmetryPlane& best, double tolerance, const Eigen::Vector3d& shift, int digits) {
-  const Eigen::Vector4d c = shiftedBack(best, shift).coefficients();
-  std::printf("best plane %.6f %.6f %.6f %.*g maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n", c[0],
-              c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
+/// \return what printf() prints.
+template <typename... Values>
+std::string formatted(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof(text), format, values...);
+  return text;
 }
 
-void printTable(const Findings& findings, const Eigen::Vector3d& shift) {
+/// How far the best plane of a shape without symmetry is off.
+std::string lineOfBest(const SymmetryPlane& best, double tolerance, const Eigen::Vector3d& shift, int digits) {
+  const Eigen::Vector4d c = shiftedBack(best, shift).coefficients();
+  return formatted("best plane %.6f %.6f %.6f %.*g maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n",
+                   c[0], c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
+}
+
+std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   const int digits = lengthDigits(shift);
-  if (findings.empty()) {
-    std::printf("no symmetry plane\n");
-    if (findings.best) printBest(*findings.best, findings.tolerance, shift, digits);
-    return;
-  }
+  if (findings.empty())
+    return "no symmetry plane\n" +
+           (findings.best ? lineOfBest(*findings.best, findings.tolerance, shift, digits) : std::string());
   const auto place = [&](const Eigen::Vector3d& point) { return spelled(shiftedBack(point, shift), digits); };
+  std::string table;
   for (const SymmetryCenter& center : findings.centers)
-    std::printf("center of all planes: %s, confidence %.3f\n", place(center.point).c_str(), center.confidence);
+    table += formatted("center of all planes: %s, confidence %.3f\n", place(center.point).c_str(), center.confidence);
   for (const SymmetryAxis& axis : findings.axes)
-    std::printf("axis of revolution: through %s along %.6f %.6f %.6f, confidence %.3f\n", place(axis.point).c_str(),
-                axis.direction.x(), axis.direction.y(), axis.direction.z(), axis.confidence);
+    table +=
+        formatted("axis of revolution: through %s along %.6f %.6f %.6f, confidence %.3f\n", place(axis.point).c_str(),
+                  axis.direction.x(), axis.direction.y(), axis.direction.z(), axis.confidence);
   const std::vector<SymmetryPlane>& planes = findings.planes;
-  if (planes.empty()) return;
-  std::printf("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence", "share",
-              "support", "score", "seen", "kind");
+  if (planes.empty()) return table;
+  table += formatted("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence",
+                     "share", "support", "score", "seen", "kind");
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const Eigen::Vector4d c = shiftedBack(planes[i], shift).coefficients();
-    std::printf("%5zu %10.6f %10.6f %10.6f %12.*g %10.3f %7.3f %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2],
-                digits, c[3], planes[i].confidence, planes[i].share, planes[i].support, planes[i].score, planes[i].seen,
-                toString(planes[i].kind));
+    table += formatted("%5zu %10.6f %10.6f %10.6f %12.*g %10.3f %7.3f %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2],
+                       digits, c[3], planes[i].confidence, planes[i].share, planes[i].support, planes[i].score,
+                       planes[i].seen, toString(planes[i].kind));
   }
+  return table;
+}
+
+std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const Eigen::Vector3d& shift) {
+  const nlohmann::json none;
+  std::vector<std::vector<nlohmann::json>> rows;
+  const auto add = [&](std::size_t number, const char* kind, const std::optional<SymmetryPlane>& plane,
+                       const std::optional<Eigen::Vector3d>& point, const std::optional<Eigen::Vector3d>& direction,
+                       std::vector<nlohmann::json> measures) {
+    std::vector<nlohmann::json> row{number, kind};
+    const Eigen::Vector4d c = plane ? shiftedBack(*plane, shift).coefficients() : Eigen::Vector4d::Zero();
+    for (int k = 0; k < 4; ++k) row.push_back(plane ? nlohmann::json(c[k]) : none);
+    const Eigen::Vector3d x = point ? shiftedBack(*point, shift) : Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) row.push_back(point ? nlohmann::json(x[k]) : none);
+    for (int k = 0; k < 3; ++k) row.push_back(direction ? nlohmann::json((*direction)[k]) : none);
+    row.insert(row.end(), measures.begin(), measures.end());
+    rows.push_back(row);
+  };
+  for (std::size_t i = 0; i < findings.planes.size(); ++i) {
+    const SymmetryPlane& p = findings.planes[i];
+    add(i + 1, toString(p.kind), p, std::nullopt, std::nullopt,
+        {p.confidence, p.share, p.support, p.score, p.seen, p.deviation});
+  }
+  for (std::size_t i = 0; i < findings.axes.size(); ++i) {
+    const SymmetryAxis& axis = findings.axes[i];
+    add(i + 1, "axis", std::nullopt, axis.point, axis.direction,
+        {axis.confidence, none, axis.support, axis.score, none, none});
+  }
+  for (std::size_t i = 0; i < findings.centers.size(); ++i) {
+    const SymmetryCenter& center = findings.centers[i];
+    add(i + 1, "center", std::nullopt, center.point, std::nullopt,
+        {center.confidence, none, center.support, center.score, none, none});
+  }
+  if (findings.best)
+    add(1, "best", findings.best, std::nullopt, std::nullopt,
+        {findings.best->confidence, findings.best->share, findings.best->support, findings.best->score,
+         findings.best->seen, findings.best->deviation});
+  return rows;
 }
 
 nlohmann::json describe(const SymmetryPlane& plane, const Eigen::Vector3d& shift) {
@@ -176,32 +233,25 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
   return json;
 }
 
-template <typename... Values>
-std::string labelOf(const char* format, Values... values) {
-  char label[96];
-  std::snprintf(label, sizeof(label), format, values...);
-  return label;
-}
-
 std::vector<PicturePanel> panelsOf(const Findings& findings) {
   std::vector<PicturePanel> panels;
   for (const SymmetryAxis& axis : findings.axes) {
     PicturePanel panel;
-    panel.label = labelOf("axis of revolution: confidence %.2f", axis.confidence);
+    panel.label = formatted("axis of revolution: confidence %.2f", axis.confidence);
     panel.axes = {{axis.point, axis.direction}};
     panels.push_back(panel);
   }
   for (const SymmetryCenter& center : findings.centers) {
     PicturePanel panel;
-    panel.label = labelOf("every plane through the center: confidence %.2f", center.confidence);
+    panel.label = formatted("every plane through the center: confidence %.2f", center.confidence);
     for (int k = 0; k < 3; ++k) panel.axes.push_back({center.point, Eigen::Vector3d::Unit(k)});
     panels.push_back(panel);
   }
   for (std::size_t k = 0; k < findings.planes.size() && panels.size() < kMaxPanels; ++k) {
     const SymmetryPlane& plane = findings.planes[k];
     PicturePanel panel;
-    panel.label = labelOf("plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(plane.kind),
-                          plane.confidence, plane.support);
+    panel.label = formatted("plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(plane.kind),
+                            plane.confidence, plane.support);
     panel.support.assign(findings.support[k].begin(), findings.support[k].end());
     PlanePatch patch;
     patch.normal = plane.normal();
@@ -230,13 +280,14 @@ PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, co
   return scene;
 }
 
-Findings search(const Console& console, const InputShape& input, const PlanesOptions& options) {
-  Step searching(console, "Searching planes");
+Findings search(const FileJob& job, const InputShape& input, const PlanesOptions& options) {
+  Step searching(job.console(), "Searching planes");
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   Findings findings;
   namingFile(input.path, [&] {
     DetectionOptions detection = options.detection;
     options.common.applyTo(detection);
+    detection.num_threads = detection.edt.num_threads = job.numThreads();
     refinement.setOptions(detection);
     refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
     refinement.setInputCloud(input.points);
@@ -259,7 +310,7 @@ Findings search(const Console& console, const InputShape& input, const PlanesOpt
   const double searching_ms = searching.done(summary);
   findings.timing_ms.emplace_back("load", input.loading_ms);
   findings.timing_ms.emplace_back("total", searching_ms);
-  if (options.support_path || options.png_path)
+  if (options.support_path || options.png_path || options.html_path)
     for (const SymmetryPlane& plane : findings.planes)
       findings.support.push_back(refinement.computePointSupport(plane));
   return findings;
@@ -279,19 +330,23 @@ void draw(const Console& console, const InputShape& input, const Findings& findi
   drawing.done();
 }
 
+void analyse(const PlanesOptions& options, FileJob& job) {
+  const InputShape input = loadInput(job.console(), job.path(), options.common);
+  const Findings findings = search(job, input, options);
+  job.report({tableOf(findings, input.shift()), describe(input, findings), rowsOf(findings, input.shift())});
+  if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));
+  if (options.png_path) draw(job.console(), input, findings, job.output(*options.png_path));
+  if (options.html_path)
+    writePage(makeScene(input.points, findings), {job.path(), tableOf(findings, input.shift())},
+              job.output(*options.html_path));
+}
+
 int run(int argc, char** argv) {
   PlanesOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.support_path) checkCloudExtension(*options.support_path);
-  const Console console(options.common.quiet);
-  const InputShape input = loadInput(console, options.input, options.common);
-  const Findings findings = search(console, input, options);
-  printTable(findings, input.shift());
-  if (options.common.json_path) writeText(*options.common.json_path, describe(input, findings).dump(2) + "\n");
-  if (options.support_path) saveSupport(input, findings, *options.support_path);
-  if (options.png_path) draw(console, input, findings, *options.png_path);
-  return 0;
+  return runOnFiles(options.batch, options.common, kColumns, [&](FileJob& job) { analyse(options, job); });
 }
 
 }  // namespace

@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "common/batch/run_on_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
+#include "common/html/scene_page.h"
 #include "common/pictures/picture.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/shape_input.h"
@@ -26,8 +28,9 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct SegmentOptions {
+  BatchOptions batch;
   std::string input;
-  std::optional<std::string> output, png_path;
+  std::optional<std::string> output, png_path, html_path;
   std::optional<Eigen::Vector3d> up;
   std::string method = "merging", evidence = "all";
   int depth = SplittingOptions().depth, num_parts = 0, size = 800;
@@ -38,12 +41,14 @@ struct SegmentOptions {
 CommandLine commandLine(SegmentOptions& o) {
   CommandLine line("pcl_symmetry_segment", "Cuts a cloud or mesh into parts by its symmetries.",
                    "pcl_symmetry_segment bull.off bull.seg -json tree.json -png parts.png");
-  line.positional("input", o.input, kShapeFiles)
+  o.batch.outputs = {&o.output, &o.png_path, &o.html_path};
+  line.positional("input", o.input, kOneOrManyInputs)
       .positional(
           "output", o.output,
           ".pcd or .ply: points with their segment in the field label; .ply of a mesh: with its faces coloured; "
           ".seg: the segment of each face, one a line")
       .picture("png", o.png_path, "picture: parts in colours")
+      .text("html", "FILE", o.html_path, "page with the same in three dimensions, for any browser, without network")
       .direction("up", o.up, "direction that is up in the picture, input frame (0,0,1)")
       .number("size", o.size, Range::closed(16, 4096), "edge of the picture, pixels")
       .choice("method", o.method, {"merging", "splitting"},
@@ -56,10 +61,11 @@ CommandLine commandLine(SegmentOptions& o) {
       .number("concavity", o.concavity, Range::closed(0, 100),
               "for splitting: weight of concave edges, which attract the cut")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  o.batch.addTo(line);
   return line;
 }
 
-SegmentationOptions segmentationOptions(const SegmentOptions& o) {
+SegmentationOptions segmentationOptions(const SegmentOptions& o, int num_threads) {
   SegmentationOptions options;
   options.method = o.method == "splitting" ? SegmentationMethod::Splitting : SegmentationMethod::Merging;
   options.merging.evidence = o.evidence == "symmetry"    ? MergingEvidence::Symmetry
@@ -69,7 +75,7 @@ SegmentationOptions segmentationOptions(const SegmentOptions& o) {
   options.splitting.concavity_weight = o.concavity;
   options.num_parts = o.num_parts;
   options.seed = o.common.librarySeed();
-  options.num_threads = o.common.threads;
+  options.num_threads = num_threads;
   return options;
 }
 
@@ -83,9 +89,9 @@ void checkOutput(const SegmentOptions& o, const CommandLine& line) {
   if (extension != ".seg") checkCloudExtension(*o.output);
 }
 
-nlohmann::json describe(const SegmentOptions& o, const Shape& shape, const std::vector<pcl::PointIndices>& segments,
+nlohmann::json describe(const std::string& path, const Shape& shape, const std::vector<pcl::PointIndices>& segments,
                         const std::vector<SegmentNode>& tree, const std::vector<std::vector<int>>& images, double ms) {
-  nlohmann::json json{{"file", o.input},
+  nlohmann::json json{{"file", path},
                       {"elements", shape.mesh ? "faces" : "points"},
                       {"segments", nlohmann::json::array()},
                       {"tree", nlohmann::json::array()},
@@ -107,7 +113,7 @@ nlohmann::json describe(const SegmentOptions& o, const Shape& shape, const std::
   return json;
 }
 
-void drawParts(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels) {
+PictureScene sceneOf(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels) {
   PictureScene scene;
   scene.points = shape.points;
   scene.mesh = shape.mesh;
@@ -115,27 +121,27 @@ void drawParts(const SegmentOptions& o, const Shape& shape, const std::vector<in
   panel.segments = labels;
   scene.panels = {panel};
   if (o.up) standUpright(scene, *o.up);
-  renderPicture(scene, *o.png_path, o.size, o.size);
+  return scene;
 }
 
-Shape load(const Console& console, const SegmentOptions& o) {
-  Step loading(console, "Loading " + o.input);
-  Shape shape = loadShape(o.input);
+Shape load(const FileJob& job, const SegmentOptions& o) {
+  Step loading(job.console(), "Loading " + job.path());
+  Shape shape = loadShape(job.path());
   if (o.output && boost::algorithm::iends_with(*o.output, ".seg") && !shape.mesh)
-    throw InputError(o.input + ": has no faces, must have for " + *o.output);
+    throw InputError(job.path() + ": has no faces, must have for " + *o.output);
   loading.done(shape.mesh ? std::to_string(shape.mesh->polygons.size()) + " faces"
                           : std::to_string(shape.points->size()) + " points");
   return shape;
 }
 
 /// \return the parts, which the segmentation labels; \p ms is the time.
-std::vector<pcl::PointIndices> cut(const Console& console, const SegmentOptions& o, const Shape& shape,
+std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, const Shape& shape,
                                    SymmetrySegmentation<pcl::PointXYZ>& segmentation, double& ms) {
-  Step cutting(console, "Cutting into parts");
-  SegmentationOptions how = segmentationOptions(o);
+  Step cutting(job.console(), "Cutting into parts");
+  SegmentationOptions how = segmentationOptions(o, job.numThreads());
   how.progress = [&](double share) { cutting.progress(share); };
   std::vector<pcl::PointIndices> segments;
-  namingFile(o.input, [&] {
+  namingFile(job.path(), [&] {
     segmentation.setOptions(how);
     if (shape.mesh)
       segmentation.setInputMesh(pcl::make_shared<pcl::PolygonMesh>(*shape.mesh));
@@ -143,9 +149,37 @@ std::vector<pcl::PointIndices> cut(const Console& console, const SegmentOptions&
       segmentation.setInputCloud(shape.points);
     segmentation.segment(segments);
   });
-  if (segments.empty()) throw InputError(o.input + ": has no surface to cut");
+  if (segments.empty()) throw InputError(job.path() + ": has no surface to cut");
   ms = cutting.done(std::to_string(segments.size()) + (segments.size() == 1 ? " part" : " parts"));
   return segments;
+}
+
+/// One row a part.
+std::vector<std::vector<nlohmann::json>> rowsOf(const std::vector<pcl::PointIndices>& segments) {
+  std::vector<std::vector<nlohmann::json>> rows;
+  for (std::size_t i = 0; i < segments.size(); ++i) rows.push_back({i, segments[i].indices.size()});
+  return rows;
+}
+
+void analyse(const SegmentOptions& options, FileJob& job) {
+  const Shape shape = load(job, options);
+  SymmetrySegmentation<pcl::PointXYZ> segmentation;
+  double ms = 0.0;
+  const std::vector<pcl::PointIndices> segments = cut(job, options, shape, segmentation, ms);
+  const std::vector<int>& labels = segmentation.getLabels();
+  job.report({"", describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms),
+              rowsOf(segments)});
+  if (options.output) saveLabelled(job.output(*options.output), shape, labels);
+  if (options.html_path) {
+    PictureScene scene = sceneOf(options, shape, labels);
+    scene.panels[0].label = std::to_string(segments.size()) + (segments.size() == 1 ? " part" : " parts");
+    writePage(scene, {job.path(), ""}, job.output(*options.html_path));
+  }
+  if (!options.png_path) return;
+  const std::string picture = job.output(*options.png_path);
+  Step drawing(job.console(), "Drawing " + picture);
+  renderPicture(sceneOf(options, shape, labels), picture, options.size, options.size);
+  drawing.done();
 }
 
 int run(int argc, char** argv) {
@@ -153,22 +187,8 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   checkOutput(options, line);
-  const Console console(options.common.quiet);
-  const Shape shape = load(console, options);
-  SymmetrySegmentation<pcl::PointXYZ> segmentation;
-  double ms = 0.0;
-  const std::vector<pcl::PointIndices> segments = cut(console, options, shape, segmentation, ms);
-  const std::vector<int>& labels = segmentation.getLabels();
-  if (options.output) saveLabelled(*options.output, shape, labels);
-  if (options.common.json_path)
-    writeText(*options.common.json_path,
-              describe(options, shape, segments, segmentation.getTree(), segmentation.getImages(), ms).dump(2) + "\n");
-  if (options.png_path) {
-    Step drawing(console, "Drawing " + *options.png_path);
-    drawParts(options, shape, labels);
-    drawing.done();
-  }
-  return 0;
+  options.batch.inputs = {options.input};
+  return runOnFiles(options.batch, options.common, {"part", "size"}, [&](FileJob& job) { analyse(options, job); });
 }
 
 }  // namespace

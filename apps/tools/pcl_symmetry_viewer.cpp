@@ -8,7 +8,7 @@
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
-#include "common/pictures/private_display.h"
+#include "common/drawing/private_display.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/shape_input.h"
 #include "viewer/viewer_window.h"

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/batch/run_on_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
@@ -28,7 +29,7 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct ViewpointToolOptions {
-  std::string input;
+  BatchOptions batch;
   std::optional<std::string> png_path, icon_path;
   std::optional<Eigen::Vector3d> up;
   int num_views = 4, size = 400;
@@ -39,7 +40,8 @@ struct ViewpointToolOptions {
 CommandLine commandLine(ViewpointToolOptions& options) {
   CommandLine line("pcl_symmetry_viewpoint", "Chooses views of a cloud or mesh that show little symmetry.",
                    "pcl_symmetry_viewpoint chair.off -up 0,1,0 -png chair_views.png -json chair_views.json");
-  line.positional("input", options.input, kShapeFiles)
+  options.batch.outputs = {&options.png_path, &options.icon_path};
+  line.positionals("input", options.batch.inputs, kManyInputs)
       .picture("png", options.png_path, "picture: score of all directions, best view, worst view")
       .picture("icon", options.icon_path, "picture of the best view alone")
       .direction("up", options.up, "direction that is about up, input frame (0,0,1)")
@@ -47,6 +49,7 @@ CommandLine commandLine(ViewpointToolOptions& options) {
       .number("separation", options.separation, Range::closed(0, 180), "least angle between good views, degrees")
       .number("size", options.size, Range::closed(16, 4096), "edge of each view, pixels")
       .common(options.common, kShapeFlags);
+  options.batch.addTo(line);
   return line;
 }
 
@@ -56,9 +59,11 @@ nlohmann::json toJson(const SelectedView& view, const Eigen::Vector3d& shift) {
   return {{"direction", numbersOf(view.direction)}, {"score", view.score}, {"pose", rowMajor(pose)}};
 }
 
-void printView(const char* name, const SelectedView& view) {
-  std::printf("%-6s %9.6f %9.6f %9.6f %7.3f\n", name, view.direction.x(), view.direction.y(), view.direction.z(),
-              view.score);
+std::string lineOf(const char* name, const SelectedView& view) {
+  char text[96];
+  std::snprintf(text, sizeof(text), "%-6s %9.6f %9.6f %9.6f %7.3f\n", name, view.direction.x(), view.direction.y(),
+                view.direction.z(), view.score);
+  return text;
 }
 
 PictureScene sceneOf(const InputShape& input, const SelectedView& view, const std::string& label) {
@@ -119,11 +124,12 @@ PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView
 /// Chooses by the local maxima of the transform of the cloud.
 /// \return milliseconds.
 double choose(ViewpointSelection& selection, const InputShape& input, const ViewpointToolOptions& options,
-              const Console& console) {
+              const FileJob& job) {
   DetectionOptions detection;
   detection.approximate = true;
   options.common.applyTo(detection);
-  Step searching(console, "Searching planes");
+  detection.num_threads = detection.edt.num_threads = job.numThreads();
+  Step searching(job.console(), "Searching planes");
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   const std::vector<SymmetryPlane> planes = namingFile(input.path, [&] {
     refinement.setOptions(detection);
@@ -147,10 +153,23 @@ struct ChosenViews {
   SelectedView worst;
 };
 
-void print(const ChosenViews& views) {
-  std::printf("%-6s %9s %9s %9s %7s\n", "view", "x", "y", "z", "score");
-  for (std::size_t i = 0; i < views.good.size(); ++i) printView(i == 0 ? "best" : "good", views.good[i]);
-  printView("worst", views.worst);
+std::string tableOf(const ChosenViews& views) {
+  char head[64];
+  std::snprintf(head, sizeof(head), "%-6s %9s %9s %9s %7s\n", "view", "x", "y", "z", "score");
+  std::string table = head;
+  for (std::size_t i = 0; i < views.good.size(); ++i) table += lineOf(i == 0 ? "best" : "good", views.good[i]);
+  return table + lineOf("worst", views.worst);
+}
+
+/// One row a view.
+std::vector<std::vector<nlohmann::json>> rowsOf(const ChosenViews& views) {
+  std::vector<std::vector<nlohmann::json>> rows;
+  const auto add = [&](const char* kind, const SelectedView& view) {
+    rows.push_back({kind, view.direction.x(), view.direction.y(), view.direction.z(), view.score});
+  };
+  for (std::size_t i = 0; i < views.good.size(); ++i) add(i == 0 ? "best" : "good", views.good[i]);
+  add("worst", views.worst);
+  return rows;
 }
 
 nlohmann::json describe(const InputShape& input, const ViewpointSelection& selection, const ChosenViews& views) {
@@ -163,40 +182,40 @@ nlohmann::json describe(const InputShape& input, const ViewpointSelection& selec
   return json;
 }
 
-void draw(const Console& console, const ViewpointToolOptions& options, const InputShape& input,
+void draw(const FileJob& job, const ViewpointToolOptions& options, const InputShape& input,
           const ViewpointSelection& selection, const ChosenViews& views) {
   const SelectedView& best = views.good[0];
-  if (options.icon_path) renderPicture(sceneOf(input, best, ""), *options.icon_path, options.size, options.size);
+  if (options.icon_path)
+    renderPicture(sceneOf(input, best, ""), job.output(*options.icon_path), options.size, options.size);
   if (!options.png_path) return;
-  Step drawing(console, "Drawing " + *options.png_path);
+  const std::string picture = job.output(*options.png_path);
+  Step drawing(job.console(), "Drawing " + picture);
   renderPicture({scoreSphere(selection, best, views.worst), sceneOf(input, best, "best view"),
                  sceneOf(input, views.worst, "worst view")},
-                *options.png_path, 3 * options.size, options.size, 3);
+                picture, 3 * options.size, options.size, 3);
   drawing.done();
+}
+
+void analyse(const ViewpointToolOptions& options, FileJob& job) {
+  const InputShape input = loadInput(job.console(), job.path(), options.common);
+  ViewpointSelection selection;
+  const double searching_ms = choose(selection, input, options, job);
+  Step choosing(job.console(), "Choosing views");
+  const ChosenViews views{selection.getGoodViews(options.num_views), selection.getWorstView()};
+  const double choosing_ms =
+      choosing.done(std::to_string(views.good.size()) + (views.good.size() == 1 ? " view" : " views"));
+  nlohmann::json json = describe(input, selection, views);
+  json["timing_ms"] = {{"load", input.loading_ms}, {"planes", searching_ms}, {"views", choosing_ms}};
+  job.report({tableOf(views), json, rowsOf(views)});
+  draw(job, options, input, selection, views);
 }
 
 int run(int argc, char** argv) {
   ViewpointToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  const Console console(options.common.quiet);
-  const InputShape input = loadInput(console, options.input, options.common);
-
-  ViewpointSelection selection;
-  const double searching_ms = choose(selection, input, options, console);
-  Step choosing(console, "Choosing views");
-  const ChosenViews views{selection.getGoodViews(options.num_views), selection.getWorstView()};
-  const double choosing_ms =
-      choosing.done(std::to_string(views.good.size()) + (views.good.size() == 1 ? " view" : " views"));
-
-  print(views);
-  if (options.common.json_path) {
-    nlohmann::json json = describe(input, selection, views);
-    json["timing_ms"] = {{"load", input.loading_ms}, {"planes", searching_ms}, {"views", choosing_ms}};
-    writeText(*options.common.json_path, json.dump(2) + "\n");
-  }
-  draw(console, options, input, selection, views);
-  return 0;
+  return runOnFiles(options.batch, options.common, {"view", "x", "y", "z", "score"},
+                    [&](FileJob& job) { analyse(options, job); });
 }
 
 }  // namespace

@@ -15,7 +15,8 @@
 
 #include <algorithm>
 
-#include "common/pictures/picture_actors.h"
+#include "common/drawing/picture_actors.h"
+#include "common/patches/patch_geometry.h"
 #include "common/shape_output/shape_output.h"
 #include "core/base/constants.h"
 

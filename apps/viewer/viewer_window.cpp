@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "common/pictures/picture_actors.h"
+#include "common/drawing/picture_actors.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "viewer/isp_frames.h"
 #include "viewer/viewer_canvas.h"

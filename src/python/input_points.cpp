@@ -94,6 +94,12 @@ InputPoints::InputPoints(const char* name, const py::array& array, std::size_t m
   array_ = Rows();
 }
 
+py::array arrayOf(const char* name, const py::object& object) {
+  py::array array = py::array::ensure(object);
+  if (!array) throw std::invalid_argument(std::string(name) + " = no array, must be one");
+  return array;
+}
+
 PointsRef InputPoints::points() const {
   if (array_.ndim() != 2) return copied_;
   const Eigen::OuterStride<> stride(array_.strides(0) / static_cast<py::ssize_t>(sizeof(float)));

@@ -12,6 +12,15 @@
 
 namespace pcl_symmetry::python {
 
+/// What numpy.asarray() takes: arrays, which are not copied, lists, and objects of other libraries that hold numbers.
+struct AnyArray {
+  pybind11::array array;
+  operator const pybind11::array&() const { return array; }
+};
+
+/// \throws std::invalid_argument naming the parameter where the object is nothing like an array.
+pybind11::array arrayOf(const char* name, const pybind11::object& object);
+
 /// The points of an array that an analysis uses.
 ///
 /// Rows of float32 are seen in place, without a copy, where all of them are used. Other rows are copied: those of other
@@ -50,3 +59,14 @@ private:
 std::optional<Visibility> seenFrom(const PointsRef& points, const pybind11::object& viewpoint);
 
 }  // namespace pcl_symmetry::python
+
+template <>
+struct pybind11::detail::type_caster<pcl_symmetry::python::AnyArray> {
+  PYBIND11_TYPE_CASTER(pcl_symmetry::python::AnyArray, const_name("ArrayLike"));
+
+  bool load(handle source, bool) {
+    if (!source || source.is_none()) return false;
+    value.array = array::ensure(source);
+    return static_cast<bool>(value.array);
+  }
+};

@@ -56,11 +56,11 @@ std::vector<std::vector<int>> polygonsOf(const py::array_t<int, py::array::c_sty
   return polygons;
 }
 
-py::array_t<float> sampleMesh(const py::array& vertices, const py::array& faces, int num_points, std::uint64_t seed) {
+py::array_t<float> sampleMesh(const AnyArray& vertices, const AnyArray& faces, int num_points, std::uint64_t seed) {
   const InputPoints input("vertices", vertices, 0, seed);
   if (!input.rows().empty()) throw std::invalid_argument("vertices: not all finite, must be");
   std::vector<Eigen::Vector3i> triangles;
-  for (const std::vector<int>& polygon : polygonsOf(faces))
+  for (const std::vector<int>& polygon : polygonsOf(faces.array))
     for (std::size_t k = 2; k < polygon.size(); ++k) triangles.emplace_back(polygon[0], polygon[k - 1], polygon[k]);
   return rowsOf(sampleTriangles(input.points(), triangles, num_points, seed));
 }
@@ -70,7 +70,7 @@ PlaneSearch planes(const py::array& points, const py::object& viewpoint, Detecti
   const InputPoints input("points", points, max_points, options.seed);
   options.edt.num_threads = options.num_threads;
   std::optional<Points> given;
-  if (!normals.is_none()) given = input.atPoints("normals", normals.cast<py::array>());
+  if (!normals.is_none()) given = input.atPoints("normals", arrayOf("normals", normals));
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   PlaneSearch search;
   if (seen) search.viewpoint = seen->viewpoint();
@@ -83,7 +83,7 @@ PlaneSearch planes(const py::array& points, const py::object& viewpoint, Detecti
   return search;
 }
 
-SymmetryFrame frame(const py::array& points, const py::object& viewpoint, std::size_t max_points, std::uint64_t seed,
+SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::size_t max_points, std::uint64_t seed,
                     int threads) {
   const InputPoints input("points", points, max_points, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
@@ -94,7 +94,7 @@ SymmetryFrame frame(const py::array& points, const py::object& viewpoint, std::s
   return symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
 }
 
-ObjectSymmetries rotations(const py::array& points, std::uint64_t seed, int threads) {
+ObjectSymmetries rotations(const AnyArray& points, std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 0, seed);
   const py::gil_scoped_release release;
   ObjectSymmetryOptions options;
@@ -104,7 +104,7 @@ ObjectSymmetries rotations(const py::array& points, std::uint64_t seed, int thre
 }
 
 /// \return the added points, and the rows that they are the reflections of.
-std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const py::array& points, const ReflectionPlane& plane,
+std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray& points, const ReflectionPlane& plane,
                                                                  const py::object& viewpoint, int threads) {
   const InputPoints input("points", points, 0, 0);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
@@ -153,7 +153,7 @@ std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions
   return labels;
 }
 
-std::vector<int> segment(const py::array& points, const py::object& faces, int parts,
+std::vector<int> segment(const AnyArray& points, const py::object& faces, int parts,
                          const std::function<void(double)>& progress, std::uint64_t seed, int threads) {
   SegmentationOptions options;
   options.num_parts = parts;
@@ -167,12 +167,12 @@ std::vector<int> segment(const py::array& points, const py::object& faces, int p
   if (faces.is_none()) return segmentCloud(points, options);
   const InputPoints input("points", points, 0, seed);
   if (!input.rows().empty()) throw std::invalid_argument("points: vertices not all finite, must be");
-  const std::vector<std::vector<int>> polygons = polygonsOf(faces.cast<py::array>());
+  const std::vector<std::vector<int>> polygons = polygonsOf(arrayOf("faces", faces));
   const py::gil_scoped_release release;
   return segmentSurface(meshGraph(input.points(), polygons), options).labels;
 }
 
-Eigen::MatrixXf describe(const py::array& points, const py::object& viewpoint, std::uint64_t seed, int threads) {
+Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 0, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   const py::gil_scoped_release release;
@@ -182,7 +182,7 @@ Eigen::MatrixXf describe(const py::array& points, const py::object& viewpoint, s
   return describeShape(input.points(), options, seen ? &*seen : nullptr).signatures.transpose();
 }
 
-SymmetryMap transform(const py::array& points, const std::array<int, 3>& bins, const std::string& method,
+SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, const std::string& method,
                       std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 0, seed);
   PlanarTransformOptions options;
@@ -266,7 +266,7 @@ void addPlaneFunctions(py::module_& module) {
   const DetectionOptions standard;
   module.def(
       "planes",
-      [](const py::array& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
+      [](const AnyArray& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
          bool approximate, int max_planes, const py::object& normals, std::size_t max_points, std::uint64_t seed,
          int threads) {
         DetectionOptions options;

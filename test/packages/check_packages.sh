@@ -44,6 +44,9 @@ assert len(pcl_symmetry.planes(points)) == 3
 END
     pcl_symmetry_planes box.xyz -quiet | grep -c symmetry | grep -qx 3
     pcl_symmetry_map -version
+    # By the module that writes clouds, which the tools load.
+    pcl_symmetry_planes box.xyz -quiet -support box.ply -html box.html >/dev/null
+    [[ -s box.ply && -s box.html ]]
   '
 }
 

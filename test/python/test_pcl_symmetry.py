@@ -4,6 +4,7 @@ import inspect
 import re
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -167,6 +168,108 @@ class OtherFunctions(unittest.TestCase):
     def test_views_show_three_sides_of_a_box(self):
         views = pcl_symmetry.viewpoints(pcl_symmetry.planes(box()).planes)
         self.assertGreater(np.abs(views[0].direction).min(), 0.3)
+
+
+def lamp(num_points=4000, seed=1):
+    """An object without symmetry: three boxes of different sizes, one on the other, off the middle."""
+    parts = [box((1.0, 0.7, 0.2), num_points // 2, seed), box((0.2, 0.15, 0.9), num_points // 4, seed + 1)]
+    parts.append(box((0.6, 0.3, 0.25), num_points // 4, seed + 2))
+    offsets = [(0.0, 0.0, 0.0), (0.3, 0.1, 0.5), (0.1, 0.25, 1.0)]
+    return np.concatenate([part + np.float32(offset) for part, offset in zip(parts, offsets)])
+
+
+def motion(angle=2.0, translation=(3.0, -1.0, 0.5)):
+    """A turn about (1, 2, 3) and a translation, (4, 4)."""
+    k = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
+    cross = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+    result = np.eye(4)
+    result[:3, :3] = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    result[:3, 3] = translation
+    return result
+
+
+def has_pcl():
+    return any(Path(pcl_symmetry.__file__).parent.glob("_recognition*"))
+
+
+@unittest.skipUnless(has_pcl(), "the module was built without PCL")
+class WithPCL(unittest.TestCase):
+    def test_registers_from_any_pose(self):
+        source, truth = lamp(), motion()
+        target = (lamp(seed=5) @ truth[:3, :3].T + truth[:3, 3]).astype(np.float32)
+        found = pcl_symmetry.register(source, target, source_viewpoint=None, target_viewpoint=None)
+        self.assertLess(np.abs(found.transform - truth).max(), 0.02)
+        self.assertGreater(found.score.merit, 0.5)
+        self.assertAlmostEqual(found.score.merit, found.score.support - found.score.conflict / 2)
+        with self.assertRaisesRegex(ValueError, "guess"):
+            pcl_symmetry.register(source, target, guess=np.ones((4, 4)))
+        with self.assertRaisesRegex(ValueError, "source"):
+            pcl_symmetry.register(np.zeros((5, 3), dtype=np.float32), target)
+
+    def test_a_database_finds_what_it_holds(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(Path(folder) / "models.db")
+            database = pcl_symmetry.Database(path, unit="m")
+            database.add("box", box())
+            database.add("lamp", lamp())
+            database.add("plate", box((1.0, 0.9, 0.1)))
+            self.assertEqual((len(database), database.names), (3, ["box", "lamp", "plate"]))
+            self.assertIn("lamp", database)
+            truth = motion()
+            seen = (lamp(seed=9) @ truth[:3, :3].T + truth[:3, 3]).astype(np.float32)
+            matches = database.match(seen, viewpoint=None)
+            self.assertEqual(matches[0].name, "lamp")
+            self.assertEqual(sorted(match.distance for match in matches), [match.distance for match in matches])
+            recognized = database.recognize(seen, viewpoint=None)
+            self.assertEqual(recognized[0].name, "lamp")
+            self.assertLess(np.abs(recognized[0].transform @ truth - np.eye(4)).max(), 0.05)
+            self.assertEqual(database.cloud("box").shape[1], 3)
+            database.remove("plate")
+            self.assertEqual(pcl_symmetry.Database(path).names, ["box", "lamp"])
+            with self.assertRaisesRegex(ValueError, "name"):
+                database.cloud("nothing")
+            with self.assertRaisesRegex(ValueError, "viewpoint = there"):
+                database.match(seen, viewpoint="there")
+            wrong = Path(folder) / "wrong.db"
+            wrong.write_text("no database at all")
+            with self.assertRaisesRegex(OSError, "wrong.db"):
+                pcl_symmetry.Database(str(wrong))
+
+    def test_members_have_stubs_and_words(self):
+        stub = Path(pcl_symmetry.__file__).with_suffix(".pyi").read_text()
+        for name in ("Database", "Match", "PoseScore", "Recognized", "Registration", "register"):
+            self.assertRegex(stub, rf"(class|def) {name}\b")
+            self.assertTrue(getattr(pcl_symmetry, name).__doc__)
+        with self.assertRaises(AttributeError):
+            pcl_symmetry.nothing
+
+
+class OtherObjects(unittest.TestCase):
+    def test_lists_and_objects_like_arrays_pass(self):
+        class Like:
+            def __array__(self, *arguments, **keywords):
+                return box()
+
+        expected = pcl_symmetry.planes(box())[0].coefficients
+        for points in (box().tolist(), Like()):
+            np.testing.assert_allclose(pcl_symmetry.planes(points)[0].coefficients, expected, atol=1e-12)
+        for wrong in (None, "box", [[1, 2, 3], [4]]):
+            with self.assertRaises((TypeError, ValueError)):
+                pcl_symmetry.planes(wrong)
+
+
+class Open3D(unittest.TestCase):
+    def test_its_objects_pass_as_they_are(self):
+        try:
+            import open3d
+        except ImportError:
+            self.skipTest("Open3D is not installed (Debian package python3-open3d)")
+        cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(box().astype(float)))
+        self.assertEqual(len(pcl_symmetry.planes(cloud.points)), 3)
+        mesh = open3d.geometry.TriangleMesh.create_box(1.0, 2.0, 3.0)
+        points = pcl_symmetry.sample_mesh(mesh.vertices, mesh.triangles, 5000)
+        self.assertEqual(len(pcl_symmetry.planes(points)), 3)
+        self.assertEqual(len(pcl_symmetry.segment(mesh.vertices, mesh.triangles)), len(mesh.triangles))
 
 
 class Package(unittest.TestCase):

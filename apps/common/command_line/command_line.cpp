@@ -90,7 +90,7 @@ CommandLine& CommandLine::text(const std::string& name, const std::string& place
 
 CommandLine& CommandLine::picture(const std::string& name, std::optional<std::string>& value, const std::string& help) {
   return add(name, "FILE.png", help, [&value, name](const std::string& text) {
-    if (!boost::algorithm::iends_with(text, ".png")) rejectValue("-" + name, text, "must end in .png");
+    if (text != "-" && !boost::algorithm::iends_with(text, ".png")) rejectValue("-" + name, text, "must end in .png");
     value = text;
   });
 }

@@ -35,7 +35,7 @@ public:
   CommandLine& flag(const std::string& name, bool& value, const std::string& help);
   CommandLine& text(const std::string& name, const std::string& placeholder, std::optional<std::string>& value,
                     const std::string& help);
-  /// The name of a picture to write; must end in .png.
+  /// The name of a picture to write; must end in .png, or be "-" for standard output.
   CommandLine& picture(const std::string& name, std::optional<std::string>& value, const std::string& help);
   CommandLine& choice(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                       const std::string& help);

@@ -1,9 +1,10 @@
+#include "common/files/ply_check.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <map>
 
-#include "common/files/cloud_file_checks.h"
 #include "common/files/header_lines.h"
 
 namespace pcl_symmetry::apps {

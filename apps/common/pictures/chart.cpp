@@ -1,30 +1,13 @@
 #include "common/pictures/chart.h"
 
-#include <vtkAxis.h>
-#include <vtkChartLegend.h>
-#include <vtkChartXY.h>
-#include <vtkContextScene.h>
-#include <vtkContextView.h>
-#include <vtkFloatArray.h>
-#include <vtkNew.h>
-#include <vtkPNGWriter.h>
-#include <vtkPen.h>
-#include <vtkPlotPoints.h>
-#include <vtkRect.h>
-#include <vtkRenderWindow.h>
-#include <vtkRenderer.h>
-#include <vtkTable.h>
-#include <vtkTextProperty.h>
-#include <vtkWindowToImageFilter.h>
-
 #include <algorithm>
 #include <boost/filesystem/path.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
-#include "common/pictures/picture.h"
-#include "common/pictures/private_display.h"
+#include "common/modules/drawing.h"
 #include "common/shape_output/shape_output.h"
 
 namespace pcl_symmetry::apps {
@@ -55,43 +38,23 @@ std::pair<double, double> rangeOf(const Chart& chart, const ChartAxis& axis, std
   return least < largest ? std::make_pair(least, largest) : std::make_pair(least - 0.5, largest + 0.5);
 }
 
-void addSeries(vtkChartXY& plots, const Chart& chart, const ChartSeries& series, std::size_t index) {
-  vtkNew<vtkFloatArray> x, y;
-  x->SetName("x");
-  y->SetName(series.name.c_str());
-  for (std::size_t i = 0; i < series.x.size(); ++i) {
-    if (!drawable(chart, series, i)) continue;
-    x->InsertNextValue(static_cast<float>(series.x[i]));
-    y->InsertNextValue(static_cast<float>(series.y[i]));
+/// \return the chart with both ranges set and without the values that cannot be drawn.
+Chart readyToDraw(Chart chart) {
+  const auto x_range = rangeOf(chart, chart.x, &ChartSeries::x), y_range = rangeOf(chart, chart.y, &ChartSeries::y);
+  for (ChartSeries& series : chart.series) {
+    ChartSeries drawn = series;
+    drawn.x.clear();
+    drawn.y.clear();
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      if (!drawable(chart, series, i)) continue;
+      drawn.x.push_back(series.x[i]);
+      drawn.y.push_back(series.y[i]);
+    }
+    series = std::move(drawn);
   }
-  if (x->GetNumberOfTuples() == 0) return;
-  vtkNew<vtkTable> table;
-  table->AddColumn(x);
-  table->AddColumn(y);
-  vtkPlot* plot = plots.AddPlot(vtkChart::LINE);
-  plot->SetInputData(table, 0, 1);
-  if (series.reference) {
-    plot->SetColor(120, 120, 120, 255);
-    plot->GetPen()->SetLineType(vtkPen::DASH_LINE);
-    return;
-  }
-  const Eigen::Vector3d color = 255.0 * distinctColor(index);
-  plot->SetColor(static_cast<unsigned char>(color[0]), static_cast<unsigned char>(color[1]),
-                 static_cast<unsigned char>(color[2]), 255);
-  plot->SetWidth(3.0f);
-  if (series.points) {
-    vtkPlotPoints::SafeDownCast(plot)->SetMarkerStyle(vtkPlotPoints::CIRCLE);
-    vtkPlotPoints::SafeDownCast(plot)->SetMarkerSize(9.0f);
-  }
-}
-
-void setUp(vtkAxis& drawn, const ChartAxis& axis, std::pair<double, double> range) {
-  drawn.SetTitle(axis.title);
-  drawn.GetTitleProperties()->SetFontSize(22);
-  drawn.GetLabelProperties()->SetFontSize(18);
-  drawn.SetBehavior(vtkAxis::FIXED);
-  drawn.SetRange(range.first, range.second);
-  drawn.SetLogScale(axis.logarithmic);
+  chart.x.range = x_range;
+  chart.y.range = y_range;
+  return chart;
 }
 
 }  // namespace
@@ -108,39 +71,8 @@ void writeChart(const Chart& chart, const std::string& path, int width, int heig
                                   " values of x and " + std::to_string(series.y.size()) + " of y, must be as many");
     }
   }
-  const auto x_range = rangeOf(chart, chart.x, &ChartSeries::x), y_range = rangeOf(chart, chart.y, &ChartSeries::y);
-  const PrivateDisplay display;
-  vtkNew<vtkContextView> view;
-  view->GetRenderWindow()->SetOffScreenRendering(1);
-  view->GetRenderWindow()->SetSize(width, height);
-  view->GetRenderWindow()->SetMultiSamples(0);
-  view->GetRenderer()->SetBackground(1.0, 1.0, 1.0);
-  vtkNew<vtkChartXY> plots;
-  view->GetScene()->AddItem(plots);
-  plots->SetAutoSize(false);
-  plots->SetSize(
-      vtkRectf(0, 0, static_cast<float>(width - 30), static_cast<float>(height)));  // room for the last label
-  plots->SetTitle(chart.title);
-  plots->GetTitleProperties()->SetFontSize(24);
-  plots->SetShowLegend(true);
-  plots->GetLegend()->SetLabelSize(18);
-  if (chart.legend_at_bottom_left) {
-    plots->GetLegend()->SetHorizontalAlignment(vtkChartLegend::LEFT);
-    plots->GetLegend()->SetVerticalAlignment(vtkChartLegend::BOTTOM);
-  }
-  setUp(*plots->GetAxis(vtkAxis::BOTTOM), chart.x, x_range);
-  setUp(*plots->GetAxis(vtkAxis::LEFT), chart.y, y_range);
-  for (std::size_t i = 0; i < chart.series.size(); ++i) addSeries(*plots, chart, chart.series[i], i);
-
-  view->GetRenderWindow()->Render();
-  vtkNew<vtkWindowToImageFilter> image;
-  image->SetInput(view->GetRenderWindow());
-  writeAtomically(path, [&](const std::string& temporary_path) {
-    vtkNew<vtkPNGWriter> writer;
-    writer->SetFileName(temporary_path.c_str());
-    writer->SetInputConnection(image->GetOutputPort());
-    writer->Write();
-    if (writer->GetErrorCode() != 0) throw InputError(path + ": cannot be written");
+  writeAtomically(path, [&](const std::string& temporary) {
+    drawing().drawChart(readyToDraw(chart), {path, temporary, width, height});
   });
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/colors/colors.h"
 #include "common/command_line/tool_errors.h"
 
 namespace pcl_symmetry::apps {
@@ -57,15 +58,8 @@ struct PictureScene {
 /// Turns the view so that \p up is to it what z was; any length but zero.
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 
-/// Eight colours that remain apart for colour-blind eyes (Okabe and Ito), repeated from the start when they run out.
-Eigen::Vector3d distinctColor(std::size_t index);
-
-/// The color of a segment: distinct colors, lighter with each round; grey for numbers below 0.
-Eigen::Vector3d segmentColor(int segment);
-
-/// \param value in [0, 1], clamped.
-/// \return its colour on the cividis scale (dark blue to yellow).
-Eigen::Vector3d cividis(double value);
+/// \throws std::invalid_argument for a scene that does not fit together.
+void checkScene(const PictureScene& scene);
 
 /// Renders off screen and writes a PNG whole. Uses the display if there is one, or else a private Xvfb.
 /// \param width, height of the whole picture in pixels, 16 to 16384.

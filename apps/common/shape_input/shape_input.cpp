@@ -2,21 +2,23 @@
 
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
-#include <pcl/io/pcd_io.h>
-#include <pcl/io/ply_io.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem/path.hpp>
 #include <cstring>
 #include <new>
+#include <utility>
 #include <vector>
 
-#include "common/files/cloud_file_checks.h"
 #include "common/files/file_text.h"
+#include "common/files/pcd_reader.h"
+#include "common/files/ply_check.h"
+#include "common/modules/cloud_files.h"
 #include "common/shape_input/assimp_reader.h"
 #include "common/shape_input/off_reader.h"
 #include "common/shape_input/xyz_reader.h"
+#include "common/streams/standard_streams.h"
 
 namespace pcl_symmetry::apps {
 
@@ -110,28 +112,21 @@ void checkPolygons(const std::string& path, pcl::PolygonMesh& mesh) {
 }
 
 Shape loadPCD(const std::string& path) {
-  checkPCD(path);
+  PCDCloud file = readPCD(path);
   Shape shape;
-  int version = 0;
-  if (pcl::PCDReader().read(path, shape.cloud, shape.sensor_origin, shape.sensor_orientation, version) < 0) {
-    throw InputError(path + ": PCL cannot read it as PCD, its data is damaged");
-  }
+  shape.cloud = std::move(file.cloud);
+  shape.sensor_origin = file.sensor_origin;
+  shape.sensor_orientation = file.sensor_orientation;
   return shape;
 }
 
 Shape loadPLY(const std::string& path) {
   const PLYSummary summary = checkPLY(path);
   Shape shape;
-  int version = 0;
-  if (summary.has_faces) {
-    shape.mesh.emplace();
-    if (pcl::PLYReader().read(path, *shape.mesh, shape.sensor_origin, shape.sensor_orientation, version) < 0) {
-      throw InputError(path + ": PCL cannot read it as PLY, its data is damaged");
-    }
-    shape.cloud = shape.mesh->cloud;
-  } else if (pcl::PLYReader().read(path, shape.cloud, shape.sensor_origin, shape.sensor_orientation, version) < 0) {
+  if (summary.has_faces) shape.mesh.emplace();
+  if (!(shape.mesh ? cloudFiles().readPLY(path, *shape.mesh) : cloudFiles().readPLY(path, shape.cloud)))
     throw InputError(path + ": PCL cannot read it as PLY, its data is damaged");
-  }
+  if (shape.mesh) shape.cloud = shape.mesh->cloud;
   shape.sensor_origin = summary.sensor_origin;
   shape.sensor_orientation = summary.sensor_orientation;
   return shape;
@@ -180,13 +175,7 @@ Shape fromExact(const std::string& path, ExactShape exact) {
   return fromMesh(path, std::move(mesh));
 }
 
-}  // namespace
-
-Shape shapeFromMesh(const pcl::PolygonMesh& mesh) {
-  return fromMesh("mesh", pcl::PolygonMesh(mesh));
-}
-
-Shape loadShape(const std::string& path) {
+Shape loadFile(const std::string& path) {
   checkReadableFile(path);
   const std::string extension = boost::algorithm::to_lower_copy(boost::filesystem::path(path).extension().string());
   const SilentPCL silence;
@@ -197,6 +186,7 @@ Shape loadShape(const std::string& path) {
     if (extension == ".xyz") return fromExact(path, readXYZ(path));
     if (extension == ".obj") return fromMesh(path, readOBJ(path));
     if (extension == ".stl") return fromMesh(path, readSTL(path));
+    if (extension == ".glb") return fromMesh(path, readGLB(path));
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -205,6 +195,22 @@ Shape loadShape(const std::string& path) {
     throw InputError(path + ": cannot be read, " + error.what());
   }
   throw InputError(path + ": unknown extension '" + extension + "', must be " + kShapeFiles);
+}
+
+}  // namespace
+
+Shape shapeFromMesh(const pcl::PolygonMesh& mesh) {
+  return fromMesh("mesh", pcl::PolygonMesh(mesh));
+}
+
+Shape loadShape(const std::string& path) {
+  if (!isStandardStream(path)) return loadFile(path);
+  const StandardInput input;
+  try {
+    return loadFile(input.path());
+  } catch (const InputError& error) {
+    throw InputError(input.named(error.what()));
+  }
 }
 
 }  // namespace pcl_symmetry::apps

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "common/command_line/tool_errors.h"
+#include "common/files/shape_file_kinds.h"
 
 namespace pcl_symmetry::apps {
 
@@ -25,10 +26,7 @@ struct Shape {
   Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
 };
 
-/// The endings of files that loadShape() reads, for help and messages.
-inline const char* const kShapeFiles = ".pcd, .ply, .obj, .stl, .off or .xyz";
-
-/// \param path a file of kShapeFiles, in capitals or not
+/// \param path a file of kShapeFiles, in capitals or not; "-" for standard input, whose kind is known by its content
 /// \throws InputError naming the file, what is wrong and the rule
 Shape loadShape(const std::string& path);
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "common/pictures/picture.h"
+#include "common/colors/colors.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_output/face_labels.h"
 #include "common/shape_output/shape_output.h"

@@ -1,87 +1,24 @@
 #include "common/shape_output/shape_output.h"
 
-#include <fcntl.h>
 #include <pcl/common/io.h>
-#include <pcl/io/pcd_io.h>
-#include <pcl/io/ply_io.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cerrno>
-#include <climits>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+
+#include "common/streams/standard_streams.h"
+#include "common/streams/temporary_file.h"
 
 namespace pcl_symmetry::apps {
 
 namespace fs = boost::filesystem;
 
 namespace {
-
-/// Names of the files being written, in storage that a signal handler may read.
-struct PendingFile {
-  std::atomic<bool> used{false};
-  std::atomic<bool> ready{false};
-  std::array<char, PATH_MAX> name;
-};
-std::array<PendingFile, 16> pending_files;
-
-extern "C" void removePendingFiles(int signal) {
-  for (PendingFile& file : pending_files) {
-    if (file.ready) unlink(file.name.data());
-  }
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
-}
-
-void installSignalHandlers() {
-  static const bool installed = [] {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-      struct sigaction old {};
-      sigaction(signal, nullptr, &old);
-      if (old.sa_handler == SIG_DFL) std::signal(signal, removePendingFiles);
-    }
-    return true;
-  }();
-  static_cast<void>(installed);
-}
-
-/// Removes the file when it goes out of scope, or when a signal ends the program.
-class TemporaryFile {
-public:
-  explicit TemporaryFile(const std::string& name) : name_(name) {
-    installSignalHandlers();
-    for (PendingFile& file : pending_files) {
-      bool expected = false;
-      if (name.size() < PATH_MAX && file.used.compare_exchange_strong(expected, true)) {
-        std::memcpy(file.name.data(), name.c_str(), name.size() + 1);
-        file.ready = true;
-        slot_ = &file;
-        break;
-      }
-    }
-  }
-  ~TemporaryFile() {
-    unlink(name_.c_str());
-    if (slot_) {
-      slot_->ready = false;
-      slot_->used = false;
-    }
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-private:
-  std::string name_;
-  PendingFile* slot_ = nullptr;
-};
 
 [[noreturn]] void failToWrite(const std::string& path, const std::string& why) {
   throw InputError(path + ": cannot be written, " + why);
@@ -118,13 +55,25 @@ pcl::PCLPointCloud2 packed(const pcl::PCLPointCloud2& cloud) {
   return result;
 }
 
+/// Calls the writer with a temporary name and copies what it wrote to standard output.
+void writeThrough(const std::function<void(const std::string&)>& writer) {
+  const std::string temporary = makeUniqueFile(temporaryModel(""));
+  if (temporary.empty()) failToWrite("standard output", std::strerror(errno));
+  const TemporaryFile guard(temporary);
+  writer(temporary);
+  copyToStandardOutput(temporary);
+}
+
+/// Of a cloud to be written; standard output takes PCD.
 std::string lowerExtension(const std::string& path) {
+  if (isStandardStream(path)) return ".pcd";
   return boost::algorithm::to_lower_copy(fs::path(path).extension().string());
 }
 
 }  // namespace
 
 void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& writer) {
+  if (isStandardStream(path)) return writeThrough(writer);
   const fs::path target(path);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   boost::system::error_code ignored;
@@ -136,12 +85,9 @@ void writeAtomically(const std::string& path, const std::function<void(const std
   if (special) failToWrite(path, "it is not a regular file");
   const fs::path final_name = fs::is_symlink(target, ignored) ? fs::canonical(target, ignored) : target;
 
-  const std::string temporary = (final_name.parent_path() / fs::unique_path("." + target.stem().string() + ".%%%%%%%%" +
-                                                                            target.extension().string()))
-                                    .string();
-  const int descriptor = open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-  if (descriptor < 0) failToWrite(path, std::strerror(errno));
-  close(descriptor);
+  const std::string temporary = makeUniqueFile(
+      (final_name.parent_path() / ("." + target.stem().string() + ".%%%%%%%%" + target.extension().string())).string());
+  if (temporary.empty()) failToWrite(path, std::strerror(errno));
   const TemporaryFile guard(temporary);
 
   writer(temporary);
@@ -151,6 +97,7 @@ void writeAtomically(const std::string& path, const std::function<void(const std
 }
 
 void writeText(const std::string& path, const std::string& text) {
+  if (isStandardStream(path)) return writeStandardOutput(text);
   writeAtomically(path, [&](const std::string& temporary) {
     std::ofstream file(temporary, std::ios::binary);
     file << text;
@@ -174,24 +121,17 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
   }
   const pcl::PCLPointCloud2 fields = packed(cloud);
   writeAtomically(path, [&](const std::string& temporary) {
-    int status = -1;
+    bool written = false;
     try {
-      if (extension == ".ply") {
-        status = pcl::PLYWriter().writeBinary(temporary, fields, sensor_origin, sensor_orientation);
-      } else {
-        pcl::PCDWriter writer;
-        if (encoding == PCDEncoding::Ascii)
-          status = writer.writeASCII(temporary, fields, sensor_origin, sensor_orientation, 9);
-        if (encoding == PCDEncoding::Binary)
-          status = writer.writeBinary(temporary, fields, sensor_origin, sensor_orientation);
-        if (encoding == PCDEncoding::BinaryCompressed) {
-          status = writer.writeBinaryCompressed(temporary, fields, sensor_origin, sensor_orientation);
-        }
-      }
+      written = extension == ".ply"
+                    ? cloudFiles().writePLY(temporary, fields, sensor_origin, sensor_orientation)
+                    : cloudFiles().writePCD(temporary, fields, sensor_origin, sensor_orientation, encoding);
+    } catch (const InputError&) {
+      throw;
     } catch (const std::exception& error) {
       failToWrite(path, error.what());
     }
-    if (status != 0) failToWrite(path, "the disk may be full");
+    if (!written) failToWrite(path, "the disk may be full");
   });
 }
 

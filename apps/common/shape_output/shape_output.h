@@ -8,20 +8,21 @@
 #include <string>
 
 #include "common/command_line/tool_errors.h"
+#include "common/modules/cloud_files.h"
 
 namespace pcl_symmetry::apps {
 
 /// Calls the writer with a temporary name beside `path` (same extension) and renames what it wrote. The temporary file
-/// is removed if the writer throws and if the program is interrupted or terminated by a signal.
+/// is removed if the writer throws and if the program is interrupted or terminated by a signal. With the path "-" the
+/// bytes go to standard output.
 /// \throws InputError if the folder is missing or not writable, or the writer made no file; whatever the writer throws.
 void writeAtomically(const std::string& path, const std::function<void(const std::string& temporary_path)>& writer);
 
 /// Writes text, e.g. JSON, as it is.
 void writeText(const std::string& path, const std::string& text);
 
-enum class PCDEncoding { Ascii, Binary, BinaryCompressed };
-
-/// Writes a cloud with all its fields and the pose of the sensor; PCD or (binary) PLY by the extension of the name.
+/// Writes a cloud with all its fields and the pose of the sensor; PCD or (binary) PLY by the extension of the name;
+/// PCD to standard output, "-".
 /// \throws InputError for another extension, an empty cloud, or a file that cannot be written.
 void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
                const Eigen::Quaternionf& sensor_orientation, PCDEncoding encoding = PCDEncoding::BinaryCompressed);

@@ -50,3 +50,17 @@ __all__ = [
     "transform",
     "viewpoints",
 ]
+
+# What needs the libraries of PCL, which take longer to load, is loaded when it is first used. It is missing where the library
+# was built without PCL.
+_WITH_PCL = ("Database", "Match", "PoseScore", "Recognized", "Registration", "register")
+
+
+def __getattr__(name):
+    if name not in _WITH_PCL:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from . import _recognition
+
+    for each in _WITH_PCL:
+        globals()[each] = getattr(_recognition, each)
+    return globals()[name]

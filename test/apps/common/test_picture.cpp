@@ -4,8 +4,8 @@
 
 #include "apps/support/box_mesh.h"
 #include "apps/support/temporary_folder.h"
+#include "common/drawing/private_display.h"
 #include "common/pictures/picture.h"
-#include "common/pictures/private_display.h"
 #include "common/scanner/virtual_scanner.h"
 
 namespace {

@@ -114,6 +114,8 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"comments.xyz", "# nothing\n", "has no points"},
       {"garbage.stl", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
       {"cut.stl", std::string(80, ' ') + std::string("\xff\xff\xff\x7f", 4) + raw, "cannot be read"},
+      {"garbage.glb", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
+      {"cut.glb", std::string("glTF\2\0\0\0\xff\xff\0\0", 12), "cannot be read"},
       {"unknown.abc", "1 2 3\n", "unknown extension '.abc', must be .pcd"},
       {"none", "1 2 3\n", "unknown extension ''"}};
   const TemporaryFolder folder;
@@ -231,6 +233,37 @@ TEST(LoadShape, ReadsPointsOfColumnsAndOfFilesWithoutFaces) {
     EXPECT_EQ((*shape.points)[1].getVector3fMap(), Eigen::Vector3f(2, 1, 0.5f)) << name;
     EXPECT_TRUE(shape.shift.isZero(0.0)) << name;
   }
+}
+
+/// Binary glTF: 12 bytes of header, a chunk of JSON, a chunk of values.
+std::string glb(const std::string& primitive, const std::string& values) {
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":[0,0,5]}],)"
+      R"("meshes":[{"primitives":[)" +
+      primitive + R"(]}],"buffers":[{"byteLength":)" + std::to_string(values.size()) + R"(}],)" +
+      R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],)" +
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[2,1,0]}]})";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto number = [](std::size_t value) {
+    const auto narrow = static_cast<std::uint32_t>(value);
+    return std::string(reinterpret_cast<const char*>(&narrow), 4);
+  };
+  return "glTF" + number(2) + number(28 + json.size() + values.size()) + number(json.size()) + "JSON" + json +
+         number(values.size()) + std::string("BIN\0", 4) + values;
+}
+
+TEST(LoadShape, ReadsBinaryGlTF) {
+  const TemporaryFolder folder;
+  const float corners[9] = {0, 0, 0, 2, 0, 0, 2, 1, 0};
+  const std::string values(reinterpret_cast<const char*>(corners), sizeof(corners));
+  const Shape mesh = loadShape(folder.write("mesh.glb", glb(R"({"attributes":{"POSITION":0},"mode":4})", values)));
+  ASSERT_TRUE(mesh.mesh);
+  EXPECT_EQ(mesh.mesh->polygons.size(), 1u);
+  EXPECT_EQ(mesh.points->at(2).getVector3fMap(), Eigen::Vector3f(2, 1, 5)) << "in the frame of the scene";
+  const Shape points = loadShape(folder.write("points.glb", glb(R"({"attributes":{"POSITION":0},"mode":0})", values)));
+  EXPECT_FALSE(points.mesh);
+  ASSERT_EQ(points.points->size(), 3u);
+  EXPECT_EQ(points.points->at(1).getVector3fMap(), Eigen::Vector3f(2, 0, 5));
 }
 
 /// Map coordinates of a square of one metre, which float cannot tell apart: its spacing there is half a metre.

@@ -1,15 +1,10 @@
-/// Looks through PCD and PLY files before PCL's readers do: those crash on files that promise what they do not hold.
+/// Looks through PLY files before PCL's reader does: that crashes on files that promise what they do not hold.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <string>
 
 namespace pcl_symmetry::apps {
-
-/// Checks that x, y and z are there, that sizes and counts agree with each other and with the file, and, for text, that
-/// every value is a number.
-/// \throws InputError naming the field, its value and the rule.
-void checkPCD(const std::string& path);
 
 /// What PCL's reader does not tell about a PLY file: whether it is a mesh, and the camera, which PCL writes but loses.
 struct PLYSummary {
@@ -18,7 +13,9 @@ struct PLYSummary {
   Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
 };
 
-/// The same for PLY; the lengths of all lists are followed to the end of the file.
+/// Checks that x, y and z are there, that sizes and counts agree with each other and with the file, and, for text, that
+/// every value is a number; the lengths of all lists are followed to the end of the file.
+/// \throws InputError naming the field, its value and the rule.
 PLYSummary checkPLY(const std::string& path);
 
 }  // namespace pcl_symmetry::apps

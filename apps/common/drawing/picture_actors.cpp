@@ -1,4 +1,4 @@
-#include "common/pictures/picture_actors.h"
+#include "common/drawing/picture_actors.h"
 
 #include <pcl/common/point_tests.h>
 #include <pcl/conversions.h>
@@ -22,45 +22,12 @@
 #include <limits>
 #include <utility>
 
-#include "core/normals/surface_normals.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "common/patches/patch_geometry.h"
+#include "common/patches/point_normals.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
-
-/// More points shade themselves by their density. chosen: half leaves medium clouds flat, twice takes twice the time.
-constexpr std::size_t kMaxShadedPoints = 200000;
-/// Neighbours that give the normal of a point. chosen: half shows noise as specks, twice rounds edges.
-constexpr int kShadingNeighbours = 12;
-const Eigen::Vector3d kPlainColor(0.30, 0.38, 0.52);
-
-/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
-std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
-  const double length = plane.normal.norm();
-  const Eigen::Vector3d normal = plane.normal / length;
-  const Eigen::Vector3d center = plane.center - (normal.dot(plane.center) - plane.offset / length) * normal;
-  Eigen::Vector3d v = up.normalized() - normal.dot(up.normalized()) * normal;
-  if (v.norm() < 0.1) v = normal.unitOrthogonal();
-  v.normalize();
-  const Eigen::Vector3d u = normal.cross(v);
-  const double h = plane.half_size;
-  return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
-}
-
-/// How far the points reach along the axis to either side of its point, and a tenth more.
-std::pair<double, double> reachAlong(const AxisLine& axis, const PictureScene& scene) {
-  const Eigen::Vector3d direction = axis.direction.normalized();
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const pcl::PointXYZ& point : *scene.points) {
-    if (!pcl::isXYZFinite(point)) continue;
-    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
-    low = std::min(low, along);
-    high = std::max(high, along);
-  }
-  const double margin = 0.1 * (high - low);
-  return {low - margin, high + margin};
-}
 
 void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
   for (int k = 0; k < 3; ++k)
@@ -69,61 +36,12 @@ void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
 
 }  // namespace
 
-/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
-std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
-  const Eigen::Vector3d normal = plane.normal.normalized(), s = normal.unitOrthogonal(), t = normal.cross(s);
-  std::vector<Eigen::Vector2d> projections;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d second_moment = Eigen::Matrix2d::Zero();
-  for (const pcl::PointXYZ& point : points) {
-    const Eigen::Vector3d position = point.getVector3fMap().cast<double>();
-    if (!position.allFinite()) continue;
-    projections.emplace_back(s.dot(position), t.dot(position));
-    mean += projections.back();
-  }
-  mean /= static_cast<double>(projections.size());
-  for (const Eigen::Vector2d& q : projections) second_moment += (q - mean) * (q - mean).transpose();
-  const Eigen::Matrix2d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(second_moment).eigenvectors();
-  Eigen::AlignedBox2d box;
-  for (const Eigen::Vector2d& q : projections) box.extend(axes.transpose() * q);
-  const double margin = 0.06 * box.diagonal().norm();
-  box.extend(box.min() - Eigen::Vector2d::Constant(margin)).extend(box.max() + Eigen::Vector2d::Constant(margin));
-  const auto corner = [&](double u, double v) -> Eigen::Vector3d {
-    const Eigen::Vector2d q = axes * Eigen::Vector2d(u, v);
-    return plane.offset / plane.normal.norm() * normal + q.x() * s + q.y() * t;
-  };
-  return {corner(box.min().x(), box.min().y()), corner(box.max().x(), box.min().y()),
-          corner(box.max().x(), box.max().y()), corner(box.min().x(), box.max().y())};
-}
-
-Normalization normalizationOf(const PictureScene& scene) {
-  Eigen::AlignedBox3d box;
-  for (const pcl::PointXYZ& point : *scene.points) {
-    const Eigen::Vector3d position = point.getVector3fMap().cast<double>();
-    if (position.allFinite()) box.extend(position);
-  }
-  if (box.isEmpty()) throw InputError("nothing to draw, no point is finite");
-  const double diagonal = box.diagonal().norm();
-  return {box.center(), diagonal > 0 ? 1.0 / diagonal : 1.0};
-}
-
 std::vector<double> shading(const PictureScene& scene, const Normalization& normalize) {
-  std::vector<double> brightness(scene.points->size(), 1.0);
-  Points finite(3, static_cast<Eigen::Index>(scene.points->size()));
-  std::vector<std::size_t> index;
-  for (std::size_t i = 0; i < scene.points->size(); ++i) {
-    const Eigen::Vector3d position = (*scene.points)[i].getVector3fMap().cast<double>();
-    if (!position.allFinite()) continue;
-    finite.col(static_cast<Eigen::Index>(index.size())) = normalize(position).cast<float>();
-    index.push_back(i);
-  }
-  if (index.size() < 16 || index.size() > kMaxShadedPoints) return brightness;
-  finite.conservativeResize(3, static_cast<Eigen::Index>(index.size()));
-  const Points normals = localGeometry(finite, *makeFlannSearch(finite), kShadingNeighbours, 0).normals;
+  const Points normals = pointNormals(*scene.points, normalize);
   const Eigen::RowVectorXf cosines = (scene.view.normalized().cast<float>().transpose() * normals).cwiseAbs();
-  for (std::size_t i = 0; i < index.size(); ++i)
-    if (std::isfinite(cosines[static_cast<Eigen::Index>(i)]))
-      brightness[index[i]] = cosines[static_cast<Eigen::Index>(i)];
+  std::vector<double> brightness(scene.points->size(), 1.0);
+  for (std::size_t i = 0; i < brightness.size(); ++i)
+    if (std::isfinite(cosines[static_cast<Eigen::Index>(i)])) brightness[i] = cosines[static_cast<Eigen::Index>(i)];
   return brightness;
 }
 
@@ -140,11 +58,8 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
     if (!position.allFinite()) continue;
     const vtkIdType id = points->InsertNextPoint(normalize(position).data());
     cells->InsertNextCell(1, &id);
-    const bool plain = panel.support.empty() && panel.segments.empty();
-    Eigen::Vector3d base = kPlainColor;
-    if (!panel.segments.empty()) base = segmentColor(panel.segments[i]);
-    if (!panel.support.empty()) base = cividis(panel.support[i]);
-    addColor(*colors, (plain ? 0.45 + 0.75 * brightness[i] : 0.65 + 0.35 * brightness[i]) * base);
+    const PointShade shade = shadeOf(!panel.support.empty() || !panel.segments.empty());
+    addColor(*colors, (shade.least + shade.range * brightness[i]) * pointColor(panel, i));
   }
   const double num_points = static_cast<double>(points->GetNumberOfPoints());
   vtkNew<vtkPolyData> data;
@@ -201,7 +116,7 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PictureP
   mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2.0, 2.0);
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(0.86, 0.86, 0.88);
+  actor->GetProperty()->SetColor(kPlainMeshColor.x(), kPlainMeshColor.y(), kPlainMeshColor.z());
   actor->GetProperty()->SetAmbient(0.25);
   actor->GetProperty()->SetDiffuse(0.75);
   if (!colored) actor->GetProperty()->SetInterpolationToFlat();
@@ -210,12 +125,11 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PictureP
 
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width) {
-  const Eigen::Vector3d direction = axis.direction.normalized();
   const bool is_short = axis.half_length > 0.0;
-  const auto [low, high] = is_short ? std::pair(-axis.half_length, axis.half_length) : reachAlong(axis, scene);
+  const auto [begin, end] = axisEnds(axis, scene);
   vtkNew<vtkPoints> points;
-  points->InsertNextPoint(normalize(axis.point + low * direction).data());
-  points->InsertNextPoint(normalize(axis.point + high * direction).data());
+  points->InsertNextPoint(normalize(begin).data());
+  points->InsertNextPoint(normalize(end).data());
   const vtkIdType ends[] = {0, 1};
   vtkNew<vtkCellArray> line;
   line->InsertNextCell(2, ends);
@@ -241,7 +155,7 @@ void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& sc
 void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,
               double line_width) {
   vtkNew<vtkPoints> points;
-  const auto corners = plane.half_size > 0 ? squareCorners(plane, scene.up) : fittedCorners(plane, *scene.points);
+  const auto corners = patchCorners(plane, scene);
   for (const Eigen::Vector3d& corner : corners) points->InsertNextPoint(normalize(corner).data());
   const vtkIdType loop[] = {0, 1, 2, 3, 0};
   vtkNew<vtkCellArray> quad, outline;

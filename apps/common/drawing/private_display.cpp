@@ -1,4 +1,4 @@
-#include "common/pictures/private_display.h"
+#include "common/drawing/private_display.h"
 
 #include <X11/Xlib.h>
 #include <fcntl.h>

@@ -7,23 +7,13 @@
 #include <vtkSmartPointer.h>
 #include <vtkTextActor.h>
 
-#include <array>
 #include <string>
 #include <vector>
 
+#include "common/patches/patch_geometry.h"
 #include "common/pictures/picture.h"
 
 namespace pcl_symmetry::apps {
-
-/// Moves the scene to the origin and to unit size: VTK's clipping planes and single-precision buffers want that.
-struct Normalization {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double scale = 1;
-  Eigen::Vector3d operator()(const Eigen::Vector3d& point) const { return (point - center) * scale; }
-};
-
-/// \throws InputError where no point is finite.
-Normalization normalizationOf(const PictureScene& scene);
 
 /// \return for each point how bright it looks with a light at the camera, in [0, 1].
 std::vector<double> shading(const PictureScene& scene, const Normalization& normalize);
@@ -43,9 +33,6 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PictureP
 /// \param line_width pixels.
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width);
-
-/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
-std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points);
 
 /// The patch with its outline.
 /// \param line_width pixels.

@@ -1,0 +1,29 @@
+/// Which files the arguments of a tool stand for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/command_line/tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+/// A file to read, and the folder among the arguments that it was found in, empty where the file itself was given.
+struct InputFile {
+  std::string path;
+  std::string folder;
+};
+
+/// \param arguments files; "-", standard input; folders, with the shape files in them and in folders of theirs, sorted
+/// by name; patterns with *, ? and []; and lists "@FILE" of any of these, one on each line, # before comments
+/// \throws InputError where a list or folder cannot be read or a pattern has no file. A file that is missing is kept,
+/// to be reported with those that cannot be used.
+std::vector<InputFile> inputFiles(const std::vector<std::string>& arguments);
+
+/// \return whether the name ends in one of kShapeFiles, in capitals or not
+bool hasShapeExtension(const std::string& path);
+
+/// \return whether one argument may stand for several files: a folder, a pattern or a list
+bool standsForSeveral(const std::string& argument);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,19 @@
+/// The colours of planes, parts and support in pictures and pages.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+namespace pcl_symmetry::apps {
+
+/// Eight colours that remain apart for colour-blind eyes (Okabe and Ito), repeated from the start when they run out.
+Eigen::Vector3d distinctColor(std::size_t index);
+
+/// The color of a segment: distinct colors, lighter with each round; grey for numbers below 0.
+Eigen::Vector3d segmentColor(int segment);
+
+/// \param value in [0, 1], clamped.
+/// \return its colour on the cividis scale (dark blue to yellow).
+Eigen::Vector3d cividis(double value);
+
+}  // namespace pcl_symmetry::apps

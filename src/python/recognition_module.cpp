@@ -1,0 +1,184 @@
+/// What the Python module needs PCL for: poses refined by its ICP, and the database of models. Loaded when one of these
+/// is asked for.
+#include <pcl/exceptions.h>
+#include <pybind11/eigen.h>
+#include <pybind11/functional.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "pcl_symmetry/registration/cloud_registration.h"
+#include "python/input_points.h"
+
+namespace py = pybind11;
+
+namespace pcl_symmetry::python {
+
+namespace {
+
+using RowMajor4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+using Cloud = SymmetryDatabase::Cloud;
+
+Eigen::Isometry3d motionOf(const RowMajor4& matrix) {
+  Eigen::Isometry3d motion;
+  motion.matrix() = matrix;
+  if (!motion.linear().isUnitary(1e-6) || motion.linear().determinant() < 0.0 ||
+      !matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1)))
+    throw std::invalid_argument("guess = another matrix, must be a rotation and a translation, (4, 4)");
+  return motion;
+}
+
+CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target, const RowMajor4& guess,
+                                 const py::object& source_viewpoint, const py::object& target_viewpoint,
+                                 std::uint64_t seed, int threads) {
+  const InputPoints source_input("source", source, 0, seed), target_input("target", target, 0, seed);
+  const std::optional<Visibility> source_seen = seenFrom(source_input.points(), source_viewpoint);
+  const std::optional<Visibility> target_seen = seenFrom(target_input.points(), target_viewpoint);
+  const Eigen::Isometry3d T_target_source = motionOf(guess);
+  const py::gil_scoped_release release;
+  CloudRegistrationOptions options;
+  options.seed = seed;
+  options.num_threads = threads;
+  return registerClouds(source_input.points(), source_seen, target_input.points(), target_seen, T_target_source,
+                        options);
+}
+
+Cloud cloudOf(const char* name, const py::array& points) {
+  const InputPoints input(name, points, 0, 0);
+  Cloud cloud;
+  const PointsRef used = input.points();
+  cloud.reserve(static_cast<std::size_t>(used.cols()));
+  for (Eigen::Index i = 0; i < used.cols(); ++i) cloud.emplace_back(used(0, i), used(1, i), used(2, i));
+  return cloud;
+}
+
+py::array_t<float> rowsOf(const Cloud& cloud) {
+  py::array_t<float> rows({static_cast<py::ssize_t>(cloud.size()), py::ssize_t{3}});
+  Eigen::Map<Points> columns(rows.mutable_data(), 3, static_cast<Eigen::Index>(cloud.size()));
+  for (std::size_t i = 0; i < cloud.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = cloud[i].getVector3fMap();
+  return rows;
+}
+
+Viewpoint viewpointOf(const py::object& viewpoint) {
+  if (viewpoint.is_none()) return {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
+  if (!py::isinstance<py::str>(viewpoint)) {
+    try {
+      return {Viewpoint::Mode::Given, viewpoint.cast<Eigen::Vector3d>()};
+    } catch (const py::cast_error&) {
+    }
+  } else if (viewpoint.cast<std::string>() == "auto") {
+    return {};
+  }
+  throw std::invalid_argument("viewpoint = " + py::str(viewpoint).cast<std::string>() +
+                              ", must be \"auto\", None or (x, y, z)");
+}
+
+void addRegistration(py::module_& module) {
+  py::class_<PoseScore>(module, "PoseScore", "What two clouds say about a pose.")
+      .def_readonly("support", &PoseScore::support, "share of the source that lies on the target, in [0, 1]")
+      .def_readonly("conflict", &PoseScore::conflict, "share of either that lies in space seen to be empty, in [0, 2]")
+      .def_property_readonly("merit", &PoseScore::merit, "support - conflict / 2; a perfect pose has 1");
+  py::class_<CloudRegistration>(module, "Registration", "The pose of one cloud relative to another.")
+      .def_property_readonly(
+          "transform", [](const CloudRegistration& r) { return RowMajor4(r.T_target_source.matrix()); },
+          "(4, 4) from the frame of the source to that of the target")
+      .def_readonly("score", &CloudRegistration::score, "PoseScore of the transform");
+  module.def(
+      "register", &registerPoints, py::arg("source"), py::arg("target"), py::kw_only(),
+      py::arg("guess") = RowMajor4(RowMajor4::Identity()), py::arg("source_viewpoint") = "auto",
+      py::arg("target_viewpoint") = "auto", py::arg("seed") = 1, py::arg("threads") = 0,
+      "The pose of a scan, or a whole object, relative to another cloud of it, from any start (Section 5.1).\n\n"
+      "source, target: (N, 3) and (M, 3), same units. guess: (4, 4), tried beside many other poses.\n"
+      "source_viewpoint, target_viewpoint: as in planes().\n"
+      "Returns Registration; poses of a wrong object have a merit below 0.32, those of the right one 0.5 or more.");
+}
+
+void addResults(py::module_& module) {
+  py::class_<ModelMatch>(module, "Match", "A model that is like a shape.")
+      .def_readonly("name", &ModelMatch::name)
+      .def_readonly("distance", &ModelMatch::distance, "1 between shapes as far apart as from what is most like them");
+  py::class_<RecognizedModel>(module, "Recognized", "A model that a scan shows.")
+      .def_readonly("name", &RecognizedModel::name)
+      .def_readonly("score", &RecognizedModel::score, "PoseScore")
+      .def_readonly("confidence", &RecognizedModel::confidence, "probability that the scan shows this model")
+      .def_property_readonly(
+          "transform", [](const RecognizedModel& m) { return RowMajor4(m.T_model_scan.matrix()); },
+          "(4, 4) from the frame of the scan to that of the model");
+}
+
+void addDatabase(py::module_& module) {
+  py::class_<SymmetryDatabase>(module, "Database", "Models in one file, found by shape (Section 5.2).")
+      .def(py::init([](const std::string& file, const std::string& unit, int threads) {
+             DatabaseOptions options;
+             options.unit = unit;
+             options.num_threads = threads;
+             return std::make_unique<SymmetryDatabase>(file, options);
+           }),
+           py::arg("file"), py::kw_only(), py::arg("unit") = "", py::arg("threads") = 0,
+           "Opens the file, or makes it. Raises OSError where it is no database that can be used.")
+      .def_property_readonly("names", &SymmetryDatabase::names, "names of all models, sorted")
+      .def("__len__", &SymmetryDatabase::size)
+      .def("__contains__", &SymmetryDatabase::contains)
+      .def(
+          "add",
+          [](SymmetryDatabase& database, const std::string& name, const AnyArray& points) {
+            const Cloud cloud = cloudOf("points", points);
+            const py::gil_scoped_release release;
+            database.add(name, cloud);
+          },
+          py::arg("name"), py::arg("points"), "Stores a model, (N, 3) points all around it; on the disk on return.")
+      .def("remove", &SymmetryDatabase::remove, py::arg("name"))
+      .def(
+          "cloud",
+          [](const SymmetryDatabase& database, const std::string& name) { return rowsOf(database.cloud(name)); },
+          py::arg("name"), "(N, 3) points of a model")
+      .def(
+          "match",
+          [](const SymmetryDatabase& database, const AnyArray& points, int num_nearest, const py::object& viewpoint) {
+            const Cloud cloud = cloudOf("points", points);
+            const Viewpoint from = viewpointOf(viewpoint);
+            const py::gil_scoped_release release;
+            return database.match(cloud, num_nearest, from);
+          },
+          py::arg("points"), py::arg("num_nearest") = 10, py::kw_only(), py::arg("viewpoint") = "auto",
+          "The models most like a cloud, in any pose and size: list of Match, nearest first.")
+      .def(
+          "recognize",
+          [](const SymmetryDatabase& database, const AnyArray& points, const py::object& viewpoint, int threads) {
+            const Cloud cloud = cloudOf("points", points);
+            const Viewpoint from = viewpointOf(viewpoint);
+            RecognitionOptions options;
+            options.num_threads = threads;
+            const py::gil_scoped_release release;
+            return database.recognize(cloud, options, from);
+          },
+          py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto", py::arg("threads") = 0,
+          "The model that a scan shows, in its own size: list of Recognized, best first; empty for an unknown object.");
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_recognition, module) {
+  // Messages of the library name the file or the parameter.
+  py::register_exception_translator([](std::exception_ptr error) {
+    try {
+      if (error) std::rethrow_exception(error);
+    } catch (const pcl::IOException& exception) {
+      PyErr_SetString(PyExc_OSError, exception.what());
+    } catch (const pcl::PCLException& exception) {
+      PyErr_SetString(PyExc_ValueError, exception.what());
+    }
+  });
+  addRegistration(module);
+  addResults(module);
+  addDatabase(module);
+}
+
+}  // namespace pcl_symmetry::python
