@@ -6,9 +6,9 @@
 
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
-#include "core/evidence/missing_surface.h"
 #include "core/evidence/plane_support.h"
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/share/missing_surface.h"
+#include "core/evidence/share/surface_distance.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/evidence/split_surface.h"
+#include "core/evidence/share/split_surface.h"
 #include "core/neighbours/thin_shape.h"
 #include "core/refinement/part_search.h"
 #include "core/refinement/plane_fit.h"

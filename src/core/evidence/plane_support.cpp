@@ -6,7 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/share/surface_distance.h"
 #include "core/normals/surface_normals.h"
 
 namespace pcl_symmetry {

@@ -1,4 +1,4 @@
-#include "core/evidence/missing_surface.h"
+#include "core/evidence/share/missing_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/evidence/split_surface.h"
+#include "core/evidence/share/split_surface.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/share/surface_distance.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/transform_2d/line_map.h"
+#include "pcl_symmetry/core/transform_2d/line_transform.h"
 
 #include <gtest/gtest.h>
 

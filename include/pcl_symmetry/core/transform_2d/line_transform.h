@@ -1,13 +1,86 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "pcl_symmetry/core/detection/local_maxima.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/transform_2d/gaussian_edt_2d.h"
-#include "pcl_symmetry/core/transform_2d/line_map.h"
+#include "pcl_symmetry/core/transform_2d/reflection_line.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// The discrete space of lines (Section 4.2): theta in [0, pi) and r in [-radius, radius] about a center, each cut into
+/// equal bins. Bin (t, k) has its center at theta = (t + 1/2) dtheta, r = (k + 1/2) dr - radius.
+///
+/// Seam: past theta = pi lies (theta - pi, -r).
+class LineGrid {
+public:
+  struct Bin {
+    int theta;
+    int radius;
+  };
+
+  LineGrid() = default;
+
+  /// \param num_theta,num_radius number of bins, each in [1, 4096].
+  /// \param center finite, input frame; r is measured from it.
+  /// \param radius finite and > 0, input units.
+  /// \throws std::invalid_argument naming field, value and rule.
+  LineGrid(int num_theta, int num_radius, const Eigen::Vector2d& center, double radius);
+
+  int numTheta() const { return num_theta_; }
+  int numRadius() const { return num_radius_; }
+  std::size_t size() const { return static_cast<std::size_t>(num_theta_) * num_radius_; }
+  const Eigen::Vector2d& center() const { return center_; }
+  double radius() const { return radius_; }
+
+  double thetaStep() const;   ///< radians
+  double radiusStep() const;  ///< input units
+
+  /// \return theta * num_radius + radius: bins of one direction lie side by side.
+  std::size_t index(const Bin& bin) const { return static_cast<std::size_t>(bin.theta) * num_radius_ + bin.radius; }
+  /// \return the bin of an index; the inverse of index().
+  Bin bin(std::size_t index) const;
+
+  double theta(int t) const { return (t + 0.5) * thetaStep(); }  ///< at the bin center, radians
+  /// \return r at the bin center: signed distance of the line from the grid's center, input units.
+  double offset(int k) const { return (k + 0.5) * radiusStep() - radius_; }
+
+  /// \return the line at the bin center, input frame.
+  ReflectionLine line(const Bin& bin) const;
+
+  /// \return the bin that contains the line; none if the line is farther than radius() from the center.
+  std::optional<Bin> find(const ReflectionLine& line) const;
+
+  /// \param dt,dk steps, dt in {-1, 0, 1}.
+  /// \return the bin at (t + dt, k + dk), across the seam; none beyond the ends of r.
+  std::optional<Bin> step(const Bin& bin, int dt, int dk) const;
+
+private:
+  int num_theta_ = 0;
+  int num_radius_ = 0;
+  Eigen::Vector2d center_ = Eigen::Vector2d::Zero();
+  double radius_ = 0.0;
+};
+
+/// The transform of a planar shape: D(f, gamma) = f . gamma(f) / |f|^2 (Equation 2) for every bin of lines.
+struct LineMap {
+  LineGrid grid;
+  std::vector<float> values;  ///< grid.size() values of D, about [0, 1]; 1 for a perfect symmetry
+  double sigma = 0.0;         ///< width of the distance transform that the map was made from, input units
+  /// Mean of the points, input frame. The threshold 1 - r / R of Section 4.4 measures r from it.
+  Eigen::Vector2d center_of_mass = Eigen::Vector2d::Zero();
+
+  /// \return D at a bin.
+  float operator[](std::size_t index) const { return values[index]; }
+  bool empty() const { return values.empty(); }
+
+  /// \return index of the bin with the greatest value; 0 for an empty map.
+  std::size_t strongest() const;
+};
 
 /// The reflective symmetry of a planar shape with respect to every line (Sections 3 and 4.2).
 ///

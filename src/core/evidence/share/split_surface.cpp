@@ -1,11 +1,11 @@
-#include "core/evidence/split_surface.h"
+#include "core/evidence/share/split_surface.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numeric>
 
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/share/surface_distance.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 
