@@ -15,9 +15,9 @@ struct ConfidenceFit {
 };
 
 // fitted: 178 models, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{4.15, -0.514, -0.7198, -7.801, -0.7792, -1.348},
-                                            {-0.2662, -2.484, -3.187},
+inline const ConfidenceFit kConfidenceFit{{{{4.004, -0.5659, -0.6804, -8.096, -0.8323, -1.327},
+                                            {-0.2893, -2.111, -2.892},
                                             {5.478, -0.7427, -1.632, -0.8914, -11.62}}},
-                                          {{{-3.94, 1.04}, {-49.5, 1}, {-20.3, 0.8}}}};
+                                          {{{-3.94, 1.06}, {-45.9, 0.991}, {-20.3, 0.8}}}};
 
 }  // namespace pcl_symmetry
