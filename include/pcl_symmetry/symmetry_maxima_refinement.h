@@ -105,6 +105,9 @@ public:
   const std::vector<SymmetryAxis>& getAxes() const { return axes_; }
   /// \return the centers of spheres that the last compute() found.
   const std::vector<SymmetryCenter>& getCenters() const { return centers_; }
+  /// \return the axes of turns that the last compute() found in a scan, most confident first: of nuts, wheels and
+  /// bottles seen from one side, with their order. Empty for clouds without a viewpoint, see detectObjectSymmetries().
+  const std::vector<SymmetryTurn>& getTurns() const { return turns_; }
   /// \return where the last compute() found neither a symmetry nor a possible one, the plane that maps the greatest share
   /// of the surface to within the tolerance; empty otherwise, and where the input holds no answer.
   const std::optional<SymmetryPlane>& getBestPlane() const { return best_; }
@@ -124,6 +127,7 @@ protected:
     used_points_.resize(3, 0);
     axes_.clear();
     centers_.clear();
+    turns_.clear();
     best_.reset();
     used_tolerance_ = 0.0;
     timing_ms_.clear();
@@ -143,6 +147,7 @@ private:
   Points used_points_ = Points(3, 0);
   std::vector<SymmetryAxis> axes_;
   std::vector<SymmetryCenter> centers_;
+  std::vector<SymmetryTurn> turns_;
   std::optional<SymmetryPlane> best_;
   double used_tolerance_ = 0.0;
   std::vector<std::pair<std::string, double>> timing_ms_;

@@ -88,6 +88,7 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     own_map_ = std::move(detection.map);
     axes_ = std::move(detection.axes);
     centers_ = std::move(detection.centers);
+    turns_ = std::move(detection.turns);
     best_ = std::move(detection.best);
     used_tolerance_ = detection.tolerance;
     timing_ms_ = std::move(detection.timing_ms);

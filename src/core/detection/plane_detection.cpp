@@ -11,6 +11,7 @@
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_judge.h"
 #include "core/detection/plane_ranking.h"
+#include "core/detection/scan_axes/scan_axes.h"
 #include "core/detection/staged_refinement.h"
 #include "core/distance_transform/free_space.h"
 #include "core/neighbours/answerable_points.h"
@@ -142,6 +143,14 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
     detection.centers = std::move(found.centers);
   }
   timed("families");
+  // A ball turns about every line through its center.
+  if (options.turns && cloud.isScan() && detection.centers.empty()) {
+    const TurnEvidence turns(cloud, judge.tolerance(), options.seed);
+    detection.turns = scanAxes(turns, planes, detection.axes, options);
+    detection.axes = withRoundTurns(turns, std::move(detection.axes), detection.turns, options);
+    planes = withoutPlanesOf(std::move(planes), detection.axes, cloud);
+  }
+  timed("turns");
   if (options.approximate) append(planes, judge.findParts(planes));
   timed("parts");
   const bool answered = !detection.axes.empty() || !detection.centers.empty();
