@@ -86,74 +86,94 @@ double errorOf(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, c
   return std::max(d.angle / kTurnAngle, d.offset / (kTurnOffset * shape.diagonal));
 }
 
+/// The answer closest to the axis of a solid.
+struct ClosestTurn {
+  double error = std::numeric_limits<double>::infinity();  ///< in limits
+  int order = -1;
+  double confidence = 0.0;
+  bool called_round = false, other = false;  ///< another axis of order 3 and more
+};
+
+ClosestTurn closestTurn(const ShapeAnswers& answers, const SweptShape& shape, const Eigen::Isometry3d& pose) {
+  constexpr double kOther = 5.0;  // limits; chosen: an axis beyond is another one
+  ClosestTurn closest;
+  const auto take = [&](const Eigen::Vector3d& point, const Eigen::Vector3d& axis, int fold, double confidence) {
+    const double error = errorOf(point, axis, shape, pose);
+    closest.other = closest.other || error > kOther;
+    if (error < closest.error) {
+      closest.error = error;
+      closest.order = fold;
+      closest.confidence = confidence;
+    }
+  };
+  for (const SymmetryAxis& axis : answers.axes) take(axis.point, axis.direction, 0, axis.confidence);
+  for (const SymmetryTurn& turn : answers.turns)
+    if (turn.confidence >= 0.5 && turn.fold > 2) take(turn.point, turn.direction, turn.fold, turn.confidence);
+  closest.called_round = !answers.axes.empty();
+  return closest;
+}
+
+/// What was measured of the turns nearest to the axis, whatever was decided.
+void addEvidence(Row& row, const ShapeAnswers& answers, const SweptShape& shape, const Eigen::Isometry3d& pose) {
+  const SymmetryTurn* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const SymmetryTurn& turn : answers.turns) {
+    const double error = errorOf(turn.point, turn.direction, shape, pose);
+    if (error >= least || turn.fold == 2) continue;
+    least = error;
+    nearest = &turn;
+  }
+  row.add(least);
+  if (nearest) row.add(nearest->off).add(nearest->far).add(nearest->support).add(nearest->halfway);
+}
+
+VirtualScan scanOf(const SweptShape& shape, const Eigen::Vector3d& direction, const ShapeRowOptions& options,
+                   RandomStream& random) {
+  VirtualScannerOptions scanning;
+  scanning.num_points = options.num_points;
+  scanning.random_pose = true;
+  scanning.seed = random();
+  scanning.num_threads = options.threads;
+  return VirtualScanner(shape.mesh).scan(direction, scanning);
+}
+
 }  // namespace
 
 ShapeReport measureTurns(const ShapeRowOptions& options) {
   ShapeReport report({"axis within 1 deg, 1 %", "and its order", "called a symmetry", "called round, but is not",
                       "another axis of order 3 and more"});
-  report.log("kind,body,folds,slant,handle,error,order,confidence,best_error,off,far,support,halfway,wrong");
+  report.log("kind,body,folds,slant,handle,error,order,confidence,best_error,off,far,support,halfway");
   const int count = options.count(kTurnSolids * kTurnViews);
   for (int i = 0; i < count; ++i) {
     options.progress(static_cast<double>(i) / count);
     RandomStream of_solid(options.caseSeed(i / kTurnViews)), of_view(options.caseSeed(1'000'000 + i));
     const TurningSolid solid = solidOf(i / kTurnViews, options.report, of_solid);
-    VirtualScannerOptions scanning;
-    scanning.num_points = options.num_points;
-    scanning.random_pose = true;
-    scanning.seed = of_view();
-    scanning.num_threads = options.threads;
+    const SweptShape& shape = solid.shape;
     const Eigen::Vector3d direction = randomPose(of_view(), 0.0).linear().col(0);
-    const VirtualScan scan = VirtualScanner(solid.shape.mesh).scan(direction, scanning);
+    const VirtualScan scan = scanOf(shape, direction, options, of_view);
     const double handle = solid.kind == "handle" ? handleShare(solid, scan) : 0.0;
     if (handle > kHiddenHandle && handle < kVisibleHandle) continue;
     const bool in_sight = handle >= kVisibleHandle;
     const ShapeAnswers answers = detectShape(scan.cloud, detectionOptions(options));
-    const int folds = solid.shape.num_folds;
-    const bool nearly_round = folds == 0 || solid.shape.isNearlyRound();
+    const ClosestTurn closest = closestTurn(answers, shape, scan.T_scan_model);
+    const bool round = shape.num_folds == 0 || shape.isNearlyRound();
+    const bool right = closest.error <= 1.0;
     const std::string row = in_sight ? "handle in sight" : solid.kind == "handle" ? "handle hidden" : solid.kind;
-    double best = std::numeric_limits<double>::infinity(), confidence = 0.0;
-    int order = -1;
-    bool wrong = false, order_right = false;
-    const auto take = [&](const Eigen::Vector3d& point, const Eigen::Vector3d& axis, int fold, double sure) {
-      const double error = errorOf(point, axis, solid.shape, scan.T_scan_model);
-      if (error > 5.0 && fold != 2) wrong = true;
-      if (error >= best) return;
-      best = error;
-      order = fold;
-      confidence = sure;
-      order_right = fold == folds || (fold == 0 && nearly_round);
-    };
-    bool called_round = false;
-    for (const SymmetryAxis& axis : answers.axes) {
-      take(axis.point, axis.direction, 0, axis.confidence);
-      called_round = true;
-    }
-    for (const SymmetryTurn& turn : answers.turns)
-      if (turn.confidence >= 0.5 && turn.fold > 2) take(turn.point, turn.direction, turn.fold, turn.confidence);
     for (const std::string& name : {row, std::string(in_sight ? "" : "all but handles in sight")}) {
       if (name.empty()) continue;
       if (!in_sight) {
-        report.at(name, kAxisRight).add(best <= 1.0);
-        report.at(name, kFoldRight).add(best <= 1.0 && order_right);
+        report.at(name, kAxisRight).add(right);
+        report.at(name, kFoldRight).add(right && (closest.order == shape.num_folds || (closest.order == 0 && round)));
       }
-      report.at(name, kConfident).add(std::isfinite(best));
-      report.at(name, kFalseRound).add(called_round && (in_sight || !nearly_round));
-      report.at(name, kWrongAxis).add(wrong);
+      report.at(name, kConfident).add(std::isfinite(closest.error));
+      report.at(name, kFalseRound).add(closest.called_round && (in_sight || !round));
+      report.at(name, kWrongAxis).add(closest.other);
     }
     Row line;
-    line.add(row).add(solid.shape.body).add(double(folds)).add(std::acos(std::abs(direction.z())) / kDegree);
-    line.add(handle).add(best).add(double(order)).add(confidence);
-    double off = -1, far = -1, support = -1, halfway = -1, nearest = std::numeric_limits<double>::infinity();
-    for (const SymmetryTurn& turn : answers.turns) {
-      const double error = errorOf(turn.point, turn.direction, solid.shape, scan.T_scan_model);
-      if (error >= nearest || turn.fold == 2) continue;
-      nearest = error;
-      off = turn.off;
-      far = turn.far;
-      support = turn.support;
-      halfway = turn.halfway;
-    }
-    report.log(line.add(nearest).add(off).add(far).add(support).add(halfway).add(double(wrong)).end());
+    line.add(row).add(shape.body).add(double(shape.num_folds)).add(std::acos(std::abs(direction.z())) / kDegree);
+    line.add(handle).add(closest.error).add(double(closest.order)).add(closest.confidence);
+    addEvidence(line, answers, shape, scan.T_scan_model);
+    report.log(line.end());
   }
   return report;
 }

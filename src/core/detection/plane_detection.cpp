@@ -47,6 +47,17 @@ Points normalsOf(const DistinctPoints& distinct, const Points& normals) {
   return result;
 }
 
+/// Finds the axes of turns of a scan, and brings axes of revolution and planes in line with them.
+std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
+                                        double tolerance, const DetectionOptions& options, Detection& detection) {
+  // A ball turns about every line through its center.
+  if (!options.turns || !cloud.isScan() || !detection.centers.empty()) return planes;
+  const TurnEvidence turns(cloud, tolerance, options.seed);
+  detection.turns = scanAxes(turns, planes, detection.axes, options);
+  detection.axes = withRoundTurns(turns, std::move(detection.axes), detection.turns, options);
+  return withoutPlanesOf(std::move(planes), detection.axes, cloud);
+}
+
 }  // namespace
 
 void DetectionOptions::validate() const {
@@ -143,13 +154,7 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
     detection.centers = std::move(found.centers);
   }
   timed("families");
-  // A ball turns about every line through its center.
-  if (options.turns && cloud.isScan() && detection.centers.empty()) {
-    const TurnEvidence turns(cloud, judge.tolerance(), options.seed);
-    detection.turns = scanAxes(turns, planes, detection.axes, options);
-    detection.axes = withRoundTurns(turns, std::move(detection.axes), detection.turns, options);
-    planes = withoutPlanesOf(std::move(planes), detection.axes, cloud);
-  }
+  planes = withScanAxes(std::move(planes), cloud, judge.tolerance(), options, detection);
   timed("turns");
   if (options.approximate) append(planes, judge.findParts(planes));
   timed("parts");
