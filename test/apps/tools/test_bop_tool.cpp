@@ -106,8 +106,8 @@ TEST_F(BopTool, FindsPropellersThatNoPlaneShows) {
 TEST_F(BopTool, ExplainsWhatFails) {
   const std::string mug = folder_.write("mug.off", offOf(test::cupShape(true)));
   infoOf(mug + " -explain -failures " + (folder_ / "failures"));
-  EXPECT_NE(output_.find("at half of it C1, at twice"), std::string::npos) << output_;
-  ASSERT_NE(output_.find("rejected any angle about"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("  tolerance "), std::string::npos) << output_;
+  ASSERT_NE(output_.find("  rejected "), std::string::npos) << output_;
   const Shape shape = loadShape(folder_ / "failures/mug_rejected_1.ply");
   EXPECT_EQ(shape.points->size(), 20'000u);
   EXPECT_GE(pcl::getFieldIndex(shape.cloud, "rgb"), 0);
