@@ -37,10 +37,11 @@ struct EvaluateShapesOptions {
 };
 
 CommandLine commandLine(EvaluateShapesOptions& o) {
-  CommandLine line("pcl_symmetry_evaluate shapes",
-                   "Measures decisions on shapes that are made by code: folds, views, turns, random, composites; and counts, "
-                   "which needs models.",
-                   "pcl_symmetry_evaluate shapes folds -half report");
+  CommandLine line(
+      "pcl_symmetry_evaluate shapes",
+      "Measures decisions on shapes that are made by code: folds, views, turns, random, composites; and counts, "
+      "which needs models.",
+      "pcl_symmetry_evaluate shapes folds -half report");
   line.positional("KIND", o.kind, "folds, views, turns, random, composites or counts")
       .positional("FOLDER", o.folder, "of models: needed by counts; parts of composites in place of own solids")
       .choice("half", o.half, {"tuning", "report"},
