@@ -60,9 +60,11 @@ struct SymmetryPlane : ReflectionPlane {
 struct SymmetryAxis {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
-  double confidence = 0.0;    ///< as that of SymmetryPlane, for planes at eight angles together
-  double score = 0.0;         ///< mean D of these planes
-  double support = 0.0;       ///< mean support of these planes
+  /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only turns show the grade of
+  /// SymmetryTurn.
+  double confidence = 0.0;
+  double score = 0.0;    ///< mean D of these planes
+  double support = 0.0;  ///< mean support of these planes
 };
 
 /// Turns about a line map what a scanner saw onto itself or to unseen places: the axis of a nut, a wheel, a bottle seen
