@@ -1,10 +1,12 @@
 #include "bop/model_analysis.h"
 
 #include <algorithm>
+#include <boost/filesystem.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <mutex>
 
+#include "bop/rejections.h"
 #include "common/command_line/file_errors.h"
 #include "common/files/json_values.h"
 #include "common/shape_input/exact_coordinates.h"
@@ -40,6 +42,10 @@ void shiftBack(ObjectSymmetries& symmetries, const Eigen::Vector3d& shift) {
   symmetries.center += shift;
   for (Eigen::Isometry3d& symmetry : symmetries.discrete) symmetry = shiftedBack(symmetry, shift, shift);
   for (ContinuousSymmetry& symmetry : symmetries.continuous) symmetry.offset += shift;
+  for (RejectedRotation& rejected : symmetries.rejected) {
+    rejected.turn = shiftedBack(rejected.turn, shift, shift);
+    rejected.where += shift;
+  }
 }
 
 ListedSymmetries shifted(ListedSymmetries listed, const Eigen::Vector3d& shift) {
@@ -64,12 +70,19 @@ void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const 
     info.symmetries = keepingColours(info.symmetries, ColouredSurface(shape, points, options.colour_tolerance));
     if (info.symmetries.name() != before) info.group_without_colours = before;
   }
+  if (!given && !options.failures_folder) return;
+  const int num_points = std::max(options.mesh_points, kEvidencePoints);
+  const ObjectSymmetryOptions& limits = options.symmetries;
+  const double tolerance =
+      limits.absolute_tolerance > 0.0 ? limits.absolute_tolerance : limits.tolerance * info.diameter;
+  const SurfaceEvidence surface(sampled(shape, vertices, num_points, seed), tolerance);
+  if (options.failures_folder) {
+    const boost::filesystem::path folder(*options.failures_folder), name(boost::filesystem::path(info.file).stem());
+    boost::system::error_code ignored;  // saveCloud() names the folder that is missing
+    boost::filesystem::create_directories(folder, ignored);
+    writeRejections((folder / name).string(), info.symmetries, surface, shape.shift);
+  }
   if (given) {
-    const int num_points = std::max(options.mesh_points, kEvidencePoints);
-    const ObjectSymmetryOptions& limits = options.symmetries;
-    const double tolerance =
-        limits.absolute_tolerance > 0.0 ? limits.absolute_tolerance : limits.tolerance * info.diameter;
-    const SurfaceEvidence surface(sampled(shape, vertices, num_points, seed), tolerance);
     info.check = checkSymmetries(shifted(*given, shape.shift), info.symmetries, surface, info.diameter);
     for (Disagreement& disagreement : info.check->disagreements) disagreement.point += shape.shift;
   }
@@ -84,6 +97,7 @@ ModelInfo analyseModel(const std::string& path, const ModelOptions& options,
   if (vertices.cols() == 0) throw InputError(path + ": has no finite points");
   ModelInfo info;
   info.file = path;
+  info.explain = options.explain;
   info.digits = lengthDigits(shape.shift);
   info.low = vertices.rowwise().minCoeff().cast<double>();
   info.size = vertices.rowwise().maxCoeff().cast<double>() - info.low;
@@ -123,6 +137,7 @@ void printModel(const ModelInfo& info) {
   std::vector<Eigen::Matrix3d> rotations;
   for (const Eigen::Isometry3d& symmetry : found.discrete) rotations.push_back(symmetry.linear());
   for (const RotationAxis& axis : axesOf(rotations)) print_axis(axis.direction, "fold " + std::to_string(axis.order));
+  if (info.explain) printRejections(found, info.digits);
 }
 
 }  // namespace pcl_symmetry::apps

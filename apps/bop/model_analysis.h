@@ -18,6 +18,8 @@ struct ModelOptions {
   int mesh_points = 10'000;
   bool use_colours = false;
   double colour_tolerance = kColourTolerance;  ///< difference in CIELAB
+  bool explain = false;                        ///< tells of rejected rotations and other tolerances
+  std::optional<std::string> failures_folder;  ///< where pictures of the rejected rotations go
 };
 
 /// What models_info.json says of a model.
@@ -30,6 +32,7 @@ struct ModelInfo {
   bool has_unread_colours = false;     ///< of its vertices or a texture, which nobody asked for or can read
   std::string group_without_colours;   ///< empty where they take nothing away
   std::optional<SymmetryCheck> check;  ///< against a given file
+  bool explain = false;                ///< prints the rejected rotations too
 };
 
 /// \param given what a file lists for this model; nothing where there is no file or no entry.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
@@ -22,6 +23,8 @@ public:
   SurfaceEvidence(Points points, double tolerance);
 
   MotionEvidence of(const Eigen::Isometry3d& motion) const;
+  /// \return distance of each moved point from the surface, input units.
+  std::vector<double> distances(const Eigen::Isometry3d& motion) const;
 
   const Points& points() const { return points_; }
   double tolerance() const { return tolerance_; }

@@ -115,13 +115,58 @@ pcl::PolygonMesh carton() {
   return mesh.polygonMesh();
 }
 
+/// A solid turned by an angle about z.
+Solid turnedAboutZ(const Solid& solid, double angle) {
+  const Eigen::Matrix3d back = Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix();
+  return [=](const Vector3d& x) { return solid(back * x); };
+}
+
+/// Three pitched blades on a hub: turns without a plane.
+pcl::PolygonMesh propeller() {
+  constexpr double kFlat = 4.0, kPitch = 0.6;  // chosen: chord over thickness, and radians: a propeller of a boat
+  const Eigen::Matrix3d pitch = Eigen::AngleAxisd(-kPitch, Vector3d::UnitX()).toRotationMatrix();
+  const Solid round = ellipsoid({1.05, 0, 0}, {0.85, 0.42, 0.42});
+  const Solid blade = [=](const Vector3d& x) {
+    const Vector3d y = pitch * x;
+    return round({y.x(), y.y(), kFlat * y.z()}) / kFlat;
+  };
+  std::vector<Solid> parts{ellipsoid({0, 0, 0}, {0.36, 0.36, 0.5})};
+  for (int k = 0; k < 3; ++k) parts.push_back(turnedAboutZ(blade, 2.0 * kPi * k / 3));
+  return surfaceOf(joined(parts, 0.05), AlignedBox3d(Vector3d(-2, -2, -0.7), Vector3d(2, 2, 0.7)), 130);
+}
+
+/// The wheel of a car without its tyre.
+pcl::PolygonMesh rim() {
+  std::vector<Solid> parts{ellipsoid({0, 0, 0.15}, {0.3, 0.3, 0.15}), ring({0, 0, 0.2}, 1.35, 0.12),
+                           ring({0, 0, -0.3}, 1.35, 0.12), ring({0, 0, -0.05}, 1.3, 0.17)};
+  const Solid spoke = tube({Vector3d(0.1, 0, 0.15), {0.5, 0, 0.25}, {0.9, 0, 0.25}, {1.35, 0, 0.1}}, 0.17, 0.12);
+  for (int k = 0; k < 5; ++k) parts.push_back(turnedAboutZ(spoke, 2.0 * kPi * k / 5));
+  return surfaceOf(joined(parts, 0.06), AlignedBox3d(Vector3d(-1.7, -1.7, -0.6), Vector3d(1.7, 1.7, 0.6)), 130);
+}
+
+pcl::PolygonMesh bottle() {
+  ParametricMesh mesh;
+  mesh.addTurned({{0.0, 0.0},
+                  {0.42, 0.0},
+                  {0.45, 0.08},
+                  {0.45, 1.3},
+                  {0.38, 1.55},
+                  {0.17, 1.85},
+                  {0.15, 2.3},
+                  {0.19, 2.32},
+                  {0.19, 2.42},
+                  {0.0, 2.42}});
+  return mesh.polygonMesh();
+}
+
 int run(int argc, char** argv) {
   if (argc != 2 || argv[1][0] == '-') throw UsageError("usage: make_shapes FOLDER");
   const boost::filesystem::path folder(argv[1]);
   boost::filesystem::create_directories(folder);
   const std::pair<const char*, pcl::PolygonMesh> shapes[] = {
       {"teapot", teapot()},     {"octopus", octopus()}, {"mug", mug(0.9, 0.9)}, {"car", car()},
-      {"airplane", airplane()}, {"chair", chair()},     {"carton", carton()}};
+      {"airplane", airplane()}, {"chair", chair()},     {"carton", carton()},   {"propeller", propeller()},
+      {"rim", rim()},           {"bottle", bottle()}};
   for (const auto& [name, mesh] : shapes) {
     const std::string path = (folder / (std::string(name) + ".ply")).string();
     if (pcl::io::savePLYFileBinary(path, mesh) < 0) throw InputError(path + ": cannot be written");

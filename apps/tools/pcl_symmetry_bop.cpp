@@ -51,12 +51,16 @@ CommandLine commandLine(BopOptions& options) {
       .number("absolute_tolerance", options.models.symmetries.absolute_tolerance, Range::atLeast(0),
               "the same in the unit of the input; 0: the share decides")
       .number("min_confidence", options.models.symmetries.min_confidence, Range::closed(0, 1),
-              "least probability of rotations that are called symmetries")
+              "least confidence of rotations that are called symmetries; 0.5 is at the limits")
       .flag("colour", options.models.use_colours, "only rotations that keep the colours of the vertices")
       .number("colour_tolerance", options.models.colour_tolerance, Range::above(0),
               "difference of colours that counts as none, in CIELAB")
       .number("sphere_angle", options.sphere_angle, Range::upTo(0, 180),
               "degrees within which the tilts that are written for a sphere reach any rotation")
+      .flag("explain", options.models.explain,
+            "tell the groups at half and twice the tolerance, and which rotations fail, by how much and where")
+      .text("failures", "DIR", options.models.failures_folder,
+            "write NAME_rejected_1.ply and so on: the surface, coloured where a rotation fails")
       .text("check", "FILE", options.check_path,
             "compare with models_info.json, DOPE's model_info.json, or Isaac's symmetry_axes in YAML")
       .text("report", "FILE", options.report_path, "with -check: the comparison as JSON")
@@ -192,6 +196,7 @@ int run(int argc, char** argv) {
   ObjectSymmetryOptions& symmetries = options.models.symmetries;
   options.models.mesh_points = options.common.mesh_points;
   symmetries.num_cells = options.common.grid;
+  symmetries.other_tolerances = options.models.explain;
   symmetries.max_points = std::max(symmetries.max_points, options.common.mesh_points);
   symmetries.seed = options.common.librarySeed();
   const Results results = analyseAll(files, options, given);

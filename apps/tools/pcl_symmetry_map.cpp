@@ -1,5 +1,5 @@
 /// The transform mapped back to space: for each point of a cloud and each cell of a volume the greatest symmetry of any
-/// plane through it.
+/// plane, axis or center there.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +11,6 @@
 #include "common/batch/run_on_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
 #include "common/pictures/picture.h"
 #include "common/pictures/raster_image.h"
@@ -20,8 +19,7 @@
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/cloud_fields.h"
 #include "common/shape_output/shape_output.h"
-#include "pcl_symmetry/core/transform/symmetry_map.h"
-#include "pcl_symmetry/planar_symmetry_transform.h"
+#include "map/symmetry_measure.h"
 
 namespace {
 
@@ -34,16 +32,22 @@ struct MapOptions {
   BatchOptions batch;
   std::string input;
   std::optional<std::string> output, volume_path, slices_path, png_path;
+  std::string of = "planes";
+  std::optional<int> fold;
   int cells = 96, size = 300;
   CommonOptions common;
 };
 
 CommandLine commandLine(MapOptions& options) {
-  CommandLine line("pcl_symmetry_map", "Writes the greatest symmetry of any plane through each point.",
+  CommandLine line("pcl_symmetry_map", "Writes the greatest symmetry of any plane, axis or center at each point.",
                    "pcl_symmetry_map bull.off bull_symmetry.pcd -volume bull.vti -slices bull_slices.png");
   options.batch.outputs = {&options.output, &options.volume_path, &options.slices_path, &options.png_path};
   line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the points with one more field, intensity, about 0 to 1")
+      .choice("of", options.of, {"planes", "axes", "centers"},
+              "what is symmetric: reflections, turns about axes, or point symmetry")
+      .number("fold", options.fold, Range::closed(0, 60),
+              "with -of axes: order of the turns, 0 = by any angle, not 1; default: the best of 2 to 8 and any angle")
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
       .picture("slices", options.slices_path,
                "picture: three slices through the middle, the darker the greater, the shape on top")
@@ -97,14 +101,14 @@ struct Volume {
   Eigen::Vector3d center(int x, int y, int z) const { return origin + cell_size * Eigen::Vector3d(x, y, z); }
 };
 
-void writeSymmetry(const SymmetryMap& map, const Volume& volume, const Eigen::Vector3d& shift, int threads,
+void writeSymmetry(const SymmetryMeasure& map, const Volume& volume, const Eigen::Vector3d& shift, int threads,
                    const std::string& path) {
   Points centers(3, static_cast<Eigen::Index>(volume.size.cast<std::int64_t>().prod()));
   Eigen::Index i = 0;
   for (int z = 0; z < volume.size.z(); ++z)
     for (int y = 0; y < volume.size.y(); ++y)
       for (int x = 0; x < volume.size.x(); ++x) centers.col(i++) = volume.center(x, y, z).cast<float>();
-  const std::vector<float> values = pointSymmetry(map, centers, threads);
+  const std::vector<float> values = map.through(centers, threads);
   writeVolume({"symmetry", volume.size, shiftedBack(volume.origin, shift), volume.cell_size, values}, path);
 }
 
@@ -149,13 +153,13 @@ struct Slice {
   }
 };
 
-RasterImage drawSlices(const SymmetryMap& map, const Volume& volume, const Points& points, int size, int threads) {
+RasterImage drawSlices(const SymmetryMeasure& map, const Volume& volume, const Points& points, int size, int threads) {
   std::vector<Slice> slices;
   std::vector<std::vector<float>> symmetry;
   float least = std::numeric_limits<float>::max(), greatest = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     slices.emplace_back(volume, axis, size);
-    symmetry.push_back(pointSymmetry(map, slices[axis].places(), threads));
+    symmetry.push_back(map.through(slices[axis].places(), threads));
     least = std::min(least, *std::min_element(symmetry[axis].begin(), symmetry[axis].end()));
     greatest = std::max(greatest, *std::max_element(symmetry[axis].begin(), symmetry[axis].end()));
   }
@@ -165,21 +169,6 @@ RasterImage drawSlices(const SymmetryMap& map, const Volume& volume, const Point
   return sideBySide(images);
 }
 
-SymmetryMap transformOf(const InputShape& input, const CommonOptions& common, int threads) {
-  PlanarSymmetryTransform<pcl::PointXYZ> transform;
-  return namingFile(input.path, [&] {
-    transform.setGridSize(common.grid);
-    if (common.sigma) transform.setSigma(*common.sigma);
-    transform.setRandomSeed(common.librarySeed());
-    transform.setNumberOfThreads(threads);
-    transform.setViewpoint(shifted(common.viewpoint, input.shift()));
-    transform.setInputCloud(input.points);
-    const SymmetryMap map = transform.compute();
-    if (!transform.getReason().empty()) throw InputError(input.path + ": " + transform.getReason());
-    return map;
-  });
-}
-
 /// What was found at the points of a cloud.
 struct MappedCloud {
   pcl::PointCloud<pcl::PointXYZ>::ConstPtr cloud;
@@ -187,8 +176,8 @@ struct MappedCloud {
   std::vector<float> symmetry;  ///< of the finite points
   float least, greatest;
 
-  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& points, const SymmetryMap& map, int threads)
-      : cloud(points), finite(*points), symmetry(pointSymmetry(map, finite.points, threads)) {
+  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& points, const SymmetryMeasure& map, int threads)
+      : cloud(points), finite(*points), symmetry(map.through(finite.points, threads)) {
     const auto [low, high] = std::minmax_element(symmetry.begin(), symmetry.end());
     least = *low;
     greatest = *high;
@@ -201,9 +190,10 @@ void savePoints(const InputShape& input, const MappedCloud& mapped, const std::s
   saveCloud(path, withIntensity(input.fields(), intensity), input.shape.sensor_origin, input.shape.sensor_orientation);
 }
 
-void drawPoints(const MappedCloud& mapped, const std::string& path, int size) {
+void drawPoints(const SymmetryMeasure& map, const MappedCloud& mapped, const std::string& path, int size) {
   PicturePanel panel;
-  panel.label = "symmetry of the best plane through each point";
+  panel.label = "greatest symmetry of the " + map.of + " through each point";
+  panel.axes = map.axes;
   panel.support.assign(mapped.cloud->size(), 0.0);
   const double range = std::max(1e-9f, mapped.greatest - mapped.least);
   for (std::size_t i = 0; i < mapped.symmetry.size(); ++i)
@@ -216,7 +206,7 @@ void drawPoints(const MappedCloud& mapped, const std::string& path, int size) {
 }
 
 /// What is written of the space around the points.
-void writeSpace(const MapOptions& options, const FileJob& job, const InputShape& input, const SymmetryMap& map,
+void writeSpace(const MapOptions& options, const FileJob& job, const InputShape& input, const SymmetryMeasure& map,
                 const Points& points) {
   const Volume volume(points, options.cells);
   if (options.volume_path) {
@@ -232,26 +222,30 @@ void writeSpace(const MapOptions& options, const FileJob& job, const InputShape&
 void analyse(const MapOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   Step transforming(job.console(), "Transforming");
-  const SymmetryMap map = transformOf(input, options.common, job.numThreads());
-  const double transforming_ms = transforming.done(std::to_string(map.values.size()) + " planes");
+  CommonOptions common = options.common;
+  common.threads = job.numThreads();
+  const SymmetryMeasure map = measureSymmetry(input, common, options.of, options.fold.value_or(-1));
+  const double transforming_ms = transforming.done(std::to_string(map.num_tried) + " " + map.of);
 
   Step mapping(job.console(), "Mapping back to points");
   const MappedCloud mapped(input.points, map, job.numThreads());
   const double mapping_ms = mapping.done(std::to_string(mapped.symmetry.size()) + " points");
 
-  char text[96];
-  std::snprintf(text, sizeof(text), "symmetry of the planes through the points: %.3f to %.3f\n", mapped.least,
-                mapped.greatest);
-  job.report({text,
-              {{"file", job.path()},
-               {"num_points", mapped.symmetry.size()},
-               {"least", mapped.least},
-               {"greatest", mapped.greatest},
-               {"timing_ms", {{"transform", transforming_ms}, {"points", mapping_ms}}}},
-              {{mapped.symmetry.size(), mapped.least, mapped.greatest}}});
+  std::string text;
+  for (const std::string& line_of_best : map.lines) text += line_of_best + "\n";
+  char range[96];
+  std::snprintf(range, sizeof(range), "symmetry of the %s through the points: %.3f to %.3f\n", map.of.c_str(),
+                mapped.least, mapped.greatest);
+  nlohmann::json json{{"file", job.path()},
+                      {"num_points", mapped.symmetry.size()},
+                      {"least", mapped.least},
+                      {"greatest", mapped.greatest},
+                      {"timing_ms", {{"transform", transforming_ms}, {"points", mapping_ms}}}};
+  if (!map.best.empty()) json[map.of] = map.best;
+  job.report({text + range, json, {{mapped.symmetry.size(), mapped.least, mapped.greatest}}});
   if (options.output) savePoints(input, mapped, job.output(*options.output));
   writeSpace(options, job, input, map, mapped.finite.points);
-  if (options.png_path) drawPoints(mapped, job.output(*options.png_path), options.size);
+  if (options.png_path) drawPoints(map, mapped, job.output(*options.png_path), options.size);
 }
 
 int run(int argc, char** argv) {
@@ -259,6 +253,8 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.output) checkCloudExtension(*options.output);
+  if (options.fold && options.of != "axes") throw UsageError("-fold goes with -of axes");
+  if (options.fold == 1) rejectValue("-fold", "1", "must be 0 or >= 2: a turn of order 1 changes nothing");
   options.batch.inputs = {options.input};
   return runOnFiles(options.batch, options.common, {"points", "least", "greatest"},
                     [&](FileJob& job) { analyse(options, job); });

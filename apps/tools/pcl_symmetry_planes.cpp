@@ -69,6 +69,7 @@ struct Findings {
   std::vector<SymmetryPlane> planes;
   std::vector<SymmetryAxis> axes;
   std::vector<SymmetryCenter> centers;
+  std::vector<SymmetryTurn> turns;  ///< of orders from 2 on, at least as confident as a symmetry
   ViewpointSource viewpoint_source = ViewpointSource::None;
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
   std::optional<SymmetryPlane> best;         ///< where nothing else was found
@@ -77,7 +78,7 @@ struct Findings {
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::vector<float>> support;  ///< of each plane, by every point; empty where no output shows it
 
-  bool empty() const { return planes.empty() && axes.empty() && centers.empty(); }
+  bool empty() const { return planes.empty() && axes.empty() && centers.empty() && turns.empty(); }
 };
 
 const char* toString(PlaneKind kind) {
@@ -138,6 +139,10 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
     table +=
         formatted("axis of revolution: through %s along %.6f %.6f %.6f, confidence %.3f\n", place(axis.point).c_str(),
                   axis.direction.x(), axis.direction.y(), axis.direction.z(), axis.confidence);
+  for (const SymmetryTurn& turn : findings.turns)
+    table += formatted("axis of order %d: through %s along %.6f %.6f %.6f, confidence %.3f\n", turn.fold,
+                       place(turn.point).c_str(), turn.direction.x(), turn.direction.y(), turn.direction.z(),
+                       turn.confidence);
   const std::vector<SymmetryPlane>& planes = findings.planes;
   if (planes.empty()) return table;
   table += formatted("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence",
@@ -175,6 +180,10 @@ std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const 
     const SymmetryAxis& axis = findings.axes[i];
     add(i + 1, "axis", std::nullopt, axis.point, axis.direction,
         {axis.confidence, none, axis.support, axis.score, none, none});
+  }
+  for (std::size_t i = 0; i < findings.turns.size(); ++i) {
+    const SymmetryTurn& turn = findings.turns[i];
+    add(i + 1, "turn", std::nullopt, turn.point, turn.direction, {turn.confidence, none, none, none, none, none});
   }
   for (std::size_t i = 0; i < findings.centers.size(); ++i) {
     const SymmetryCenter& center = findings.centers[i];
@@ -224,6 +233,16 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
                             {"score", axis.score},
                             {"support", axis.support}});
   }
+  if (findings.viewpoint) json["turns"] = nlohmann::json::array();
+  for (const SymmetryTurn& turn : findings.turns)
+    json["turns"].push_back({{"point", numbersOf(shiftedBack(turn.point, shift))},
+                             {"direction", numbersOf(turn.direction)},
+                             {"fold", turn.fold},
+                             {"confidence", turn.confidence},
+                             {"support", turn.support},
+                             {"off", turn.off},
+                             {"far", turn.far},
+                             {"halfway", turn.halfway}});
   for (const SymmetryCenter& center : findings.centers) {
     json["centers"].push_back({{"point", numbersOf(shiftedBack(center.point, shift))},
                                {"confidence", center.confidence},
@@ -239,6 +258,12 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
     PicturePanel panel;
     panel.label = formatted("axis of revolution: confidence %.2f", axis.confidence);
     panel.axes = {{axis.point, axis.direction}};
+    panels.push_back(panel);
+  }
+  for (const SymmetryTurn& turn : findings.turns) {
+    PicturePanel panel;
+    panel.label = formatted("axis of order %d: confidence %.2f", turn.fold, turn.confidence);
+    panel.axes = {{turn.point, turn.direction}};
     panels.push_back(panel);
   }
   for (const SymmetryCenter& center : findings.centers) {
@@ -295,6 +320,9 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
   });
   findings.axes = refinement.getAxes();
+  // Those of any angle are among the axes.
+  for (const SymmetryTurn& turn : refinement.getTurns())
+    if (turn.fold > 0 && turn.confidence >= options.detection.min_confidence) findings.turns.push_back(turn);
   findings.centers = refinement.getCenters();
   findings.best = refinement.getBestPlane();
   findings.tolerance = refinement.getUsedTolerance();

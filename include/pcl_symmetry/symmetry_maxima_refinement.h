@@ -114,6 +114,9 @@ public:
   const std::vector<SymmetryAxis>& getAxes() const { return found_.axes; }
   /// \return the centers of spheres that the last compute() found.
   const std::vector<SymmetryCenter>& getCenters() const { return found_.centers; }
+  /// \return the axes of turns that the last compute() found in a scan, most confident first: of nuts, wheels and
+  /// bottles seen from one side, with their order. Empty for clouds without a viewpoint, see detectObjectSymmetries().
+  const std::vector<SymmetryTurn>& getTurns() const { return found_.turns; }
   /// \return where the last compute() found neither a symmetry nor a possible one, the plane that maps the greatest share
   /// of the surface to within the tolerance; empty otherwise, and where the input holds no answer.
   const std::optional<SymmetryPlane>& getBestPlane() const { return found_.best; }

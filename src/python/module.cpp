@@ -236,7 +236,8 @@ void addFrame(py::module_& module) {
           },
           "list of (point, direction) of axes of revolution")
       .def_readonly("support", &ObjectSymmetries::support, "share of the surface that is mapped onto the surface")
-      .def_readonly("confidence", &ObjectSymmetries::confidence, "probability that these are symmetries, in [0, 1]");
+      .def_readonly("confidence", &ObjectSymmetries::confidence,
+                    "how far within the limits, in [0, 1], 0.5 at them: a grade, not a probability");
 }
 
 void addMap(py::module_& module) {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "pcl_symmetry/recognition/symmetry_database.h"
-#include "pcl_symmetry/registration/cloud_registration.h"
+#include "pcl_symmetry/registration/symmetry_registration.h"
 #include "python/input_points.h"
 
 namespace py = pybind11;

@@ -1,4 +1,4 @@
-#include "pcl_symmetry/registration/cloud_registration.h"
+#include "pcl_symmetry/registration/symmetry_registration.h"
 
 #include <stdexcept>
 

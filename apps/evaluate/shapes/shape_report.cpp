@@ -75,6 +75,7 @@ ShapeAnswers detectShape(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, 
   ShapeAnswers answers;
   answers.planes = refinement.compute();
   answers.axes = refinement.getAxes();
+  answers.turns = refinement.getTurns();
   answers.centers = refinement.getCenters();
   return answers;
 }

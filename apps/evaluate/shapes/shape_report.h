@@ -60,6 +60,7 @@ struct ShapeAnswers {
   std::vector<SymmetryPlane> planes;  ///< of all kinds
   std::vector<SymmetryAxis> axes;
   std::vector<SymmetryCenter> centers;
+  std::vector<SymmetryTurn> turns;
 
   std::vector<SymmetryPlane> symmetries() const;
   /// Whether anything is called a symmetry.
@@ -75,6 +76,7 @@ DetectionOptions detectionOptions(const ShapeRowOptions& options);
 // The kinds, each a table of its own.
 ShapeReport measureFolds(const ShapeRowOptions& options);
 ShapeReport measureViews(const ShapeRowOptions& options);
+ShapeReport measureTurns(const ShapeRowOptions& options);
 ShapeReport measureRandomClouds(const ShapeRowOptions& options);
 ShapeReport measureComposites(const ShapeRowOptions& options);
 ShapeReport measurePointCounts(const ShapeRowOptions& options);

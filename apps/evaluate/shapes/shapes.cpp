@@ -23,6 +23,7 @@ struct ShapeKind {
 constexpr ShapeKind kShapeKinds[] = {
     {"folds", "prisms, tubes, rims and cones of 2 to 24 folds, and round bodies", measureFolds},
     {"views", "round bodies and balls seen from one side", measureViews},
+    {"turns", "axes of round bodies, of folds and of mugs seen from one side", measureTurns},
     {"random", "clouds without symmetry", measureRandomClouds},
     {"composites", "two symmetric parts stuck together", measureComposites},
     {"counts", "models at 5 000, 20 000 and 100 000 points", measurePointCounts}};
@@ -36,11 +37,12 @@ struct EvaluateShapesOptions {
 };
 
 CommandLine commandLine(EvaluateShapesOptions& o) {
-  CommandLine line("pcl_symmetry_evaluate shapes",
-                   "Measures decisions on shapes that are made by code: folds, views, random, composites; and counts, "
-                   "which needs models.",
-                   "pcl_symmetry_evaluate shapes folds -half report");
-  line.positional("KIND", o.kind, "folds, views, random, composites or counts")
+  CommandLine line(
+      "pcl_symmetry_evaluate shapes",
+      "Measures decisions on shapes that are made by code: folds, views, turns, random, composites; and counts, "
+      "which needs models.",
+      "pcl_symmetry_evaluate shapes folds -half report");
+  line.positional("KIND", o.kind, "folds, views, turns, random, composites or counts")
       .positional("FOLDER", o.folder, "of models: needed by counts; parts of composites in place of own solids")
       .choice("half", o.half, {"tuning", "report"},
               "half of the shapes: constants are chosen on one, figures given of the other")
@@ -75,7 +77,7 @@ int evaluateShapes(int argc, char** argv) {
     if (options.common.json_path) writeText(*options.common.json_path, report.json().dump(1) + "\n");
     return 0;
   }
-  throw UsageError("KIND = " + options.kind + ", must be one of folds, views, random, composites, counts");
+  throw UsageError("KIND = " + options.kind + ", must be one of folds, views, turns, random, composites, counts");
 }
 
 }  // namespace pcl_symmetry::apps

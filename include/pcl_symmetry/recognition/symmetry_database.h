@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/registration/cloud_registration.h"
+#include "pcl_symmetry/registration/symmetry_registration.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

@@ -11,6 +11,7 @@
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_judge.h"
 #include "core/detection/plane_ranking.h"
+#include "core/detection/scan_axes/scan_axes.h"
 #include "core/detection/staged_refinement.h"
 #include "core/distance_transform/free_space.h"
 #include "core/neighbours/answerable_points.h"
@@ -44,6 +45,17 @@ Points normalsOf(const DistinctPoints& distinct, const Points& normals) {
   for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
     result.col(distinct.index_of[i]) = normals.col(static_cast<Eigen::Index>(i));
   return result;
+}
+
+/// Finds the axes of turns of a scan, and brings axes of revolution and planes in line with them.
+std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
+                                        double tolerance, const DetectionOptions& options, Detection& detection) {
+  // A ball turns about every line through its center.
+  if (!options.turns || !cloud.isScan() || !detection.centers.empty()) return planes;
+  const TurnEvidence turns(cloud, tolerance, options.seed);
+  detection.turns = scanAxes(turns, planes, detection.axes, options);
+  detection.axes = withRoundTurns(turns, std::move(detection.axes), detection.turns, options);
+  return withoutPlanesOf(std::move(planes), detection.axes, cloud);
 }
 
 }  // namespace
@@ -142,6 +154,8 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
     detection.centers = std::move(found.centers);
   }
   timed("families");
+  planes = withScanAxes(std::move(planes), cloud, judge.tolerance(), options, detection);
+  timed("turns");
   if (options.approximate) append(planes, judge.findParts(planes));
   timed("parts");
   const bool answered = !detection.axes.empty() || !detection.centers.empty();

@@ -296,4 +296,16 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   return found;
 }
 
+std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, const std::vector<SymmetryAxis>& axes,
+                                           const NormalizedCloud& cloud) {
+  const auto belongs = [&](const SymmetryPlane& plane) {
+    return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
+      const AxisLine line((axis.point - cloud.center) / cloud.scale, axis.direction);
+      return contains(cloud.toNormalized(plane), line, kFamilyTolerance);
+    });
+  };
+  planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());
+  return planes;
+}
+
 }  // namespace pcl_symmetry

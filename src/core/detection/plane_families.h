@@ -70,4 +70,9 @@ struct PlanesAndFamilies {
 PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const PlaneFit& fit,
                                   const PlaneJudge& judge, const DetectionOptions& options);
 
+/// \param planes,axes input frame.
+/// \return the planes that contain no axis.
+std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, const std::vector<SymmetryAxis>& axes,
+                                           const NormalizedCloud& cloud);
+
 }  // namespace pcl_symmetry

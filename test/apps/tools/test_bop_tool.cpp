@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <pcl/common/io.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,6 +8,7 @@
 
 #include "apps/support/lathe_mesh.h"
 #include "apps/support/tool_run.h"
+#include "common/shape_input/shape_input.h"
 #include "shapes/turning_shapes.h"
 
 namespace {
@@ -99,6 +101,16 @@ TEST_F(BopTool, FindsPropellersThatNoPlaneShows) {
   const json propeller = infoOf(folder_.write("fan.off", offOf(test::propellerShape(3, true)))).at("1");
   EXPECT_EQ(propeller["symmetries_discrete"].size(), 2u);
   EXPECT_NE(output_.find("fold 3"), std::string::npos) << output_;
+}
+
+TEST_F(BopTool, ExplainsWhatFails) {
+  const std::string mug = folder_.write("mug.off", offOf(test::cupShape(true)));
+  infoOf(mug + " -explain -failures " + (folder_ / "failures"));
+  EXPECT_NE(output_.find("  tolerance "), std::string::npos) << output_;
+  ASSERT_NE(output_.find("  rejected "), std::string::npos) << output_;
+  const Shape shape = loadShape(folder_ / "failures/mug_rejected_1.ply");
+  EXPECT_EQ(shape.points->size(), 20'000u);
+  EXPECT_GE(pcl::getFieldIndex(shape.cloud, "rgb"), 0);
 }
 
 TEST_F(BopTool, NumbersModelsAsTheirFilesOrElseByTheFirstFreeNumber) {

@@ -72,4 +72,31 @@ TEST_F(MapTool, WritesAVTKImageAndSlices) {
   EXPECT_EQ(slices.height, 50);
 }
 
+TEST_F(MapTool, ABoxHasThreeAxesOfHalfTurnsAndACenter) {
+  const std::string common = mesh_ + " -quiet -grid 32 -points 3000 -json " + (folder_ / "a.json");
+  ASSERT_EQ(run(common + " -of axes -fold 2 -png " + (folder_ / "a.png")), 0) << error_;
+  EXPECT_NE(output_.find("symmetry of the axes through the points"), std::string::npos);
+  const auto axes = nlohmann::json::parse(contentOf(folder_ / "a.json"))["axes"];
+  ASSERT_GE(axes.size(), 3u);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(axes[k]["fold"], 2);
+    double greatest = 0.0;
+    for (const double c : axes[k]["direction"]) greatest = std::max(greatest, std::abs(c));
+    // 2 cells of 16 in the cube are wide; measured: 1 to 2 degrees
+    EXPECT_GT(greatest, 0.995);
+    EXPECT_GT(axes[k]["symmetry"], 0.9);
+  }
+  ASSERT_EQ(run(common + " -of centers"), 0) << error_;
+  const auto center = nlohmann::json::parse(contentOf(folder_ / "a.json"))["centers"][0]["point"];
+  for (const double c : center) EXPECT_NEAR(c, 0.0, 0.2);
+}
+
+TEST_F(MapTool, RefusesFoldsThatHaveNoMeaning) {
+  EXPECT_EQ(run(mesh_ + " -fold 3"), 2);
+  EXPECT_NE(error_.find("-fold goes with -of axes"), std::string::npos) << error_;
+  EXPECT_EQ(run(mesh_ + " -of axes -fold 1"), 2);
+  EXPECT_NE(error_.find("a turn of order 1 changes nothing"), std::string::npos) << error_;
+  EXPECT_EQ(run(mesh_ + " -of lines"), 2);
+}
+
 }  // namespace

@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/transform_2d/reflection_line.h"
+#include "pcl_symmetry/core/transform_2d/line_transform.h"
 
 #include <gtest/gtest.h>
 

@@ -60,9 +60,26 @@ struct SymmetryPlane : ReflectionPlane {
 struct SymmetryAxis {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
-  double confidence = 0.0;    ///< as that of SymmetryPlane, for planes at eight angles together
-  double score = 0.0;         ///< mean D of these planes
-  double support = 0.0;       ///< mean support of these planes
+  /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only turns show the grade of
+  /// SymmetryTurn.
+  double confidence = 0.0;
+  double score = 0.0;    ///< mean D of these planes
+  double support = 0.0;  ///< mean support of these planes
+};
+
+/// Turns about a line map what a scanner saw onto itself or to unseen places: the axis of a nut, a wheel, a bottle seen
+/// from one side. Beyond the paper (Section 6).
+struct SymmetryTurn {
+  Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
+  Eigen::Vector3d direction;  ///< unit
+  int fold = 0;               ///< order of the turns; 0: by any angle
+  /// How far within its limits this is, in [0, 1], 0.5 at them: a grade of what was seen, not a probability.
+  double confidence = 0.0;
+  // Shares of the points seen, in [0, 1].
+  double support = 0.0;  ///< that the best turn maps onto the surface seen; a small turn for any angle
+  double off = 0.0;      ///< that the worst turn maps to where the scanner saw that there is nothing
+  double far = 0.0;      ///< the same, beyond ten tolerances of the surface
+  double halfway = 0.0;  ///< off of turns halfway between those of the fold: these speak against other folds
 };
 
 /// All planes through a point are symmetries: a sphere.
@@ -101,6 +118,7 @@ struct DetectionOptions {
   /// The same in input units, >= 0; 0 = tolerance decides.
   double absolute_tolerance = 0.0;
   bool families = true;  ///< planes through one axis or one center are reported as such in place of single planes
+  bool turns = true;     ///< axes of turns of scans are searched too; false saves about a third of the time
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
   int max_planes = 20;  ///< >= 1
@@ -121,7 +139,8 @@ struct Detection {
   double tolerance = 0.0;          ///< that was decided at, input units
   std::vector<SymmetryAxis> axes;  ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;
-  SymmetryMap map;                                        ///< empty where one was given
+  std::vector<SymmetryTurn> turns;  ///< of scans: axes of turns, most confident first, from min_possible on
+  SymmetryMap map;                  ///< empty where one was given
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 

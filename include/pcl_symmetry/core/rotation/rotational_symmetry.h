@@ -85,7 +85,7 @@ struct ObjectSymmetries {
   /// Share of the surface that each rotation maps to within the tolerance of the surface, relative to what sampling and
   /// noise allow, in [0, 1]; for rotations by any angle their mean.
   double support = 1.0;
-  double confidence = 1.0;  ///< probability that the rotations are symmetries at the limits, in [0, 1]
+  double confidence = 1.0;  ///< how far within the limits, in [0, 1], 0.5 at them: a grade, no probability
   double tolerance = 0.0;   ///< that was decided at, input units
   /// Groups at half and at twice the tolerance, with ObjectSymmetryOptions::other_tolerances.
   std::optional<GroupName> at_half_tolerance, at_twice_tolerance;
