@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/share/surface_distance.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
