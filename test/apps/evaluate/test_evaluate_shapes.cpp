@@ -99,7 +99,7 @@ TEST_F(EvaluateShapes, ComparesModelsAtDifferentNumbersOfPoints) {
 
 TEST_F(EvaluateShapes, RefusesUnknownKinds) {
   EXPECT_EQ(run("shapes cubes"), 2);
-  EXPECT_NE(error_.find("must be one of folds, views, random, composites, counts"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("must be one of folds, views, turns, random, composites, counts"), std::string::npos) << error_;
   EXPECT_EQ(run("shapes counts"), 2) << "needs a folder";
 }
 
