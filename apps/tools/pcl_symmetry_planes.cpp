@@ -16,6 +16,7 @@
 #include "common/pictures/picture.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
+#include "common/shape_output/answer_words.h"
 #include "common/shape_output/cloud_fields.h"
 #include "common/shape_output/shape_output.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -80,36 +81,6 @@ struct Findings {
 
   bool empty() const { return planes.empty() && axes.empty() && centers.empty() && turns.empty(); }
 };
-
-const char* toString(PlaneKind kind) {
-  switch (kind) {
-    case PlaneKind::Symmetry:
-      return "symmetry";
-    case PlaneKind::Possible:
-      return "possible";
-    case PlaneKind::Local:
-      return "local";
-    case PlaneKind::Approximate:
-      break;
-  }
-  return "approximate";
-}
-
-const char* toString(ViewpointSource source) {
-  switch (source) {
-    case ViewpointSource::Given:
-      return "given";
-    case ViewpointSource::Rays:
-      return "rays";
-    case ViewpointSource::Stored:
-      return "stored";
-    case ViewpointSource::Inferred:
-      return "inferred";
-    case ViewpointSource::None:
-      break;
-  }
-  return "none";
-}
 
 /// \return what printf() prints.
 template <typename... Values>

@@ -8,6 +8,7 @@
 #include "common/files/json_values.h"
 #include "common/pictures/picture.h"
 #include "common/shape_input/exact_coordinates.h"
+#include "common/shape_output/answer_words.h"
 #include "common/shape_output/cloud_fields.h"
 #include "core/geometry/viewing_frame.h"
 
@@ -86,20 +87,6 @@ std::string summaryOf(const SceneObject& object) {
   return text;
 }
 
-const char* toString(PlaneKind kind) {
-  switch (kind) {
-    case PlaneKind::Symmetry:
-      return "symmetry";
-    case PlaneKind::Possible:
-      return "possible";
-    case PlaneKind::Local:
-      return "local";
-    case PlaneKind::Approximate:
-      break;
-  }
-  return "approximate";
-}
-
 nlohmann::json describeFrame(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   nlohmann::json json{{"center", numbersOf(shiftedBack(frame.center, shift))}, {"axes", nlohmann::json::array()}};
   for (int k = 0; k < 3; ++k) json["axes"].push_back(numbersOf(frame.axes.col(k)));
@@ -142,22 +129,6 @@ nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& 
          {"merit", model.score.merit()},
          {"T_model_scene", rowMajor(shiftedBack(model.T_model_scan, shift, Eigen::Vector3d::Zero()))}});
   return json;
-}
-
-const char* toString(ViewpointSource source) {
-  switch (source) {
-    case ViewpointSource::Given:
-      return "given";
-    case ViewpointSource::Rays:
-      return "rays";
-    case ViewpointSource::Stored:
-      return "stored";
-    case ViewpointSource::Inferred:
-      return "inferred";
-    case ViewpointSource::None:
-      break;
-  }
-  return "none";
 }
 
 /// Of each point of the scene its object, from 1 on; -1 for those of supporting planes, 0 for others.
