@@ -24,8 +24,8 @@ constexpr double kPrecision = 0.01, kPrecisionPerSpacing = 0.004, kPrecisionPerU
 // asymmetries do not.
 constexpr double kLostSupportUnit = 0.01;
 // The same where points resolve no surface: of the share, of D and of the overlap. chosen: among 0.003 and 0.01, 0.001
-// to 0.005, and 0.01, those with the least loss over models left out of the fit: 0.247 nats a plane, 0.250 to 0.285
-// with others.
+// to 0.005, and 0.01, by cross-validation over models of what calibrate_planes -csv writes: 0.247 nats a plane, 0.250
+// to 0.285 with others.
 constexpr double kVolumeOffUnit = 0.003, kExcessUnit = 0.002, kLostOverlapUnit = 0.01;
 constexpr double kLeastTelling =
     0.05;  // chosen: any value far below that of planes that are judged; avoids a division by 0

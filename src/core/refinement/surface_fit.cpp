@@ -63,8 +63,7 @@ void SurfaceFit::undoSlide(Candidate& candidate, const ReflectionPlane& start, c
   candidate.last.last = std::move(step);
 }
 
-/// Pairs whose true partners are hidden pull at a plane: it comes to rest beside the plane that explains most of what
-/// was
+/// Pairs whose true partners are hidden pull at a plane: it comes to rest beside the one that explains most of what was
 /// seen. From there it climbs on the merit itself, in steps along its three parameters.
 void SurfaceFit::climb(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
   const auto moved = [](const ReflectionPlane& plane, int parameter, double by) {
