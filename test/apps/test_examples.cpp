@@ -85,10 +85,27 @@ TEST_F(Example, SymmetricPoses) {
   EXPECT_NE(output_.find("look 28.6"), std::string::npos) << output_;
 }
 
+/// The box on a table.
+TEST_F(Example, Scene) {
+  const std::string mesh =
+      folder_.write("scene.off",
+                    "OFF\n12 7 0\n-1 -1.4 -2\n1 -1.4 -2\n1 1.4 -2\n-1 1.4 -2\n-1 -1.4 2\n1 -1.4 2\n1 1.4 2\n-1 1.4 2\n"
+                    "-6 -6 -2\n6 -6 -2\n6 6 -2\n-6 6 -2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n4 8 9 10 11\n");
+  const std::string scan = folder_ / "scene.pcd", completed = folder_ / "completed.pcd";
+  ASSERT_EQ(
+      std::system((SCAN_TOOL " " + mesh + " " + scan + " -direction 1,1.5,1 -quiet >" + (folder_ / "ignored")).c_str()), 0);
+  ASSERT_EQ(run("10_scene " + scan + " " + completed), 0) << error_;
+  EXPECT_NE(output_.find("1 supporting planes"), std::string::npos) << output_;
+  EXPECT_EQ(numLinesWith(output_, "object of "), 1) << output_;
+  EXPECT_GE(numLinesWith(output_, "  plane "), 1) << output_;
+  EXPECT_NE(contentOf(completed).find("FIELDS x y z"), std::string::npos);
+}
+
 TEST_F(Example, SaysHowItIsUsed) {
   for (const std::string example :
        {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration", "06_matching",
-        "07_segmentation", "08_own_search_and_point_type", "09_symmetric_poses"}) {
+        "07_segmentation", "08_own_search_and_point_type", "09_symmetric_poses", "10_scene"}) {
     EXPECT_EQ(run(example), 2);
     EXPECT_NE(error_.find("usage: " + example), std::string::npos);
   }
