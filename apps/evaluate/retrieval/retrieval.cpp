@@ -1,6 +1,7 @@
 #include "evaluate/retrieval/retrieval.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -39,7 +40,7 @@ CommandLine commandLine(EvaluateRetrievalOptions& o) {
   CommandLine line("pcl_symmetry_evaluate retrieval",
                    "Asks with each mesh for the others of its class (Section 5.2): by PRSD, PRST, GEDT and the product "
                    "of the latter two, each mesh in its own axes or turned at random and brought to the axes of its "
-                   "symmetry, and by signatures.",
+                   "symmetry or its principal axes, and by signatures. Says what symmetry brings.",
                    "pcl_symmetry_evaluate retrieval psb/train -cla psb/train.cla -csv recall.csv -png recall.png");
   addModelFlags(line, o.folders, o.selection);
   line.text("cla", "FILE", o.class_path,
@@ -58,7 +59,7 @@ CommandLine commandLine(EvaluateRetrievalOptions& o) {
   return line;
 }
 
-constexpr std::size_t kNumPublished = 4;  // derived: PRSD, PRST, GEDT and the product, in each of two frames
+constexpr std::size_t kNumPublished = 5;  // derived: rows of publishedMethods()
 
 struct Result {
   RetrievalMethod method;
@@ -79,19 +80,25 @@ public:
       return printTable();
     }
     evaluate("Describing models as they are",
-             [&](const auto& progress) { return publishedMethods(clouds_, false, options_.retrieval, progress); });
+             [&](const auto& progress) { return published(ModelAxes::AsGiven, progress); });
     for (std::size_t i = 0; i < clouds_.size(); ++i) {
       const Eigen::Isometry3d pose = randomPose(options_.common.seed + 1 + i, 0.0);
       clouds_[i] = pose.linear().cast<float>() * clouds_[i];
     }
     evaluate("Describing models in the axes of their symmetry",
-             [&](const auto& progress) { return publishedMethods(clouds_, true, options_.retrieval, progress); });
+             [&](const auto& progress) { return published(ModelAxes::Symmetry, progress); });
+    evaluate("Describing models in their principal axes",
+             [&](const auto& progress) { return published(ModelAxes::Principal, progress); });
     evaluate("Comparing signatures",
              [&](const auto& progress) { return signatureMethods(clouds_, options_.retrieval, progress); });
     report();
   }
 
 private:
+  std::vector<RetrievalMethod> published(ModelAxes axes, const RetrievalProgress& progress) const {
+    return publishedMethods(clouds_, axes, options_.retrieval, progress);
+  }
+
   void load() {
     const std::map<std::string, std::string> class_of_models = readClassFile(*options_.class_path);
     std::vector<Model> models = listModels(options_.folders, options_.selection);
@@ -140,6 +147,7 @@ private:
     if (results_.front().all.num_queries == 0)
       throw InputError(*options_.class_path + ": no class holds two of the meshes");
     printTable();
+    printWhatSymmetryBrings();
     printGains();
     if (options_.csv) writeText(*options_.csv, curves());
     if (options_.class_csv) writeText(*options_.class_csv, classTable());
@@ -148,11 +156,36 @@ private:
   }
 
   void printTable() const {
-    std::printf("%-28s %8s %8s %8s %8s %8s   of %d queries, per cent\n", "", "nearest", "tier 1", "tier 2", "E", "DCG",
+    std::printf("%-40s %8s %8s %8s %8s %8s   of %d queries, per cent\n", "", "nearest", "tier 1", "tier 2", "E", "DCG",
                 results_.front().all.num_queries);
     for (const Result& r : results_)
-      std::printf("%-28s %8.1f %8.1f %8.1f %8.1f %8.1f\n", r.method.name.c_str(), 100.0 * r.all.nearest,
+      std::printf("%-40s %8.1f %8.1f %8.1f %8.1f %8.1f\n", r.method.name.c_str(), 100.0 * r.all.nearest,
                   100.0 * r.all.first_tier, 100.0 * r.all.second_tier, 100.0 * r.all.e_measure, 100.0 * r.all.dcg);
+  }
+
+  /// Pairs of methods that differ in the use of symmetry alone.
+  void printWhatSymmetryBrings() const {
+    const std::vector<std::array<std::string, 2>> pairs = {
+        {"PRST x GEDT, axes of the files", "GEDT, axes of the files"},
+        {"PRST x GEDT, symmetry axes", "GEDT, symmetry axes"},
+        {"GEDT, symmetry axes", "GEDT, principal axes"},
+        {"PRST x GEDT, all turns", "GEDT, all turns"},
+        {"compact PRST x GEDT", "compact GEDT"},
+        {"compact PRST x GEDT, scaled", "compact GEDT, scaled"}};
+    std::printf("\n%-58s %-24s %-24s   what symmetry brings, points\n", "", "nearest", "DCG");
+    for (const auto& [with, without] : pairs) {
+      const QueryScores a = scoresOf(with), b = scoresOf(without);
+      const Gain nearest = pairedGain(a.nearest, b.nearest, a.classes), dcg = pairedGain(a.dcg, b.dcg, a.classes);
+      std::printf("%-58s %+5.1f (%+5.1f to %+5.1f)   %+5.1f (%+5.1f to %+5.1f)\n", (with + " - " + without).c_str(),
+                  100.0 * nearest.mean, 100.0 * nearest.low, 100.0 * nearest.high, 100.0 * dcg.mean, 100.0 * dcg.low,
+                  100.0 * dcg.high);
+    }
+  }
+
+  QueryScores scoresOf(const std::string& name) const {
+    const auto found = std::find_if(results_.begin(), results_.end(),
+                                    [&](const Result& result) { return result.method.name == name; });
+    return queryScores(found->method.distances, classes_);
   }
 
   struct ClassGain {
@@ -239,7 +272,7 @@ private:
     drawClasses();
   }
 
-  /// Figure 13. Distances that are not scaled: as many as there are colours.
+  /// Figure 13: no more curves than there are colours, eight.
   void drawCurves(const std::string& title, std::size_t begin, std::size_t end, const std::string& what) const {
     Chart chart;
     chart.title = title;
@@ -247,7 +280,7 @@ private:
     chart.y = {"precision", false, std::make_pair(0.0, 1.0)};
     for (std::size_t i = begin; i < end; ++i) {
       const Result& r = results_[i];
-      if (r.method.scaled) continue;
+      if (!r.method.charted) continue;
       ChartSeries series{r.method.name, {}, r.all.precision, false};
       for (int k = 0; k < kNumRecalls; ++k) series.x.push_back((k + 1.0) / kNumRecalls);
       chart.series.push_back(std::move(series));

@@ -11,8 +11,10 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/descriptors/symmetry_descriptor.h"
+#include "core/descriptors/turnable_gedt.h"
 #include "core/descriptors/turnable_prst.h"
 #include "core/geometry/axis_rotations.h"
+#include "core/geometry/principal_axes.h"
 #include "core/matching/reference_scaling.h"
 #include "core/matching/shape_description.h"
 #include "core/matching/signature_projection.h"
@@ -74,38 +76,51 @@ struct TurnableDescriptors {
   SignatureRotation rotate;
 };
 
-/// Least L2 distances of the first forms in all rotations of axes.
-Eigen::MatrixXf leastDistances(const Eigen::MatrixXf& signatures, SignatureRotation rotate,
-                               const RetrievalOptions& options, const RetrievalProgress& progress) {
-  // Descriptors that are compared with all others at a time. chosen: half is slower, twice needs more memory.
-  constexpr Eigen::Index kColumns = 64;
-  Eigen::MatrixXf cosines = Eigen::MatrixXf::Constant(signatures.cols(), signatures.cols(), -1.0f);
-  const auto num_blocks = static_cast<std::size_t>((signatures.cols() + kColumns - 1) / kColumns);
-  forEachModel(num_blocks, options, progress, [&](std::size_t block) {
-    const Eigen::Index first = static_cast<Eigen::Index>(block) * kColumns;
-    const Eigen::Index count = std::min(kColumns, signatures.cols() - first);
-    Eigen::MatrixXf rotated(signatures.rows(), count), products(signatures.cols(), count);
-    for (int r = 0; r < kNumAxisRotations; ++r) {
-      for (Eigen::Index i = 0; i < count; ++i) rotate(signatures.col(first + i).data(), r, rotated.col(i).data());
-      products.noalias() = signatures.transpose() * rotated;
-      cosines.middleCols(first, count) = cosines.middleCols(first, count).cwiseMax(products);
-    }
-  });
-  return (2.0f - 2.0f * cosines.cwiseMax(cosines.transpose()).array()).max(0.0f).sqrt();
+/// The first form of every model.
+Eigen::MatrixXf firstForms(const TurnableDescriptors& descriptors) {
+  Eigen::MatrixXf first(descriptors.forms.front().rows(), static_cast<Eigen::Index>(descriptors.forms.size()));
+  for (Eigen::Index i = 0; i < first.cols(); ++i) first.col(i) = descriptors.forms[static_cast<std::size_t>(i)].col(0);
+  return first;
 }
 
-/// By the descriptors as they are and by their compact forms, both also with scaled distances.
-std::vector<RetrievalMethod> turnableMethods(const TurnableDescriptors& descriptors, const RetrievalOptions& options,
-                                             const RetrievalProgress& progress) {
-  const std::size_t size = descriptors.forms.size();
-  Eigen::MatrixXf first(descriptors.forms.front().rows(), static_cast<Eigen::Index>(size));
-  for (std::size_t i = 0; i < size; ++i) first.col(static_cast<Eigen::Index>(i)) = descriptors.forms[i].col(0);
-  const Eigen::MatrixXf plain = leastDistances(first, descriptors.rotate, options, progress);
+/// L2 distances of the first forms in that rotation of axes where their product over all descriptors is least.
+Eigen::MatrixXf leastDistances(const std::vector<const TurnableDescriptors*>& descriptors,
+                               const RetrievalOptions& options, const RetrievalProgress& progress) {
+  // Models that are compared with all others at a time. chosen: half is slower, twice needs more memory.
+  constexpr Eigen::Index kColumns = 64;
+  std::vector<Eigen::MatrixXf> forms;
+  for (const TurnableDescriptors* one : descriptors) forms.push_back(firstForms(*one));
+  const Eigen::Index size = forms.front().cols();
+  Eigen::MatrixXf least(size, size);
+  const auto num_blocks = static_cast<std::size_t>((size + kColumns - 1) / kColumns);
+  forEachModel(num_blocks, options, progress, [&](std::size_t block) {
+    const Eigen::Index first = static_cast<Eigen::Index>(block) * kColumns, count = std::min(kColumns, size - first);
+    for (int r = 0; r < kNumAxisRotations; ++r) {
+      Eigen::MatrixXf product = Eigen::MatrixXf::Ones(size, count);
+      for (std::size_t d = 0; d < forms.size(); ++d) {
+        Eigen::MatrixXf rotated(forms[d].rows(), count);
+        for (Eigen::Index i = 0; i < count; ++i)
+          descriptors[d]->rotate(forms[d].col(first + i).data(), r, rotated.col(i).data());
+        const Eigen::MatrixXf cosines = forms[d].transpose() * rotated;
+        product.array() *= (2.0f - 2.0f * cosines.array()).max(0.0f).sqrt();
+      }
+      if (r == 0)
+        least.middleCols(first, count) = product;
+      else
+        least.middleCols(first, count) = least.middleCols(first, count).cwiseMin(product);
+    }
+  });
+  return least.cwiseMin(least.transpose().eval());
+}
 
+/// Distances of the compact forms, in the best of all frames and rotations of axes.
+Eigen::MatrixXf compactDistances(const TurnableDescriptors& descriptors, const RetrievalOptions& options) {
+  const std::size_t size = descriptors.forms.size();
   const std::vector<Eigen::Index> references = drawReferences(size, options);
-  Eigen::MatrixXf reference_forms(first.rows(), static_cast<Eigen::Index>(references.size()));
+  Eigen::MatrixXf reference_forms(descriptors.forms.front().rows(), static_cast<Eigen::Index>(references.size()));
   for (std::size_t r = 0; r < references.size(); ++r)
-    reference_forms.col(static_cast<Eigen::Index>(r)) = first.col(references[r]);
+    reference_forms.col(static_cast<Eigen::Index>(r)) =
+        descriptors.forms[static_cast<std::size_t>(references[r])].col(0);
   ProjectionOptions projection_options;
   projection_options.num_threads = options.num_threads;
   const SignatureProjection projection =
@@ -117,28 +132,40 @@ std::vector<RetrievalMethod> turnableMethods(const TurnableDescriptors& descript
         compact[i] = projection.project(descriptors.forms[i]);
         rotations[i] = projection.rotations(compact[i]);
       });
-  const Eigen::MatrixXf distances = symmetricDistances(size, options.num_threads, [&](std::size_t i, std::size_t j) {
+  return symmetricDistances(size, options.num_threads, [&](std::size_t i, std::size_t j) {
     return std::min(signatureDistance(rotations[i], compact[j]), signatureDistance(rotations[j], compact[i]));
   });
-  const std::string& name = descriptors.name;
-  return {{name, plain},
-          {name + ", scaled", scaled(plain, references, options), true},
-          {"compact " + name, distances},
-          {"compact " + name + ", scaled", scaled(distances, references, options), true}};
+}
+
+/// Distances as they are, and scaled by those to the references.
+void addMethod(const std::string& name, const Eigen::MatrixXf& distances, bool charted, const RetrievalOptions& options,
+               std::vector<RetrievalMethod>& methods) {
+  const std::vector<Eigen::Index> references = drawReferences(static_cast<std::size_t>(distances.rows()), options);
+  methods.push_back({name, distances, charted});
+  methods.push_back({name + ", scaled", scaled(distances, references, options), false});
+}
+
+Eigen::Matrix3d axesOf(const Points& cloud, ModelAxes axes) {
+  if (axes == ModelAxes::AsGiven) return Eigen::Matrix3d::Identity();
+  if (axes == ModelAxes::Principal) return principalAxes(cloud).axes;
+  DescriptionOptions description;
+  description.num_threads = 1;
+  return describeShape(cloud, description).frame.axes;
 }
 
 }  // namespace
 
-std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, bool canonical,
+std::string nameOf(ModelAxes axes) {
+  if (axes == ModelAxes::Symmetry) return "symmetry axes";
+  return axes == ModelAxes::Principal ? "principal axes" : "axes of the files";
+}
+
+std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, ModelAxes axes,
                                               const RetrievalOptions& options, const RetrievalProgress& progress) {
   std::vector<SymmetryDescriptors> descriptors(clouds.size());
   forEachModel(clouds.size(), options, progress, [&](std::size_t i) {
     Eigen::Isometry3d T_frame_input = Eigen::Isometry3d::Identity();
-    if (canonical) {
-      DescriptionOptions description;
-      description.num_threads = 1;
-      T_frame_input.linear() = describeShape(clouds[i], description).frame.axes.transpose();
-    }
+    T_frame_input.linear() = axesOf(clouds[i], axes).transpose();
     T_frame_input.translation() = -T_frame_input.linear() * centerOfMass(clouds[i]);
     DescriptorOptions descriptor;
     descriptor.num_threads = 1;
@@ -156,17 +183,25 @@ std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds,
       distances([](D a, D b) { return planeDescriptorDistance(a.prst.data(), b.prst.data(), a.prst.size()); });
   const Eigen::MatrixXf gedt =
       distances([](D a, D b) { return std::sqrt(sqDistance(a.gedt.data(), b.gedt.data(), a.gedt.size())); });
-  const std::string where = canonical ? ", symmetry axes" : ", axes of the files";
-  return {{"PRSD" + where, prsd},
-          {"PRST" + where, prst},
-          {"GEDT" + where, gedt},
-          {"PRST x GEDT" + where, prst.cwiseProduct(gedt)}};
+  const auto values = [](const std::vector<float>& v) {
+    return Eigen::Map<const Eigen::ArrayXf>(v.data(), static_cast<Eigen::Index>(v.size()));
+  };
+  const Eigen::MatrixXf greatest =
+      distances([&](D a, D b) { return (values(a.prsd) - values(b.prsd)).abs().maxCoeff(); });
+  const std::string where = ", " + nameOf(axes);
+  const bool charted = axes != ModelAxes::Principal;
+  return {{"PRSD" + where, prsd, charted},
+          {"PRST" + where, prst, charted},
+          {"GEDT" + where, gedt, charted},
+          {"PRST x GEDT" + where, prst.cwiseProduct(gedt), charted},
+          {"PRSD by the maximum" + where, greatest, false}};
 }
 
 std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,
                                               const RetrievalProgress& progress) {
-  TurnableDescriptors prst{"PRST, all turns", std::vector<Eigen::MatrixXf>(clouds.size()), rotateTurnablePRST};
-  TurnableDescriptors signatures{"signatures", std::vector<Eigen::MatrixXf>(clouds.size()), rotateSignature};
+  const std::vector<Eigen::MatrixXf> none(clouds.size());
+  TurnableDescriptors prst{"PRST", none, rotateTurnablePRST}, gedt{"GEDT", none, rotateTurnableGEDT},
+      signatures{"signatures", none, rotateSignature};
   forEachModel(
       clouds.size(), options, [&](double share) { progress(0.5 * share); },
       [&](std::size_t i) {
@@ -175,18 +210,34 @@ std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds,
         const ShapeDescription shape = describeShape(clouds[i], description);
         signatures.forms[i] = shape.signatures;
         const std::vector<Eigen::Matrix3d> frames = signatureFrames(clouds[i], shape.frame);
-        prst.forms[i].resize(kTurnablePRSTSize, static_cast<Eigen::Index>(frames.size()));
-        for (std::size_t f = 0; f < frames.size(); ++f) {
-          const std::vector<float> values = turnablePRST(clouds[i], frames[f]);
-          prst.forms[i].col(static_cast<Eigen::Index>(f)) =
-              Eigen::Map<const Eigen::VectorXf>(values.data(), kTurnablePRSTSize);
-        }
+        const auto fill = [&](Eigen::MatrixXf& forms, const auto& describe) {
+          for (std::size_t f = 0; f < frames.size(); ++f) {
+            const std::vector<float> values = describe(clouds[i], frames[f]);
+            if (f == 0)
+              forms.resize(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(frames.size()));
+            forms.col(static_cast<Eigen::Index>(f)) = Eigen::Map<const Eigen::VectorXf>(values.data(), forms.rows());
+          }
+        };
+        fill(prst.forms[i], turnablePRST);
+        fill(gedt.forms[i], turnableGEDT);
       });
-  std::vector<RetrievalMethod> methods =
-      turnableMethods(prst, options, [&](double share) { progress(0.5 + 0.2 * share); });
-  for (RetrievalMethod& method :
-       turnableMethods(signatures, options, [&](double share) { progress(0.7 + 0.3 * share); }))
-    methods.push_back(std::move(method));
+  std::vector<RetrievalMethod> methods;
+  double done = 0.5;
+  const auto least = [&](const std::vector<const TurnableDescriptors*>& of) {
+    constexpr double kShare = 0.125;  // derived: four comparisons make the second half of the work
+    const Eigen::MatrixXf distances = leastDistances(of, options, [&](double x) { progress(done + kShare * x); });
+    done += kShare;
+    return distances;
+  };
+  addMethod("PRST, all turns", least({&prst}), true, options, methods);
+  addMethod("GEDT, all turns", least({&gedt}), true, options, methods);
+  addMethod("PRST x GEDT, all turns", least({&prst, &gedt}), true, options, methods);
+  const Eigen::MatrixXf compact_prst = compactDistances(prst, options), compact_gedt = compactDistances(gedt, options);
+  addMethod("compact PRST", compact_prst, false, options, methods);
+  addMethod("compact GEDT", compact_gedt, false, options, methods);
+  addMethod("compact PRST x GEDT", compact_prst.cwiseProduct(compact_gedt), false, options, methods);
+  addMethod("signatures", least({&signatures}), false, options, methods);
+  addMethod("compact signatures", compactDistances(signatures, options), true, options, methods);
   return methods;
 }
 
@@ -207,7 +258,7 @@ RetrievalMethod databaseMethod(const std::vector<Points>& clouds, const Retrieva
     models.push_back({std::to_string(i), {}, [&, i] { return asCloud(clouds[i]); }});
   database.build(models, [&](double share) { return progress(0.5 * share), true; });
   const auto size = static_cast<Eigen::Index>(clouds.size());
-  RetrievalMethod method{"SymmetryDatabase::match", Eigen::MatrixXf::Constant(size, size, 1e6f), true};
+  RetrievalMethod method{"SymmetryDatabase::match", Eigen::MatrixXf::Constant(size, size, 1e6f)};
   Viewpoint none;
   none.mode = Viewpoint::Mode::None;
   for (Eigen::Index i = 0; i < size; ++i) {

@@ -23,20 +23,25 @@ struct RetrievalOptions {
 struct RetrievalMethod {
   std::string name;
   Eigen::MatrixXf distances;  ///< N x N, symmetric
-  bool scaled = false;        ///< by those to the references
+  bool charted = true;        ///< has a curve of its own in the charts
 };
 
 /// Told the share of the work that is done, in [0, 1].
 using RetrievalProgress = std::function<void(double)>;
 
-/// PRSD, PRST, GEDT and the product of the latter two: L2 in one frame each, about the center of mass.
-/// \param clouds of the models.
-/// \param canonical turned to the axes of their symmetry, or else as they are.
-std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, bool canonical,
+/// Axes that a model is described in.
+enum class ModelAxes { AsGiven, Symmetry, Principal };
+
+/// \return e.g. "symmetry axes".
+std::string nameOf(ModelAxes axes);
+
+/// PRSD, PRST, GEDT and the product of the latter two: L2 in one frame each, about the center of mass; and PRSD by the
+/// greatest difference, as Kazhdan et al. (2004) compare it.
+std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, ModelAxes axes,
                                               const RetrievalOptions& options, const RetrievalProgress& progress);
 
-/// PRST in a form that turns, and signatures, in the best of all rotations of axes; their compact forms; and all these
-/// with distances scaled by those to the references.
+/// PRST and GEDT in forms that turn, and signatures, in the best of all rotations of axes; their compact forms; and all
+/// these with distances scaled by those to the references. The product of PRST and GEDT, in the best rotation of both.
 std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,
                                               const RetrievalProgress& progress);
 

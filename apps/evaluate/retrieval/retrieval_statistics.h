@@ -34,4 +34,25 @@ RetrievalStatistics retrievalStatistics(const Eigen::MatrixXf& distances, const 
 std::map<std::string, RetrievalStatistics> statisticsByClass(const Eigen::MatrixXf& distances,
                                                              const std::vector<std::string>& classes);
 
+/// What each query alone reached.
+struct QueryScores {
+  std::vector<double> nearest;  ///< 1 where the nearest model is of the query's class, else 0
+  std::vector<double> dcg;
+  std::vector<std::string> classes;
+};
+
+QueryScores queryScores(const Eigen::MatrixXf& distances, const std::vector<std::string>& classes);
+
+/// What one method is ahead of another by on the same queries.
+struct Gain {
+  double mean, low, high;  ///< mean difference and its 95 % interval
+};
+
+/// The interval by the bootstrap over classes (Efron 1979): queries of a class are alike and are drawn together.
+/// \param with values of the queries, by one method.
+/// \param without the same queries, by another.
+/// \param classes of the queries.
+Gain pairedGain(const std::vector<double>& with, const std::vector<double>& without,
+                const std::vector<std::string>& classes);
+
 }  // namespace pcl_symmetry::apps

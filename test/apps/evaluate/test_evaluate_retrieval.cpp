@@ -3,6 +3,7 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 
 #include "apps/support/lathe_mesh.h"
@@ -56,6 +57,35 @@ TEST(RetrievalStatistics, CountAsTheBenchmarkDoes) {
   EXPECT_NEAR(s.at("a").precision[19], 0.5, 1e-12);
 }
 
+TEST(RetrievalStatistics, QueriesAloneAddUpToTheMeans) {
+  const Eigen::MatrixXf distances = distancesOf({0.0f, 0.4f, 0.5f, 2.0f, 2.1f, 9.0f});
+  const std::vector<std::string> classes{"a", "b", "a", "a", "b", "alone"};
+  const QueryScores scores = queryScores(distances, classes);
+  const RetrievalStatistics all = retrievalStatistics(distances, classes);
+  ASSERT_EQ(scores.classes, (std::vector<std::string>{"a", "b", "a", "a", "b"}));
+  EXPECT_NEAR(std::accumulate(scores.nearest.begin(), scores.nearest.end(), 0.0) / 5.0, all.nearest, 1e-12);
+  EXPECT_NEAR(std::accumulate(scores.dcg.begin(), scores.dcg.end(), 0.0) / 5.0, all.dcg, 1e-12);
+}
+
+TEST(RetrievalStatistics, GainsAreOfTheSameQueries) {
+  std::vector<double> with, without;
+  std::vector<std::string> classes;
+  for (int i = 0; i < 400; ++i) {
+    // Classes of ten queries differ much, the two methods by 0.1 in every other class.
+    const int of = i / 10;
+    without.push_back(of / 40.0);
+    with.push_back(without.back() + (of % 2 == 0 ? 0.1 : 0.0));
+    classes.push_back("class " + std::to_string(of));
+  }
+  const Gain gain = pairedGain(with, without, classes);
+  EXPECT_NEAR(gain.mean, 0.05, 1e-12);
+  // Of 40 classes: 0.05 / sqrt(40) is the standard error.
+  EXPECT_NEAR(gain.high - gain.low, 2.0 * 1.96 * 0.05 / std::sqrt(40.0), 0.006);
+  EXPECT_LT(gain.low, gain.mean);
+  EXPECT_EQ(pairedGain(with, with, classes).high, 0.0);
+  EXPECT_EQ(pairedGain({}, {}, {}).mean, 0.0);
+}
+
 TEST(ClassFile, NamesClassesBehindTheirParents) {
   const TemporaryFolder folder;
   const std::string path = folder.write("c.cla", "PSB 1\n2 2\n\nvessel 0 0\n\nvase vessel 2\n7\n9\n");
@@ -93,10 +123,11 @@ TEST_F(EvaluateRetrieval, ComparesMethods) {
       << error_;
   const json summary = json::parse(contentOf(folder_ / "s.json"));
   EXPECT_EQ(summary["num_queries"], 6);
-  EXPECT_EQ(summary["methods"].size(), 16u);
+  EXPECT_EQ(summary["methods"].size(), 31u);  // 5 in each of 3 frames, 8 in all turns, each also scaled
   for (const auto& [name, method] : summary["methods"].items()) EXPECT_EQ(method["precision"].size(), 20u) << name;
   EXPECT_GE(summary["methods"]["compact signatures"]["nearest"].get<double>(), 0.6);
   EXPECT_NE(output_.find("compact signatures, scaled"), std::string::npos);
+  EXPECT_NE(output_.find("PRST x GEDT, all turns - GEDT, all turns"), std::string::npos) << output_;
   EXPECT_NE(contentOf(folder_ / "k.csv").find("vase,3,"), std::string::npos);
   for (const char* chart : {"a_files.png", "a_turned.png", "a_classes.png"})
     EXPECT_EQ(contentOf(folder_ / chart).substr(1, 3), "PNG") << chart;
