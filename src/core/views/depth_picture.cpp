@@ -1,8 +1,11 @@
 #include "core/views/depth_picture.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/simd.h"
 
 namespace pcl_symmetry {
 
@@ -16,6 +19,21 @@ constexpr int kOutlineCells = 48;
 constexpr float kDeepest = 2.0f;
 // derived: binomial weights of a cell and its two neighbours.
 constexpr float kSmoothing[3] = {0.25f, 0.5f, 0.25f};
+// Points whose cells are found at a time. chosen: they stay in the first cache; half and twice are as fast.
+constexpr std::size_t kPointsAtATime = 1024;
+
+/// Index of the cell of each point; side * side beyond the picture.
+PCL_SYMMETRY_MULTIVERSION
+void findCells(const float* x, const float* y, std::size_t count, float left, float top, float cell, int side,
+               int* cells) {
+  const auto end = static_cast<float>(side);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = (x[i] - left) / cell, v = (y[i] - top) / cell;
+    const bool inside = (u >= 0.0f) & (v >= 0.0f) & (u < end) & (v < end);
+    const int at = static_cast<int>(inside ? v : 0.0f) * side + static_cast<int>(inside ? u : 0.0f);
+    cells[i] = inside ? at : side * side;
+  }
+}
 
 template <typename Visit>
 void forEachSeenCell(const DepthPicture& picture, const Visit& visit) {
@@ -29,9 +47,24 @@ void forEachSeenCell(const DepthPicture& picture, const Visit& visit) {
 
 }  // namespace
 
-Outline outlineOf(const Points& in_view) {
-  const Eigen::Array2f low = in_view.topRows<2>().rowwise().minCoeff();
-  const Eigen::Array2f high = in_view.topRows<2>().rowwise().maxCoeff();
+void DepthPicture::add(const PointColumns& points) {
+  std::array<int, kPointsAtATime> cells;
+  const auto size = static_cast<std::size_t>(points.rows());
+  const float* depths = points.col(2).data();
+  for (std::size_t first = 0; first < size; first += kPointsAtATime) {
+    const std::size_t count = std::min(kPointsAtATime, size - first);
+    findCells(points.col(0).data() + first, points.col(1).data() + first, count, corner_.x(), corner_.y(), cell_, side_,
+              cells.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      float& depth = depths_[static_cast<std::size_t>(cells[i])];
+      depth = std::min(depth, depths[first + i]);
+    }
+  }
+}
+
+Outline outlineOf(const PointColumns& in_view) {
+  const Eigen::Array2f low = in_view.leftCols<2>().colwise().minCoeff().transpose();
+  const Eigen::Array2f high = in_view.leftCols<2>().colwise().maxCoeff().transpose();
   const float extent = (high - low).maxCoeff();
   check(extent > 0.0f, "extent of the points across the view", extent, "> 0");
   DepthPicture picture(kOutlineCells + 1, low, extent / kOutlineCells);
@@ -51,7 +84,7 @@ Outline outlineOf(const Points& in_view) {
   return outline;
 }
 
-SmoothPicture::SmoothPicture(const DepthPicture& picture) : side_(picture.side()) {
+SmoothPicture::SmoothPicture(const DepthPicture& picture, float middle, float unit) : side_(picture.side()) {
   values_.resize(static_cast<std::size_t>(side_) * side_);
   for (int v = 0; v < side_; ++v) {
     for (int u = 0; u < side_; ++u) {
@@ -61,7 +94,8 @@ SmoothPicture::SmoothPicture(const DepthPicture& picture) : side_(picture.side()
         for (int i = -1; i <= 1; ++i) {
           const float depth = picture.depth(u + i, v + j);
           if (depth == DepthPicture::kNothing) continue;
-          value += kSmoothing[i + 1] * kSmoothing[j + 1] * Eigen::Array2f(1.0f, std::clamp(depth, -kDeepest, kDeepest));
+          value += kSmoothing[i + 1] * kSmoothing[j + 1] *
+                   Eigen::Array2f(1.0f, std::clamp((depth - middle) / unit, -kDeepest, kDeepest));
         }
       }
     }

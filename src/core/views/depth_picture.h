@@ -1,13 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
-
 namespace pcl_symmetry {
+
+/// Points by coordinates, N x 3: all x, then all y, then all z, as loops over many points read them fastest.
+using PointColumns = Eigen::Matrix<float, Eigen::Dynamic, 3>;
 
 /// Points seen from far away: the nearest depth in each cell of a square picture. The viewer looks along z.
 class DepthPicture {
@@ -19,12 +19,10 @@ public:
   /// \param corner least x and y of the picture.
   /// \param cell width of a cell, > 0, units of the points.
   DepthPicture(int side, const Eigen::Array2f& corner, float cell)
-      : side_(side), corner_(corner), cell_(cell), depths_(static_cast<std::size_t>(side) * side, kNothing) {}
+      : side_(side), corner_(corner), cell_(cell), depths_(static_cast<std::size_t>(side) * side + 1, kNothing) {}
 
   /// Points beyond the picture are left out.
-  void add(const Points& points) {
-    for (Eigen::Index i = 0; i < points.cols(); ++i) add(Eigen::Vector3f(points.col(i)));
-  }
+  void add(const PointColumns& points);
 
   int side() const { return side_; }
   Eigen::Array2f center(int u, int v) const { return corner_ + cell_ * (Eigen::Array2i(u, v).cast<float>() + 0.5f); }
@@ -35,17 +33,10 @@ public:
   }
 
 private:
-  void add(const Eigen::Vector3f& x) {
-    const Eigen::Array2i at = ((x.head<2>().array() - corner_) / cell_).floor().cast<int>();
-    if ((at < 0).any() || (at >= side_).any()) return;
-    float& depth = depths_[static_cast<std::size_t>(at.y() * side_ + at.x())];
-    depth = std::min(depth, x.z());
-  }
-
   int side_;
   Eigen::Array2f corner_;
   float cell_;
-  std::vector<float> depths_;
+  std::vector<float> depths_;  // x fastest; the last one is of the points beyond the picture
 };
 
 /// The outline of what is seen.
@@ -54,14 +45,16 @@ struct Outline {
   double radius = 0.0;  ///< root mean square distance of the inside from the middle, across the view
 };
 
-/// \param in_view 3 x N, N >= 1, z away from the viewer.
+/// \param in_view N >= 1 points, z away from the viewer.
 /// \throws std::invalid_argument for points without extent across the view.
-Outline outlineOf(const Points& in_view);
+Outline outlineOf(const PointColumns& in_view);
 
 /// A picture smoothed over neighbouring cells, sampled between their centers.
 class SmoothPicture {
 public:
-  explicit SmoothPicture(const DepthPicture& picture);
+  /// \param middle the depth that becomes 0.
+  /// \param unit of depths, > 0.
+  SmoothPicture(const DepthPicture& picture, float middle, float unit);
 
   /// \param at in cells from the corner.
   /// \return outline (1 inside) and depth, both 0 beyond the picture.

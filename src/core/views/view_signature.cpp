@@ -7,6 +7,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/simd.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/viewing_frame.h"
 #include "core/views/depth_picture.h"
@@ -84,23 +85,36 @@ Eigen::VectorXf harmonicsOf(const SmoothPicture& picture) {
   return values;
 }
 
+/// \param rotation 3 x 3, row by row.
+PCL_SYMMETRY_MULTIVERSION
+void turnPoints(const float* from, const float* rotation, std::size_t count, float* to) {
+  const float *x = from, *y = from + count, *z = from + 2 * count;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < count; ++i)
+      to[k * count + i] = rotation[3 * k] * x[i] + rotation[3 * k + 1] * y[i] + rotation[3 * k + 2] * z[i];
+}
+
 /// Points that are looked at from many sides, in radii of their bounding ball: squares neither overflow nor underflow.
 class ViewedPoints {
 public:
   explicit ViewedPoints(const PointsRef& points) : ball_(boundingBallOf(points)) {
     check(ball_.radius > 0.0, "radius of the points", ball_.radius, "> 0");
-    points_ = normalizePoints(points, ball_.center, ball_.radius);
+    points_ = normalizePoints(points, ball_.center, ball_.radius).transpose();
   }
 
   View from(const Eigen::Vector3d& forward) const {
     const Eigen::Matrix3d R_view_input = viewingFrame(forward.normalized());
-    Points in_view = R_view_input.cast<float>() * points_;
+    const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> rotation = R_view_input.cast<float>();
+    PointColumns in_view(points_.rows(), 3);
+    turnPoints(points_.data(), rotation.data(), static_cast<std::size_t>(points_.rows()), in_view.data());
     const Outline outline = outlineOf(in_view);
-    in_view = normalizePoints(in_view, outline.middle, outline.radius);
-    DepthPicture picture(kPictureCells, Eigen::Array2f::Constant(-kReach), 2.0f * kReach / kPictureCells);
+    const Eigen::Vector3f middle = outline.middle.cast<float>();
+    const auto radius = static_cast<float>(outline.radius);
+    DepthPicture picture(kPictureCells, middle.head<2>().array() - kReach * radius,
+                         2.0f * kReach * radius / kPictureCells);
     picture.add(in_view);
     View view;
-    view.values = harmonicsOf(SmoothPicture(picture));
+    view.values = harmonicsOf(SmoothPicture(picture, middle.z(), radius));
     view.radius = outline.radius * ball_.radius;
     view.T_view_input.linear() = R_view_input;
     view.T_view_input.translation() = -(R_view_input * ball_.center + ball_.radius * outline.middle);
@@ -115,7 +129,7 @@ private:
   }
 
   BoundingBall ball_;
-  Points points_;
+  PointColumns points_;
 };
 
 /// Inner product of one part of two harmonics.
