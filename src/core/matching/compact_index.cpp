@@ -68,6 +68,7 @@ std::vector<std::pair<int, float>> leastDistances(const std::vector<int>& forms,
 void CompactIndexOptions::validate() const {
   check(num_leading >= 1, "num_leading", num_leading, ">= 1");
   check(num_candidates >= 1, "num_candidates", num_candidates, ">= 1");
+  check(candidate_share >= 0.0 && candidate_share <= 1.0, "candidate_share", candidate_share, "in [0, 1]");
   checkNumThreads(num_threads);
 }
 
@@ -134,8 +135,10 @@ std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& 
   check(num_nearest >= 0, "num_nearest", num_nearest, ">= 0");
   if (compact_.cols() == 0) return {};
   check(rotations.rows() == compact_.rows(), "size of a compact form", rotations.rows(), "that of the index");
+  const auto share = static_cast<int>(options_.candidate_share * static_cast<double>(compact_.cols()));
   const std::vector<int> forms = candidates(
-      rotations, static_cast<std::size_t>(std::max(options_.num_candidates, 2 * num_nearest * forms_per_shape_)));
+      rotations,
+      static_cast<std::size_t>(std::max({options_.num_candidates, share, 2 * num_nearest * forms_per_shape_})));
   Eigen::MatrixXf near(compact_.rows(), static_cast<Eigen::Index>(forms.size()));
   for (std::size_t i = 0; i < forms.size(); ++i) near.col(static_cast<Eigen::Index>(i)) = compact_.col(forms[i]);
   const Eigen::RowVectorXf cosines = (rotations.transpose() * near).colwise().maxCoeff();
