@@ -95,6 +95,14 @@ void addPlaneResults(py::module_& module) {
   py::class_<SymmetryAxis> axis(module, "Axis", "All planes through a line are symmetries: a body of revolution.");
   addScores(axis);
   axis.def_readonly("direction", &SymmetryAxis::direction, "(3,) unit");
+  py::class_<SymmetryTurn>(module, "Turn", "Turns about a line map what a scanner saw onto itself or to unseen places.")
+      .def_readonly("point", &SymmetryTurn::point, "(3,) input frame")
+      .def_readonly("direction", &SymmetryTurn::direction, "(3,) unit")
+      .def_readonly("fold", &SymmetryTurn::fold, "order of the turns; 0: by any angle")
+      .def_readonly("confidence", &SymmetryTurn::confidence,
+                    "how far within its limits this is, in [0, 1], 0.5 at them: a grade, not a probability")
+      .def_readonly("support", &SymmetryTurn::support, "share of the points that the best turn maps onto the surface")
+      .def_readonly("off", &SymmetryTurn::off, "share that the worst turn maps to where the scanner saw nothing");
   py::class_<SymmetryCenter> center(module, "Center", "All planes through a point are symmetries: a sphere.");
   addScores(center);
   py::class_<RankedView>(module, "View", "A direction to look at an object from.")
@@ -108,6 +116,9 @@ void addPlaneResults(py::module_& module) {
           "axes", [](const PlaneSearch& s) { return s.found.axes; }, "list of Axis, best first")
       .def_property_readonly(
           "centers", [](const PlaneSearch& s) { return s.found.centers; }, "list of Center")
+      .def_property_readonly(
+          "turns", [](const PlaneSearch& s) { return s.found.turns; },
+          "list of Turn, of scans from one side, best first")
       .def_property_readonly(
           "best", [](const PlaneSearch& s) { return s.found.best; },
           "where there is no symmetry and no possible one: the plane that comes closest; else None")

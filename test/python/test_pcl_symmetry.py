@@ -70,6 +70,21 @@ class Planes(unittest.TestCase):
         self.assertTrue(np.isnan(found.point_support(0)[-1]))
         self.assertFalse(np.isnan(found.point_support(0)[:-1]).any())
 
+    def test_a_scan_of_a_block_has_its_turns(self):
+        """A square block, seen from above and one side."""
+        points = box((1.0, 1.0, 0.4), 40_000)
+        viewpoint = np.array([1.6, 2.4, 3.2])
+        seen = points[(points[:, 0] == 0.5) | (points[:, 1] == 0.5) | (points[:, 2] == np.float32(0.2))]
+        found = pcl_symmetry.planes(seen, viewpoint=viewpoint)
+        self.assertGreaterEqual(len(found.turns), 1)
+        turn = found.turns[0]
+        self.assertEqual(turn.fold, 4)
+        self.assertGreater(abs(turn.direction[2]), np.cos(np.radians(1)))
+        self.assertLess(np.linalg.norm(turn.point[:2]), 0.02)
+        self.assertGreaterEqual(turn.confidence, 0.5)
+        self.assertLessEqual(turn.off, 1.0)
+        self.assertEqual(pcl_symmetry.planes(points).turns, [], "whole clouds have rotations()")
+
     def test_data_without_an_answer_give_a_reason(self):
         for points in (np.zeros((0, 3), np.float32), np.zeros((100, 3), np.float32), box(num_points=12)):
             found = pcl_symmetry.planes(points)
