@@ -3,6 +3,7 @@
 #include <pcl/segmentation/extract_clusters.h>
 #include <pcl/segmentation/sac_segmentation.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -38,6 +39,11 @@ constexpr double kFootprintTrim = 0.05;
 // 20 % it needs 600; PCL stops early where a great plane is found. Half misses small tables, twice takes twice the
 // time.
 constexpr int kConsensusIterations = 1000;
+// Times that a plane is fitted, and medians of the distances of its points within which they count. chosen: three
+// rounds take the feet of objects out of the fit; two leave some of them; more change nothing. Normal noise keeps 96 %
+// of the points within three medians; at half, the fit is that of chance, at twice, feet tilt it.
+constexpr int kFitRounds = 3;
+constexpr double kFitDeviations = 3.0;
 // Plane distances within which the rest of a bent or noisy plane lies, and the share of a cluster in it. chosen: half
 // reports pieces of the table, twice drops flat objects such as books.
 constexpr double kRemainder = 2.0, kRemainderShare = 0.9;
@@ -63,6 +69,38 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
   if (inliers.indices.empty() || coefficients.values.size() != 4) return std::nullopt;
   const Eigen::Vector4d plane = Eigen::Map<const Eigen::Vector4f>(coefficients.values.data()).cast<double>();
   return Consensus{plane / plane.head<3>().norm(), std::move(inliers.indices)};
+}
+
+/// The plane of least squares of the points that are nearest to a plane: sample consensus ends with one through three
+/// of them, which is tilted by their noise and by points of what stands on it.
+Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane) {
+  Eigen::Vector4d coefficients = plane.coefficients;
+  for (int round = 0; round < kFitRounds; ++round) {
+    const auto height = [&](pcl::index_t i) {
+      return std::abs(coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval()));
+    };
+    std::vector<double> heights;
+    for (const pcl::index_t i : plane.inliers) heights.push_back(height(i));
+    const double most = kFitDeviations * median(std::move(heights));
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    const Eigen::Vector3d origin = scene[plane.inliers.front()].getVector3fMap().cast<double>();
+    double count = 0.0;
+    for (const pcl::index_t i : plane.inliers) {
+      if (height(i) > most) continue;
+      const Eigen::Vector3d x = scene[i].getVector3fMap().cast<double>() - origin;
+      sum += x;
+      squares += x * x.transpose();
+      count += 1.0;
+    }
+    const Eigen::Vector3d mean = sum / count;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / count - mean * mean.transpose());
+    const Eigen::Vector3d normal = solver.eigenvectors().col(0);
+    if (!normal.allFinite()) return plane.coefficients;
+    const double sign = normal.dot(coefficients.head<3>()) < 0.0 ? -1.0 : 1.0;
+    coefficients << sign * normal, -sign * normal.dot(mean + origin);
+  }
+  return coefficients;
 }
 
 /// Points that lie over and under a plane.
@@ -146,6 +184,7 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
       return static_cast<double>(count) / static_cast<double>(points.size());
     };
     if (!plane || share(plane->inliers.size()) < kLeastShare) break;
+    plane->coefficients = fitted(*scene, *plane);
     candidates = without(candidates, plane->inliers, scene->size());
     if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;
     Sides sides = sidesOf(*scene, *plane, others, distance);

@@ -1,5 +1,7 @@
 #include "pcl_symmetry/scene/symmetry_scene.h"
 
+#include <pcl/common/common.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -7,6 +9,7 @@
 #include "core/base/stopwatch.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "scene/object_feet.h"
 #include "scene/scene_parts.h"
 
 namespace pcl_symmetry {
@@ -24,8 +27,8 @@ constexpr double kClusterSpacings = 4.0;
 // Share of an object's points above a plane that it stands on or before. chosen: half takes things that stick through a
 // plane for things on it, at 1 a single stray point decides.
 constexpr double kAboveShare = 0.98;
-// Plane distances that an object may seem to reach into its support. chosen: half takes noise of its foot for a
-// contradiction, twice lets reflections sink into the table.
+// Plane distances that an object may seem to reach into its support where the noise of the support is not known.
+// chosen: half takes noise of its foot for a contradiction, twice lets reflections sink into the table.
 constexpr double kSupportMargin = 2.0;
 
 /// The finite points that are near enough, seen along the rays of the sensor.
@@ -56,9 +59,10 @@ std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const 
 class ObjectAnalysis {
 public:
   /// \param found has what the sensor saw and the supporting planes.
-  ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, const SceneOptions& options,
+  /// \param spacing of the points, input units.
+  ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, double spacing, const SceneOptions& options,
                  const SymmetryDatabase* database)
-      : scene_(scene), found_(found), options_(options), database_(database) {}
+      : scene_(scene), found_(found), spacing_(spacing), options_(options), database_(database) {}
 
   SceneObject analyse(const pcl::Indices& cluster) {
     seen_ = seenSpaceOf(cluster);
@@ -76,15 +80,26 @@ private:
   /// Behind a plane that carries or backs the object, none of the object is.
   SeenSpace::ConstPtr seenSpaceOf(const pcl::Indices& cluster) const {
     SeenSpace seen = *found_.seen;
-    const double margin = kSupportMargin * found_.plane_distance;
+    const double most = kSupportMargin * found_.plane_distance;
     for (const SupportingPlane& support : found_.supports) {
       const auto num_above = std::count_if(cluster.begin(), cluster.end(), [&](pcl::index_t i) {
-        return support.coefficients.dot((*scene_)[i].getVector3fMap().cast<double>().homogeneous().eval()) > -margin;
+        return support.coefficients.dot((*scene_)[i].getVector3fMap().cast<double>().homogeneous().eval()) > -most;
       });
-      if (static_cast<double>(num_above) >= kAboveShare * static_cast<double>(cluster.size()))
-        seen = seen.withSupport(support.coefficients, margin);
+      if (static_cast<double>(num_above) < kAboveShare * static_cast<double>(cluster.size())) continue;
+      // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
+      // table, where a reflection costs nothing.
+      const double rise = detail::riseOfNoise(*scene_, support, cluster, spacing_, found_.cluster_distance);
+      seen = seen.withSupport(support.coefficients, std::min(most, rise + toleranceOf(cluster)));
     }
     return std::make_shared<const SeenSpace>(std::move(seen));
+  }
+
+  /// How far a symmetric surface may be off.
+  double toleranceOf(const pcl::Indices& cluster) const {
+    if (options_.detection.absolute_tolerance > 0.0) return options_.detection.absolute_tolerance;
+    Eigen::Vector4f low, high;
+    pcl::getMinMax3D(*scene_, cluster, low, high);
+    return options_.detection.tolerance * static_cast<double>((high - low).head<3>().norm());
   }
 
   template <typename Analysis>
@@ -126,6 +141,7 @@ private:
   const Cloud::ConstPtr& scene_;
   const SceneAnalysis& found_;
   SeenSpace::ConstPtr seen_;  // for the object that is analysed
+  const double spacing_;
   const SceneOptions& options_;
   const SymmetryDatabase* database_;
 };
@@ -175,10 +191,11 @@ SceneAnalysis SymmetryScene::compute() const {
   analysis.supports = detail::findSupports(input_, points, viewpoint, analysis.plane_distance);
   timed("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, input_->size());
-  const std::vector<pcl::Indices> clusters = detail::findClusters(
-      input_, rest, analysis.supports, analysis.plane_distance, analysis.cluster_distance, options_.min_points);
+  std::vector<pcl::Indices> clusters = detail::findClusters(input_, rest, analysis.supports, analysis.plane_distance,
+                                                            analysis.cluster_distance, options_.min_points);
+  detail::returnFeet(input_, analysis.supports, clusters, scale.spacing, analysis.cluster_distance);
   timed("clusters");
-  ObjectAnalysis objects(input_, analysis, options_, database_.get());
+  ObjectAnalysis objects(input_, analysis, scale.spacing, options_, database_.get());
   for (const pcl::Indices& cluster : clusters) analysis.objects.push_back(objects.analyse(cluster));
   timed("objects");
   return analysis;
