@@ -27,6 +27,12 @@ struct PCDHeader {
   }
 };
 
+/// \return a * b, or the greatest number where the product does not fit.
+std::uint64_t boundedProduct(std::uint64_t a, std::uint64_t b) {
+  constexpr std::uint64_t kGreatest = std::numeric_limits<std::uint64_t>::max();  // derived: of the type
+  return b != 0 && a > kGreatest / b ? kGreatest : a * b;
+}
+
 PCDHeader readPCDHeader(const std::string& path, std::string_view text) {
   PCDHeader header;
   LineReader lines(text);
@@ -269,9 +275,10 @@ CompressedSizes checkPCDSizes(const std::string& path, std::string_view body, co
     reject(path, "compressed size = " + std::to_string(compressed) +
                      ", must be > 0 and <= " + std::to_string(body.size() - 8) + ", the bytes that follow");
   }
-  if (uncompressed != layout.packed_size * layout.num_points) {
-    reject(path, "uncompressed size = " + std::to_string(uncompressed) + ", must be " +
-                     std::to_string(layout.packed_size * layout.num_points) + ", the size of all points");
+  const std::uint64_t size = boundedProduct(layout.packed_size, layout.num_points);
+  if (uncompressed != size) {
+    reject(path, "uncompressed size = " + std::to_string(uncompressed) + ", must be " + std::to_string(size) +
+                     ", the size of all points");
   }
   // derived: a back reference of three bytes stands for at most 264.
   constexpr std::uint64_t kMaxRatio = 88;
@@ -359,8 +366,8 @@ PCDCloud readPCD(const std::string& path) {
                        " for POINTS = " + std::to_string(layout.num_points));
     }
   };
-  if (data == "ascii") need(2 * layout.num_values * layout.num_points - 1);
-  if (data == "binary") need(layout.point_size * layout.num_points);
+  if (data == "ascii") need(boundedProduct(2 * layout.num_values, layout.num_points) - 1);
+  if (data == "binary") need(boundedProduct(layout.point_size, layout.num_points));
   if (data == "binary_compressed") checkPCDSizes(path, body, layout);
   PCDCloud result = emptyCloud(header, layout);
   if (data == "ascii") {

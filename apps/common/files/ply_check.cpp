@@ -103,6 +103,7 @@ void checkPLYHeader(const std::string& path, const PLYHeader& header, std::uint6
   }
   std::uint64_t least = 0;
   for (const PLYElement& element : header.elements) {
+    if (element.properties.empty() && element.count > 0) reject(path, "element " + element.name + " has no property");
     std::uint64_t size = 0;
     for (const PLYProperty& property : element.properties) {
       if (header.format == "ascii") {

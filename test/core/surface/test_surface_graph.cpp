@@ -94,6 +94,14 @@ TEST(SurfaceGraph, RefusesMissingVerticesAndNoArea) {
   EXPECT_THROW(meshGraph(mesh.vertices, {{0, 1, 1}}), std::invalid_argument);
   EXPECT_THROW(meshGraph(mesh.vertices, {}), std::invalid_argument);
   EXPECT_THROW(cloudGraph(Points::Ones(3, 5), neighboursOf(Points::Ones(3, 5), 2)), std::invalid_argument);
+  const Points corners = mesh.vertices.cast<float>();
+  auto neighbours = neighboursOf(corners, 2);
+  EXPECT_NO_THROW(cloudGraph(corners, neighbours));
+  for (const int wrong : {-1, static_cast<int>(corners.cols())}) {
+    neighbours[0][0] = wrong;
+    EXPECT_THROW(cloudGraph(corners, neighbours), std::invalid_argument) << wrong;
+  }
+  EXPECT_THROW(cloudGraph(corners, {{1, 2}}), std::invalid_argument) << "one list for all points";
 }
 
 TEST(SurfaceGraph, CloudOfABoxHasItsAreaAndOutwardNormals) {

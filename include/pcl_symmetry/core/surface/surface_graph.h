@@ -62,7 +62,7 @@ SurfaceGraph meshGraph(const PointsRef& vertices, const std::vector<std::vector<
 /// \param points 3 x N, finite, input frame.
 /// \param neighbours for each point the indices of its nearest other points, nearest first; the same number for all.
 /// \return one element per point, in input order; the area is estimated from the distance of the last neighbour.
-/// \throws std::invalid_argument if all points are equal.
+/// \throws std::invalid_argument if all points are equal, or a neighbour does not exist.
 SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours);
 
 /// Connected pieces of equal label.
