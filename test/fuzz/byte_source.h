@@ -13,12 +13,12 @@
 #include "pcl_symmetry/core/geometry/point_set.h"
 
 /// Ends the program with a message, which the fuzzer takes for a finding. It holds in builds without assertions too.
-#define FUZZ_CHECK(condition)                                                           \
-  do {                                                                                  \
-    if (!(condition)) {                                                                 \
+#define FUZZ_CHECK(condition)                                                             \
+  do {                                                                                    \
+    if (!(condition)) {                                                                   \
       std::fprintf(stderr, "%s:%d: does not hold: %s\n", __FILE__, __LINE__, #condition); \
-      std::abort();                                                                     \
-    }                                                                                   \
+      std::abort();                                                                       \
+    }                                                                                     \
   } while (false)
 
 namespace pcl_symmetry::fuzz {

@@ -1,5 +1,5 @@
 /// Readers of files. FUZZ_KIND in the environment names one of them: a kind of shape file such as pcd, or isaac,
-/// models_info, classes, planes_json, planes_txt, labels.
+/// models_info, classes, labels.
 #include <unistd.h>
 
 #include <fstream>
@@ -12,7 +12,6 @@
 #include "common/shape_output/face_labels.h"
 #include "common/symmetry_files/isaac_axes.h"
 #include "common/symmetry_files/models_info.h"
-#include "evaluate/planes/plane_answers.h"
 #include "evaluate/shared/class_file.h"
 #include "fuzz/byte_source.h"
 
@@ -28,11 +27,10 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
-/// Takes a folder and the name of a file in it.
-using Reader = std::function<void(const std::string&, const std::string&)>;
+using Reader = std::function<void(const std::string&)>;
 
-void readShape(const std::string& folder, const std::string& name) {
-  const Shape shape = loadShape(folder + name);
+void readShape(const std::string& path) {
+  const Shape shape = loadShape(path);
   FUZZ_CHECK(shape.points && !shape.points->empty());
   FUZZ_CHECK(shape.shift.allFinite());
   if (!shape.mesh) return;
@@ -54,12 +52,10 @@ struct Kind {
 
 Kind kindOf(const std::string& name) {
   static const std::map<std::string, Kind> kinds = {
-      {"isaac", {".yaml", [](const auto& folder, const auto& file) { readIsaacAxes(folder + file); }}},
-      {"models_info", {".json", [](const auto& folder, const auto& file) { readModelsSymmetries(folder + file); }}},
-      {"classes", {".cla", [](const auto& folder, const auto& file) { leafClassNumbers(folder + file); }}},
-      {"planes_json", {".json", [](const auto& folder, const auto& file) { readAnswers(folder, file.substr(0, file.size() - 5)); }}},
-      {"planes_txt", {".txt", [](const auto& folder, const auto& file) { readAnswers(folder, file.substr(0, file.size() - 4)); }}},
-      {"labels", {".seg", [](const auto& folder, const auto& file) { readFaceLabels(folder + file); }}}};
+      {"isaac", {".yaml", [](const std::string& path) { readIsaacAxes(path); }}},
+      {"models_info", {".json", readModelsSymmetries}},
+      {"classes", {".cla", [](const std::string& path) { leafClassNumbers(path); }}},
+      {"labels", {".seg", [](const std::string& path) { readFaceLabels(path); }}}};
   const auto known = kinds.find(name);
   return known == kinds.end() ? Kind{"." + name, readShape} : known->second;
 }
@@ -69,13 +65,13 @@ Kind kindOf(const std::string& name) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const char* const name = std::getenv("FUZZ_KIND");
   static const Kind kind = kindOf(name ? name : "pcd");
-  static const std::string folder = "/dev/shm/", file = "pcl_symmetry_fuzz_" + std::to_string(::getpid()) + kind.extension;
-  std::ofstream(folder + file, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  static const std::string path = "/dev/shm/pcl_symmetry_fuzz_" + std::to_string(::getpid()) + kind.extension;
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
-    kind.read(folder, file);
+    kind.read(path);
   } catch (const InputError& error) {
     FUZZ_CHECK(std::string(error.what()).find('\n') == std::string::npos);
   }
-  ::unlink((folder + file).c_str());
+  ::unlink(path.c_str());
   return 0;
 }

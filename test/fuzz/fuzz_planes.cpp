@@ -42,17 +42,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::ByteSource source(data, size);
   const DetectionOptions options = quickOptions(source);
   const bool is_scan = source.flag();
-  const Eigen::Vector3d viewpoint = 10.0 * Eigen::Vector3d(source.take<std::int8_t>(), source.take<std::int8_t>(), source.take<std::int8_t>());
+  const Eigen::Vector3d viewpoint =
+      10.0 * Eigen::Vector3d(source.take<std::int8_t>(), source.take<std::int8_t>(), source.take<std::int8_t>());
   const Points points = fuzz::takePoints(source, 300);
   try {
     const std::optional<Visibility> seen = is_scan ? Visibility::fromPoints(points, viewpoint) : std::nullopt;
     const Detection detection = detectPlanes(points, options, nullptr, seen ? &*seen : nullptr);
     FUZZ_CHECK(points.allFinite());
     FUZZ_CHECK(static_cast<int>(detection.planes.size()) <= options.max_planes);
-    for (const SymmetryPlane& plane : detection.planes) checkPlane(plane, options, static_cast<std::size_t>(points.cols()));
+    for (const SymmetryPlane& plane : detection.planes)
+      checkPlane(plane, options, static_cast<std::size_t>(points.cols()));
     for (const SymmetryAxis& axis : detection.axes)
-      FUZZ_CHECK(axis.point.allFinite() && std::abs(axis.direction.norm() - 1.0) < 1e-6 && fuzz::isShare(axis.confidence));
-    for (const SymmetryCenter& center : detection.centers) FUZZ_CHECK(center.point.allFinite() && fuzz::isShare(center.confidence));
+      FUZZ_CHECK(axis.point.allFinite() && std::abs(axis.direction.norm() - 1.0) < 1e-6 &&
+                 fuzz::isShare(axis.confidence));
+    for (const SymmetryCenter& center : detection.centers)
+      FUZZ_CHECK(center.point.allFinite() && fuzz::isShare(center.confidence));
   } catch (const std::invalid_argument&) {
     FUZZ_CHECK(!points.allFinite() || is_scan);
   }

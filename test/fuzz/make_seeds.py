@@ -114,10 +114,6 @@ def symmetry_files():
     yield "models_info", [json.dumps(models).encode(), json.dumps({"symmetries_discrete": [rows], "align_axes": []}).encode()]
     yield "isaac", [b'obj_1: ["z_90", "z_180"]\nobj_2: ["x_full"] # any angle\n', b"symmetry_axes: ['y_full']\n"]
     yield "classes", [b"PSB 1\n3 3\n\nanimal 0 0\n\ncow animal 2\n10\n11\n\ntable 0 1\n7\n"]
-    plane = {"coefficients": [1, 0, 0, -0.5], "confidence": 0.9, "kind": "symmetry"}
-    answer = {"planes": [plane], "axes": [{"point": [0, 0, 0], "direction": [0, 0, 1]}], "timing_ms": {"total": 3}}
-    yield "planes_json", [json.dumps(answer).encode(), b'{"planes": []}']
-    yield "planes_txt", [b"1 0 0 -0.5 0.9\n0 1 0 0 # second\n"]
     yield "labels", [b"0\n0\n1\n2\n"]
 
 
@@ -133,8 +129,18 @@ def point_bytes(num_options, count):
             yield bytes(2 * stream.randrange(128) for _ in range(num_options)) + bytes([kind]) + body
 
 
+def packed_parts():
+    """The kind of the part, and matrices and points as the database packs them."""
+    matrix = struct.pack("<BII", 1, 4, 2) + b"".join(struct.pack("<f4b", 0.01, 1, -2, 3, 127) for _ in range(2))
+    cloud = struct.pack("<I3fd", 4, -1, -1, -1, 1e-4) + bytes(range(24))
+    view = struct.pack("<f4h3f", 1.0, 0, 0, 0, 32767, 0, 0, 0)
+    part = struct.pack("<I", len(matrix)) + matrix
+    yield "packed", [b"\0" + cloud, b"\1" + matrix, b"\2" + struct.pack("<I", 1) + view + bytes(200),
+                     b"\3" + matrix + struct.pack("<f", 0.5), b"\4" + struct.pack("<Iq", 1, 7) + 3 * part, b"\5" + bytes(68)]  # fmt: skip
+
+
 def main(folder):
-    for name, files in [*shape_files(), *symmetry_files()]:
+    for name, files in [*shape_files(), *symmetry_files(), *packed_parts()]:
         write(Path(folder) / name, files)
     for name, num_options in (("planes", 15), ("rotations", 4), ("segment", 7)):
         write(Path(folder) / name, list(point_bytes(num_options, 8)))

@@ -74,7 +74,8 @@ int main(int argc, char** argv) {
     Bytes bytes = seeds[random.below(seeds.size())];
     for (std::uint64_t i = 1 + random.below(kMostChanges); i > 0; --i) change(bytes, random);
     // Kept, so that a run that ends the program can be done again.
-    std::ofstream("last_input", std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream("last_input", std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   }
   std::cout << seeds.size() << " seeds and " << num_runs << " changes of them\n";
