@@ -266,12 +266,15 @@ private:
       return addVertex(positions, index, T_scene_mesh);
     };
     const std::uint64_t mode = file_.count(primitive, "mode", 4);
+    const auto addTriangle = [&](std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+      shape_.triangles.push_back({corner(a), corner(b), corner(c)});  // in this order: braces, not a call
+    };
     if (mode == 4)
-      for (std::uint64_t i = 0; i + 3 <= num_corners; i += 3) addTriangle(corner(i), corner(i + 1), corner(i + 2));
+      for (std::uint64_t i = 0; i + 3 <= num_corners; i += 3) addTriangle(i, i + 1, i + 2);
     if (mode == 5 || mode == 6)
       for (std::uint64_t i = 0; i + 3 <= num_corners; ++i) {
         const bool is_turned = mode == 5 && i % 2 == 1;
-        addTriangle(corner(mode == 5 ? i : 0), corner(is_turned ? i + 2 : i + 1), corner(is_turned ? i + 1 : i + 2));
+        addTriangle(mode == 5 ? i : 0, is_turned ? i + 2 : i + 1, is_turned ? i + 1 : i + 2);
       }
     if (mode < 4)
       for (std::uint64_t i = 0; i < positions.count; ++i) others_.push_back(vertexOf(positions, i, T_scene_mesh));
@@ -297,8 +300,6 @@ private:
     if (is_new) shape_.vertices.push_back(vertex);
     return entry->second;
   }
-
-  void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { shape_.triangles.push_back({a, b, c}); }
 
   void keepPoints() {
     for (const Eigen::Vector3d& point : others_) indexOf(point);
