@@ -5,6 +5,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/surface/graph_completion.h"
+#include "core/surface/surface_extent.h"
 #include "pcl_symmetry/core/surface/surface_graph.h"
 
 namespace pcl_symmetry {
@@ -72,6 +73,7 @@ void checkNeighbours(const std::vector<std::vector<int>>& neighbours, Eigen::Ind
 
 SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours) {
   checkNeighbours(neighbours, points.cols());
+  checkExtent(points);
   const BoundingBall ball = boundingBall(points);
   check(ball.radius > 0.0, "extent of the points", ball.radius, "> 0");
   const auto size = points.cols();
