@@ -8,7 +8,7 @@ usage: bash test/fuzz/run.sh [-h] SECONDS [TARGET...]
 
 Builds the fuzzers with Clang and libFuzzer (cmake --preset fuzz) into build-fuzz/ and runs each for SECONDS with the address and
 undefined-behaviour sanitizers, from small files of make_seeds.py and what earlier runs kept in build-fuzz/corpus. An input that
-crashes, takes more than 60 s, or asks for more than 300 MB at once stays in build-fuzz/findings/TARGET.
+crashes, takes more than 120 s, or asks for more than 300 MB at once stays in build-fuzz/findings/TARGET.
 
 Targets: planes rotations segment packed database, and readers of files: pcd ply off xyz obj stl glb models_info isaac classes labels.
 
@@ -35,7 +35,7 @@ for target in "${targets[@]}"; do
   if [[ " $readers " == *" $target "* ]]; then program=fuzz_files longest=4096; fi
   if [[ $target == database ]]; then longest=100000; fi
   mkdir -p "$folder/corpus/$target" "$folder/findings/$target"
-  if FUZZ_KIND=$target OMP_NUM_THREADS=1 "$folder/test/fuzz/$program" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=3000 \
+  if FUZZ_KIND=$target OMP_NUM_THREADS=1 "$folder/test/fuzz/$program" -max_total_time="$seconds" -timeout=120 -rss_limit_mb=3000 \
     -malloc_limit_mb=300 -max_len=$longest -close_fd_mask=1 -artifact_prefix="$folder/findings/$target/" \
     "$folder/corpus/$target" "$folder/test/fuzz/seeds/$target" 2>"$folder/findings/$target.log"; then
     echo "$target: nothing found, $(grep -oE 'Done [0-9]+ runs' "$folder/findings/$target.log" | head -1)"

@@ -41,5 +41,8 @@ done
 for page in 'Planes of symmetry' 'What planes are good for' 'Fields of files'; do
   grep -q "$page" "$folder/html/pages.html" || { echo "not among the pages: $page"; missing=1; }
 done
+for picture in $(grep -ohE '<img src="[^"]*[.]png"' "$folder"/html/*.html | cut -d'"' -f2 | sort -u); do
+  [[ -s $folder/html/$picture ]] || { echo "not in the reference: $picture"; missing=1; }
+done
 ((missing == 0)) && echo "reference: $(find "$folder/html" -name '*.html' | wc -l) pages, no warning"
 exit "$missing"
