@@ -213,12 +213,8 @@ void readCamera(PLYBody& body, const PLYElement& element, PLYSummary& summary) {
   summary.sensor_orientation = Eigen::Quaterniond(rotation).normalized().cast<float>();
 }
 
-}  // namespace
-
-PLYSummary checkPLY(const std::string& path) {
-  const std::string text = readWholeFile(path);
-  const PLYHeader header = readPLYHeader(path, text);
-  checkPLYHeader(path, header, text.size() - header.body);
+/// Follows the body to its end.
+PLYSummary readPLYBody(const std::string& path, const std::string& text, const PLYHeader& header) {
   PLYBody body(path, std::string_view(text).substr(header.body), header.format);
   PLYSummary summary;
   for (const PLYElement& element : header.elements) {
@@ -243,6 +239,25 @@ PLYSummary checkPLY(const std::string& path) {
     }
   }
   return summary;
+}
+
+}  // namespace
+
+PLYSummary checkPLY(const std::string& path) {
+  const std::string text = readWholeFile(path);
+  const PLYHeader header = readPLYHeader(path, text);
+  checkPLYHeader(path, header, text.size() - header.body);
+  return readPLYBody(path, text, header);
+}
+
+bool isWholePLY(const std::string& path) {
+  try {
+    const std::string text = readWholeFile(path);
+    readPLYBody(path, text, readPLYHeader(path, text));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 }  // namespace pcl_symmetry::apps
