@@ -25,6 +25,14 @@ if(PCL_SYMMETRY_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
+# libFuzzer: everything is compiled so that it tells the fuzzer which branches an input took.
+if(PCL_SYMMETRY_BUILD_FUZZERS)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    message(FATAL_ERROR "PCL_SYMMETRY_BUILD_FUZZERS = ON, must be compiled with Clang: cmake --preset fuzz")
+  endif()
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+
 # Warnings for our own targets only.
 add_library(pcl_symmetry_warnings INTERFACE)
 target_compile_options(pcl_symmetry_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor)

@@ -7,11 +7,11 @@ packages=(
   libpcl-dev libflann-dev libeigen3-dev libboost-dev                      # the library,
   libsqlite3-dev zlib1g-dev                                               # its database of models
   libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev # the tools: options, files, reports,
-  libassimp-dev liblzf-dev libembree-dev                                  # meshes, compressed clouds, the virtual scanner,
+  libassimp-dev libembree-dev                                             # meshes, the virtual scanner,
   libboost-mpi-dev openmpi-bin                                            # work that several processes share,
   libvtk9-dev libx11-dev xvfb libgl1-mesa-dri                             # pictures, also without a screen
   pybind11-dev python3-dev python3-numpy                                  # the Python module
-  help2man                                                                # manual pages of the Debian packages
+  help2man doxygen                                                        # manual pages, the reference of the classes
   libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema           # tests and benchmarks
 )
 

@@ -11,7 +11,7 @@ if(tools AND HELP2MAN_PROGRAM)
 endif()
 
 set(CPACK_PACKAGE_VENDOR "pcl_symmetry")
-set(CPACK_PACKAGE_CONTACT "pcl_symmetry developers")
+set(CPACK_PACKAGE_CONTACT "pcl_symmetry contributors <maintainers@example.org>")  # as in package.xml
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

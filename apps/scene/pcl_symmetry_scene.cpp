@@ -9,6 +9,7 @@
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
 #include "common/files/file_text.h"
+#include "common/files/json_values.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/shape_output.h"
@@ -91,7 +92,7 @@ int run(int argc, char** argv) {
   if (input.shape.mesh) throw InputError(options.input + ": is a mesh, must be a cloud as a sensor sees it");
   const SceneAnalysis scene = analyse(console, input, options);
   std::fputs(tableOf(scene, input.shift()).c_str(), stdout);
-  if (options.common.json_path) writeText(*options.common.json_path, describeScene(input, scene).dump(2) + "\n");
+  if (options.common.json_path) writeText(*options.common.json_path, jsonText(describeScene(input, scene)) + "\n");
   if (options.output)
     saveCloud(*options.output, completedScene(input, scene), input.shape.sensor_origin, input.shape.sensor_orientation);
   if (options.png_path) {

@@ -16,6 +16,7 @@
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
 #include "common/files/json_values.h"
+#include "common/html/scene_page.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/cloud_fields.h"
@@ -33,7 +34,7 @@ using namespace pcl_symmetry::apps;
 struct AlignOptions {
   BatchOptions batch;
   std::string input;
-  std::optional<std::string> output, target;
+  std::optional<std::string> output, target, html_path;
   bool complete = false;
   CommonOptions common;
 };
@@ -44,10 +45,12 @@ CommandLine commandLine(AlignOptions& options) {
       "Turns a cloud into the frame of its symmetry: center to the origin, axes to x, y and z, best first. "
       "With -target, brings it to another cloud instead, from any pose.",
       "pcl_symmetry_align scan.pcd aligned.pcd -target model.ply -json pose.json");
-  options.batch.outputs = {&options.output};
+  options.batch.outputs = {&options.output, &options.html_path};
   line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the cloud after the transform")
       .text("target", "FILE", options.target, "cloud or mesh that the input is brought to")
+      .text("html", "FILE", options.html_path,
+            "page that shows the input in the target, or its center and axes, for any browser, without network")
       .flag("complete", options.complete,
             "reflect the cloud across its best plane of symmetry, except into space that was seen to be empty; the "
             "field reflected_of of an added point is the index of its source, and -1 for all others")
@@ -133,7 +136,40 @@ struct Motion {
   bool converged = true;
   std::string text;
   nlohmann::json json;
+  std::optional<PictureScene> scene;  ///< what a page shows of it, where one is wanted
 };
+
+/// The shape with the axes of its frame: the first red, the second green, the third blue.
+PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
+  PictureScene scene;
+  scene.points = input.points;
+  scene.mesh = input.shape.mesh;
+  PicturePanel panel;
+  panel.label = "center and axes: 1 red, 2 green, 3 blue";
+  for (int k = 0; k < 3; ++k) panel.axes.push_back({frame.center, frame.axes.col(k), Eigen::Vector3d::Unit(k)});
+  scene.panels = {panel};
+  return scene;
+}
+
+/// The target, and the input where the motion brings it, in two colours.
+PictureScene sceneOf(const InputShape& input, const InputShape& target, const Eigen::Isometry3d& T_target_input) {
+  const pcl::PointCloud<pcl::PointXYZ>::Ptr both(new pcl::PointCloud<pcl::PointXYZ>(*target.points));
+  for (const pcl::PointXYZ& point : *input.points) {
+    const Eigen::Vector3d x = T_target_input * (point.getVector3fMap().cast<double>() + input.shift());
+    both->emplace_back();
+    both->back().getVector3fMap() = (x - target.shift()).cast<float>();
+  }
+  PictureScene scene;
+  PicturePanel panel;
+  panel.label = "target, and the input in it";
+  panel.segments.assign(target.points->size(), 0);
+  panel.segments.resize(both->size(), 1);
+  both->width = static_cast<std::uint32_t>(both->size());
+  both->height = 1;
+  scene.points = both;
+  scene.panels = {panel};
+  return scene;
+}
 
 Motion registerTo(const Console& console, const InputShape& input, const InputShape& target,
                   const CommonOptions& common) {
@@ -197,16 +233,23 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   return lines;
 }
 
-Motion toOwnFrame(const Console& console, const InputShape& input, const CommonOptions& common) {
+Motion toOwnFrame(const Console& console, const InputShape& input, const AlignOptions& options,
+                  const CommonOptions& common) {
   const SymmetryFrame frame = computeFrame(console, input, common);
-  return {shiftedBack(frame.T_canonical_input, input.shift(), Eigen::Vector3d::Zero()), true,
-          linesOf(frame, input.shift()), describe(frame, input.shift())};
+  Motion motion{shiftedBack(frame.T_canonical_input, input.shift(), Eigen::Vector3d::Zero()),
+                true,
+                linesOf(frame, input.shift()),
+                describe(frame, input.shift()),
+                {}};
+  if (options.html_path) motion.scene = sceneOf(input, frame);
+  return motion;
 }
 
-Motion toTarget(const Console& console, const InputShape& input, const std::string& target_path,
+Motion toTarget(const Console& console, const InputShape& input, const AlignOptions& options,
                 const CommonOptions& common) {
-  const InputShape target = loadInput(console, target_path, common);
+  const InputShape target = loadInput(console, *options.target, common);
   Motion motion = registerTo(console, input, target, common);
+  if (options.html_path) motion.scene = sceneOf(input, target, motion.transform);
   if (motion.converged)
     motion.text = linesOf(motion.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
   return motion;
@@ -237,9 +280,10 @@ void analyse(const AlignOptions& options, FileJob& job) {
   common.threads = job.numThreads();
   const InputShape input = loadInput(console, job.path(), common);
   Motion motion =
-      options.target ? toTarget(console, input, *options.target, common) : toOwnFrame(console, input, common);
+      options.target ? toTarget(console, input, options, common) : toOwnFrame(console, input, options, common);
   job.report({motion.text, motion.json, rowsOf(motion)});
   if (!motion.converged) throw InputError(job.path() + ": does not fit " + *options.target + " in any pose");
+  if (options.html_path) writePage(*motion.scene, {job.path(), motion.text}, job.output(*options.html_path));
   pcl::PCLPointCloud2 fields = input.fields();
   if (options.complete) complete(console, input, common, fields);
   if (options.output) save(console, input.shape, std::move(fields), motion.transform, job.output(*options.output));

@@ -15,6 +15,7 @@
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/run_tool.h"
+#include "common/files/json_values.h"
 #include "common/shape_output/shape_output.h"
 #include "common/symmetry_files/isaac_axes.h"
 #include "core/base/constants.h"
@@ -132,7 +133,7 @@ std::string modelsInfo(std::vector<ModelInfo> infos, double sphere_angle) {
   });
   std::string text;
   for (const ModelInfo& info : infos)
-    text += (text.empty() ? "{\n  \"" : ",\n  \"") + info.key + "\": " + toJson(info, sphere_angle).dump();
+    text += (text.empty() ? "{\n  \"" : ",\n  \"") + info.key + "\": " + jsonText(toJson(info, sphere_angle), -1);
   return text + "\n}\n";
 }
 
@@ -161,10 +162,9 @@ void report(const std::vector<ModelInfo>& infos, const BopOptions& options) {
   }
   std::printf("%d of %d models disagree with %s\n", num_disagreeing, num_compared, options.check_path->c_str());
   if (options.report_path)
-    writeText(
-        *options.report_path,
-        nlohmann::ordered_json{{"disagreeing", num_disagreeing}, {"models", models}, {"missing", missing}}.dump(2) +
-            "\n");
+    writeText(*options.report_path, jsonText(nlohmann::ordered_json{
+                                        {"disagreeing", num_disagreeing}, {"models", models}, {"missing", missing}}) +
+                                        "\n");
 }
 
 void writeDope(const std::vector<ModelInfo>& infos, const std::string& folder, double sphere_angle) {

@@ -13,6 +13,7 @@
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
+#include "common/files/json_values.h"
 #include "common/processes/shared_work.h"
 #include "common/shape_output/shape_output.h"
 #include "database/database_listing.h"
@@ -195,9 +196,7 @@ private:
   }
 
   void writeJson(const nlohmann::json& json) const {
-    // Sources may be named by bytes that are no UTF-8.
-    if (options_.common.json_path)
-      writeText(*options_.common.json_path, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (options_.common.json_path) writeText(*options_.common.json_path, jsonText(json) + "\n");
   }
 
   const DatabaseToolOptions& options_;

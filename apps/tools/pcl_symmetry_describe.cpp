@@ -3,18 +3,24 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/batch/batch_options.h"
+#include "common/batch/csv.h"
 #include "common/batch/input_files.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
+#include "common/files/file_text.h"
 #include "common/processes/shared_work.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
@@ -40,6 +46,8 @@ struct DescribeOptions {
   std::string type = "signature";
   bool input_axes = false;
   int num_points = 20'000;
+  std::optional<std::string> csv_path;
+  bool resume = false;
   CommonOptions common;
 };
 
@@ -54,6 +62,8 @@ CommandLine commandLine(DescribeOptions& options) {
       .flag("input_axes", options.input_axes,
             "compute the paper's descriptors in the axes of the input, not of its symmetry")
       .number("points", options.num_points, Range::closed(100, 10'000'000), "number of points that describe a shape")
+      .text("csv", "FILE", options.csv_path, "table of all descriptors: a row for each, its values behind the name")
+      .flag("resume", options.resume, "keep the descriptors of this type that stand in the folder")
       .common(options.common, kSeed | kThreads | kViewpoint | kQuiet);
   return line;
 }
@@ -113,9 +123,58 @@ std::vector<std::string> outputPaths(const DescribeOptions& options) {
   return paths;
 }
 
+/// \return the values of a file that this tool wrote; none where it holds no descriptors of the type.
+std::vector<float> valuesIn(const std::string& path, const std::string& type) {
+  boost::system::error_code error;
+  if (!fs::exists(path, error)) return {};
+  const std::string text = readWholeFile(path), end_of_header = "\nDATA binary\n";
+  const std::size_t header = text.find(end_of_header);
+  if (header == std::string::npos || text.find("\nFIELDS " + type + "\n") > header) return {};
+  const std::size_t body = header + end_of_header.size();
+  std::vector<float> values((text.size() - body) / sizeof(float));
+  std::memcpy(values.data(), text.data() + body, values.size() * sizeof(float));
+  return values;
+}
+
+/// Values of one descriptor.
+std::size_t sizeOf(const std::string& type) {
+  if (type == "signature") return ShapeSignature20736::descriptorSize();
+  if (type == "prsd") return PRSDSignature1024::descriptorSize();
+  return type == "prst" ? PRSTSignature32768::descriptorSize() : GEDTSignature32768::descriptorSize();
+}
+
+/// Writes what the files of the folder hold, one after the other.
+void writeTable(const DescribeOptions& options, const std::vector<std::string>& outputs,
+                const std::vector<std::string>& failures) {
+  const std::size_t size = sizeOf(options.type);
+  writeAtomically(*options.csv_path, [&](const std::string& temporary) {
+    std::ofstream table(temporary, std::ios::binary);
+    table << "file,number";
+    for (std::size_t k = 1; k <= size; ++k) table << ',' << options.type << '_' << k;
+    table << '\n';
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      if (!failures[i].empty()) continue;
+      const std::vector<float> values = valuesIn(outputs[i], options.type);
+      for (std::size_t first = 0; first + size <= values.size(); first += size) {
+        std::string row = csvLine({options.inputs[i], first / size + 1});
+        row.pop_back();
+        for (std::size_t k = first; k < first + size; ++k) {
+          char value[32];
+          std::snprintf(value, sizeof(value), ",%.9g", static_cast<double>(values[k]));
+          row += value;
+        }
+        table << row << '\n';
+      }
+    }
+    table.close();
+    if (!table) throw InputError(*options.csv_path + ": cannot be written");
+  });
+}
+
 /// \return what is wrong with the input, or nothing.
 std::string describeFile(const std::string& input, const std::string& output, const DescribeOptions& options) {
   try {
+    if (options.resume && !valuesIn(output, options.type).empty()) return "";
     const pcl::PCLPointCloud2 blob =
         namingFile(input, [&] { return describe(loadInput(input, options.num_points, kMeshSeed), options); });
     saveCloud(output, blob, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity(), PCDEncoding::Binary);
@@ -149,6 +208,7 @@ int run(int argc, char** argv, SharedWork& processes) {
   else
     parallelBlocks(options.inputs.size(), options.common.threads, [&](std::size_t i) { take(i, work(i)); });
   if (!processes.isFirst()) return 0;
+  if (options.csv_path) writeTable(options, outputs, failures);
   failures.erase(std::remove(failures.begin(), failures.end(), ""), failures.end());
   step.done(std::to_string(options.inputs.size() - failures.size()) + " descriptors");
   for (const std::string& failure : failures) console.error(failure);

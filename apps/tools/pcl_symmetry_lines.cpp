@@ -12,6 +12,7 @@
 #include "common/command_line/console.h"
 #include "common/command_line/file_errors.h"
 #include "common/command_line/run_tool.h"
+#include "common/files/json_values.h"
 #include "common/pictures/contour_input.h"
 #include "common/pictures/raster_image.h"
 #include "common/shape_output/shape_output.h"
@@ -159,7 +160,8 @@ int run(int argc, char** argv) {
     shapes.push_back(std::move(json));
     if (panel) panels.push_back(std::move(*panel));
   }
-  if (options.common.json_path) writeText(*options.common.json_path, nlohmann::json{{"shapes", shapes}}.dump(2) + "\n");
+  if (options.common.json_path)
+    writeText(*options.common.json_path, jsonText(nlohmann::json{{"shapes", shapes}}) + "\n");
   if (options.png_path) writeImage(sideBySide(panels, options.columns), *options.png_path);
   return 0;
 }

@@ -101,7 +101,7 @@ int run(int argc, char** argv) {
   const nlohmann::json json = namingFile(options.input, [&] {
     return options.recognize ? recognize(console, database, input, options) : match(console, database, input, options);
   });
-  if (options.common.json_path) writeText(*options.common.json_path, json.dump(2) + "\n");
+  if (options.common.json_path) writeText(*options.common.json_path, jsonText(json) + "\n");
   return 0;
 }
 

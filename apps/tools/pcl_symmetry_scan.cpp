@@ -154,7 +154,7 @@ int run(int argc, char** argv) {
   }
   const double saving_ms = saving.done();
   report["timing_ms"] = {{"load", loading_ms}, {"scan", scanning_ms}, {"save", saving_ms}};
-  if (options.common.json_path) writeText(*options.common.json_path, report.dump(2) + "\n");
+  if (options.common.json_path) writeText(*options.common.json_path, jsonText(report) + "\n");
   return 0;
 }
 

@@ -13,6 +13,7 @@
 #include "common/batch/input_files.h"
 #include "common/batch/result_files.h"
 #include "common/command_line/file_errors.h"
+#include "common/files/json_values.h"
 #include "common/shape_output/shape_output.h"
 #include "common/streams/standard_streams.h"
 #include "core/base/parallel.h"
@@ -42,9 +43,8 @@ std::string csvLines(const std::string& path, const FileReport& report) {
   return lines;
 }
 
-/// Also for names that are not UTF-8.
 std::string lineOf(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return jsonText(json, -1) + "\n";
 }
 
 int numToStandardOutput(const BatchOptions& batch, const CommonOptions& common) {
@@ -65,7 +65,7 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
     if (!job.reported()) return;
     const FileReport& report = *job.reported();
     if (text_wanted) writeStandardOutput(report.text);
-    if (common.json_path) writeText(*common.json_path, report.json.dump(2) + "\n");
+    if (common.json_path) writeText(*common.json_path, jsonText(report.json) + "\n");
     if (!batch.csv_path) return;
     std::vector<nlohmann::json> header{"file"};
     header.insert(header.end(), columns.begin(), columns.end());

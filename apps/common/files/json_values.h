@@ -9,6 +9,13 @@
 
 namespace pcl_symmetry::apps {
 
+/// JSON as text. Names of files are bytes: what is no UTF-8 is replaced, where nlohmann's default would throw.
+/// \param indent blanks a level; -1: one line
+template <typename Json>
+std::string jsonText(const Json& json, int indent = 2) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 inline std::vector<double> numbersOf(const Eigen::VectorXd& v) {
   return {v.data(), v.data() + v.size()};
 }

@@ -1,6 +1,5 @@
 #include "common/files/pcd_reader.h"
 
-#include <liblzf/lzf.h>
 #include <pcl/common/io.h>
 
 #include <algorithm>
@@ -26,6 +25,12 @@ struct PCDHeader {
     return entry == entries.end() ? nullptr : &entry->second;
   }
 };
+
+/// \return a * b, or the greatest number where the product does not fit.
+std::uint64_t boundedProduct(std::uint64_t a, std::uint64_t b) {
+  constexpr std::uint64_t kGreatest = std::numeric_limits<std::uint64_t>::max();  // derived: of the type
+  return b != 0 && a > kGreatest / b ? kGreatest : a * b;
+}
 
 PCDHeader readPCDHeader(const std::string& path, std::string_view text) {
   PCDHeader header;
@@ -269,9 +274,10 @@ CompressedSizes checkPCDSizes(const std::string& path, std::string_view body, co
     reject(path, "compressed size = " + std::to_string(compressed) +
                      ", must be > 0 and <= " + std::to_string(body.size() - 8) + ", the bytes that follow");
   }
-  if (uncompressed != layout.packed_size * layout.num_points) {
-    reject(path, "uncompressed size = " + std::to_string(uncompressed) + ", must be " +
-                     std::to_string(layout.packed_size * layout.num_points) + ", the size of all points");
+  const std::uint64_t size = boundedProduct(layout.packed_size, layout.num_points);
+  if (uncompressed != size) {
+    reject(path, "uncompressed size = " + std::to_string(uncompressed) + ", must be " + std::to_string(size) +
+                     ", the size of all points");
   }
   // derived: a back reference of three bytes stands for at most 264.
   constexpr std::uint64_t kMaxRatio = 88;
@@ -279,11 +285,37 @@ CompressedSizes checkPCDSizes(const std::string& path, std::string_view body, co
   return {compressed, uncompressed};
 }
 
+/// The LZF compression of PCD files: runs of bytes as they are, and references to bytes before, which may reach into
+/// what they write. These lines are less than a dependency on liblzf, which rosdep does not install.
+/// \return whether all of \p target was written, and no byte beyond.
+bool decompressLZF(std::string_view source, std::vector<std::uint8_t>& target) {
+  std::size_t from = 0, to = 0;
+  const auto next = [&] { return static_cast<std::uint8_t>(source[from++]); };
+  while (from < source.size()) {
+    const std::size_t control = next();
+    if (control < 32) {  // a run of control + 1 bytes
+      const std::size_t size = control + 1;
+      if (size > source.size() - from || size > target.size() - to) return false;
+      std::memcpy(&target[to], &source[from], size);
+      from += size;
+      to += size;
+      continue;
+    }
+    // A reference: three bits of length, 7 standing for 7 and the next byte, and 13 bits of distance.
+    std::size_t size = 2 + (control >> 5);
+    if (size == 9 && from < source.size()) size += next();
+    if (from == source.size()) return false;
+    const std::size_t distance = ((control & 31u) << 8) + next() + 1;
+    if (distance > to || size > target.size() - to) return false;
+    for (; size > 0; --size, ++to) target[to] = target[to - distance];
+  }
+  return to == target.size();
+}
+
 void readPCDCompressed(const std::string& path, std::string_view body, const PCDLayout& layout, std::uint8_t* points) {
   const auto [compressed, uncompressed] = checkPCDSizes(path, body, layout);
   std::vector<std::uint8_t> columns(uncompressed);
-  if (lzf_decompress(body.data() + 8, compressed, columns.data(), uncompressed) != uncompressed)
-    reject(path, "the compressed points are damaged");
+  if (!decompressLZF(body.substr(8, compressed), columns)) reject(path, "the compressed points are damaged");
   const std::uint8_t* column = columns.data();
   for (const PCDField& field : layout.fields) {
     if (field.padding) continue;
@@ -359,8 +391,8 @@ PCDCloud readPCD(const std::string& path) {
                        " for POINTS = " + std::to_string(layout.num_points));
     }
   };
-  if (data == "ascii") need(2 * layout.num_values * layout.num_points - 1);
-  if (data == "binary") need(layout.point_size * layout.num_points);
+  if (data == "ascii") need(boundedProduct(2 * layout.num_values, layout.num_points) - 1);
+  if (data == "binary") need(boundedProduct(layout.point_size, layout.num_points));
   if (data == "binary_compressed") checkPCDSizes(path, body, layout);
   PCDCloud result = emptyCloud(header, layout);
   if (data == "ascii") {

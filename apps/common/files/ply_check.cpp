@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <set>
 
 #include "common/files/header_lines.h"
 
@@ -83,7 +84,20 @@ PLYHeader readPLYHeader(const std::string& path, std::string_view text) {
   reject(path, "PLY header ends before end_header");
 }
 
+/// PCL takes the second of two equal names for the first one.
+void checkPLYNames(const std::string& path, const PLYHeader& header) {
+  std::set<std::string> elements;
+  for (const PLYElement& element : header.elements) {
+    if (!elements.insert(element.name).second) reject(path, "element " + element.name + " stands twice");
+    std::set<std::string> properties;
+    for (const PLYProperty& property : element.properties)
+      if (!properties.insert(property.name).second)
+        reject(path, "property " + property.name + " of " + element.name + " stands twice");
+  }
+}
+
 void checkPLYHeader(const std::string& path, const PLYHeader& header, std::uint64_t available) {
+  checkPLYNames(path, header);
   if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian") {
     reject(path, "PLY format = " + header.format + ", must be ascii, binary_little_endian or binary_big_endian");
   }
@@ -101,8 +115,11 @@ void checkPLYHeader(const std::string& path, const PLYHeader& header, std::uint6
       reject(path, "vertex property " + std::string(name) + " must be float or double");
     }
   }
+  for (const PLYProperty& property : vertex->properties)
+    if (property.list_count_size) reject(path, "vertex property " + property.name + " is a list, must be a number");
   std::uint64_t least = 0;
   for (const PLYElement& element : header.elements) {
+    if (element.properties.empty() && element.count > 0) reject(path, "element " + element.name + " has no property");
     std::uint64_t size = 0;
     for (const PLYProperty& property : element.properties) {
       if (header.format == "ascii") {
@@ -196,12 +213,8 @@ void readCamera(PLYBody& body, const PLYElement& element, PLYSummary& summary) {
   summary.sensor_orientation = Eigen::Quaterniond(rotation).normalized().cast<float>();
 }
 
-}  // namespace
-
-PLYSummary checkPLY(const std::string& path) {
-  const std::string text = readWholeFile(path);
-  const PLYHeader header = readPLYHeader(path, text);
-  checkPLYHeader(path, header, text.size() - header.body);
+/// Follows the body to its end.
+PLYSummary readPLYBody(const std::string& path, const std::string& text, const PLYHeader& header) {
   PLYBody body(path, std::string_view(text).substr(header.body), header.format);
   PLYSummary summary;
   for (const PLYElement& element : header.elements) {
@@ -226,6 +239,25 @@ PLYSummary checkPLY(const std::string& path) {
     }
   }
   return summary;
+}
+
+}  // namespace
+
+PLYSummary checkPLY(const std::string& path) {
+  const std::string text = readWholeFile(path);
+  const PLYHeader header = readPLYHeader(path, text);
+  checkPLYHeader(path, header, text.size() - header.body);
+  return readPLYBody(path, text, header);
+}
+
+bool isWholePLY(const std::string& path) {
+  try {
+    const std::string text = readWholeFile(path);
+    readPLYBody(path, text, readPLYHeader(path, text));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 }  // namespace pcl_symmetry::apps

@@ -18,4 +18,7 @@ struct PLYSummary {
 /// \throws InputError naming the field, its value and the rule.
 PLYSummary checkPLY(const std::string& path);
 
+/// \return whether a file that was just written holds all that its header promises.
+bool isWholePLY(const std::string& path);
+
 }  // namespace pcl_symmetry::apps

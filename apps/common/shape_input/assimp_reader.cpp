@@ -61,18 +61,7 @@ void collectMeshes(const aiScene& scene, const aiNode& node, const aiMatrix4x4& 
   }
 }
 
-void collectPoints(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_scene_parent, VertexWelder& welder) {
-  const aiMatrix4x4 T_scene_node = T_scene_parent * node.mTransformation;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
-    for (unsigned v = 0; v < part.mNumVertices; ++v) welder.add(T_scene_node * part.mVertices[v]);
-  }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) collectPoints(scene, *node.mChildren[c], T_scene_node, welder);
-}
-
-/// \param points_allowed the points of parts without faces are read where the scene has no faces.
-pcl::PolygonMesh meshOf(Assimp::Importer& importer, const aiScene* scene, const std::string& path,
-                        bool points_allowed = false) {
+pcl::PolygonMesh meshOf(Assimp::Importer& importer, const aiScene* scene, const std::string& path) {
   if (!scene || !scene->mRootNode) {
     std::string reason = importer.GetErrorString();
     boost::algorithm::trim(reason);
@@ -81,10 +70,8 @@ pcl::PolygonMesh meshOf(Assimp::Importer& importer, const aiScene* scene, const 
   pcl::PolygonMesh mesh;
   VertexWelder welder;
   collectMeshes(*scene, *scene->mRootNode, aiMatrix4x4(), welder, mesh);
-  if (mesh.polygons.empty() && points_allowed) collectPoints(*scene, *scene->mRootNode, aiMatrix4x4(), welder);
   pcl::toPCLPointCloud2(welder.vertices(), mesh.cloud);
-  if (mesh.polygons.empty() && !points_allowed) throw InputError(path + ": has no faces of three or more corners");
-  if (welder.vertices().empty()) throw InputError(path + ": has neither faces nor points");
+  if (mesh.polygons.empty()) throw InputError(path + ": has no faces of three or more corners");
   return mesh;
 }
 
@@ -137,11 +124,6 @@ std::string withVertices(std::string_view text, const pcl::PointCloud<pcl::Point
 pcl::PolygonMesh readSTL(const std::string& path) {
   Assimp::Importer importer;
   return meshOf(importer, importer.ReadFile(path, 0), path);
-}
-
-pcl::PolygonMesh readGLB(const std::string& path) {
-  Assimp::Importer importer;
-  return meshOf(importer, importer.ReadFile(path, 0), path, true);
 }
 
 ShiftedMesh readOBJ(const std::string& path) {

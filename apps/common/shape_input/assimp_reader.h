@@ -1,4 +1,4 @@
-/// Reads .obj, .stl and .glb files with Assimp.
+/// Reads .obj and .stl files with Assimp.
 #pragma once
 
 #include <string>
@@ -16,9 +16,6 @@ struct ShiftedMesh {
 /// Vertices of exactly equal coordinates are joined: STL repeats them for each face, OBJ for each group.
 /// \throws InputError where Assimp cannot read the file, or it has no faces
 pcl::PolygonMesh readSTL(const std::string& path);
-
-/// The same of binary glTF, in the frame of its scene. The vertices of a scene without faces are points.
-pcl::PolygonMesh readGLB(const std::string& path);
 
 /// The vertices of a .obj file without faces are points.
 /// \throws InputError where Assimp cannot read the file, or it has neither faces nor points

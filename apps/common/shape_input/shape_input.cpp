@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/files/file_text.h"
+#include "common/files/glb_reader.h"
 #include "common/files/pcd_reader.h"
 #include "common/files/ply_check.h"
 #include "common/modules/cloud_files.h"
@@ -175,6 +176,17 @@ Shape fromExact(const std::string& path, ExactShape exact) {
   return fromMesh(path, std::move(mesh));
 }
 
+ExactShape exactOf(GLBShape glb) {
+  ExactShape exact;
+  exact.vertices = std::move(glb.vertices);
+  for (const auto& triangle : glb.triangles) {
+    exact.polygons.emplace_back();
+    for (const std::uint32_t corner : triangle)
+      exact.polygons.back().vertices.push_back(static_cast<pcl::index_t>(corner));
+  }
+  return exact;
+}
+
 Shape loadFile(const std::string& path) {
   checkReadableFile(path);
   const std::string extension = boost::algorithm::to_lower_copy(boost::filesystem::path(path).extension().string());
@@ -186,7 +198,7 @@ Shape loadFile(const std::string& path) {
     if (extension == ".xyz") return fromExact(path, readXYZ(path));
     if (extension == ".obj") return fromMesh(path, readOBJ(path));
     if (extension == ".stl") return fromMesh(path, readSTL(path));
-    if (extension == ".glb") return fromMesh(path, readGLB(path));
+    if (extension == ".glb") return fromExact(path, exactOf(readGLB(path)));
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "common/files/ply_check.h"
 #include "common/streams/standard_streams.h"
 #include "common/streams/temporary_file.h"
 
@@ -62,6 +63,24 @@ void writeThrough(const std::function<void(const std::string&)>& writer) {
   const TemporaryFile guard(temporary);
   writer(temporary);
   copyToStandardOutput(temporary);
+}
+
+/// Lines of points in a PCD file of text.
+std::size_t numLinesOfPoints(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line) && line.rfind("DATA", 0) != 0;) {
+  }
+  std::size_t lines = 0;
+  std::vector<char> block(1 << 16);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
+    lines += static_cast<std::size_t>(std::count(block.begin(), block.begin() + file.gcount(), '\n'));
+  return lines;
+}
+
+/// PCL's writers of text and of PLY do not look whether the disk took what they wrote.
+bool isWhole(const std::string& path, const std::string& extension, PCDEncoding encoding, std::size_t num_points) {
+  if (extension == ".ply") return isWholePLY(path);
+  return encoding != PCDEncoding::Ascii || numLinesOfPoints(path) == num_points;
 }
 
 /// Of a cloud to be written; standard output takes PCD.
@@ -131,7 +150,8 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
     } catch (const std::exception& error) {
       failToWrite(path, error.what());
     }
-    if (!written) failToWrite(path, "the disk may be full");
+    const std::size_t num_points = std::size_t{fields.width} * fields.height;
+    if (!written || !isWhole(temporary, extension, encoding, num_points)) failToWrite(path, "the disk may be full");
   });
 }
 

@@ -1,8 +1,9 @@
 #include "common/symmetry_files/isaac_axes.h"
 
+#include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <regex>
+#include <optional>
 #include <sstream>
 
 #include "common/command_line/flag_values.h"
@@ -33,6 +34,40 @@ int orderAbout(const ObjectSymmetries& symmetries, const Eigen::Vector3d& axis) 
   for (const RotationAxis& found : axesOf(rotations))
     if (is_along(found.direction)) return found.order;
   return 1;
+}
+
+/// \return the text without blanks and quotes around it; nothing where other than letters, digits and _ . + - stand in it.
+std::optional<std::string> wordIn(std::string text) {
+  boost::algorithm::trim(text);
+  boost::algorithm::trim_if(text, boost::algorithm::is_any_of("\"'"));
+  const bool is_word =
+      !text.empty() && boost::algorithm::all(text, boost::algorithm::is_alnum() || boost::algorithm::is_any_of("_.+-"));
+  return is_word ? std::optional<std::string>(text) : std::nullopt;
+}
+
+/// A line `name: ["z_90", "z_180"]`, perhaps with a comment behind it.
+struct AxesLine {
+  std::string name;
+  std::vector<std::string> axes;
+};
+
+/// \return nothing for any other line.
+std::optional<AxesLine> axesLineOf(const std::string& line) {
+  const std::size_t colon = line.find(':'), end = line.find(']');
+  if (colon == std::string::npos || end == std::string::npos || end < colon) return std::nullopt;
+  const std::size_t begin = line.find_first_not_of(" \t", colon + 1), behind = line.find_first_not_of(" \t\r", end + 1);
+  if (line[begin] != '[' || (behind != std::string::npos && line[behind] != '#')) return std::nullopt;
+  const std::optional<std::string> name = wordIn(line.substr(0, colon));
+  if (!name) return std::nullopt;
+  AxesLine result{*name, {}};
+  std::vector<std::string> entries;
+  const std::string list = line.substr(begin + 1, end - begin - 1);
+  boost::algorithm::split(entries, list, boost::algorithm::is_any_of(","));
+  for (std::string& entry : entries) {
+    boost::algorithm::trim(entry);
+    if (!entry.empty()) result.axes.push_back(wordIn(entry).value_or(entry));  // what is no word is no turn either
+  }
+  return result;
 }
 
 /// The number of rotations that the turns compose.
@@ -90,18 +125,13 @@ std::string isaacLine(const std::string& name, const std::vector<std::string>& a
 }
 
 std::map<std::string, ListedSymmetries> readIsaacAxes(const std::string& path) {
-  static const std::regex entry(R"(^\s*["']?(\w+)["']?\s*:\s*\[([^\]]*)\]\s*(#.*)?$)"),
-      string(R"(["']?(\w[\w.+-]*)["']?)");
   std::map<std::string, ListedSymmetries> models;
   std::istringstream lines(readWholeFile(path));
   for (std::string line; std::getline(lines, line);) {
-    std::smatch parts;
-    if (!std::regex_match(line, parts, entry)) continue;
-    const std::string list = parts[2];
-    std::vector<std::string> axes;
-    for (std::sregex_iterator i(list.begin(), list.end(), string), end; i != end; ++i) axes.push_back((*i)[1]);
-    const std::string name = parts[1] == "symmetry_axes" ? "" : parts[1].str();
-    models[name] = symmetriesFromIsaac(axes, path + ": " + parts[1].str());
+    const std::optional<AxesLine> entry = axesLineOf(line);
+    if (!entry) continue;
+    models[entry->name == "symmetry_axes" ? "" : entry->name] =
+        symmetriesFromIsaac(entry->axes, path + ": " + entry->name);
   }
   if (models.empty()) throw InputError(path + ": must be JSON, or have lines such as symmetry_axes: [\"z_180\"]");
   return models;

@@ -148,7 +148,9 @@ std::optional<TurningAxis> AxisFinder::foldAbout(const AxisLineCandidate& line, 
 std::optional<TurningAxis> AxisFinder::axisAbout(const AxisLineCandidate& line) {
   TurnProfile profile(fit_, line);
   const double most = greatestExcess(fit_.limits(), kSomeSamples);
-  const auto [worst, excess] = failingTurn(profile, most);
+  const auto failing = failingTurn(profile, most);
+  const int worst = failing.first;
+  const double excess = failing.second;
   const auto revolution = [&]() -> std::optional<TurningAxis> {
     if (excess > kWorstTurn * most) return std::nullopt;
     return axisFrom(placedGroup(fit_, options_, RotationGroupKind::Revolution, 0, turnsAbout(line)), 0);

@@ -5,6 +5,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/surface/graph_completion.h"
+#include "core/surface/surface_extent.h"
 #include "pcl_symmetry/core/surface/surface_graph.h"
 
 namespace pcl_symmetry {
@@ -58,9 +59,21 @@ void addEdges(SurfaceGraph& graph, int i, const std::vector<std::vector<int>>& n
   }
 }
 
+void checkNeighbours(const std::vector<std::vector<int>>& neighbours, Eigen::Index num_points) {
+  const auto size = static_cast<std::size_t>(num_points);
+  check(neighbours.size() == size, "number of lists of neighbours", static_cast<double>(neighbours.size()),
+        "that of the points");
+  for (const std::vector<int>& list : neighbours)
+    for (const int neighbour : list)
+      check(neighbour >= 0 && static_cast<std::size_t>(neighbour) < size, "neighbour", neighbour,
+            ">= 0 and < the number of points");
+}
+
 }  // namespace
 
 SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours) {
+  checkNeighbours(neighbours, points.cols());
+  checkExtent(points);
   const BoundingBall ball = boundingBall(points);
   check(ball.radius > 0.0, "extent of the points", ball.radius, "> 0");
   const auto size = points.cols();

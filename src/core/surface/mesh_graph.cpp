@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/surface/graph_completion.h"
+#include "core/surface/surface_extent.h"
 #include "pcl_symmetry/core/surface/surface_graph.h"
 
 namespace pcl_symmetry {
@@ -121,6 +122,7 @@ std::vector<float> joinFaces(SurfaceGraph& graph, const FacesOfEdges& faces_of_e
 }  // namespace
 
 SurfaceGraph meshGraph(const PointsRef& vertices, const Polygons& polygons) {
+  checkExtent(vertices);
   const Polygons faces = weldedPolygons(vertices, polygons);
   SurfaceGraph graph;
   graph.corners = vertices;

@@ -8,7 +8,9 @@
 
 #if defined(__x86_64__)
 #pragma GCC diagnostic push
+#if !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // from GCC 12's own AVX-512 header
+#endif
 #include <immintrin.h>
 #endif
 

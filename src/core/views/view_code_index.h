@@ -29,7 +29,7 @@ public:
 
 private:
   std::vector<std::int8_t> codes_;        // of all shapes, one behind the other
-  std::vector<std::size_t> begins_{{0}};  // of the shapes, and the end, in views
+  std::vector<std::size_t> begins_ = {0};  // of the shapes, and the end, in views
 };
 
 }  // namespace pcl_symmetry

@@ -12,6 +12,8 @@ namespace {
 
 // Bytes. chosen: no part of a model is as large; twice would let a damaged length ask for more memory.
 constexpr std::uint32_t kLargestPart = 1u << 30;
+// Bytes that one compressed byte stands for at most. derived: of the format; 258 bytes take two bits or more.
+constexpr std::size_t kMostExpansion = 1032;
 
 template <typename Integer>
 void putColumn(const Eigen::Ref<const Eigen::VectorXf>& column, PackedBytes& packed) {
@@ -53,9 +55,10 @@ std::string decompressed(const std::string& bytes) {
   UnpackedBytes packed(bytes);
   const auto length = packed.get<std::uint32_t>();
   if (length > kLargestPart) throw std::invalid_argument("is too large");
+  const std::size_t packed_size = bytes.size() - sizeof(length);
+  if (length / kMostExpansion > packed_size) throw std::invalid_argument("has fewer bytes than it says");
   std::string result(length, '\0');
   uLongf size = length;
-  const std::size_t packed_size = bytes.size() - sizeof(length);
   const auto* data = reinterpret_cast<const Bytef*>(packed.take(packed_size));
   if (uncompress(reinterpret_cast<Bytef*>(result.data()), &size, data, static_cast<uLong>(packed_size)) != Z_OK ||
       size != length)
@@ -95,7 +98,9 @@ Eigen::MatrixXf unpackedMatrix(const std::string& bytes) {
   UnpackedBytes packed(bytes);
   const auto size_of_value = packed.get<std::uint8_t>();
   const std::size_t rows = packed.get<std::uint32_t>(), cols = packed.get<std::uint32_t>();
-  if ((size_of_value != 1 && size_of_value != 2) || rows * cols * size_of_value + cols * sizeof(float) != packed.left())
+  // The first condition keeps the product in range.
+  if (cols > packed.left() / sizeof(float) || (size_of_value != 1 && size_of_value != 2) ||
+      rows * cols * size_of_value + cols * sizeof(float) != packed.left())
     throw std::invalid_argument("has another size than it says");
   Eigen::MatrixXf matrix(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
   for (Eigen::Index i = 0; i < matrix.cols(); ++i) {

@@ -136,4 +136,28 @@ TEST(ReadPCD, RefusesSizesThatTheBytesCannotHold) {
   }
 }
 
+/// Fields so many and so large that the size of all points does not fit into 64 bits: 8192 times 2^20 values of eight
+/// bytes, times 2^28 points, are 2^64 bytes, which is 0 where it is not looked at.
+TEST(ReadPCD, RefusesSizesBeyondAllNumbers) {
+  const TemporaryFolder folder;
+  for (const bool is_padding : {true, false}) {
+    std::string fields = "FIELDS x y z", sizes = "SIZE 4 4 4", types = "TYPE F F F", counts = "COUNT 1 1 1";
+    for (int i = 0; i < 8192; ++i) {
+      fields += is_padding ? " _" : " f" + std::to_string(i);
+      sizes += " 8";
+      types += " F";
+      counts += " 1048576";
+    }
+    for (const std::string data : {"ascii", "binary", "binary_compressed"}) {
+      const std::string header = "VERSION 0.7\n" + fields + "\n" + sizes + "\n" + types + "\n" + counts;
+      // Compressed: the size that is said is the product of the fields x, y and z with the number of points, modulo 2^64.
+      const std::string body = data == "binary_compressed" ? std::string("\x08\0\0\0\0\0\0\xc0........", 16)
+                                                           : std::string(1000, ' ');
+      const std::string path = folder.write("a.pcd", header + "\nWIDTH 268435456\nHEIGHT 1\nPOINTS 268435456\nDATA " +
+                                                         data + "\n" + body);
+      EXPECT_THROW(readPCD(path), InputError) << data;
+    }
+  }
+}
+
 }  // namespace

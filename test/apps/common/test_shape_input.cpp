@@ -87,6 +87,19 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
        "vertex property z"},
       {"two_billion.ply", ply("binary_little_endian", std::string("element vertex 2000000000\n") + kPLYVertex, raw),
        "but only 12 bytes"},
+      {"vertex_list.ply",
+       ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "property list uchar int parts\n",
+           "1 2 3 2 0 0\n"),
+       "vertex property parts is a list"},
+      {"twice.ply", ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "property float x\n", "1 2 3 4\n"),
+       "property x of vertex stands twice"},
+      {"two_elements.ply",
+       ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "element vertex 1\n" + kPLYVertex,
+           "1 2 3\n4 5 6\n"),
+       "element vertex stands twice"},
+      {"empty_element.ply",
+       ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "element nothing 2000000000\n", "1 2 3\n"),
+       "element nothing has no property"},
       {"cut_ascii.ply", ply("ascii", std::string("element vertex 2\n") + kPLYVertex, "1 2 3\n4.5555555 5\n"),
        "is missing"},
       {"list.ply",
@@ -264,6 +277,39 @@ TEST(LoadShape, ReadsBinaryGlTF) {
   EXPECT_FALSE(points.mesh);
   ASSERT_EQ(points.points->size(), 3u);
   EXPECT_EQ(points.points->at(1).getVector3fMap(), Eigen::Vector3f(2, 0, 5));
+  const Shape fan = loadShape(folder.write("fan.glb", glb(R"({"attributes":{"POSITION":0},"mode":6})", values)));
+  ASSERT_TRUE(fan.mesh);
+  EXPECT_EQ(fan.mesh->polygons.size(), 1u);
+}
+
+/// A scene is a tree, and counts are those of the file: nothing is read in circles or beyond the end.
+TEST(LoadShape, RefusesGlTFThatPromisesTooMuch) {
+  const TemporaryFolder folder;
+  const float corners[9] = {0, 0, 0, 2, 0, 0, 2, 1, 0};
+  const std::string values(reinterpret_cast<const char*>(corners), sizeof(corners));
+  const std::string triangle = R"({"attributes":{"POSITION":0},"mode":4})";
+  const std::string whole = glb(triangle, values);
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    EXPECT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to + std::string(from.size() - to.size(), ' '));
+    return complaintOnReading(folder.write("a.glb", text));
+  };
+  EXPECT_NE(changed(R"("count":3)", R"("count":4)").find("its bufferView holds fewer values"), std::string::npos);
+  EXPECT_NE(changed(R"({"asset":)", R"(x"asset":)").find("JSON is damaged"), std::string::npos);
+  EXPECT_NE(changed(R"("bufferViews":[{"buffer":0,"byteOffset":0,)", R"("bufferViews":[{"buffer":0,"byteOffset":9,)")
+                .find("goes beyond the 36 bytes"),
+            std::string::npos);
+  EXPECT_NE(changed(R"("translation":[0,0,5])", R"("children":[0])").find("nodes[0] stands in the scene twice"),
+            std::string::npos);
+  EXPECT_NE(changed(R"("mesh":0)", R"("mesh":7)").find("meshes[7] is missing, there are 1"), std::string::npos);
+  EXPECT_NE(changed(R"("componentType":5126)", R"("componentType":5127)").find("known componentType"),
+            std::string::npos);
+  EXPECT_NE(changed(R"({"bufferView":0,"componentType":5126,)", R"({"componentType":5126,)").find("has no values"),
+            std::string::npos);
+  EXPECT_NE(complaintOnReading(folder.write("a.glb", glb(R"({"attributes":{"POSITION":0},"indices":0})", values)))
+                .find("accessors[0] must have"),
+            std::string::npos);
 }
 
 /// Map coordinates of a square of one metre, which float cannot tell apart: its spacing there is half a metre.

@@ -196,6 +196,16 @@ TEST(IsaacAxes, ComeBackAsTheyWereWritten) {
   EXPECT_THROW(readIsaacAxes(folder.write("bad.yaml", "symmetry_axes: [\"w_180\"]\n")), InputError);
   EXPECT_THROW(readIsaacAxes(folder.write("word.yaml", "symmetry_axes: [\"z_half\"]\n")), InputError);
   EXPECT_THROW(readIsaacAxes(folder.write("none.yaml", "a: 1\n")), InputError);
+  EXPECT_THROW(readIsaacAxes(folder.write("blank.yaml", "symmetry_axes: [z 180]\n")), InputError);
+}
+
+/// A long line takes memory in proportion to it, and no more of the stack than a short one.
+TEST(IsaacAxes, ReadsLinesOfAnyLength) {
+  const TemporaryFolder folder;
+  std::string list = "z_1";
+  for (int i = 0; i < 100'000; ++i) list += ", z_1";
+  EXPECT_EQ(readIsaacAxes(folder.write("long.yaml", "a: [" + list + "]\n")).at("a").discrete.size(), 100'001u);
+  EXPECT_THROW(readIsaacAxes(folder.write("letters.yaml", std::string(1'000'000, 'a') + "\n")), InputError);
 }
 
 }  // namespace

@@ -94,6 +94,14 @@ TEST(ClassFile, NamesClassesBehindTheirParents) {
   EXPECT_EQ(classes.at("m9"), "vessel/vase");
 }
 
+/// Each class is the parent of the next one: their full names would take the square of the size of the file.
+TEST(ClassFile, RefusesEndlessFamilies) {
+  const TemporaryFolder folder;
+  std::string text = "PSB 1\n3000 0\n";
+  for (int i = 0; i < 3000; ++i) text += "c" + std::to_string(i) + " c" + std::to_string(i - 1) + " 0\n";
+  EXPECT_THROW(readClassFile(folder.write("deep.cla", text)), InputError);
+}
+
 /// The tool on three vases and three boxes of different proportions.
 class EvaluateRetrieval : public ToolTest {
 protected:

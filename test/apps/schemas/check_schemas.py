@@ -79,6 +79,15 @@ def main(apps, schemas):
         check.run(["align", at("scan.pcd"), *few, "-target", at("box.off"), "-json", at("a.json")], "pose")
         check.run(["lines", at("ellipse.xyz"), "-quiet", "-json", at("a.json")], "lines")
         check.run(["bop", at("box.off"), at("can.off"), "-quiet", "-json", at("a.json")], "models_info")
+        turn = [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+        axis = {"axis": [0, 0, 1], "offset": [0, 0, 0]}
+        given = {"1": {"symmetries_discrete": [turn]}, "2": {"symmetries_continuous": [axis]}}
+        Path(at("given.json")).write_text(json.dumps(given))
+        models = [at(name) for name in ("box.off", "can.off", "prism.off")]
+        Path(models[2]).write_text(prism(5, 0.4))
+        check.run(["bop", *models, "-check", at("given.json"), "-quiet", "-report", at("a.json")], "bop_check")
+        report = json.loads(Path(at("a.json")).read_text())
+        assert report["missing"] == ["3"] and report["disagreeing"] == 2, report
         base = [at("models.db"), "-quiet"]
         check.run(["database", "build", at("models.db"), at("box.off"), at("can.off"), *few, "-json", at("a.json")], "database_build")
         check.run(["database", "list", *base, "-json", at("a.json")], "database_models")

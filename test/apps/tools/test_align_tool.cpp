@@ -81,6 +81,18 @@ T fieldOf(const pcl::PCLPointCloud2& cloud, const std::string& name, std::size_t
   return T();
 }
 
+TEST_F(AlignTool, WritesPagesOfFramesAndPoses) {
+  const std::string page = folder_ / "page.html", flags = " -quiet -points 2000 -html " + page;
+  ASSERT_EQ(run(chair_ + flags), 0) << error_;
+  EXPECT_NE(contentOf(page).find("center and axes: 1 red"), std::string::npos);
+  EXPECT_NE(contentOf(page).find("axis 1"), std::string::npos) << "what the tool prints";
+  Eigen::Isometry3d T_scan_model;
+  const std::string scan = scanOfChair(T_scan_model);
+  ASSERT_EQ(run(scan + " -target " + chair_ + flags), 0) << error_;
+  EXPECT_NE(contentOf(page).find("target, and the input in it"), std::string::npos);
+  EXPECT_GT(contentOf(page).size(), 500'000u) << "with the library that draws";
+}
+
 TEST_F(AlignTool, TurnsAWholeIntoItsFrame) {
   ASSERT_EQ(run(box_ + " " + (folder_ / "out.pcd") + " -json " + (folder_ / "r.json")), 0) << error_;
   const nlohmann::json json = report();

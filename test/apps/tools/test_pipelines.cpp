@@ -112,6 +112,39 @@ TEST_F(PlanesPipelines, ReadStandardInputAndWriteStandardOutput) {
   EXPECT_NE(error_.find("standard input: x of vertex 2 is missing"), std::string::npos) << error_;
 }
 
+/// Names in UTF-8, and bytes that are none: file names are bytes.
+TEST_F(PlanesPipelines, TakeNamesInAnyLanguage) {
+  const std::string folder = folder_ / "W\xc3\xbcrfel \xe7\xab\x8b\xe6\x96\xb9";
+  boost::filesystem::create_directory(folder);
+  const std::string box = contentOf(in_ + "/a.off");
+  for (const std::string name : {"\xd0\xba\xd1\x83\xd0\xb1 1", "no \xff text", "'quotes' & more"}) {
+    const std::string path = folder + "/" + name;
+    std::ofstream(path + ".off", std::ios::binary) << box;
+    std::string quoted;
+    for (const char c : path) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    const auto out = [&](const std::string& ending) { return "'" + quoted + ending + "'"; };
+    ASSERT_EQ(run(out(".off") + " -quiet -points 2000 -json " + out(".json") + " -csv " + out(".csv") + " -support " +
+                  out("_support.ply") + " -html " + out(".html")),
+              0)
+        << name << ": " << error_;
+    EXPECT_EQ(nlohmann::json::parse(contentOf(path + ".json"))["planes"].size(), 3u) << name;
+    EXPECT_EQ(loadShape(path + "_support.ply").points->size(), 2000u) << name;
+    EXPECT_NE(contentOf(path + ".html"), "") << name;
+  }
+  ASSERT_EQ(run("'" + folder + "' -quiet -points 2000"), 0) << error_;
+  EXPECT_EQ(lines(output_).size(), 6u) << "three boxes, three clouds with support";
+}
+
+TEST_F(PlanesPipelines, SayThatStandardOutputIsFull) {
+  for (const std::string flags : {"-json -", "-csv -", "-support -", ""}) {
+    const int status = std::system((toolPath("planes") + " " + in_ + "/a.off -quiet -points 2000 " + flags +
+                                    " >/dev/full 2>" + (folder_ / "stderr"))
+                                       .c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1) << flags;
+    EXPECT_NE(contentOf(folder_ / "stderr").find("standard output"), std::string::npos) << flags;
+  }
+}
+
 TEST_F(SegmentPipelines, TakeAFolder) {
   EXPECT_EQ(run(in_ + " '" + (folder_ / "{}.seg") + "' -quiet -json " + (folder_ / "t.jsonl")), 1);
   const auto found = lines(contentOf(folder_ / "t.jsonl"));

@@ -54,6 +54,31 @@ TEST_F(DescribeTool, WritesThePapersDescriptors) {
   ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prsd), 0);
 }
 
+TEST_F(DescribeTool, WritesATableAndGoesOnWhereItStopped) {
+  const std::string out = folder_ / "out", csv = folder_ / "t.csv",
+                    both = (folder_ / "vase.off") + " " + (folder_ / "box.off");
+  const std::string flags = " -points 2000 -quiet -type prsd -csv " + csv;
+  ASSERT_EQ(run(out + " " + (folder_ / "box.off") + flags), 0) << error_;
+  std::string table = contentOf(csv);
+  EXPECT_EQ(table.rfind("file,number,prsd_1,prsd_2,", 0), 0u);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2);
+  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 2 * 1025);
+  pcl::PointCloud<PRSDSignature1024> prsd;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prsd), 0);
+  const std::string row = table.substr(table.find('\n') + 1);
+  EXPECT_EQ(std::stof(row.substr(row.find(",1,") + 3)), prsd[0].prsd[0]) << "nine digits tell all floats apart";
+  // A descriptor of the type that stands there is kept, whatever it is; one of another type is not.
+  prsd[0].prsd[0] = 42.0f;
+  pcl::io::savePCDFileBinary(out + "/box.pcd", prsd);
+  ASSERT_EQ(run(out + " " + both + flags + " -resume"), 0) << error_;
+  table = contentOf(csv);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+  EXPECT_NE(table.find("box.off,1,42,"), std::string::npos);
+  ASSERT_EQ(run(out + " " + both + " -points 2000 -quiet -type gedt -resume"), 0) << error_;
+  pcl::PointCloud<GEDTSignature32768> gedt;
+  EXPECT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", gedt), 0);
+}
+
 TEST_F(DescribeTool, SaysWhatIsWrongAndDoesTheRest) {
   const std::string out = folder_ / "out";
   folder_.write("broken.off", "OFF\n3 1 0\n0 0 0\n");

@@ -94,6 +94,19 @@ TEST(SurfaceGraph, RefusesMissingVerticesAndNoArea) {
   EXPECT_THROW(meshGraph(mesh.vertices, {{0, 1, 1}}), std::invalid_argument);
   EXPECT_THROW(meshGraph(mesh.vertices, {}), std::invalid_argument);
   EXPECT_THROW(cloudGraph(Points::Ones(3, 5), neighboursOf(Points::Ones(3, 5), 2)), std::invalid_argument);
+  const Points corners = mesh.vertices.cast<float>();
+  auto neighbours = neighboursOf(corners, 2);
+  EXPECT_NO_THROW(cloudGraph(corners, neighbours));
+  for (const int wrong : {-1, static_cast<int>(corners.cols())}) {
+    neighbours[0][0] = wrong;
+    EXPECT_THROW(cloudGraph(corners, neighbours), std::invalid_argument) << wrong;
+  }
+  EXPECT_THROW(cloudGraph(corners, {{1, 2}}), std::invalid_argument) << "one list for all points";
+  for (const float scale : {1e-20f, 1e20f}) {  // no squares in float
+    EXPECT_THROW(cloudGraph(scale * corners, neighboursOf(corners, 2)), std::invalid_argument) << scale;
+    EXPECT_THROW(meshGraph(scale * mesh.vertices, mesh.polygons), std::invalid_argument) << scale;
+  }
+  for (const float scale : {1e-12f, 1e12f}) EXPECT_GT(meshGraph(scale * mesh.vertices, mesh.polygons).area(), 0.0);
 }
 
 TEST(SurfaceGraph, CloudOfABoxHasItsAreaAndOutwardNormals) {

@@ -56,6 +56,30 @@ TEST(PackedModel, OtherBytesAreRefused) {
   }
 }
 
+/// A few bytes cannot ask for gigabytes.
+TEST(PackedModel, SizesThatTheBytesCannotHoldAreRefused) {
+  detail::PackedBytes gigabyte;
+  gigabyte.put(std::uint32_t{1u << 30});
+  gigabyte.append("....");
+  const auto messageOf = [](const std::string& bytes, auto unpack) -> std::string {
+    try {
+      unpack(bytes);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(messageOf(gigabyte.bytes(), detail::decompressed), "has fewer bytes than it says");
+  const std::string zeros(1 << 20, '\0');
+  EXPECT_EQ(detail::decompressed(detail::compressed(zeros, detail::Effort::High)), zeros) << "nothing shrinks more";
+  // derived: (2^32 - 2) rows of two bytes and four more, times 2^31 columns, are 2^64 bytes.
+  detail::PackedBytes matrix;
+  matrix.put(std::uint8_t{2});
+  matrix.put(std::uint32_t{0xfffffffe});
+  matrix.put(std::uint32_t{1u << 31});
+  EXPECT_EQ(messageOf(matrix.bytes(), detail::unpackedMatrix), "has another size than it says");
+}
+
 }  // namespace
 
 }  // namespace pcl_symmetry

@@ -55,14 +55,14 @@ struct SurfaceGraph {
 /// \param polygons three or more indices into the vertices each. A polygon with a vertex that is not finite becomes an
 /// element without neighbours.
 /// \return one element per polygon, in input order.
-/// \throws std::invalid_argument if an index is out of range or no polygon has an area.
+/// \throws std::invalid_argument if an index is out of range, no polygon has an area, or the extent is not 1e-15 to 1e15.
 SurfaceGraph meshGraph(const PointsRef& vertices, const std::vector<std::vector<int>>& polygons);
 
 /// The graph of a cloud: two points are neighbours if one of them is among the nearest of the other.
 /// \param points 3 x N, finite, input frame.
 /// \param neighbours for each point the indices of its nearest other points, nearest first; the same number for all.
 /// \return one element per point, in input order; the area is estimated from the distance of the last neighbour.
-/// \throws std::invalid_argument if all points are equal.
+/// \throws std::invalid_argument if all points are equal, their extent is not 1e-15 to 1e15, or a neighbour is missing.
 SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours);
 
 /// Connected pieces of equal label.

@@ -1,0 +1,77 @@
+/// Readers of files. FUZZ_KIND in the environment names one of them: a kind of shape file such as pcd, or isaac,
+/// models_info, classes, labels.
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+#include <map>
+
+#include "common/command_line/tool_errors.h"
+#include "common/modules/cloud_files.h"
+#include "common/shape_input/shape_input.h"
+#include "common/shape_output/face_labels.h"
+#include "common/symmetry_files/isaac_axes.h"
+#include "common/symmetry_files/models_info.h"
+#include "evaluate/shared/class_file.h"
+#include "fuzz/byte_source.h"
+
+extern "C" const void* pclSymmetryModule(const char* version);
+
+/// The module of PCL's readers is linked, not loaded.
+const pcl_symmetry::apps::CloudFiles& pcl_symmetry::apps::cloudFiles() {
+  return *static_cast<const CloudFiles*>(pclSymmetryModule(PCL_SYMMETRY_VERSION));
+}
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+using Reader = std::function<void(const std::string&)>;
+
+void readShape(const std::string& path) {
+  const Shape shape = loadShape(path);
+  FUZZ_CHECK(shape.points && !shape.points->empty());
+  FUZZ_CHECK(shape.shift.allFinite());
+  if (!shape.mesh) return;
+  for (const pcl::Vertices& polygon : shape.mesh->polygons) {
+    FUZZ_CHECK(polygon.vertices.size() >= 3);
+    for (const auto corner : polygon.vertices) FUZZ_CHECK(static_cast<std::size_t>(corner) < shape.points->size());
+  }
+}
+
+void readModelsSymmetries(const std::string& path) {
+  for (const auto& [name, listed] : readModelsInfo(path))
+    for (const Eigen::Isometry3d& motion : listed.discrete) FUZZ_CHECK(motion.linear().isUnitary(1e-6));
+}
+
+struct Kind {
+  std::string extension;
+  Reader read;
+};
+
+Kind kindOf(const std::string& name) {
+  static const std::map<std::string, Kind> kinds = {
+      {"isaac", {".yaml", [](const std::string& path) { readIsaacAxes(path); }}},
+      {"models_info", {".json", readModelsSymmetries}},
+      {"classes", {".cla", [](const std::string& path) { leafClassNumbers(path); }}},
+      {"labels", {".seg", [](const std::string& path) { readFaceLabels(path); }}}};
+  const auto known = kinds.find(name);
+  return known == kinds.end() ? Kind{"." + name, readShape} : known->second;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const char* const name = std::getenv("FUZZ_KIND");
+  static const Kind kind = kindOf(name ? name : "pcd");
+  static const std::string path = "/dev/shm/pcl_symmetry_fuzz_" + std::to_string(::getpid()) + kind.extension;
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  try {
+    kind.read(path);
+  } catch (const InputError& error) {
+    FUZZ_CHECK(std::string(error.what()).find('\n') == std::string::npos);
+  }
+  ::unlink(path.c_str());
+  return 0;
+}
