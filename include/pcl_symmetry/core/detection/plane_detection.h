@@ -147,7 +147,7 @@ struct Detection {
 /// From points to planes: transform, maxima, refinement (Sections 4.1 to 4.4).
 /// \param points 3 x N, finite, input units. Fewer than 20 distinct points, points at one place and points on one line
 /// give an empty result with a reason.
-/// \param make_search makes the search of refineMaxima() for the distance transform of these points; null = FLANN.
+/// \param make_search makes the search of refineMaxima() for the distance transform of these points; null = a k-d tree.
 /// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
 /// \param normals of the points, 3 x N, of any length and sign; one that is zero or not finite is estimated from the
 /// neighbours, as are all where this is null.
@@ -159,7 +159,7 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options 
 /// From a map that was made before to planes: maxima, refinement (Section 4.4).
 /// \param points as in detectPlanes().
 /// \param edt,map of these points.
-/// \param search closest points among (points - edt.center()) / edt.radius(); null = FLANN.
+/// \param search closest points among (points - edt.center()) / edt.radius(); null = a k-d tree.
 /// \param visibility,normals as in detectPlanes().
 /// \throws std::invalid_argument as detectPlanes() does.
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
