@@ -171,7 +171,7 @@ void PointTree::visitLeaf(const Node& leaf, const Eigen::Vector3f& query, Result
 }
 
 /// Squared distance of a point from the box of a node: rounded, it is at most that of each point in the box.
-float PointTree::sqDistance(const Node& node, const Eigen::Vector3f& query) {
+[[gnu::always_inline]] inline float PointTree::sqDistance(const Node& node, const Eigen::Vector3f& query) {
 #if defined(__SSE2__)
   const __m128 x = _mm_setr_ps(query.x(), query.y(), query.z(), 0.0f);
   const __m128 below = _mm_sub_ps(_mm_loadu_ps(node.low.data()), x);

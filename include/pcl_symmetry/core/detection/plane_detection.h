@@ -156,6 +156,19 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options 
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr,
                        const Visibility* visibility = nullptr, const Points* normals = nullptr);
 
+/// The planes of many clouds: each thread takes the next cloud and works on it alone. This keeps all cores busy, where
+/// threads that share one cloud wait for each other between its stages.
+/// \param num_clouds number of clouds.
+/// \param cloud gives the points of cloud i in [0, num_clouds), as detectPlanes() takes them. Called once for each i,
+/// from several threads at once.
+/// \param found takes what detectPlanes() returns for cloud i. Called once for each i, by one thread at a time, in the
+/// order in which the clouds are done.
+/// \param options num_threads is the number of clouds that are worked on at once; 0 = one per core.
+/// \throws std::invalid_argument as detectPlanes() does, and whatever cloud() and found() throw: the first exception,
+/// when no thread works any more. Which of the other clouds are done then is not said.
+void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
+                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options = {});
+
 /// From a map that was made before to planes: maxima, refinement (Section 4.4).
 /// \param points as in detectPlanes().
 /// \param edt,map of these points.
