@@ -81,16 +81,16 @@ void distancesFrom(const float* x, const float* y, const float* z, int count, co
 
 /// Time of one query that keeps the \p kept nearest of \p shown points, which lie side by side.
 double timeOfNearest(int shown, int kept) {
-  constexpr int kNumPoints = 4096;  // derived: 48 kB, those of a part of a cloud
+  constexpr int kNumStored = 4096;  // derived: 48 kB, those of a part of a cloud
   constexpr int kNumQueries = 2048;
   RandomStream random(2);
-  std::vector<float> coordinates(3 * kNumPoints);
+  std::vector<float> coordinates(3 * kNumStored);
   for (float& value : coordinates) value = static_cast<float>(random.uniform());
-  const float *const x = coordinates.data(), *const y = x + kNumPoints, *const z = y + kNumPoints;
+  const float *const x = coordinates.data(), *const y = x + kNumStored, *const z = y + kNumStored;
   std::vector<float> sq_distances(shown), nearest(kept);
   return nanosecondsOf(kNumQueries, [&] {
     for (int q = 0; q < kNumQueries; ++q) {
-      const int first = q * 37 % (kNumPoints - shown);
+      const int first = q * 37 % (kNumStored - shown);
       const float query[3] = {x[q], y[q], z[q]};
       distancesFrom(x + first, y + first, z + first, shown, query, sq_distances.data());
       std::fill(nearest.begin(), nearest.end(), std::numeric_limits<float>::max());

@@ -482,7 +482,7 @@ TEST(DetectPlanes, AFlatRectangleHasThree) {
 
 TEST(DetectPlanesOfMany, FindsTheSameBytesAsOneCloudAtATime) {
   const auto cloud = [](std::size_t i) {
-    return moved(box({1.0, 0.7, 0.4}, 600, Sampling::Random, 30 + i), randomPose(static_cast<int>(i))).cloud();
+    return moved(box({1.0, 0.7, 0.4}, 2000, Sampling::Mirrored, 30 + i), randomPose(static_cast<int>(i))).cloud();
   };
   constexpr std::size_t kNum = 6;
   for (const int num_threads : {1, 3}) {

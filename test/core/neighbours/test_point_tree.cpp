@@ -1,4 +1,4 @@
-#include "core/neighbours/point_tree.h"
+#include "core/neighbours/search/point_tree.h"
 
 #include <gtest/gtest.h>
 
