@@ -155,7 +155,7 @@ Eigen::Vector3f labOf(const Eigen::Vector3f& rgb) {
 }
 
 ColouredSurface::ColouredSurface(const Shape& shape, Points points, double tolerance)
-    : points_(std::move(points)), tolerance_(tolerance), search_(makeFlannSearch(points_)) {
+    : points_(std::move(points)), tolerance_(tolerance), search_(makeTreeSearch(points_)) {
   const Eigen::Matrix3Xf colours = vertexColours(shape.cloud);
   std::vector<Eigen::Index> finite;
   for (Eigen::Index i = 0; i < colours.cols(); ++i)
@@ -165,7 +165,7 @@ ColouredSurface::ColouredSurface(const Shape& shape, Points points, double toler
     vertices.col(static_cast<Eigen::Index>(k)) = (*shape.points)[static_cast<std::size_t>(finite[k])].getVector3fMap();
   std::vector<int> closest;
   std::vector<float> ignored;
-  makeFlannSearch(vertices)->search(points_, 1, closest, ignored);
+  makeTreeSearch(vertices)->search(points_, 1, closest, ignored);
   lab_.resize(3, points_.cols());
   for (Eigen::Index i = 0; i < points_.cols(); ++i) lab_.col(i) = colours.col(finite[closest[i]]);
 }

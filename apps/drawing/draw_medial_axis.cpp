@@ -44,7 +44,7 @@ ClosestPoints closestPoints(const Sheet& sheet, const pcl::PointCloud<pcl::Point
     queries.col(i) << sheet.at(i % sheet.size, i / sheet.size), points(2, 0);
   std::vector<int> indices;
   std::vector<float> sq_distances;
-  makeFlannSearch(points)->search(queries, 1, indices, sq_distances);
+  makeTreeSearch(points)->search(queries, 1, indices, sq_distances);
   ClosestPoints closest;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     closest.point.push_back(points.col(indices[i]).head<2>());

@@ -87,9 +87,9 @@ public:
     change([&](DetectionOptions& changed) { changed.num_threads = changed.edt.num_threads = num_threads; });
   }
 
-  /// Finds closest points by a search of PCL in place of the library's FLANN tree.
+  /// Finds closest points by a search of PCL in place of the library's k-d tree.
   /// \param search any but pcl::search::OrganizedNeighbor (reflected points lie behind what the sensor saw). It is
-  /// given a cloud of the points used, and is called from one thread at a time. Null: FLANN (default).
+  /// given a cloud of the points used, and is called from one thread at a time. Null: that tree (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
 
   /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not

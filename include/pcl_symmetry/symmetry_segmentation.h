@@ -160,7 +160,7 @@ void SymmetrySegmentation<PointT>::segmentCloud() {
       detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, input_->size(), options_.seed);
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeFlannSearch(points)->search(all.points, 1, closest, sq_distances);
+  makeTreeSearch(points)->search(all.points, 1, closest, sq_distances);
   for (std::size_t i = 0; i < all.indices.size(); ++i) labels_[all.indices[i]] = segmentation_.labels[closest[i]];
   for (std::size_t i = 0; i < used.size(); ++i) labels_[used[i]] = segmentation_.labels[i];
 }

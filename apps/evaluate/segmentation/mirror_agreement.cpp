@@ -15,7 +15,7 @@ double agreementAcross(const SurfaceGraph& graph, const std::vector<int>& labels
     reflected.col(i) = plane.reflect(graph.centers.col(i).cast<double>()).cast<float>();
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeFlannSearch(graph.centers)->search(reflected, 1, closest, sq_distances);
+  makeTreeSearch(graph.centers)->search(reflected, 1, closest, sq_distances);
   double area = 0.0, agreeing = 0.0;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     area += graph.areas[i];

@@ -84,7 +84,7 @@ NamedSegmentation cloudOfMesh(int num_threads) {
             std::vector<int> closest;
             std::vector<float> sq_distances;
             const Points points = cloud->getMatrixXfMap(3, 4, 0);
-            makeFlannSearch(points)->search(meshGraph(mesh).centers, 1, closest, sq_distances);
+            makeTreeSearch(points)->search(meshGraph(mesh).centers, 1, closest, sq_distances);
             for (int& label : closest) label = segmentation.getLabels()[label];
             return ofLabels(std::move(closest));
           }};

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/candidates.h"
 #include "core/detection/plane_families.h"
@@ -109,6 +111,19 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
       detection.timing_ms.begin(),
       {{"distance_transform", edt_ms}, {"free_space", visibility_ms}, {"transform", transform_ms}});
   return detection;
+}
+
+void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
+                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options) {
+  options.validate();
+  DetectionOptions alone = options;
+  alone.num_threads = alone.edt.num_threads = 1;
+  std::mutex one_at_a_time;
+  parallelBlocks(num_clouds, options.num_threads, [&](std::size_t i) {
+    Detection detection = detectPlanes(cloud(i), alone);
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    found(i, std::move(detection));
+  });
 }
 
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,

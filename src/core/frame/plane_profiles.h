@@ -50,6 +50,13 @@ private:
   struct Cell {
     std::uint8_t surface, free;  // 255 times f and free space
   };
+  class Walk;
+  struct Sums;
+
+  /// \param images cells of the images of the samples.
+  /// \param completed the same in the reflection that completes a scan; null: there is none.
+  Sums sumsAt(const std::uint32_t* images, const std::uint32_t* completed) const;
+
   Cell at(float x, float y, float z) const {
     const auto i = static_cast<std::uint32_t>(static_cast<int>(x));
     const auto j = static_cast<std::uint32_t>(static_cast<int>(y));
@@ -61,7 +68,7 @@ private:
   float middle_;
   bool scanned_;
   Cell outside_;
-  std::vector<Cell> cells_;
+  std::vector<Cell> cells_;   // and one for all that lies outside
   Eigen::Matrix3Xf samples_;  // cells from the middle
 };
 

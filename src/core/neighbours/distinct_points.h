@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
-#include <tuple>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "pcl_symmetry/core/geometry/point_set.h"
@@ -15,34 +15,40 @@ struct DistinctPoints {
   std::vector<int> index_of;  ///< N, the column of points that holds each original point
 
   /// \param all 3 x N, finite.
-  explicit DistinctPoints(const PointsRef& all) : index_of(static_cast<std::size_t>(all.cols())) {
-    struct Entry {
-      float x, y, z;
-      int index;
-    };
-    std::vector<Entry> sorted(index_of.size());
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-      const auto point = all.col(static_cast<Eigen::Index>(i));
-      sorted[i] = {point.x(), point.y(), point.z(), static_cast<int>(i)};
-    }
-    std::sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
-      return std::tie(a.x, a.y, a.z, a.index) < std::tie(b.x, b.y, b.z, b.index);
-    });
-    std::vector<int> first_of(sorted.size());  // the first copy of each point
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-      const Entry& own = sorted[i];
-      const Entry& before = sorted[i > 0 ? i - 1 : 0];
-      const bool is_copy = i > 0 && std::tie(own.x, own.y, own.z) == std::tie(before.x, before.y, before.z);
-      first_of[own.index] = is_copy ? first_of[before.index] : own.index;
-    }
-    points.resize(3, all.cols());
+  explicit DistinctPoints(const PointsRef& all)
+      : points(3, all.cols()), index_of(static_cast<std::size_t>(all.cols())) {
+    std::size_t num_slots = 1;
+    while (num_slots < 2 * index_of.size()) num_slots *= 2;
+    std::vector<int> first_of_slot(num_slots, -1);
     Eigen::Index size = 0;
-    for (std::size_t i = 0; i < first_of.size(); ++i) {
-      const bool is_first = first_of[i] == static_cast<int>(i);
-      if (is_first) points.col(size) = all.col(static_cast<Eigen::Index>(i));
-      index_of[i] = is_first ? static_cast<int>(size++) : index_of[first_of[i]];
+    for (std::size_t i = 0; i < index_of.size(); ++i) {
+      const Eigen::Vector3f point = all.col(static_cast<Eigen::Index>(i));
+      std::size_t slot = hash(point) & (num_slots - 1);
+      while (first_of_slot[slot] >= 0 && all.col(first_of_slot[slot]) != point) slot = (slot + 1) & (num_slots - 1);
+      int& first = first_of_slot[slot];
+      if (first < 0) {
+        first = static_cast<int>(i);
+        points.col(size) = point;
+        index_of[i] = static_cast<int>(size++);
+      } else {
+        index_of[i] = index_of[static_cast<std::size_t>(first)];
+      }
     }
     points.conservativeResize(3, size);
+  }
+
+private:
+  static std::uint64_t hash(const Eigen::Vector3f& point) {
+    constexpr std::uint64_t kFactor = 0x9E3779B97F4A7C15u;  // derived: 2^64 divided by the golden ratio, made odd
+    std::uint64_t result = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float coordinate = point[axis] + 0.0f;  // 0 and -0 are equal
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &coordinate, sizeof bits);
+      result = (result ^ bits) * kFactor;
+      result ^= result >> 32;
+    }
+    return result;
   }
 };
 

@@ -40,7 +40,7 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       center(edt.center()),
       scale(edt.radius()),
       points(normalizePoints(input, center, scale)),
-      search(input_search ? std::move(input_search) : makeFlannSearch(points)),
+      search(input_search ? std::move(input_search) : makeTreeSearch(points)),
       geometry(withNormals(localGeometry(points, *search, kNumSupportNeighbours, num_threads), given_normals)),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),

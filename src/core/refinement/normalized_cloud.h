@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 struct NormalizedCloud {
   /// \param input 3 x N, finite, distinct, input units.
   /// \param edt_of_input distance transform of these points; must outlive this object.
-  /// \param input_search closest points among the normalised points; null = FLANN.
+  /// \param input_search closest points among the normalised points; null = a k-d tree.
   /// \param seen what a scanner saw, input frame; null = the points show the object from all sides.
   /// \param num_threads 0 = one per core.
   /// \param given_normals 3 x N, of any length and sign, used where they are finite and not zero; null = all estimated.

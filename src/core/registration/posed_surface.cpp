@@ -34,7 +34,7 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       order(randomOrder(static_cast<int>(input.cols()), seed)),
       seen(std::move(seen_space)),
       grid(input),
-      search(makeFlannSearch(input)) {
+      search(makeTreeSearch(input)) {
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, num_threads);
   const double spacing = median(geometry.spacing);
   if (median(geometry.roughness) > kRoughShare * spacing)

@@ -17,16 +17,18 @@
 namespace pcl_symmetry {
 
 PCL_SYMMETRY_MULTIVERSION
-void setUpLines(const float* points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines) {
+void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines) {
   const float nx = planes.normal[0], ny = planes.normal[1], nz = planes.normal[2];
   const float offset = planes.offset, inverse_step = 1.0f / planes.step, last = static_cast<float>(planes.count);
   const float middle = cube.middle, sq_clip = cube.sq_clip, to_table = cube.to_table;
   const float one = static_cast<float>(1 << LookupTable::kFractionBits);
   std::int32_t *const lx = lines.x, *const ly = lines.y, *const lz = lines.z;
   std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
+  const float *const px = points.x, *const py = points.y, *const pz = points.z;
   const int size = lines.size;
+#pragma GCC ivdep
   for (int i = 0; i < size; ++i) {
-    const float x = points[3 * i] - middle, y = points[3 * i + 1] - middle, z = points[3 * i + 2] - middle;
+    const float x = px[i] - middle, y = py[i] - middle, z = pz[i] - middle;
     const float along = nx * x + ny * y + nz * z;
     const float shift = 2.0f * (offset - along);
     lx[i] = static_cast<std::int32_t>((x + shift * nx + to_table) * one);

@@ -37,10 +37,15 @@ struct Lines {
   std::int32_t step[3];   ///< of all lines
 };
 
+/// Coordinates of samples, each in an array of its own: vectors of several samples are loaded at once.
+struct SampleCoordinates {
+  const float *x, *y, *z;
+};
+
 /// Fills the lines that the images of points run along when the points are reflected in parallel planes.
-/// \param points 3 x lines.size, in cells from the first cell center.
+/// \param points lines.size of them, in cells from the first cell center.
 /// \param[out] lines size is given; all but step are filled.
-void setUpLines(const float* points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines);
+void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines);
 
 /// sums[g][k] += sum over lines of function g of the table at point k. The sums are integers, so that every kernel
 /// gives the same bytes.

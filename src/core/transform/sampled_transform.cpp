@@ -19,6 +19,9 @@ constexpr std::size_t kSampledPerBlock = 32;
 // samples set up at a time; chosen: their lines stay in the first cache (20 kB), and sums of bytes fit in 32 bits
 constexpr int kChunk = 1024;
 
+/// Points, the coordinates along each axis side by side.
+using CoordinateRows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Bins of a grid in cells of the EDT, relative to the middle of the EDT's cube.
 struct GridInCells {
   GridInCells(const GaussianEdt& edt, const PlaneGrid& bins, const LookupTable& table) : grid(bins) {
@@ -47,7 +50,7 @@ struct GridInCells {
 /// Sums of the table's functions over reflected samples, for all planes of one direction.
 class DirectionSums {
 public:
-  DirectionSums(const Eigen::Matrix3Xf& points, const LookupTable& table, LineKernel accumulate, int num_radius)
+  DirectionSums(const CoordinateRows& points, const LookupTable& table, LineKernel accumulate, int num_radius)
       : points_(points),
         table_(table),
         accumulate_(accumulate),
@@ -69,7 +72,7 @@ public:
     const int num_samples = static_cast<int>(points_.cols());
     for (int first = 0; first < num_samples; first += kChunk) {
       lines_.size = std::min(kChunk, num_samples - first);
-      setUpLines(points_.data() + 3 * first, planes, cube, lines_);
+      setUpLines({&points_(0, first), &points_(1, first), &points_(2, first)}, planes, cube, lines_);
       for (auto& sums : chunk_sums_) std::fill(sums.begin(), sums.end(), 0);
       accumulate_(lines_, table_.data(), table_.bits(), sums_of_.data());
       for (std::size_t g = 0; g < totals_.size(); ++g)
@@ -79,7 +82,7 @@ public:
   }
 
 private:
-  const Eigen::Matrix3Xf& points_;
+  const CoordinateRows& points_;
   const LookupTable& table_;
   LineKernel accumulate_;
   std::vector<std::vector<std::int32_t>> chunk_sums_;
@@ -93,7 +96,7 @@ private:
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
                                             const SampledTransformOptions& options, const LookupTable& table) {
   options.validate();
-  const Eigen::Matrix3Xf points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
+  const CoordinateRows points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
   const LineKernel accumulate = lineKernel(options.simd, table.numFunctions());
   const GridInCells bins(edt, grid, table);
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);

@@ -480,6 +480,48 @@ TEST(DetectPlanes, AFlatRectangleHasThree) {
   EXPECT_LT(comparison.worst_offset, 1e-5);
 }
 
+TEST(DetectPlanesOfMany, FindsTheSameBytesAsOneCloudAtATime) {
+  const auto cloud = [](std::size_t i) {
+    return moved(box({1.0, 0.7, 0.4}, 2000, Sampling::Mirrored, 30 + i), randomPose(static_cast<int>(i))).cloud();
+  };
+  constexpr std::size_t kNum = 6;
+  for (const int num_threads : {1, 3}) {
+    DetectionOptions options;
+    options.num_threads = num_threads;
+    std::vector<std::vector<SymmetryPlane>> planes(kNum);
+    std::vector<int> num_calls(kNum, 0);
+    const auto keep = [&](std::size_t i, Detection detection) {
+      ++num_calls[i];
+      planes[i] = std::move(detection.planes);
+    };
+    detectPlanesOfMany(kNum, cloud, keep, options);
+    EXPECT_EQ(num_calls, std::vector<int>(kNum, 1));
+    for (std::size_t i = 0; i < kNum; ++i) {
+      const std::vector<SymmetryPlane> expected = detectPlanes(cloud(i)).planes;
+      ASSERT_EQ(planes[i].size(), expected.size());
+      EXPECT_GE(planes[i].size(), 1u);
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        EXPECT_EQ(planes[i][k].normal(), expected[k].normal());
+        EXPECT_EQ(planes[i][k].offset(), expected[k].offset());
+        EXPECT_EQ(planes[i][k].confidence, expected[k].confidence);
+      }
+    }
+  }
+}
+
+TEST(DetectPlanesOfMany, HandsOnWhatFails) {
+  const auto keep = [](std::size_t, const Detection&) {};
+  const auto fails = [](std::size_t i) -> Points {
+    if (i == 2) throw std::runtime_error("cloud 2 cannot be read");
+    return box(100, Sampling::Random, 22).cloud();
+  };
+  EXPECT_THROW(detectPlanesOfMany(4, fails, keep), std::runtime_error);
+  DetectionOptions bad;
+  bad.num_threads = -1;
+  EXPECT_THROW(detectPlanesOfMany(0, fails, keep, bad), std::invalid_argument);
+  EXPECT_NO_THROW(detectPlanesOfMany(0, fails, keep));
+}
+
 TEST(DetectionOptions, RefusesBadOnes) {
   const Points cloud = box(100, Sampling::Random, 22).cloud();
   const auto refused = [&](auto&& change) {

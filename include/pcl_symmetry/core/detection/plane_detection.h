@@ -147,7 +147,7 @@ struct Detection {
 /// From points to planes: transform, maxima, refinement (Sections 4.1 to 4.4).
 /// \param points 3 x N, finite, input units. Fewer than 20 distinct points, points at one place and points on one line
 /// give an empty result with a reason.
-/// \param make_search makes the search of refineMaxima() for the distance transform of these points; null = FLANN.
+/// \param make_search makes the search of refineMaxima() for the distance transform of these points; null = a k-d tree.
 /// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
 /// \param normals of the points, 3 x N, of any length and sign; one that is zero or not finite is estimated from the
 /// neighbours, as are all where this is null.
@@ -156,10 +156,23 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options 
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr,
                        const Visibility* visibility = nullptr, const Points* normals = nullptr);
 
+/// The planes of many clouds: each thread takes the next cloud and works on it alone. This keeps all cores busy, where
+/// threads that share one cloud wait for each other between its stages.
+/// \param num_clouds number of clouds.
+/// \param cloud gives the points of cloud i in [0, num_clouds), as detectPlanes() takes them. Called once for each i,
+/// from several threads at once.
+/// \param found takes what detectPlanes() returns for cloud i. Called once for each i, by one thread at a time, in the
+/// order in which the clouds are done.
+/// \param options num_threads is the number of clouds that are worked on at once; 0 = one per core.
+/// \throws std::invalid_argument as detectPlanes() does, and whatever cloud() and found() throw: the first exception,
+/// when no thread works any more. Which of the other clouds are done then is not said.
+void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
+                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options = {});
+
 /// From a map that was made before to planes: maxima, refinement (Section 4.4).
 /// \param points as in detectPlanes().
 /// \param edt,map of these points.
-/// \param search closest points among (points - edt.center()) / edt.radius(); null = FLANN.
+/// \param search closest points among (points - edt.center()) / edt.radius(); null = a k-d tree.
 /// \param visibility,normals as in detectPlanes().
 /// \throws std::invalid_argument as detectPlanes() does.
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,

@@ -19,7 +19,7 @@ SplitSurface::SplitSurface(const Points& points, std::uint64_t seed, int num_thr
   std::set_difference(all.begin(), all.end(), second.begin(), second.end(), std::back_inserter(first));
   first_ = pointsAt(points, first);
   second_ = pointsAt(points, second);
-  search_ = makeFlannSearch(second_);
+  search_ = makeTreeSearch(second_);
   geometry_ = localGeometry(second_, *search_, kNumSupportNeighbours, num_threads);
 }
 

@@ -37,7 +37,7 @@ Eigen::MatrixXf supportOfPatches(const SurfaceGraph& graph, const Patches& patch
 /// The patch at the reflection of the center of each patch, for each plane that maps enough of the surface onto itself.
 std::vector<std::vector<int>> imagesOfPatches(const Patches& patches, const std::vector<PartPlane>& planes) {
   std::vector<std::vector<int>> images;
-  const auto search = makeFlannSearch(patches.centers);
+  const auto search = makeTreeSearch(patches.centers);
   for (const PartPlane& plane : planes) {
     if (plane.share < kMappedShare) continue;
     Points reflected(3, patches.size());

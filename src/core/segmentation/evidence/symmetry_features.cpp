@@ -85,7 +85,7 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
 /// Refines planes by Iterative Symmetric Points (Section 4.4); a plane that leaves its basin keeps its start.
 std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
                                      const GaussianEdt& edt, int num_threads) {
-  const auto search = makeFlannSearch(samples);
+  const auto search = makeTreeSearch(samples);
   const LocalGeometry geometry = localGeometry(samples, *search, kNumNormalNeighbours, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
   std::vector<int> reflected;

@@ -85,7 +85,7 @@ std::vector<int> labelsAtReflections(const SurfaceGraph& graph, const std::vecto
         plane.reflect(graph.centers.col(elements[k]).cast<double>()).cast<float>();
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeFlannSearch(graph.centers)->search(reflected, 1, closest, sq_distances);
+  makeTreeSearch(graph.centers)->search(reflected, 1, closest, sq_distances);
   for (int& element : closest) element = labels[element];
   return closest;
 }

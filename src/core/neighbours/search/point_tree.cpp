@@ -1,0 +1,249 @@
+#include "core/neighbours/search/point_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr int kMostInLeaf = 10;  // points. derived: FLANN's default, which decides between points equally far away
+constexpr int kLanes = 4;        // derived: floats in a register of every x86-64 processor
+
+/// The closest points so far, nearest first.
+class ClosestPoints {
+public:
+  ClosestPoints(int* indices, float* sq_distances, int most)
+      : indices_(indices), sq_distances_(sq_distances), most_(most) {}
+
+  float worst() const { return worst_; }
+  void offer(float sq_distance, int index) {
+    if (!(sq_distance < worst_)) return;
+    if (size_ < most_) ++size_;
+    int i = size_ - 1;
+    for (; i > 0 && sq_distances_[i - 1] > sq_distance; --i) {
+      sq_distances_[i] = sq_distances_[i - 1];
+      indices_[i] = indices_[i - 1];
+    }
+    sq_distances_[i] = sq_distance;
+    indices_[i] = index;
+    if (size_ == most_) worst_ = sq_distances_[most_ - 1];
+  }
+
+private:
+  int* indices_;
+  float* sq_distances_;
+  int most_, size_ = 0;
+  float worst_ = std::numeric_limits<float>::max();
+};
+
+/// The one closest point so far.
+class ClosestPoint {
+public:
+  ClosestPoint(int index, float sq_distance) : index_(index), worst_(sq_distance) {}
+
+  int index() const { return index_; }
+  float worst() const { return worst_; }
+  void offer(float sq_distance, int index) {
+    if (!(sq_distance < worst_)) return;
+    worst_ = sq_distance;
+    index_ = index;
+  }
+
+private:
+  int index_;
+  float worst_;
+};
+
+/// Where a box of points is divided: the middle of the points along the axis on which they spread most.
+struct Division {
+  int axis;
+  float at;
+};
+
+Division divisionOf(const Eigen::Array3f& box_span, const Eigen::Array3f& low, const Eigen::Array3f& high) {
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (box_span[i] > box_span[axis]) axis = i;
+  const int first = axis;
+  for (int i = 0; i < 3; ++i)
+    if (i != first && box_span[i] > high[axis] - low[axis] && high[i] - low[i] > high[axis] - low[axis]) axis = i;
+  return {axis, (low[axis] + high[axis]) / 2.0f};
+}
+
+std::array<float, 4> corner(const Eigen::Array3f& of_box) {
+  return {of_box[0], of_box[1], of_box[2], 0.0f};
+}
+
+/// Moves entries that satisfy a condition to the front, by exchanging the outermost pair that stands wrongly.
+/// \return index of the first that does not.
+template <typename Entry, typename Condition>
+int moveToFront(std::vector<Entry>& entries, int begin, int end, const Condition& condition) {
+  int left = begin, right = end - 1;
+  while (true) {
+    while (left <= right && condition(entries[left])) ++left;
+    while (left <= right && !condition(entries[right])) --right;
+    if (left > right) return left;
+    std::swap(entries[left++], entries[right--]);
+  }
+}
+
+}  // namespace
+
+PointTree::PointTree(const PointsRef& points) : points_(points) {
+  const auto size = static_cast<std::size_t>(points.cols());
+  std::vector<Entry> entries(size);
+  for (std::size_t i = 0; i < size; ++i) entries[i] = {points_.col(static_cast<Eigen::Index>(i)), static_cast<int>(i)};
+  nodes_.reserve(size / 2 + 1);
+  divide(entries, 0, static_cast<int>(size),
+         {points_.rowwise().minCoeff().array(), points_.rowwise().maxCoeff().array()}, 1);
+  for (auto* coordinates : {&x_, &y_, &z_}) coordinates->assign(size + kLanes, 0.0f);
+  index_.resize(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    x_[i] = entries[i].point.x();
+    y_[i] = entries[i].point.y();
+    z_[i] = entries[i].point.z();
+    index_[i] = entries[i].index;
+  }
+}
+
+/// Adds the node of some points and those below it.
+/// \param box contains the points.
+/// \return the bounding box of the points.
+PointTree::Box PointTree::divide(std::vector<Entry>& entries, int begin, int end, Box box, int depth) {
+  depth_ = std::max(depth_, depth);
+  Box bounds{entries[begin].point.array(), entries[begin].point.array()};
+  for (int i = begin + 1; i < end; ++i) {
+    bounds.low = bounds.low.min(entries[i].point.array());
+    bounds.high = bounds.high.max(entries[i].point.array());
+  }
+  const std::size_t node = nodes_.size();
+  const int count = end - begin;
+  nodes_.push_back({corner(bounds.low), corner(bounds.high), begin, 0, count <= kMostInLeaf ? count : 0});
+  if (count <= kMostInLeaf) return bounds;
+  const auto [axis, at] = divisionOf(box.high - box.low, bounds.low, bounds.high);
+  const auto coordinate = [axis = axis](const Entry& entry) { return entry.point[axis]; };
+  // Points at the division itself go to either side, so that both are as large as possible.
+  const int below = moveToFront(entries, begin, end, [&, at = at](const Entry& e) { return coordinate(e) < at; });
+  const int up_to = moveToFront(entries, below, end, [&, at = at](const Entry& e) { return coordinate(e) <= at; });
+  const int middle = std::clamp(begin + count / 2, below, up_to);
+  Box first = box, second = box;
+  first.high[axis] = second.low[axis] = at;
+  first = divide(entries, begin, middle, first, depth + 1);
+  const auto link = static_cast<std::int32_t>(nodes_.size());
+  second = divide(entries, middle, end, second, depth + 1);
+  nodes_[node].low[3] = first.high[axis];
+  nodes_[node].high[3] = second.low[axis];
+  nodes_[node].link = link;
+  nodes_[node].axis = axis;
+  return bounds;
+}
+
+template <typename Result>
+void PointTree::visitLeaf(const Node& leaf, const Eigen::Vector3f& query, Result& result) const {
+#if defined(__SSE2__)
+  const __m128 x = _mm_set1_ps(query.x()), y = _mm_set1_ps(query.y()), z = _mm_set1_ps(query.z());
+  for (int k = 0; k < leaf.num_points; k += kLanes) {
+    const int first = leaf.link + k;
+    const __m128 dx = _mm_sub_ps(x, _mm_loadu_ps(&x_[first])), dy = _mm_sub_ps(y, _mm_loadu_ps(&y_[first])),
+                 dz = _mm_sub_ps(z, _mm_loadu_ps(&z_[first]));
+    const __m128 sq = _mm_add_ps(_mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy)), _mm_mul_ps(dz, dz));
+    int near = _mm_movemask_ps(_mm_cmplt_ps(sq, _mm_set1_ps(result.worst())));
+    near &= (1 << std::min(kLanes, leaf.num_points - k)) - 1;
+    if (near == 0) continue;
+    alignas(16) float sq_distances[kLanes];
+    _mm_store_ps(sq_distances, sq);
+    for (int lane = 0; near >> lane; ++lane)
+      if (near >> lane & 1) result.offer(sq_distances[lane], index_[first + lane]);
+  }
+#else
+  for (int i = leaf.link; i < leaf.link + leaf.num_points; ++i) {
+    const float dx = query.x() - x_[i], dy = query.y() - y_[i], dz = query.z() - z_[i];
+    result.offer(dx * dx + dy * dy + dz * dz, index_[i]);
+  }
+#endif
+}
+
+/// Squared distance of a point from the box of a node: rounded, it is at most that of each point in the box.
+[[gnu::always_inline]] inline float PointTree::sqDistance(const Node& node, const Eigen::Vector3f& query) {
+#if defined(__SSE2__)
+  const __m128 x = _mm_setr_ps(query.x(), query.y(), query.z(), 0.0f);
+  const __m128 below = _mm_sub_ps(_mm_loadu_ps(node.low.data()), x);
+  const __m128 above = _mm_sub_ps(x, _mm_loadu_ps(node.high.data()));
+  const __m128 gap = _mm_max_ps(_mm_max_ps(below, above), _mm_setzero_ps());
+  const __m128 sq = _mm_mul_ps(gap, gap);
+  return _mm_cvtss_f32(_mm_add_ss(_mm_add_ss(sq, _mm_shuffle_ps(sq, sq, 1)), _mm_movehl_ps(sq, sq)));
+#else
+  float sum = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float gap = std::max(std::max(node.low[axis] - query[axis], query[axis] - node.high[axis]), 0.0f);
+    sum += gap * gap;
+  }
+  return sum;
+#endif
+}
+
+/// Shows the result the leaves that may hold closer points than it has, the nearer child of each node first.
+/// \param pending storage.
+template <typename Result>
+void PointTree::visit(const Eigen::Vector3f& query, std::vector<Pending>& pending, Result& result) const {
+  std::size_t num_pending = 0;
+  std::int32_t at = 0;
+  while (true) {
+    const Node* node = &nodes_[at];
+    while (node->num_points == 0) {
+      const float value = query[node->axis];
+      const bool first = (value - node->low[3]) + (value - node->high[3]) < 0.0f;
+      const std::int32_t near = first ? at + 1 : node->link, other = first ? node->link : at + 1;
+      pending[num_pending] = {other, sqDistance(nodes_[other], query)};
+      num_pending += pending[num_pending].sq_distance < result.worst() ? 1 : 0;
+      at = near;
+      node = &nodes_[at];
+    }
+    visitLeaf(*node, query, result);
+    do {
+      if (num_pending == 0) return;
+      --num_pending;
+    } while (!(pending[num_pending].sq_distance < result.worst()));
+    at = pending[num_pending].node;
+  }
+}
+
+void PointTree::search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+                       std::vector<float>& sq_distances) const {
+  const auto num_queries = static_cast<std::size_t>(queries.cols());
+  indices.resize(num_queries * num_neighbours);
+  sq_distances.resize(num_queries * num_neighbours);
+  std::vector<Pending> pending(static_cast<std::size_t>(depth_));
+  for (std::size_t i = 0; i < num_queries; ++i) {
+    ClosestPoints closest(&indices[i * num_neighbours], &sq_distances[i * num_neighbours], num_neighbours);
+    visit(queries.col(static_cast<Eigen::Index>(i)), pending, closest);
+  }
+}
+
+void PointTree::searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
+                             std::vector<float>& sq_distances) const {
+  // Points strictly closer than the limit are accepted.
+  const float limit = std::nextafter(max_sq_distance, std::numeric_limits<float>::infinity());
+  sq_distances.resize(indices.size());
+  std::vector<Pending> pending(static_cast<std::size_t>(depth_));
+  for (Eigen::Index i = 0; i < queries.cols(); ++i) {
+    const float guessed = indices[i] < 0 ? limit : (points_.col(indices[i]) - queries.col(i)).squaredNorm();
+    ClosestPoint closest(guessed < limit ? indices[i] : -1, std::min(guessed, limit));
+    visit(queries.col(i), pending, closest);
+    indices[i] = closest.index();
+    sq_distances[i] = indices[i] < 0 ? std::numeric_limits<float>::infinity() : closest.worst();
+  }
+}
+
+ClosestPointSearch::Ptr makeTreeSearch(const PointsRef& points) {
+  return std::make_shared<PointTree>(points);
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,91 @@
+#include "core/neighbours/search/point_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/base/random.h"
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+struct NamedPoints {
+  std::string name;
+  Points points;
+};
+
+/// Points of a lattice: most distances between them occur many times.
+Points lattice(int side) {
+  Points points(3, side * side * side);
+  for (int i = 0; i < points.cols(); ++i)
+    points.col(i) = Eigen::Array3i(i % side, i / side % side, i / side / side).cast<float>() * 0.25f;
+  return points;
+}
+
+std::vector<NamedPoints> pointSets() {
+  const Points blob = moved(asymmetricBlob(3000, 5), randomPose(4)).cloud();
+  Points copies(3, 60), spiral(3, 300);
+  for (int i = 0; i < copies.cols(); ++i) copies.col(i) = blob.col(i / 20);
+  // Each point is half as far from the origin as the one before: the tree is as deep as there are points.
+  for (int i = 0; i < spiral.cols(); ++i)
+    spiral.col(i) = std::ldexp(1.0f, -i / 3) * Eigen::Vector3f(i % 3 == 0, i % 3 == 1, i % 3 == 2);
+  return {{"blob", blob}, {"lattice", lattice(9)}, {"copies", copies}, {"spiral", spiral}, {"one", blob.leftCols(1)}};
+}
+
+/// Places on, near and far from the points.
+Points queriesFor(const Points& points) {
+  RandomStream random(3);
+  const float extent = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).maxCoeff();
+  Points queries(3, 4 * points.cols());
+  for (Eigen::Index i = 0; i < queries.cols(); ++i) {
+    const float off = i % 4 == 0 ? 0.0f : extent * std::pow(0.1f, static_cast<float>(i % 4 - 1));
+    const Eigen::Vector3f move(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+    queries.col(i) = points.col(i / 4) + off * move;
+  }
+  return queries;
+}
+
+TEST(PointTree, GivesTheAnswersOfFlannAlsoWherePointsAreEquallyFar) {
+  for (const auto& [name, points] : pointSets()) {
+    const PointTree tree(points);
+    const ClosestPointSearch::Ptr flann = makeFlannSearch(points);
+    const Points queries = queriesFor(points);
+    for (const int count : {1, 5, 9, 17}) {
+      if (count > points.cols()) continue;
+      std::vector<int> indices, expected;
+      std::vector<float> sq_distances, expected_sq;
+      tree.search(queries, count, indices, sq_distances);
+      flann->search(queries, count, expected, expected_sq);
+      EXPECT_EQ(indices, expected) << name << ", " << count << " neighbours";
+      EXPECT_EQ(sq_distances, expected_sq) << name << ", " << count << " neighbours";
+    }
+  }
+}
+
+TEST(PointTree, GivesTheAnswersOfFlannWithinALimit) {
+  for (const auto& [name, points] : pointSets()) {
+    const PointTree tree(points);
+    const ClosestPointSearch::Ptr flann = makeFlannSearch(points);
+    const Points queries = queriesFor(points);
+    const auto size = static_cast<std::size_t>(queries.cols());
+    std::vector<int> guesses(size);
+    for (std::size_t i = 0; i < size; ++i) guesses[i] = static_cast<int>(7 * i % points.cols());
+    for (const float limit : {0.0f, 1e-4f, 0.0625f, 1e6f}) {
+      for (const std::vector<int>& guess : {std::vector<int>(size, -1), guesses}) {
+        std::vector<int> indices = guess, expected = guess;
+        std::vector<float> sq_distances, expected_sq;
+        tree.searchWithin(queries, limit, indices, sq_distances);
+        flann->searchWithin(queries, limit, expected, expected_sq);
+        EXPECT_EQ(indices, expected) << name << ", limit " << limit;
+        EXPECT_EQ(sq_distances, expected_sq) << name << ", limit " << limit;
+      }
+    }
+  }
+}
+
+}  // namespace
