@@ -11,6 +11,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/geometry/viewing_frame.h"
+#include "core/scan/picture_frame.h"
 #include "core/scan/range_image.h"
 
 namespace pcl_symmetry {
@@ -79,7 +80,7 @@ Visibility::Visibility(const Projection& projection, int width, int height, std:
   if (width < 1 || height < 1 || depths.size() != static_cast<std::size_t>(width) * height)
     throw std::invalid_argument("depths: size " + std::to_string(depths.size()) + ", must be width * height > 0");
   pictures_.push_back(
-      {projection, width, height, std::make_shared<const std::vector<float>>(std::move(depths)), outside});
+      {projection, width, height, std::make_shared<const std::vector<float>>(std::move(depths)), outside, 1.0, {}});
 }
 
 std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
@@ -90,9 +91,14 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, FieldOfView::Cone);
   if (static_cast<Eigen::Index>(seen.places.size()) < points.cols()) return std::nullopt;
   RangeImage image = rangeImage(seen, kMaxPixels, std::numeric_limits<std::size_t>::max());
-  // Rays beside the object met nothing either: their space is free.
-  return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
-                    std::move(image.depths), kBackground);
+  // Rays beside the object met nothing either: their space is free, as far as the picture reached.
+  Visibility visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width,
+                        image.grid.height, std::move(image.depths), kBackground);
+  const Eigen::Matrix3d to_places = image.grid.toPixels().inverse();
+  for (const FrameSide& side : frameSides(seen.places))
+    visibility.pictures_.front().sides.emplace_back(
+        to_places.transpose() * Eigen::Vector3d(side.normal.x(), side.normal.y(), -side.offset));
+  return visibility;
 }
 
 std::optional<Visibility> Visibility::ofScene(const PointsRef& points, const Eigen::Vector3d& viewpoint,
@@ -131,6 +137,8 @@ Visibility Visibility::withSupport(const Eigen::Vector4d& support, double margin
 double Visibility::Picture::depthBehind(const Eigen::Vector3d& x) const {
   const Eigen::Vector3d image = projection.leftCols<3>() * x + projection.col(3);
   if (!(image.z() > 0.0)) return std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& side : sides)
+    if (side.dot(image) > 0.0) return std::numeric_limits<double>::infinity();
   const double u = image.x() / image.z() + 0.5, v = image.y() / image.z() + 0.5;
   const bool inside = u >= 0.0 && v >= 0.0 && u < width && v < height;
   return image.z() - static_cast<double>(inside ? depth(static_cast<int>(u), static_cast<int>(v)) : outside);

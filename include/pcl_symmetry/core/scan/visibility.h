@@ -38,7 +38,9 @@ public:
   Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside = kNoRay);
 
   /// A range image of points without order: the nearest point in each pixel. The size of the pixels follows the
-  /// distance between the points in the picture; small gaps between the points are closed.
+  /// distance between the points in the picture; small gaps between the points are closed. Space beside the points is
+  /// free, but for that beyond a side of the scanner's picture: where the last of the rows that the points lie in is as
+  /// long as those before it, the picture cut the object off.
   /// \param points 3 x N, finite.
   /// \param viewpoint in the frame of the points.
   /// \return nothing without a point, or if the viewpoint is among the points: they do not lie in a cone of 75 degrees
@@ -102,6 +104,8 @@ private:
     std::shared_ptr<const std::vector<float>> depths;  // in the units that the picture was taken in
     float outside;
     double unit = 1.0;  // of this frame, in units of the depths
+    // Lines in homogeneous pixels at which the picture cut the object: no ray passed where their product is positive.
+    std::vector<Eigen::Vector3d> sides;
 
     float depth(int u, int v) const {
       return static_cast<float>((*depths)[static_cast<std::size_t>(v) * width + u] / unit);
