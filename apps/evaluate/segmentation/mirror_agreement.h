@@ -1,13 +1,17 @@
 /// Whether the segments of a symmetric surface are each other's mirror images.
 #pragma once
 
-#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
+#include <vector>
+
+#include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/core/surface/surface_graph.h"
 
 namespace pcl_symmetry::apps {
 
-/// Share of the area whose reflection in the strongest global plane lies in the segment that is said to be the image of
-/// its own, in [0, 1]. Global is a plane that reflects \p min_share of the area onto the surface; NaN where there is
-/// none.
-double mirrorAgreement(const SurfaceGraph& graph, const Segmentation& segmentation, double min_share = 0.95);
+/// Share of the area whose reflection in a plane lies in the partner of its segment, in [0, 1]. The partner of a
+/// segment is the one that receives most of its reflection. The plane comes from elsewhere: nothing that made the
+/// labels is asked.
+/// \param labels one per element, from 0.
+double mirrorAgreement(const SurfaceGraph& graph, const std::vector<int>& labels, const ReflectionPlane& plane);
 
 }  // namespace pcl_symmetry::apps

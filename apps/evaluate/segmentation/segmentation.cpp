@@ -11,6 +11,8 @@
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/face_labels.h"
 #include "common/shape_output/shape_output.h"
+#include "evaluate/people/segment_files.h"
+#include "evaluate/references/reference_symmetries.h"
 #include "evaluate/segmentation/mirror_agreement.h"
 #include "evaluate/segmentation/segmentation_methods.h"
 #include "evaluate/segmentation/segmentation_report.h"
@@ -24,6 +26,8 @@ namespace fs = boost::filesystem;
 
 namespace {
 
+// Points that the reference planes are measured with. chosen: the share of a plane is then good to 0.004.
+constexpr int kReferenceSamples = 5000;
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();  // derived: the value that is no distance
 
 struct EvaluateSegmentationOptions {
@@ -32,7 +36,7 @@ struct EvaluateSegmentationOptions {
   std::vector<double> remainders;
   int modulus = 4;
   std::optional<std::string> methods, segments_folder, csv;
-  bool categories = false;
+  bool categories = false, mirrored = false;
   CommonOptions common;
 };
 
@@ -47,28 +51,16 @@ CommandLine commandLine(EvaluateSegmentationOptions& o) {
                "only names that are numbers and leave these remainders by -modulus")
       .number("modulus", o.modulus, Range::closed(1, 1'000'000), "for -remainders")
       .text("methods", "A,B,...", o.methods,
-            "human, one, k-means, paper-1 to paper-4 (by depth), symmetry, concavity, all (merging by evidence), "
-            "points (a cloud of the mesh) (human,one,k-means,all)")
+            "human, one, k-means; Section 5.3: paper-1 to paper-4 (by depth), letter-1 to letter-4 (to the letter); "
+            "merging by evidence: nothing, symmetry, concavity, no-symmetry, all; all, but one step: one-division, "
+            "no-agreement, no-cut; points (a cloud of the mesh) (human,one,k-means,all)")
       .text("segments", "DIR", o.segments_folder, "also judge 12.seg ... that another program wrote")
       .flag("categories", o.categories, "Rand distance by category of the benchmark")
+      .flag("mirrored", o.mirrored, "also share of the area that agrees with its mirror image, seconds a model")
       .text("csv", "FILE", o.csv, "a row for each method and model")
       .common(o.common, kJson | kThreads | kQuiet);
   addSelectionFlags(line, o.selection);
   return line;
-}
-
-/// The .seg files of a model in its own folder, or beside those of the others.
-std::vector<std::string> referencesOf(const std::string& folder, const std::string& model) {
-  std::vector<std::string> paths;
-  const fs::path own = fs::path(folder) / model;
-  const bool has_own = fs::is_directory(own);
-  for (const fs::directory_entry& entry : fs::directory_iterator(has_own ? own : fs::path(folder))) {
-    const fs::path& path = entry.path();
-    if (path.extension() != ".seg") continue;
-    if (has_own || boost::starts_with(path.stem().string(), model + "_")) paths.push_back(path.string());
-  }
-  std::sort(paths.begin(), paths.end());
-  return paths;
 }
 
 bool leavesRemainder(const std::string& name, const std::vector<double>& remainders, int modulus) {
@@ -153,24 +145,44 @@ private:
     if (!shape.mesh) throw InputError(model.path + ": has no faces");
     const SegmentationComparison comparison(*shape.mesh);
     std::vector<PreparedSegmentation> references;
-    for (const std::string& path : referencesOf(options_.references, model.name))
+    for (const std::string& path : segmentFilesOf(options_.references, model.name))
       references.push_back(prepare(comparison, path, readFaceLabels(path)));
     if (references.empty()) {
       console_.warn("left out: " + model.path + ": no .seg file in " + options_.references);
       return;
     }
-    if (people_ && references.size() > 1) addPeople(model, comparison, references);
+    const std::optional<Mirror> mirror = options_.mirrored ? mirrorOf(*shape.mesh) : std::nullopt;
+    if (people_ && references.size() > 1) addPeople(model, comparison, references, mirror);
     for (const NamedSegmentation& method : methods_) {
       Stopwatch watch;
       const Segmentation segmentation = method.segment(*shape.mesh);
       const double ms = watch.lap();
       add(method.name, model, comparison, references, prepare(comparison, method.name, segmentation.labels), ms);
-      results_.back().mirror_agreement = mirrorAgreement(meshGraph(*shape.mesh), segmentation);
+      results_.back().mirror_agreement = agreementAcross(mirror, segmentation.labels);
     }
     if (options_.segments_folder) {
       const std::string path = (fs::path(*options_.segments_folder) / (model.name + ".seg")).string();
       add("-segments", model, comparison, references, prepare(comparison, path, readFaceLabels(path)), 0.0);
     }
+  }
+
+  /// A mesh and the plane that maps it onto itself, from the search of references.
+  struct Mirror {
+    SurfaceGraph graph;
+    ReflectionPlane plane;
+  };
+
+  std::optional<Mirror> mirrorOf(const pcl::PolygonMesh& mesh) const {
+    ReferenceOptions search;
+    search.num_samples = kReferenceSamples;
+    search.num_threads = options_.common.threads;
+    const ReferenceSymmetries references = findReferenceSymmetries(mesh, search);
+    if (references.planes.empty()) return std::nullopt;
+    return Mirror{meshGraph(mesh), references.planes.front().plane};
+  }
+
+  static double agreementAcross(const std::optional<Mirror>& mirror, const std::vector<int>& labels) {
+    return mirror ? mirrorAgreement(mirror->graph, labels, mirror->plane) : kUndefined;
   }
 
   static PreparedSegmentation prepare(const SegmentationComparison& comparison, const std::string& name,
@@ -183,18 +195,19 @@ private:
   }
 
   void addPeople(const Model& model, const SegmentationComparison& comparison,
-                 const std::vector<PreparedSegmentation>& people) {
+                 const std::vector<PreparedSegmentation>& people, const std::optional<Mirror>& mirror) {
     MeanDistance mean;
-    double num_segments = 0.0, smallest = 0.0;
+    double num_segments = 0.0, smallest = 0.0, agreement = 0.0;
     for (std::size_t i = 0; i < people.size(); ++i) {
       for (std::size_t j = 0; j < people.size(); ++j)
         if (i != j) mean.add(comparison.compare(people[i], people[j]));
       num_segments += people[i].num_segments;
       smallest += smallestShare(people[i]);
+      agreement += agreementAcross(mirror, people[i].labels);
     }
     const auto count = static_cast<double>(people.size());
     results_.push_back({"human", model.name, benchmarkCategory(model.name), mean.mean(), num_segments / count,
-                        smallest / count, kUndefined, kUndefined});
+                        smallest / count, agreement / count, kUndefined});
   }
 
   void add(const std::string& method, const Model& model, const SegmentationComparison& comparison,

@@ -59,8 +59,9 @@ NamedSegmentation withOptions(const std::string& name, SegmentationOptions optio
 }
 
 /// The paper's, to a depth.
-NamedSegmentation splitting(const std::string& name, int depth, int num_threads) {
+NamedSegmentation splitting(const std::string& name, int depth, bool as_published, int num_threads) {
   SegmentationOptions options;
+  options.splitting.as_published = as_published;
   options.method = SegmentationMethod::Splitting;
   options.splitting.depth = depth;
   return withOptions(name, options, num_threads);
@@ -95,10 +96,22 @@ NamedSegmentation cloudOfMesh(int num_threads) {
 std::vector<NamedSegmentation> segmentationMethods(const std::vector<std::string>& names, int num_threads) {
   std::vector<NamedSegmentation> known = {{"one", oneSegment}, {"k-means", clustersOfCenters}};
   for (int depth = 1; depth <= kMaxDepth; ++depth)
-    known.push_back(splitting("paper-" + std::to_string(depth), depth, num_threads));
+    for (const bool letter : {false, true})
+      known.push_back(splitting((letter ? "letter-" : "paper-") + std::to_string(depth), depth, letter, num_threads));
+  known.push_back(merging("nothing", MergingEvidence::Nothing, num_threads));
   known.push_back(merging("symmetry", MergingEvidence::Symmetry, num_threads));
   known.push_back(merging("concavity", MergingEvidence::SymmetryAndConcavity, num_threads));
+  known.push_back(merging("no-symmetry", MergingEvidence::AllButSymmetry, num_threads));
   known.push_back(merging("all", MergingEvidence::All, num_threads));
+  SegmentationOptions without;
+  without.merging.num_divisions = 1;
+  known.push_back(withOptions("one-division", without, num_threads));
+  without = {};
+  without.merging.agree_across_planes = false;
+  known.push_back(withOptions("no-agreement", without, num_threads));
+  without = {};
+  without.merging.cut_band = 0.0;
+  known.push_back(withOptions("no-cut", without, num_threads));
   known.push_back(cloudOfMesh(num_threads));
   std::vector<NamedSegmentation> chosen;
   for (const std::string& name : names) {

@@ -17,12 +17,10 @@ struct NamedSegmentation {
   std::function<Segmentation(const pcl::PolygonMesh&)> segment;
 };
 
-/// Baselines and methods of the library.
-/// \param names "one", "k-means", "paper-1" to "paper-4" (by depth), "symmetry",
-/// "concavity" and "all" (merging, by evidence), "points" (the last on a cloud).
+/// Baselines, methods of the library, and the default without one of its steps.
+/// \param names as `pcl_symmetry_evaluate segmentation -h` lists them.
 /// \param num_threads 0 = all.
-/// \throws
-/// UsageError for an unknown name, with those that are known.
+/// \throws UsageError for an unknown name, with those that are known.
 std::vector<NamedSegmentation> segmentationMethods(const std::vector<std::string>& names, int num_threads);
 
 }  // namespace pcl_symmetry::apps

@@ -33,20 +33,48 @@ public:
   void add(double value) {
     if (!std::isfinite(value)) return;
     sum_ += value;
+    sum_of_squares_ += value * value;
     ++count_;
   }
   double value() const { return count_ > 0 ? sum_ / count_ : std::nan(""); }
 
+  /// Half the width of the 95 % interval, the values taken as independent; NaN for fewer than two.
+  double halfWidth() const {
+    constexpr double kQuantile = 1.96;  // derived: 97.5 % of a normal distribution lie below it
+    if (count_ < 2) return std::nan("");
+    const double variance = std::max(0.0, sum_of_squares_ - sum_ * sum_ / count_) / (count_ - 1);
+    return kQuantile * std::sqrt(variance / count_);
+  }
+
 private:
-  double sum_ = 0.0;
+  double sum_ = 0.0, sum_of_squares_ = 0.0;
   int count_ = 0;
 };
 
 template <typename Value>
-double meanOver(const std::vector<const SegmentationResult*>& results, const Value& value) {
+Mean summaryOf(const std::vector<const SegmentationResult*>& results, const Value& value) {
   Mean mean;
   for (const SegmentationResult* result : results) mean.add(value(*result));
-  return mean.value();
+  return mean;
+}
+
+template <typename Value>
+double meanOver(const std::vector<const SegmentationResult*>& results, const Value& value) {
+  return summaryOf(results, value).value();
+}
+
+double randOf(const SegmentationResult& result) {
+  return result.distance.rand;
+}
+
+/// Rand distances minus those of another method on the same models.
+Mean differenceOf(const std::vector<const SegmentationResult*>& results,
+                  const std::vector<const SegmentationResult*>& others) {
+  Mean mean;
+  for (const SegmentationResult* result : results)
+    for (const SegmentationResult* other : others)
+      if (other->model == result->model) mean.add(randOf(*result) - randOf(*other));
+  return mean;
 }
 
 /// Results with the same key, in the order in which the keys first appear.
@@ -92,6 +120,21 @@ double leastMirrorAgreement(const std::vector<const SegmentationResult*>& result
   return least;
 }
 
+/// What each method loses against one, model by model: most of the spread over models falls out of the difference.
+void printDifferences(const std::vector<SegmentationResult>& results) {
+  const auto methods = byMethod(results);
+  auto reference =
+      std::find_if(methods.begin(), methods.end(), [](const auto& method) { return method.first == "all"; });
+  if (reference == methods.end() || methods.size() < 2) return;
+  std::printf("\n%-22s %8s\n", "Rand minus that of all", "95 %");
+  for (const auto& [name, own] : methods) {
+    if (name == reference->first) continue;
+    const Mean difference = differenceOf(own, reference->second);
+    std::printf("%-22s %+8.4f  (%+.4f to %+.4f)\n", name.c_str(), difference.value(),
+                difference.value() - difference.halfWidth(), difference.value() + difference.halfWidth());
+  }
+}
+
 void printCategories(const std::vector<SegmentationResult>& results) {
   const auto methods = byMethod(results);
   std::printf("\n%-16s", "Rand distance");
@@ -103,7 +146,7 @@ void printCategories(const std::vector<SegmentationResult>& results) {
       std::vector<const SegmentationResult*> own;
       for (const SegmentationResult* result : method.second)
         if (result->category == category.first) own.push_back(result);
-      const double rand = meanOver(own, [](const SegmentationResult& r) { return r.distance.rand; });
+      const double rand = meanOver(own, randOf);
       std::printf(" %14s", shown(rand, "%.4f").c_str());
     }
     std::printf("\n");
@@ -114,13 +157,14 @@ void printCategories(const std::vector<SegmentationResult>& results) {
 
 void printTable(const std::vector<SegmentationResult>& results, bool categories) {
   std::printf("%-22s %6s", "", "models");
-  for (const Measure& measure : kMeasures) std::printf(" %8s", measure.title);
+  for (const Measure& measure : kMeasures) std::printf(&measure == kMeasures ? " %8s     +/-" : " %8s", measure.title);
   std::printf(" %8s %14s %9s\n", "segments", "mirrored least", "ms");
   for (const auto& [name, own] : byMethod(results)) {
     std::printf("%-22s %6zu", name.c_str(), own.size());
     for (const Measure& measure : kMeasures) {
       const double mean = meanOver(own, [&](const SegmentationResult& r) { return r.distance.*measure.value; });
       std::printf(" %8s", shown(mean, "%.4f").c_str());
+      if (&measure == kMeasures) std::printf(" %7s", shown(summaryOf(own, randOf).halfWidth(), "%.4f").c_str());
     }
     const double num_segments = meanOver(own, [](const SegmentationResult& r) { return r.num_segments; });
     const double ms = meanOver(own, [](const SegmentationResult& r) { return r.milliseconds; });
@@ -129,7 +173,10 @@ void printTable(const std::vector<SegmentationResult>& results, bool categories)
                 shown(leastMirrorAgreement(own), "%.3f").c_str(), shown(ms, "%.0f").c_str());
   }
   std::printf(
-      "mirrored: share of the area whose mirror image lies in the paired segment, on models with a global plane.\n");
+      "+/-: half of the 95 %% interval over models. mirrored: share of the area whose image in the reference plane "
+      "lies\n"
+      "in the partner of its segment, on models with such a plane.\n");
+  printDifferences(results);
   if (categories) printCategories(results);
 }
 
@@ -140,13 +187,13 @@ nlohmann::json toJson(const std::vector<SegmentationResult>& results) {
     for (const Measure& measure : kMeasures)
       method[measure.name] =
           orNull(meanOver(own, [&](const SegmentationResult& r) { return r.distance.*measure.value; }));
+    method["rand_half_width"] = orNull(summaryOf(own, randOf).halfWidth());
     method["num_segments"] = orNull(meanOver(own, [](const SegmentationResult& r) { return r.num_segments; }));
     method["mirror_agreement"] = orNull(meanOver(own, mirrorAgreementOf));
     method["least_mirror_agreement"] = orNull(leastMirrorAgreement(own));
     method["milliseconds"] = orNull(meanOver(own, [](const SegmentationResult& r) { return r.milliseconds; }));
     for (const auto& [category, models] : byCategory(own))
-      method["rand_by_category"][category] =
-          orNull(meanOver(models, [](const SegmentationResult& r) { return r.distance.rand; }));
+      method["rand_by_category"][category] = orNull(meanOver(models, randOf));
     json.push_back(method);
   }
   return json;

@@ -15,7 +15,7 @@ struct SegmentationResult {
   SegmentationDistance distance;  ///< mean over the people
   double num_segments = 0.0;
   double smallest_share = 0.0;    ///< of the faces that the smallest segment has
-  double mirror_agreement = 0.0;  ///< mirrorAgreement()
+  double mirror_agreement = 0.0;  ///< mirrorAgreement() across the reference plane; NaN where none was looked for
   double milliseconds = 0.0;
 };
 

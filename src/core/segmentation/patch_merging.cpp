@@ -2,66 +2,72 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
+#include "core/base/parallel.h"
+#include "core/segmentation/consensus/consensus.h"
 #include "core/segmentation/evidence/part_evidence.h"
 #include "core/segmentation/merging/border_smoothing.h"
 #include "core/segmentation/merging/fragments.h"
 #include "core/segmentation/merging/mirrored_labels.h"
-#include "core/segmentation/merging/region_merging.h"
 #include "core/segmentation/segment_tree.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: rough shares of the time after which the evidence and the labels are done. They are for display only.
-constexpr double kEvidenceShare = 0.7, kLabelsShare = 0.8;
+/// chosen: rough shares of the time after which the planes and the divisions are done. They are for display only.
+constexpr double kPlanesShare = 0.3, kDivisionsShare = 0.8;
 
-/// Regions of whole patches that are parts.
-Regions mergedPatches(const PartEvidence& evidence, const std::optional<GlobalPlane>& plane,
-                      const SegmentationOptions& options) {
+/// The plane across which labels have to agree, and the element at the reflection of each.
+struct Mirror {
+  GlobalPlane global;
+  std::vector<int> reflected;
+};
+
+std::optional<Mirror> mirrorOf(const WholeEvidence& whole, const SegmentationOptions& options) {
+  if (!options.merging.agree_across_planes || options.num_parts > 0) return std::nullopt;
+  const std::optional<GlobalPlane> global = globalPlane(whole.planes());
+  if (!global) return std::nullopt;
+  return Mirror{*global, reflectedElements(whole.graph(), global->plane)};
+}
+
+/// Borders that follow the surface instead of the patches, equal on both sides of the mirror, and no small segments.
+std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> labels, const std::optional<Mirror>& mirror,
+                               int most_segments, const SegmentationOptions& options) {
   const MergingOptions& merging = options.merging;
-  Regions regions(evidence);
-  const MergeSequence sequence = mergeRegions(regions, merging.evidence);
-  if (options.num_parts > 0) {
-    const int num_merges = evidence.size() - std::min(evidence.size(), options.num_parts);
-    return merged(std::move(regions), sequence.merges,
-                  std::min(sequence.merges.size(), static_cast<std::size_t>(num_merges)));
+  const double least_area = options.num_parts == 0 ? merging.least_area * graph.area() : 0.0;
+  labels = joinSmallSegments(graph, std::move(labels), least_area, most_segments);
+  if (merging.cut_band > 0.0) {
+    BorderCutOptions cut;
+    cut.band = merging.cut_band * std::sqrt(graph.area());
+    cut.concavity_weight = usesConcavity(merging.evidence) ? merging.concavity_weight : 0.0;
+    labels = joinCrumbs(graph, smoothBorders(graph, std::move(labels), cut), merging.least_area * graph.area());
   }
-  regions = merged(std::move(regions), sequence.merges, sequence.num_likely);
-  regions = joinFragments(std::move(regions), evidence, merging.least_area);
-  if (plane) regions = joinFragments(mirroredRegions(regions, evidence, *plane), evidence, merging.least_area);
-  return regions;
+  if (mirror) labels = mirroredLabels(graph, labels, mirror->global.plane, mirror->reflected);
+  return joinSmallSegments(graph, std::move(labels), least_area, most_segments);
 }
 
-/// The region of each element, with borders that follow the surface instead of the patches.
-LabelledRegions labelledElements(const SurfaceGraph& graph, const PartEvidence& evidence, Regions regions,
-                                 const SegmentationOptions& options) {
-  const MergingOptions& merging = options.merging;
-  std::vector<int> labels;
-  for (const int patch : evidence.patches.of_element) labels.push_back(regions.ofPatches()[patch]);
-  LabelledRegions labelled{std::move(regions), std::move(labels)};
-  if (merging.cut_band == 0.0) return labelled;
-  BorderCutOptions cut;
-  cut.band = merging.cut_band * std::sqrt(graph.area());
-  cut.concavity_weight = merging.evidence != MergingEvidence::Symmetry ? merging.concavity_weight : 0.0;
-  const double least_area = merging.least_area * graph.area();
-  labelled.labels = joinCrumbs(graph, smoothBorders(graph, std::move(labelled.labels), cut), least_area);
-  if (options.num_parts > 0) return labelled;
-  return joinEmptiedRegions(std::move(labelled), graph, evidence, least_area);
-}
-
-/// Segments with the tree of their further merges.
-Segmentation segmentsOf(const SurfaceGraph& graph, const PartEvidence& evidence, const LabelledRegions& labelled,
-                        MergingEvidence kind) {
-  const Regions& regions = labelled.regions;
+/// Segments with the tree of their further merges and their images, by the patches of one division.
+Segmentation segmentsOf(const SurfaceGraph& graph, const PartEvidence& evidence, std::vector<int> labels,
+                        const MergeWeights& weights) {
   Segmentation result;
-  std::vector<int> segment_of_region(static_cast<std::size_t>(regions.size()), -1);
-  for (int r = 0; r < regions.size(); ++r)
-    if (regions.exists(r)) segment_of_region[r] = result.num_segments++;
-  for (const int region : labelled.labels) result.labels.push_back(segment_of_region[region]);
-  result.tree = segmentTree(regions.ofPatches(), segment_of_region, mergeRegions(regions, kind).merges);
+  result.labels = std::move(labels);
+  result.num_segments = 1 + *std::max_element(result.labels.begin(), result.labels.end());
+  const std::vector<int> segment_of_patch = segmentsOfPatches(graph, evidence.patches, result.labels);
+  std::vector<int> segment_of_region(segment_of_patch.size(), -1), first(segment_of_patch.size(), -1);
+  Regions regions(evidence);
+  for (int p = 0; p < evidence.size(); ++p) {
+    const int segment = segment_of_patch[p];
+    if (first[segment] >= 0) {
+      regions.merge(first[segment], p);
+    } else {
+      first[segment] = p;
+      segment_of_region[p] = segment;
+    }
+  }
+  result.tree = segmentTree(regions.ofPatches(), segment_of_region, mergeRegions(regions, weights).merges);
   result.tree[0].planes = evidence.planes;
   result = numberedByArea(graph, std::move(result));
   result.images = segmentImages(evidence, result.labels, result.num_segments);
@@ -74,15 +80,24 @@ Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptio
   const auto tell = [&](double share) {
     if (options.progress) options.progress(share);
   };
-  const PartEvidence evidence = partEvidence(graph, options);
-  tell(kEvidenceShare);
-  const bool agree = options.merging.agree_across_planes && options.num_parts == 0;
-  const std::optional<GlobalPlane> plane = agree ? globalPlane(evidence) : std::nullopt;
-  Regions regions = mergedPatches(evidence, plane, options);
-  const LabelledRegions labelled = labelledElements(graph, evidence, std::move(regions), options);
-  tell(kLabelsShare);
-  Segmentation result = segmentsOf(graph, evidence, labelled, options.merging.evidence);
-  if (plane) result.labels = mirroredLabels(graph, result.labels, result.images[plane->index], plane->plane);
+  const WholeEvidence whole(graph, options);
+  tell(kPlanesShare);
+  const MergeWeights& weights = fittedWeights(options.merging.evidence);
+  const auto num_divisions = static_cast<std::size_t>(options.merging.num_divisions);
+  std::vector<MergedDivision> divisions(num_divisions);
+  std::optional<PartEvidence> first;
+  parallelBlocks(num_divisions, options.num_threads, [&](std::size_t d) {
+    PartEvidence evidence = whole.ofDivision(static_cast<int>(d), options.merging.evidence);
+    divisions[d] = mergedDivision(evidence, weights, options.num_parts);
+    if (d == 0) first = std::move(evidence);
+  });
+  tell(kDivisionsShare);
+  const std::optional<Mirror> mirror = mirrorOf(whole, options);
+  for (std::size_t d = 0; mirror && d < num_divisions; ++d)
+    divisions.push_back(reflectedDivision(divisions[d], mirror->reflected));
+  std::vector<int> labels =
+      refinedLabels(graph, consensus(graph, divisions, options.num_parts), mirror, first->size(), options);
+  Segmentation result = segmentsOf(graph, *first, std::move(labels), weights);
   tell(1.0);
   return result;
 }

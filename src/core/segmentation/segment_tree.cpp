@@ -61,6 +61,31 @@ std::vector<SegmentNode> segmentTree(const std::vector<int>& region_of_patch, co
   return tree;
 }
 
+std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& patches, const std::vector<int>& labels) {
+  const int num_segments = 1 + *std::max_element(labels.begin(), labels.end());
+  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(num_segments, patches.size());
+  for (int i = 0; i < graph.size(); ++i) shared(labels[i], patches.of_element[i]) += graph.areas[i];
+  std::vector<int> segment(static_cast<std::size_t>(patches.size()), -1);
+  // The segment with the smallest hold on any patch chooses first.
+  std::vector<int> order(static_cast<std::size_t>(num_segments));
+  std::iota(order.begin(), order.end(), 0);
+  const Eigen::VectorXd most = shared.rowwise().maxCoeff();
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return most[a] < most[b]; });
+  for (const int s : order) {
+    int best = -1;
+    for (int p = 0; p < patches.size(); ++p)
+      if (segment[p] < 0 && (best < 0 || shared(s, p) > shared(s, best))) best = p;
+    if (best >= 0) segment[best] = s;
+  }
+  for (int p = 0; p < patches.size(); ++p) {
+    if (segment[p] >= 0) continue;
+    Eigen::Index largest = 0;
+    shared.col(p).maxCoeff(&largest);
+    segment[p] = static_cast<int>(largest);
+  }
+  return segment;
+}
+
 Segmentation numberedByArea(const SurfaceGraph& graph, Segmentation segmentation) {
   std::vector<double> areas(static_cast<std::size_t>(segmentation.num_segments), 0.0);
   for (int i = 0; i < graph.size(); ++i) areas[segmentation.labels[i]] += graph.areas[i];

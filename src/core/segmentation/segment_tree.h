@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/segmentation/evidence/patches.h"
 #include "core/segmentation/merging/region_merging.h"
 #include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 
@@ -15,6 +16,10 @@ namespace pcl_symmetry {
 /// \return the root first, children after their parents.
 std::vector<SegmentNode> segmentTree(const std::vector<int>& region_of_patch, const std::vector<int>& segment_of_region,
                                      const std::vector<Merge>& merges);
+
+/// A segment for each patch: the one that holds most of it, but each segment has at least one patch.
+/// \param labels one per element, from 0; at most as many segments as patches.
+std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& patches, const std::vector<int>& labels);
 
 /// Numbers segments by falling area, in labels and tree.
 /// \param segmentation without images.

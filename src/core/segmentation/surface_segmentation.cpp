@@ -46,6 +46,7 @@ void SplittingOptions::validate() const {
 
 void MergingOptions::validate() const {
   check(num_patches >= 1, "num_patches", num_patches, ">= 1");
+  check(num_divisions >= 1, "num_divisions", num_divisions, ">= 1");
   check(least_area >= 0.0 && least_area < 1.0, "least_area", least_area, "in [0, 1)");
   check(cut_band >= 0.0, "cut_band", cut_band, ">= 0");
   check(concavity_weight >= 0.0, "concavity_weight", concavity_weight, ">= 0");

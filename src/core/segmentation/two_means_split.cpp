@@ -5,6 +5,7 @@
 
 #include "core/base/k_means.h"
 #include "core/surface/cut/border_cut.h"
+#include "pcl_symmetry/core/neighbours/closest_point_search.h"
 
 namespace pcl_symmetry {
 
@@ -38,6 +39,22 @@ std::pair<int, int> largestPieces(const SurfaceGraph& graph, const std::vector<i
   return {first, second};
 }
 
+/// Gives each element of side -2 the side of the closest element of side 0 or 1.
+std::vector<int> sidesOfClosest(const SurfaceGraph& graph, std::vector<int> side) {
+  std::vector<int> known, unknown;
+  for (std::size_t i = 0; i < side.size(); ++i) {
+    if (side[i] >= 0) known.push_back(static_cast<int>(i));
+    if (side[i] == -2) unknown.push_back(static_cast<int>(i));
+  }
+  if (unknown.empty()) return side;
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  const Points known_centers = graph.centers(Eigen::all, known);
+  makeTreeSearch(known_centers)->search(graph.centers(Eigen::all, unknown), 1, closest, sq_distances);
+  for (std::size_t k = 0; k < unknown.size(); ++k) side[unknown[k]] = side[known[closest[k]]];
+  return side;
+}
+
 }  // namespace
 
 std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::vector<int>& elements,
@@ -49,7 +66,7 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
   std::vector<int> side(static_cast<std::size_t>(graph.size()), -1);
   for (std::size_t i = 0; i < elements.size(); ++i) side[elements[i]] = clusters.labels[i];
 
-  // "the two largest connected components": smaller ones start on the first side and are open to both
+  // "the two largest connected components": the cut assigns the smaller ones; as published, the closer of the two does
   const std::vector<int> pieces = connectedPieces(graph, side);
   const auto [first, second] = largestPieces(graph, pieces);
   if (second < 0) return std::nullopt;
@@ -57,6 +74,11 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
   for (const int element : elements) {
     side[element] = pieces[element] == second ? 1 : 0;
     if (pieces[element] != first && pieces[element] != second) open.push_back(element);
+  }
+  if (options.as_published) {
+    for (const int element : open) side[element] = -2;  // of neither, but of the part
+    side = sidesOfClosest(graph, std::move(side));
+    open.clear();
   }
 
   // "the exact boundary between them"

@@ -29,24 +29,6 @@ std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_piec
   return elements;
 }
 
-/// Elements without a patch get the patch of the closest element that has one.
-std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch) {
-  std::vector<int> reached, missed;
-  for (int i = 0; i < graph.size(); ++i) (patch[i] >= 0 ? reached : missed).push_back(i);
-  if (missed.empty()) return patch;
-  const auto centersOf = [&](const std::vector<int>& elements) {
-    Points centers(3, static_cast<Eigen::Index>(elements.size()));
-    for (std::size_t k = 0; k < elements.size(); ++k)
-      centers.col(static_cast<Eigen::Index>(k)) = graph.centers.col(elements[k]);
-    return centers;
-  };
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  makeTreeSearch(centersOf(reached))->search(centersOf(missed), 1, closest, sq_distances);
-  for (std::size_t k = 0; k < missed.size(); ++k) patch[missed[k]] = patch[reached[closest[k]]];
-  return patch;
-}
-
 /// Patches that grow around seeds; each element belongs to the seed with the shortest way along the surface.
 class GrowingPatches {
 public:
@@ -96,8 +78,26 @@ private:
 
 }  // namespace
 
-std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour) {
+std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch) {
+  std::vector<int> reached, missed;
+  for (int i = 0; i < graph.size(); ++i) (patch[i] >= 0 ? reached : missed).push_back(i);
+  if (missed.empty()) return patch;
+  const auto centersOf = [&](const std::vector<int>& elements) {
+    Points centers(3, static_cast<Eigen::Index>(elements.size()));
+    for (std::size_t k = 0; k < elements.size(); ++k)
+      centers.col(static_cast<Eigen::Index>(k)) = graph.centers.col(elements[k]);
+    return centers;
+  };
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  makeTreeSearch(centersOf(reached))->search(centersOf(missed), 1, closest, sq_distances);
+  for (std::size_t k = 0; k < missed.size(); ++k) patch[missed[k]] = patch[reached[closest[k]]];
+  return patch;
+}
+
+std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour, int first) {
   GrowingPatches patches(graph, concave_detour);
+  if (first >= 0) patches.addSeed(first);
   // The next seed is the element farthest from all seeds. Distances in the queue may be longer than they are now.
   std::priority_queue<std::pair<float, int>> farthest;
   for (const int element : elementsOfLargestPieces(graph, num_patches))

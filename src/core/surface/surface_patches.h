@@ -13,7 +13,12 @@ namespace pcl_symmetry {
 /// \param num_patches >= 1; there may be a few more or fewer patches.
 /// \param concave_detour >= 0, per radian: a step across an edge of concavity c > 0 is 1 + concave_detour * c times as
 /// long.
+/// \param first the element where the first patch grows; -1 for the last element with an area.
 /// \return the patch of each element, from 0.
-std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour);
+std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour, int first = -1);
+
+/// Gives the elements of no patch that of the closest element which has one.
+/// \param patch one per element; -1 for none. One element has a patch.
+std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch);
 
 }  // namespace pcl_symmetry

@@ -34,4 +34,34 @@ TEST(LogisticRegression, StaysFiniteWhereTheCasesCanBeSeparated) {
   EXPECT_GT(found[1], 1.0);
 }
 
+TEST(LogisticRegression, SharesAndWeightsCountAsCasesDo) {
+  // Two cases, one of them three times, are the same as four cases; a share of 1/3 is one of three.
+  LogisticCases cases{Eigen::MatrixXd(2, 2), Eigen::VectorXd(2), Eigen::VectorXd(2), {0, 1}};
+  cases.terms << 1, 0, 1, 1;
+  cases.outcomes << 0.5, 1.0 / 3.0;
+  cases.weights << 40, 30;
+  const Eigen::VectorXd found = fitWeightedLogistic(cases, 0.0, Eigen::VectorXd::Zero(2));
+  EXPECT_NEAR(found[0], 0.0, 1e-3);
+  EXPECT_NEAR(found[1], std::log(0.5), 1e-3) << "log odds of 1/3, less those of 1/2";
+  const Eigen::VectorXd pulled = fitWeightedLogistic(cases, 100.0, Eigen::VectorXd::Zero(2));
+  EXPECT_LT(std::abs(pulled[1]), 0.5 * std::abs(found[1]));
+}
+
+TEST(LogisticRegression, ErrorsShrinkWithTheNumberOfGroups) {
+  RandomStream random(3);
+  const auto errorOf = [&](int num_groups) {
+    constexpr int kCasesOfGroup = 5;
+    const Eigen::Index size = num_groups * kCasesOfGroup;
+    LogisticCases cases{Eigen::MatrixXd::Ones(size, 1), Eigen::VectorXd(size), Eigen::VectorXd::Ones(size), {}};
+    for (Eigen::Index i = 0; i < size; ++i) {
+      cases.outcomes[i] = random.uniform() < 0.5 ? 1.0 : 0.0;
+      cases.groups.push_back(static_cast<int>(i) / kCasesOfGroup);
+    }
+    return groupedErrors(cases, fitWeightedLogistic(cases, 0.0, Eigen::VectorXd::Zero(1)))[0];
+  };
+  // derived: the error of log odds near 0 from n independent cases is 2 / sqrt(n).
+  EXPECT_NEAR(errorOf(400), 2.0 / std::sqrt(2000.0), 0.01);
+  EXPECT_NEAR(errorOf(1600), 2.0 / std::sqrt(8000.0), 0.004);
+}
+
 }  // namespace

@@ -65,26 +65,17 @@ TEST_F(SegmentationDistanceTest, RefusesAnotherNumberOfLabels) {
   EXPECT_THROW(comparison_.prepare({0, 1}), std::invalid_argument);
 }
 
-TEST_F(SegmentationDistanceTest, MirrorImagesLieInPairedSegments) {
+TEST_F(SegmentationDistanceTest, MirrorImagesLieInPartnersOfSegments) {
   // The strip's squares in its own order; across its middle the i-th is the image of the (7 - i)-th.
   const auto graph = pcl_symmetry::meshGraph(*loadShape(folder_.write("strip.off", stripOFF(8))).mesh);
   const Eigen::Vector3d along = (graph.centers.col(7) - graph.centers.col(0)).cast<double>();
   const Eigen::Vector3d middle = 0.5 * (graph.centers.col(7) + graph.centers.col(0)).cast<double>();
   const pcl_symmetry::ReflectionPlane across(along, along.dot(middle));
-  pcl_symmetry::Segmentation segmentation;
-  segmentation.labels = {0, 0, 1, 1, 1, 1, 2, 2};
-  EXPECT_TRUE(std::isnan(mirrorAgreement(graph, segmentation))) << "no planes are known";
-  segmentation.tree.resize(1);
-  segmentation.tree[0].planes = {{pcl_symmetry::ReflectionPlane(Eigen::Vector3d(0, 0, 1), 9.0), 0.5}, {across, 1.0}};
-  segmentation.images = {{2, 1, 0}};
-  EXPECT_EQ(mirrorAgreement(graph, segmentation), 1.0);
-  segmentation.images = {{0, 1, 2}};
-  EXPECT_EQ(mirrorAgreement(graph, segmentation), 0.5) << "the ends are not their own images";
-  segmentation.labels = {0, 0, 0, 1, 1, 1, 2, 2};
-  segmentation.images = {{2, 1, 0}};
-  EXPECT_EQ(mirrorAgreement(graph, segmentation), 0.75) << "the third square and its image do not match";
-  segmentation.tree[0].planes[1].share = 0.9;
-  EXPECT_TRUE(std::isnan(mirrorAgreement(graph, segmentation))) << "not a global plane";
+  EXPECT_EQ(mirrorAgreement(graph, {0, 0, 1, 1, 1, 1, 2, 2}, across), 1.0);
+  EXPECT_EQ(mirrorAgreement(graph, {0, 0, 0, 0, 0, 0, 0, 0}, across), 1.0) << "one segment is its own partner";
+  EXPECT_EQ(mirrorAgreement(graph, {0, 0, 0, 1, 1, 1, 2, 2}, across), 0.75)
+      << "the third square and its image do not match";
+  EXPECT_EQ(mirrorAgreement(graph, {0, 0, 1, 1, 1, 1, 1, 1}, across), 0.75) << "the last two have no partner";
 }
 
 }  // namespace

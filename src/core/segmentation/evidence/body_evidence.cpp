@@ -6,9 +6,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
-#include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/neighbours/triangle_tree.h"
 
 namespace pcl_symmetry {
 
@@ -98,36 +96,34 @@ Eigen::Vector3f innerPlace(const std::vector<SurfacePoint>& samples, const Eigen
   return middle.position - 0.5f * depth * middle.normal;
 }
 
-Eigen::MatrixXf linesOfSight(const Points& places, const TriangleTree& tree, int num_threads) {
+Eigen::MatrixXf linesOfSight(const Points& places, const TriangleTree& tree) {
   const Eigen::Index size = places.cols();
   Eigen::MatrixXf sight = Eigen::MatrixXf::Identity(size, size);
-  parallelBlocks(static_cast<std::size_t>(size), num_threads, [&](std::size_t i) {
-    const auto from = static_cast<Eigen::Index>(i);
+  for (Eigen::Index from = 0; from < size; ++from)
     for (Eigen::Index to = 0; to < from; ++to)
       sight(to, from) = tree.blocks(places.col(from), places.col(to)) ? 0.0f : 1.0f;
-  });
   sight.triangularView<Eigen::StrictlyLower>() = sight.transpose();
   return sight;
 }
 
 }  // namespace
 
-BodyEvidence bodyEvidence(const SurfaceGraph& graph, const Patches& patches, std::uint64_t seed, int num_threads) {
-  const TriangleTree tree(graph.corners, graph.triangles);
+BodyEvidence bodyEvidence(const SurfaceGraph& graph, const TriangleTree& tree, const Patches& patches,
+                          std::uint64_t seed) {
   const auto radius = static_cast<float>(boundingBall(graph.centers).radius);
   const auto samples = samplePatches(graph, patches, radius, seed);
   BodyEvidence evidence;
   evidence.thickness.assign(samples.size(), 0.0);
   Points inner = patches.centers;
-  parallelBlocks(samples.size(), num_threads, [&](std::size_t p) {
-    if (samples[p].empty()) return;
+  for (std::size_t p = 0; p < samples.size(); ++p) {
+    if (samples[p].empty()) continue;
     RandomStream random(seed, p);
     const float depth = depthBehind(samples[p], tree, random);
     const auto column = static_cast<Eigen::Index>(p);
     evidence.thickness[p] = depth / radius;
     inner.col(column) = innerPlace(samples[p], patches.centers.col(column), depth, tree);
-  });
-  evidence.sight = linesOfSight(inner, tree, num_threads);
+  }
+  evidence.sight = linesOfSight(inner, tree);
   return evidence;
 }
 

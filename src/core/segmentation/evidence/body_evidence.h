@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/neighbours/triangle_tree.h"
 #include "core/segmentation/evidence/patches.h"
 
 namespace pcl_symmetry {
@@ -18,9 +19,10 @@ struct BodyEvidence {
 };
 
 /// Sends rays through the body behind each patch.
+/// \param tree of the triangles of the graph.
 /// \param seed of rays and samples.
-/// \param num_threads 0: one per core.
-BodyEvidence bodyEvidence(const SurfaceGraph& graph, const Patches& patches, std::uint64_t seed, int num_threads);
+BodyEvidence bodyEvidence(const SurfaceGraph& graph, const TriangleTree& tree, const Patches& patches,
+                          std::uint64_t seed);
 
 /// The evidence of a surface without an inside: thickness 0, and a patch sees itself alone.
 BodyEvidence noBodyEvidence(int num_patches);

@@ -3,8 +3,9 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/random.h"
+#include "core/segmentation/cues/merge_cues.h"
 #include "core/segmentation/evidence/body_evidence.h"
-#include "core/segmentation/evidence/symmetry_features.h"
 #include "core/surface/surface_patches.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 
@@ -49,22 +50,39 @@ std::vector<std::vector<int>> imagesOfPatches(const Patches& patches, const std:
   return images;
 }
 
+/// The element where the first patch of a division grows, drawn by area; -1 for the first division: the usual one.
+int firstSeed(const SurfaceGraph& graph, int division, std::uint64_t seed) {
+  if (division == 0) return -1;
+  double left = RandomStream(seed).uniform() * graph.area();
+  int element = 0;
+  while (element + 1 < graph.size() && (left -= graph.areas[element]) > 0.0) ++element;
+  return element;
+}
+
 }  // namespace
 
-PartEvidence partEvidence(const SurfaceGraph& graph, const SegmentationOptions& options) {
-  const MergingEvidence kind = options.merging.evidence;
-  const float concave_detour = kind != MergingEvidence::Symmetry ? kConcaveDetour : 0.0f;
+WholeEvidence::WholeEvidence(const SurfaceGraph& graph, const SegmentationOptions& options)
+    : graph_(graph), merging_(options.merging), seed_(options.seed) {
+  features_.support.resize(0, graph.size());
+  if (usesSymmetry(merging_.evidence)) features_ = featuresOfWhole(graph, options);
+  if (usesBody(merging_.evidence)) tree_.emplace(graph.corners, graph.triangles);
+}
+
+PartEvidence WholeEvidence::ofDivision(int division, MergingEvidence kind) const {
+  const float concave_detour = usesConcavity(kind) ? kConcaveDetour : 0.0f;
+  const std::uint64_t seed = seed_ + static_cast<std::uint64_t>(division);
   PartEvidence evidence;
-  evidence.patches = measuredPatches(graph, growPatches(graph, options.merging.num_patches, concave_detour));
-  evidence.borders = patchBorders(graph, evidence.patches);
-  BodyEvidence body = kind == MergingEvidence::All
-                          ? bodyEvidence(graph, evidence.patches, options.seed, options.num_threads)
-                          : noBodyEvidence(evidence.size());
+  evidence.patches = measuredPatches(
+      graph_, growPatches(graph_, merging_.num_patches, concave_detour, firstSeed(graph_, division, seed)));
+  evidence.borders = patchBorders(graph_, evidence.patches);
+  const bool has_body = tree_ && usesBody(kind);
+  BodyEvidence body = has_body ? bodyEvidence(graph_, *tree_, evidence.patches, seed) : noBodyEvidence(evidence.size());
   evidence.thickness = std::move(body.thickness);
   evidence.sight = std::move(body.sight);
-  SymmetryFeatures features = featuresOfWhole(graph, options);
-  evidence.planes = std::move(features.planes);
-  evidence.support = supportOfPatches(graph, evidence.patches, features.support);
+  evidence.support.resize(0, evidence.size());
+  if (!usesSymmetry(kind)) return evidence;
+  evidence.planes = features_.planes;
+  evidence.support = supportOfPatches(graph_, evidence.patches, features_.support);
   evidence.images = imagesOfPatches(evidence.patches, evidence.planes);
   return evidence;
 }

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "core/neighbours/triangle_tree.h"
 #include "core/segmentation/evidence/patches.h"
+#include "core/segmentation/evidence/symmetry_features.h"
 #include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 
 namespace pcl_symmetry {
@@ -22,7 +26,26 @@ struct PartEvidence {
   int size() const { return patches.size(); }
 };
 
-/// Divides a surface into patches (over-segmentation) and gathers the evidence that the options ask for.
-PartEvidence partEvidence(const SurfaceGraph& graph, const SegmentationOptions& options);
+/// What the divisions of one surface into patches have in common.
+class WholeEvidence {
+public:
+  /// \param graph N elements, kept by reference.
+  WholeEvidence(const SurfaceGraph& graph, const SegmentationOptions& options);
+
+  const SurfaceGraph& graph() const { return graph_; }
+  const std::vector<PartPlane>& planes() const { return features_.planes; }
+
+  /// Divides the surface into patches (over-segmentation) and gathers evidence.
+  /// \param division divisions with different numbers, from 0, grow their patches from different seeds.
+  /// \param kind that of the options, or one that uses less.
+  PartEvidence ofDivision(int division, MergingEvidence kind) const;
+
+private:
+  const SurfaceGraph& graph_;
+  const MergingOptions merging_;
+  const std::uint64_t seed_;
+  SymmetryFeatures features_;
+  std::optional<TriangleTree> tree_;
+};
 
 }  // namespace pcl_symmetry

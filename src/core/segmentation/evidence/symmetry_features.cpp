@@ -62,10 +62,14 @@ bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& kno
   });
 }
 
+PlaneGrid gridOf(const GaussianEdt& edt) {
+  return PlaneGrid(kNumTheta, kNumPhi, kNumRadius, edt.center(), edt.radius());
+}
+
 /// The strongest significant maxima of the transform, one of each basin (Section 4.4).
 std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt,
                                                const SplittingOptions& options, std::uint64_t seed, int num_threads) {
-  const PlaneGrid grid(kNumTheta, kNumPhi, kNumRadius, edt.center(), edt.radius());
+  const PlaneGrid grid = gridOf(edt);
   PlanarTransformOptions transform;
   transform.sampled.num_samples = kNumMapSamples;
   transform.sampled.seed = seed;
@@ -77,14 +81,21 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
   std::vector<ReflectionPlane> maxima;
   for (const LocalMaximum& maximum : findLocalMaxima(map, significant)) {
     if (static_cast<int>(maxima.size()) == options.max_planes) break;
-    if (isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
+    if (options.as_published || isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
   }
   return maxima;
 }
 
-/// Refines planes by Iterative Symmetric Points (Section 4.4); a plane that leaves its basin keeps its start.
+/// Whether a refined plane lies in the cell of the grid that it started from.
+bool staysInCell(const ReflectionPlane& plane, const ReflectionPlane& start, const PlaneGrid& grid) {
+  const auto cell = grid.find(plane), first = grid.find(start);
+  return cell && first && grid.index(*cell) == grid.index(*first);
+}
+
+/// Refines planes by Iterative Symmetric Points (Section 4.4). A plane that leaves its basin keeps its start, a
+/// departure from the paper; as published, one that leaves its cell is dropped.
 std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
-                                     const GaussianEdt& edt, int num_threads) {
+                                     const GaussianEdt& edt, bool as_published, int num_threads) {
   const auto search = makeTreeSearch(samples);
   const LocalGeometry geometry = localGeometry(samples, *search, kNumNormalNeighbours, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
@@ -94,12 +105,18 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
   IspOptions isp;
   isp.sigma = edt.sigma();
   isp.final_sigma = kFinalSigma * edt.sigma();
-  std::vector<ReflectionPlane> moved(starts.size());
+  std::vector<ReflectionPlane> ends(starts.size()), moved(starts.size());
   parallelBlocks(starts.size(), num_threads, [&](std::size_t i) {
-    const ReflectionPlane plane = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;
-    moved[i] = isNear(plane, starts[i], edt.center(), kMostMoved * edt.radius()) ? plane : starts[i];
+    ends[i] = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;
+    moved[i] = isNear(ends[i], starts[i], edt.center(), kMostMoved * edt.radius()) ? ends[i] : starts[i];
   });
   std::vector<ReflectionPlane> planes;
+  if (as_published) {
+    const PlaneGrid grid = gridOf(edt);
+    for (std::size_t i = 0; i < starts.size(); ++i)
+      if (staysInCell(ends[i], starts[i], grid)) planes.push_back(ends[i].canonical());
+    return planes;
+  }
   for (const ReflectionPlane& plane : moved)
     if (isNew(plane, planes, edt)) planes.push_back(plane.canonical());
   return planes;
@@ -116,7 +133,7 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
   SymmetryFeatures features;
   features.radius = boundingBall(samples).radius;
   const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, options, seed, num_threads);
-  for (const ReflectionPlane& plane : refined(maxima, samples, edt, num_threads))
+  for (const ReflectionPlane& plane : refined(maxima, samples, edt, options.as_published, num_threads))
     features.planes.push_back({plane, 0.0});
   features.support.resize(static_cast<Eigen::Index>(features.planes.size()),
                           static_cast<Eigen::Index>(elements.size()));

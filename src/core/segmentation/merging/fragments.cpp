@@ -2,75 +2,103 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// The region with the patch that is closest to any patch of a region; -1 if there is no other region.
-int closestRegion(const Regions& regions, const PartEvidence& evidence, int region) {
-  const std::vector<int>& of = regions.ofPatches();
-  int closest = -1;
-  float least = std::numeric_limits<float>::infinity();
-  for (std::size_t p = 0; p < of.size(); ++p) {
-    if (of[p] != region) continue;
-    for (std::size_t q = 0; q < of.size(); ++q) {
-      const float sq_distance = (evidence.patches.centers.col(p) - evidence.patches.centers.col(q)).squaredNorm();
-      if (of[q] == region || sq_distance >= least) continue;
-      closest = of[q];
+/// Segments with their areas and the lengths of their common borders, input units.
+class SmallSegments {
+public:
+  SmallSegments(const SurfaceGraph& graph, std::vector<int> labels) : graph_(graph), labels_(std::move(labels)) {
+    for (int i = 0; i < graph.size(); ++i) areas_[labels_[i]] += graph.areas[i];
+    for (const SurfaceGraph::Edge& edge : graph.edges) {
+      const int a = labels_[edge.from], b = labels_[edge.to];
+      if (a == b) continue;
+      contacts_[a][b] += edge.length;
+      contacts_[b][a] += edge.length;
+    }
+  }
+
+  int size() const { return static_cast<int>(areas_.size()); }
+  double area(int segment) const { return areas_.at(segment); }
+
+  int smallest() const {
+    return std::min_element(areas_.begin(), areas_.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+  }
+
+  /// The segment that a small one belongs to.
+  int hostOf(int segment) const {
+    const auto found = contacts_.find(segment);
+    if (found == contacts_.end() || found->second.empty()) return closestTo(segment);
+    return std::max_element(found->second.begin(), found->second.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+  }
+
+  void join(int host, int segment) {
+    areas_[host] += areas_[segment];
+    areas_.erase(segment);
+    std::replace(labels_.begin(), labels_.end(), segment, host);
+    for (const auto& [other, length] : contacts_[segment]) {
+      contacts_[other].erase(segment);
+      if (other == host) continue;
+      contacts_[other][host] += length;
+      contacts_[host][other] += length;
+    }
+    contacts_.erase(segment);
+  }
+
+  std::vector<int> labels() const {
+    std::map<int, int> number;
+    for (const auto& [segment, area] : areas_) number.emplace(segment, static_cast<int>(number.size()));
+    std::vector<int> labels;
+    for (const int label : labels_) labels.push_back(number.at(label));
+    return labels;
+  }
+
+private:
+  /// The segment with the element that is closest to the mean of a segment.
+  int closestTo(int segment) const {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    int count = 0;
+    for (int i = 0; i < graph_.size(); ++i) {
+      if (labels_[i] != segment) continue;
+      mean += graph_.centers.col(i).cast<double>();
+      ++count;
+    }
+    const Eigen::Vector3f middle = (mean / count).cast<float>();
+    int closest = segment;
+    float least = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < graph_.size(); ++i) {
+      const float sq_distance = (graph_.centers.col(i) - middle).squaredNorm();
+      if (labels_[i] == segment || sq_distance >= least) continue;
+      closest = labels_[i];
       least = sq_distance;
     }
+    return closest;
   }
-  return closest;
-}
 
-/// The neighbour with the most contact, or the closest region if there is none; -1 if there is no other region.
-int hostOf(const Regions& regions, const PartEvidence& evidence, int fragment) {
-  int host = -1;
-  double most = -1.0;
-  for (const int other : regions.neighbours(fragment)) {
-    const double contact = regions.cues(fragment, other)[kContact];
-    if (contact > most) {
-      host = other;
-      most = contact;
-    }
-  }
-  return host >= 0 ? host : closestRegion(regions, evidence, fragment);
-}
-
-int smallestRegion(const Regions& regions) {
-  int smallest = -1;
-  for (int r = 0; r < regions.size(); ++r)
-    if (regions.exists(r) && (smallest < 0 || regions.area(r) < regions.area(smallest))) smallest = r;
-  return smallest;
-}
+  const SurfaceGraph& graph_;
+  std::vector<int> labels_;
+  std::map<int, double> areas_;                    ///< by segment
+  std::map<int, std::map<int, double>> contacts_;  ///< by both segments
+};
 
 }  // namespace
 
-Regions joinFragments(Regions regions, const PartEvidence& evidence, double least_area) {
-  for (;;) {
-    const int smallest = smallestRegion(regions);
-    if (regions.area(smallest) >= least_area) return regions;
-    const int host = hostOf(regions, evidence, smallest);
-    if (host < 0) return regions;
-    regions.merge(host, smallest);
+std::vector<int> joinSmallSegments(const SurfaceGraph& graph, std::vector<int> labels, double least_area,
+                                   int most_segments) {
+  SmallSegments segments(graph, std::move(labels));
+  while (segments.size() > 1) {
+    const int smallest = segments.smallest();
+    if (segments.area(smallest) >= least_area && segments.size() <= most_segments) break;
+    segments.join(segments.hostOf(smallest), smallest);
   }
-}
-
-LabelledRegions joinEmptiedRegions(LabelledRegions labelled, const SurfaceGraph& graph, const PartEvidence& evidence,
-                                   double least_area) {
-  auto& [regions, labels] = labelled;
-  std::vector<double> areas(static_cast<std::size_t>(regions.size()), 0.0);
-  for (int i = 0; i < graph.size(); ++i) areas[labels[i]] += graph.areas[i];
-  for (int r = 0; r < regions.size(); ++r) {
-    if (!regions.exists(r) || areas[r] >= least_area) continue;
-    const int host = hostOf(regions, evidence, r);
-    if (host < 0) continue;
-    regions.merge(host, r);
-    areas[host] += areas[r];
-    std::replace(labels.begin(), labels.end(), r, host);
-  }
-  return labelled;
+  return segments.labels();
 }
 
 }  // namespace pcl_symmetry

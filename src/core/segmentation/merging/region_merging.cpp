@@ -13,7 +13,7 @@ using RegionPair = std::pair<int, int>;  // lower number first
 /// Pairs of neighbouring regions, ordered by the log odds that they are one part.
 class PairQueue {
 public:
-  explicit PairQueue(MergingEvidence evidence) : evidence_(evidence) {}
+  explicit PairQueue(const MergeWeights& weights) : weights_(weights) {}
 
   bool empty() const { return queue_.empty(); }
 
@@ -30,21 +30,21 @@ public:
 
   void update(const Regions& regions, int a, int b) {
     remove(a, b);
-    const double log_odds = logOddsOfOnePart(regions.cues(a, b), evidence_);
+    const double log_odds = logOddsOfOnePart(regions.cues(a, b), weights_);
     log_odds_[std::minmax(a, b)] = log_odds;
     queue_.insert({log_odds, std::minmax(a, b)});
   }
 
 private:
-  const MergingEvidence evidence_;
+  const MergeWeights& weights_;
   std::set<std::pair<double, RegionPair>> queue_;
   std::map<RegionPair, double> log_odds_;
 };
 
 }  // namespace
 
-MergeSequence mergeRegions(Regions regions, MergingEvidence evidence) {
-  PairQueue queue(evidence);
+MergeSequence mergeRegions(Regions regions, const MergeWeights& weights) {
+  PairQueue queue(weights);
   for (int a = 0; a < regions.size(); ++a)
     for (const int b : regions.neighbours(a))
       if (a < b) queue.update(regions, a, b);
@@ -58,7 +58,7 @@ MergeSequence mergeRegions(Regions regions, MergingEvidence evidence) {
     const auto [a, b] = pair;
     for (const int c : regions.neighbours(b)) queue.remove(b, c);
     regions.merge(a, b);
-    sequence.merges.push_back({a, b});
+    sequence.merges.push_back({a, b, log_odds});
     for (const int c : regions.neighbours(a)) queue.update(regions, a, c);
   }
   return sequence;

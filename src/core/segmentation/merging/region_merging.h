@@ -9,6 +9,7 @@ namespace pcl_symmetry {
 /// Region \p from became part of region \p into.
 struct Merge {
   int into, from;
+  double log_odds;  ///< that the two are one part, when they were merged
 };
 
 /// Merges of neighbouring regions, those with the highest log odds first, until no two regions are neighbours.
@@ -19,7 +20,7 @@ struct MergeSequence {
 
 /// Merges regions, the pair that is most likely one part first. Log odds are updated after each merge.
 /// \param regions by value: the merges are made on a copy.
-MergeSequence mergeRegions(Regions regions, MergingEvidence evidence);
+MergeSequence mergeRegions(Regions regions, const MergeWeights& weights);
 
 /// Makes the first merges of a sequence.
 /// \param num_merges at most their number.

@@ -57,6 +57,9 @@ Regions::Regions(const PartEvidence& evidence)
   for (const std::vector<int>& image : evidence.images) {
     images_.emplace_back(Eigen::MatrixXf::Zero(size, size));
     for (int i = 0; i < size; ++i) images_.back()(image[i], i) = areas[i];
+    image_of_.push_back(image);
+    for (int i = 0; i < size; ++i)
+      if (areas[i] <= 0.0f) image_of_.back()[i] = -1;
   }
   for (const PatchBorder& b : evidence.borders) {
     neighbours_[b.from].push_back(b.to);
@@ -97,9 +100,16 @@ Cues Regions::cues(int a, int b) const {
   return cues;
 }
 
-int Regions::imageOf(int region, std::size_t plane) const {
-  Eigen::Index image = 0;
-  return images_[plane].col(region).maxCoeff(&image) > 0.0f ? static_cast<int>(image) : -1;
+/// The image of \p a is looked for anew; other images can only have moved to the region that grew.
+void Regions::joinImages(int a, int b) {
+  for (std::size_t plane = 0; plane < images_.size(); ++plane) {
+    const Eigen::MatrixXf& shared = images_[plane];
+    std::vector<int>& image = image_of_[plane];
+    Eigen::Index most = 0;
+    image[a] = shared.col(a).maxCoeff(&most) > 0.0f ? static_cast<int>(most) : -1;
+    for (int c = 0; c < size(); ++c)
+      if (c != a && image[c] >= 0 && (image[c] == b || shared(a, c) > shared(image[c], c))) image[c] = a;
+  }
 }
 
 void Regions::merge(int a, int b) {
@@ -121,6 +131,7 @@ void Regions::merge(int a, int b) {
   };
   join(sight_);
   for (Eigen::MatrixXf& image : images_) join(image);
+  joinImages(a, b);
   std::replace(region_.begin(), region_.end(), b, a);
   exists_[b] = 0;
   joinNeighbours(a, b);

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/segmentation/cues/merge_cues.h"
 #include "core/segmentation/evidence/part_evidence.h"
-#include "core/segmentation/merging/merge_cues.h"
 
 namespace pcl_symmetry {
 
@@ -32,7 +32,7 @@ public:
   Cues cues(int a, int b) const;
 
   /// \return the region that holds most of the reflection of a region in a plane of PartEvidence::images; -1 for none.
-  int imageOf(int region, std::size_t plane) const;
+  int imageOf(int region, std::size_t plane) const { return image_of_[plane][region]; }
 
   /// Makes \p b part of \p a; they need not be neighbours.
   void merge(int a, int b);
@@ -45,6 +45,7 @@ private:
   };
   Border& border(int a, int b) { return borders_[std::minmax(a, b)]; }
   void joinNeighbours(int a, int b);
+  void joinImages(int a, int b);
 
   std::vector<char> exists_;
   std::vector<int> region_;              ///< of each patch
@@ -55,6 +56,7 @@ private:
   Eigen::MatrixXf sight_;                ///< sums over pairs of patches, weighted by both areas
   Eigen::MatrixXf support_;              ///< planes x regions, sums over patches, weighted by area
   std::vector<Eigen::MatrixXf> images_;  ///< per plane: area of the reflection of a region (column) in a region (row)
+  std::vector<std::vector<int>> image_of_;  ///< per plane: of each region; the row with the most area in its column
   std::vector<std::vector<int>> neighbours_;
   std::map<std::pair<int, int>, Border> borders_;
 };

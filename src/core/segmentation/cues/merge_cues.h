@@ -1,10 +1,21 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 
 namespace pcl_symmetry {
+
+inline bool usesSymmetry(MergingEvidence evidence) {
+  return evidence != MergingEvidence::AllButSymmetry && evidence != MergingEvidence::Nothing;
+}
+inline bool usesConcavity(MergingEvidence evidence) {
+  return evidence != MergingEvidence::Symmetry && evidence != MergingEvidence::Nothing;
+}
+inline bool usesBody(MergingEvidence evidence) {
+  return evidence == MergingEvidence::All || evidence == MergingEvidence::AllButSymmetry;
+}
 
 /// What speaks for or against two neighbouring regions being one part.
 enum Cue {
@@ -26,8 +37,17 @@ enum Cue {
 };
 using Cues = std::array<double, kNumCues>;
 
-/// Log odds that two regions are one part: a weighted sum of the cues, with the weights of a kind of evidence.
+/// Log odds per unit of each cue, in the order of Cue.
+using MergeWeights = std::array<double, kNumCues>;
+
+/// \return the cues that a kind of evidence has, in the order of Cue.
+std::vector<Cue> cuesOf(MergingEvidence evidence);
+
+/// \return the weights that were fitted for a kind of evidence.
+const MergeWeights& fittedWeights(MergingEvidence evidence);
+
+/// Log odds that two regions are one part: a weighted sum of the cues.
 /// \return > 0 if they are more likely one part than two.
-double logOddsOfOnePart(const Cues& cues, MergingEvidence evidence);
+double logOddsOfOnePart(const Cues& cues, const MergeWeights& weights);
 
 }  // namespace pcl_symmetry
