@@ -11,7 +11,7 @@ packages=(
   libboost-mpi-dev openmpi-bin                                            # work that several processes share,
   libvtk9-dev libx11-dev xvfb libgl1-mesa-dri                             # pictures, also without a screen
   pybind11-dev python3-dev python3-numpy                                  # the Python module
-  help2man doxygen                                                        # manual pages, the reference of the classes
+  help2man file doxygen                                                   # manual pages, Debian packages, the reference of the classes
   libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema           # tests and benchmarks
 )
 
