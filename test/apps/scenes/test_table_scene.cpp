@@ -129,9 +129,9 @@ protected:
 TEST_F(EvaluateScenes, JudgesNoisyFramesAlsoFiltered) {
   folder_.write("box.off", boxOFF());
   ASSERT_EQ(run(folder_ / "" + " -scenes 1 -objects 1 -noise 1 -quiet -json " + (folder_ / "r.json")), 0) << error_;
+  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "r.json"));
   std::set<std::string> names;
-  for (const nlohmann::json& row : nlohmann::json::parse(contentOf(folder_ / "r.json"))["rows"])
-    names.insert(row["seen"].get<std::string>());
+  for (const nlohmann::json& row : report["rows"]) names.insert(row["seen"].get<std::string>());
   EXPECT_EQ(names, (std::set<std::string>{"alone", "scene", "table", "filtered"}));
 }
 
