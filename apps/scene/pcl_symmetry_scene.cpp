@@ -24,7 +24,7 @@ using namespace pcl_symmetry::apps;
 struct SceneToolOptions {
   std::string input;
   std::optional<std::string> output, database_path, png_path;
-  bool no_frames = false, no_completion = false;
+  bool no_filter = false, no_frames = false, no_completion = false;
   SceneOptions scene;
   CommonOptions common;
 };
@@ -50,6 +50,7 @@ CommandLine commandLine(SceneToolOptions& o) {
               "points of an object that are analysed")
       .number("min_confidence", o.scene.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
+      .flag("no_filter", o.no_filter, "leaves the errors of a depth camera in organized frames")
       .flag("no_frames", o.no_frames, "leaves the frames of the objects out")
       .flag("no_completion", o.no_completion, "leaves the completion of the objects out")
       .common(o.common, kAnalysisFlags);
@@ -62,6 +63,7 @@ SceneAnalysis analyse(const Console& console, const InputShape& input, const Sce
   options.common.applyTo(used.detection);
   options.common.applyTo(used.frame);
   used.num_threads = used.recognition.num_threads = options.common.threads;
+  used.filter = !options.no_filter;
   used.frames = !options.no_frames;
   used.complete = !options.no_completion;
   scene.setOptions(used);

@@ -169,15 +169,20 @@ SceneAnalysis SymmetryScene::compute() const {
   SceneAnalysis analysis;
   Stopwatch watch;
   const auto timed = [&](const char* stage) { analysis.timing_ms.emplace_back(stage, watch.lap()); };
-  if (input_) analysis.seen = std::make_shared<const SeenSpace>(*input_, viewpoint_);
+  Cloud::ConstPtr frame = input_;
+  if (frame) analysis.seen = std::make_shared<const SeenSpace>(*frame, viewpoint_);
+  const double seen_ms = watch.lap();
+  if (frame && options_.filter) frame = withoutDepthErrors(frame, *analysis.seen, options_.num_threads);
+  if (frame != input_) analysis.seen = std::make_shared<const SeenSpace>(*frame, viewpoint_);
   std::optional<Eigen::Vector3d> viewpoint;
   if (analysis.seen && analysis.seen->visibility()) viewpoint = analysis.seen->visibility()->viewpoint();
-  const pcl::Indices points = input_ ? nearPoints(*input_, viewpoint, options_.max_range) : pcl::Indices();
+  const pcl::Indices points = frame ? nearPoints(*frame, viewpoint, options_.max_range) : pcl::Indices();
   if (points.empty()) {
     detail::warnOfNoAnswer("SymmetryScene", input_ ? "scene: no finite point" : "scene: not set");
     return analysis;
   }
-  timed("seen_space");
+  analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};
+  // The filter leaves the bends of a camera's picture: the distances follow from the frame as it was.
   const detail::SurfaceScale scale = detail::surfaceScale(*input_, points);
   analysis.plane_distance = options_.plane_distance > 0.0
                                 ? options_.plane_distance
@@ -188,14 +193,14 @@ SceneAnalysis SymmetryScene::compute() const {
     detail::warnOfNoAnswer("SymmetryScene", "scene: all points at one place");
     return analysis;
   }
-  analysis.supports = detail::findSupports(input_, points, viewpoint, analysis.plane_distance);
+  analysis.supports = detail::findSupports(frame, points, viewpoint, analysis.plane_distance);
   timed("supports");
-  const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, input_->size());
-  std::vector<pcl::Indices> clusters = detail::findClusters(input_, rest, analysis.supports, analysis.plane_distance,
+  const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
+  std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
                                                             analysis.cluster_distance, options_.min_points);
-  detail::returnFeet(input_, analysis.supports, clusters, scale.spacing, analysis.cluster_distance);
+  detail::returnFeet(frame, analysis.supports, clusters, scale.spacing, analysis.cluster_distance);
   timed("clusters");
-  ObjectAnalysis objects(input_, analysis, scale.spacing, options_, database_.get());
+  ObjectAnalysis objects(frame, analysis, scale.spacing, options_, database_.get());
   for (const pcl::Indices& cluster : clusters) analysis.objects.push_back(objects.analyse(cluster));
   timed("objects");
   return analysis;

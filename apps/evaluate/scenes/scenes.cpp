@@ -24,6 +24,7 @@
 #include "evaluate/shared/model_list.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/recognition/symmetry_database.h"
+#include "pcl_symmetry/scene/symmetry_scene.h"
 
 namespace pcl_symmetry::apps {
 
@@ -176,6 +177,9 @@ private:
         clusters[static_cast<std::size_t>(image.ids[i])].push_back(static_cast<pcl::index_t>(i));
     const auto seen = std::make_shared<const SeenSpace>(*image.cloud);
     const auto on_table = std::make_shared<const SeenSpace>(seen->withSupport(Eigen::Vector4d::UnitZ(), kTableMargin));
+    const Cloud::ConstPtr filtered = withoutDepthErrors(image.cloud, *seen, options_.common.threads);
+    const auto filtered_seen =
+        std::make_shared<const SeenSpace>(SeenSpace(*filtered).withSupport(Eigen::Vector4d::UnitZ(), kTableMargin));
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       if (image.cropped[k] || clusters[k].size() < static_cast<std::size_t>(options_.min_points)) continue;
       if (!isWanted(image.occlusion(k), noise)) continue;
@@ -191,13 +195,15 @@ private:
           scene.objects[k], "alone", *alone, std::move(result),
           [&] { return detectAnswers(alone, options_.common.seed + 1, options_.common.threads); },
           [&] { return database_.recognize(*alone, recognition()); });
-      for (const auto& [row, space] : {std::make_pair("scene", seen), std::make_pair("table", on_table)})
+      const auto judgeIn = [&](const char* row, const Cloud::ConstPtr& frame, const SeenSpace::ConstPtr& space) {
         judge(
             scene.objects[k], row, *alone, results_.back(),
-            [&, space = space] {
-              return detectAnswers(image.cloud, clusters[k], space, options_.common.seed + 1, options_.common.threads);
-            },
-            [&, space = space] { return database_.recognize(*image.cloud, clusters[k], recognition(), space); });
+            [&] { return detectAnswers(frame, clusters[k], space, options_.common.seed + 1, options_.common.threads); },
+            [&] { return database_.recognize(*frame, clusters[k], recognition(), space); });
+      };
+      judgeIn("scene", image.cloud, seen);
+      judgeIn("table", image.cloud, on_table);
+      if (filtered != image.cloud) judgeIn("filtered", filtered, filtered_seen);
     }
   }
 

@@ -33,6 +33,7 @@ struct SceneOptions {
   double max_range = 0.0;
   /// Points of a cluster that are analysed, >= 100. chosen: time grows with them; half makes weak planes less certain.
   int max_points = 5'000;
+  bool filter = true;  ///< takes the errors of depth cameras out of organized frames, see withoutDepthErrors()
   bool frames = true;  ///< finds the frame of each object
   /// Completes objects whose best plane, or a plane through their axis, decides.
   bool complete = true;
@@ -74,6 +75,16 @@ struct SceneAnalysis {
   double plane_distance = 0.0, cluster_distance = 0.0;    ///< that were used, input units
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
+
+/// Takes the errors of a depth camera out of its frame: each point becomes that of the plane through the pixels around
+/// it, and pixels that fly between two surfaces become NaN. Edges stay; parts that are narrower than two pixels are
+/// lost.
+/// \param frame organized.
+/// \param seen of this frame.
+/// \param num_threads 0 = one per core.
+/// \return a frame with the same pixels; \p frame itself where it is not organized or has no errors.
+pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& frame,
+                                                            const SeenSpace& seen, int num_threads = 0);
 
 /// Finds the objects of a scene and their symmetries.
 ///

@@ -126,6 +126,15 @@ protected:
   EvaluateScenes() : ToolTest(toolPath("evaluate") + " scenes") {}
 };
 
+TEST_F(EvaluateScenes, JudgesNoisyFramesAlsoFiltered) {
+  folder_.write("box.off", boxOFF());
+  ASSERT_EQ(run(folder_ / "" + " -scenes 1 -objects 1 -noise 1 -quiet -json " + (folder_ / "r.json")), 0) << error_;
+  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "r.json"));
+  std::set<std::string> names;
+  for (const nlohmann::json& row : report["rows"]) names.insert(row["seen"].get<std::string>());
+  EXPECT_EQ(names, (std::set<std::string>{"alone", "scene", "table", "filtered"}));
+}
+
 TEST_F(EvaluateScenes, JudgesEachObjectAloneInItsSceneAndOnItsTable) {
   folder_.write("box.off", boxOFF());
   ASSERT_EQ(run(folder_ / "" + " -scenes 2 -objects 1 -noise 0 -quiet -json " + (folder_ / "r.json") + " -export " +

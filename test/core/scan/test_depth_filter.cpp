@@ -1,0 +1,122 @@
+/// Depth pictures without the errors of their camera.
+#include "core/scan/depth_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+constexpr int kWidth = 80, kHeight = 60;
+constexpr double kPixelAngle = 1.0 / 500.0;
+constexpr double kError = 1.5e-3;  // of inverse depths, per metre: 1.5 mm at 1 m, as of structured light
+
+using DepthOf = std::function<double(int u, int v)>;
+
+DepthImage picture(const DepthOf& depth_of) {
+  DepthImage image{kWidth, kHeight, {}, kPixelAngle};
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) image.depths.push_back(static_cast<float>(depth_of(u, v)));
+  return image;
+}
+
+/// A normal deviate, from twelve even ones.
+double normal(RandomStream& random) {
+  double sum = -6.0;
+  for (int i = 0; i < 12; ++i) sum += random.uniform();
+  return sum;
+}
+
+DepthImage noisy(DepthImage image) {
+  RandomStream random(7);
+  for (float& depth : image.depths) depth = static_cast<float>(1.0 / (1.0 / depth + kError * normal(random)));
+  return image;
+}
+
+/// A floor that rises towards the back: its inverse depths grow evenly.
+double slanted(int, int v) {
+  return 1.0 / (0.8 + 0.004 * v);
+}
+
+/// Two walls, one 10 cm before the other.
+double step(int u, int) {
+  return u < kWidth / 2 ? 0.9 : 1.0;
+}
+
+double rootMeanSquare(const std::vector<float>& depths, const DepthOf& truth) {
+  double sum = 0.0, count = 0.0;
+  for (int v = 0; v < kHeight; ++v) {
+    for (int u = 0; u < kWidth; ++u) {
+      const double depth = depths[static_cast<std::size_t>(v * kWidth + u)];
+      if (std::isnan(depth)) continue;
+      sum += std::pow(depth - truth(u, v), 2.0);
+      count += 1.0;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+TEST(DepthFilter, FindsTheErrorsOfTheCameraOnSlantedPlanes) {
+  EXPECT_NEAR(inverseDepthError(noisy(picture(slanted))), kError, 0.1 * kError) << "4600 second differences";
+  EXPECT_NEAR(inverseDepthError(noisy(picture(step))), kError, 0.1 * kError) << "an edge is no error";
+  EXPECT_LT(inverseDepthError(picture(slanted)), 1e-5) << "rounding to float";
+}
+
+TEST(DepthFilter, LeavesAThirdOfTheErrors) {
+  // The mean of 25 pixels has a fifth of the error; weights and the ends of the picture cost some of it.
+  for (const DepthOf& truth : {DepthOf(slanted), DepthOf(step)}) {
+    const DepthImage image = noisy(picture(truth));
+    const FilteredDepths filtered = filterDepths(image, 2, 1);
+    EXPECT_LT(rootMeanSquare(filtered.depths, truth), rootMeanSquare(image.depths, truth) / 3.0);
+    EXPECT_LT(static_cast<double>(filtered.num_flying), 0.03 * kWidth * kHeight)
+        << "1.2 % of normal errors are as great";
+  }
+}
+
+TEST(DepthFilter, TakesFlyingPixelsOut) {
+  DepthImage image = noisy(picture(step));
+  std::vector<std::size_t> flying;
+  for (int v = 0; v < kHeight; ++v) flying.push_back(static_cast<std::size_t>(v * kWidth + kWidth / 2));
+  RandomStream random(3);
+  for (const std::size_t i : flying) image.depths[i] = static_cast<float>(0.93 + 0.04 * random.uniform());
+  const FilteredDepths filtered = filterDepths(image, 2, 1);
+  const auto num_left =
+      std::count_if(flying.begin(), flying.end(), [&](std::size_t i) { return !std::isnan(filtered.depths[i]); });
+  EXPECT_LE(num_left, 0.1 * static_cast<double>(flying.size()));
+}
+
+TEST(DepthFilter, LeavesPicturesWithoutErrorsAsTheyAre) {
+  const DepthImage image = picture(step);
+  const FilteredDepths filtered = filterDepths(image, 2, 1);
+  EXPECT_EQ(filtered.depths, image.depths);
+  EXPECT_EQ(filtered.num_flying, 0u);
+  EXPECT_EQ(filtered.inverse_error, 0.0);
+}
+
+TEST(DepthFilter, PixelsWithoutAPointHaveNone) {
+  DepthImage image = noisy(picture(slanted));
+  image.depths[5] = std::numeric_limits<float>::quiet_NaN();
+  image.depths[6] = std::numeric_limits<float>::infinity();
+  image.depths[7] = -1.0f;
+  const FilteredDepths filtered = filterDepths(image, 2, 1);
+  for (const std::size_t i : {5u, 6u, 7u}) EXPECT_TRUE(std::isnan(filtered.depths[i])) << i;
+  const DepthImage empty = picture([](int, int) { return std::numeric_limits<double>::quiet_NaN(); });
+  EXPECT_EQ(filterDepths(empty, 2, 1).inverse_error, 0.0);
+  EXPECT_EQ(inverseDepthError({1, 1, {1.0f}, kPixelAngle}), 0.0);
+}
+
+TEST(DepthFilter, IsTheSameForAnyNumberOfThreads) {
+  const DepthImage image = noisy(picture(slanted));
+  EXPECT_EQ(rootMeanSquare(filterDepths(image, 2, 1).depths, slanted),
+            rootMeanSquare(filterDepths(image, 2, 8).depths, slanted));
+}
+
+}  // namespace
