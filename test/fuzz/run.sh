@@ -33,7 +33,7 @@ num_found=0
 for target in "${targets[@]}"; do
   program=fuzz_$target longest=600
   if [[ " $readers " == *" $target "* ]]; then program=fuzz_files longest=4096; fi
-  if [[ $target == database ]]; then longest=100000; fi
+  if [[ $target == database ]]; then longest=4000000; fi
   leaks=1
   if [[ $target == obj || $target == stl ]]; then leaks=0; fi  # Assimp leaks some kB of files that it refuses
   mkdir -p "$folder/corpus/$target" "$folder/findings/$target"

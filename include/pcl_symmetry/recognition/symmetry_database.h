@@ -24,6 +24,7 @@ namespace detail {
 struct DatabaseParts;
 }
 
+/// How a database is made and used.
 struct DatabaseOptions {
   /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1. chosen: fewer
   /// show less of the variety of the models, twice takes four times the time and memory of the fit; README measures 200
@@ -43,6 +44,7 @@ struct DatabaseOptions {
   void validate() const;
 };
 
+/// What SymmetryDatabase::recognize() tries, and what it accepts.
 struct RecognitionOptions {
   /// Models that are brought to the scan coarsely, >= 1. chosen: half misses more models, twice takes twice the time.
   int num_candidates = 10;
@@ -65,6 +67,7 @@ struct RecognitionOptions {
   void validate() const;
 };
 
+/// A model that is like a query.
 struct ModelMatch {
   std::string name;
   /// L2 distance of the compact signatures, divided by the root of the product of the two mean distances to the ten
@@ -72,6 +75,7 @@ struct ModelMatch {
   double distance;
 };
 
+/// A model that a scan shows, and where.
 struct RecognizedModel {
   std::string name;
   Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();
@@ -91,6 +95,7 @@ struct ModelSource {
   std::vector<std::string> tags;  ///< its class, or any other words; one line each
 };
 
+/// What is stored of a model beside its points.
 struct ModelInfo {
   std::string name;
   std::int64_t time = 0;  ///< when it was stored, seconds since 1970 (UTC)
@@ -105,6 +110,7 @@ struct ModelInput {
   std::function<pcl::PointCloud<pcl::PointXYZ>()> load = {};  ///< called unless the source is stored already
 };
 
+/// What SymmetryDatabase::build() did.
 struct BuildReport {
   std::size_t num_added = 0;
   std::size_t num_kept = 0;                                   ///< models whose source was stored before

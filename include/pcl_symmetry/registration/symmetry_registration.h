@@ -18,6 +18,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+/// The search for a pose and its refinement.
 struct CloudRegistrationOptions {
   bool frames = true;        ///< tries the poses that bring symmetry frames together, beside evenly spread rotations
   FrameOptions frame;        ///< of these frames
@@ -34,6 +35,7 @@ struct CloudRegistrationOptions {
   void validate() const;
 };
 
+/// The pose of a cloud in another one.
 struct CloudRegistration {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
   /// Score of this pose. The source counts as the scan, unless only the target was seen from one side.

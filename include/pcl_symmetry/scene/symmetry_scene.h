@@ -21,6 +21,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+/// How a scene falls into objects, and what is done with each.
 struct SceneOptions {
   /// Points within this of a supporting plane belong to it, input units, >= 0; 0 = from the spacing and the roughness
   /// of the points.
@@ -68,6 +69,7 @@ struct SceneObject {
   Recognition models;                    ///< best first; empty without a database, and where the object is unknown
 };
 
+/// What SymmetryScene found.
 struct SceneAnalysis {
   SeenSpace::ConstPtr seen;  ///< what the sensor saw, for further analyses
   std::vector<SupportingPlane> supports;

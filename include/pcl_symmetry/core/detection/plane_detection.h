@@ -88,6 +88,7 @@ struct SymmetryCenter {
   double confidence = 0.0, score = 0.0, support = 0.0;  ///< as those of SymmetryAxis
 };
 
+/// Options of detectPlanes(); the defaults suit any shape and unit.
 struct DetectionOptions {
   GaussianEdtOptions edt;
   /// Bins of the map that candidates come from. chosen: as many as the paper's 64 x 64 directions, but as fine in phi
@@ -129,6 +130,7 @@ struct DetectionOptions {
   void validate() const;
 };
 
+/// What detectPlanes() found.
 struct Detection {
   /// Why there is no answer, one sentence such as "12 distinct points, at least 20 are needed"; empty where the search
   /// ran, whatever it found.

@@ -13,6 +13,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+/// Options of symmetryFrame().
 struct FrameOptions {
   GaussianEdtOptions edt;  ///< sigma = 0: 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more
   int num_theta = 32;      ///< bins of the map that candidates for the first plane come from, >= 1

@@ -15,6 +15,7 @@ enum class IspUpdate {
   PointToPlane   ///< minimises distances across the surface by a Gauss-Newton step; converges in far fewer iterations
 };
 
+/// Options of Iterative Symmetric Points (Section 4.4).
 struct IspOptions {
   IspUpdate update = IspUpdate::PointToPlane;
   double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
@@ -54,6 +55,7 @@ struct IspStep {
   std::vector<float> sq_distances;  ///< squared distances to the closest points; infinite where there is none
 };
 
+/// A refined plane.
 struct IspResult {
   ReflectionPlane plane;
   int iterations = 0;

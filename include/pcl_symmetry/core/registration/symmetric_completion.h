@@ -9,6 +9,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+/// Options of the completion of a scan by its reflection.
 struct CompletionOptions {
   /// Reflected points within this distance of a measured point add nothing; local spacings of the points, > 0. chosen:
   /// half doubles parts of the surface, twice leaves gaps beside it.

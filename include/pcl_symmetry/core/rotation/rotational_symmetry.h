@@ -13,6 +13,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+/// Options of objectSymmetries(): what symmetric means, and limits of the search.
 struct ObjectSymmetryOptions {
   int num_cells = 64;         ///< cells of the distance transform along each side, in [8, 512]
   int num_directions = 3000;  ///< directions of axes on a half sphere, >= 100; 3000 are 2.6 degrees apart

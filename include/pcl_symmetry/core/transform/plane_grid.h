@@ -18,6 +18,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// (pi - theta, phi + pi, -r).
 class PlaneGrid {
 public:
+  /// Indices of a cell of the grid.
   struct Bin {
     int theta;
     int phi;

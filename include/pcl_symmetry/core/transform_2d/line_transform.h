@@ -53,6 +53,7 @@ private:
 /// Seam: past theta = pi lies (theta - pi, -r).
 class LineGrid {
 public:
+  /// Indices of a cell of the grid.
   struct Bin {
     int theta;
     int radius;

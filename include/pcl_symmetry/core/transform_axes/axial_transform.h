@@ -22,6 +22,7 @@ using TurningLine = Eigen::ParametrizedLine<double, 3>;
 /// from their edges. Beyond the paper, which leaves other symmetries to future work (Section 6).
 class AxisGrid {
 public:
+  /// Indices of a cell of the grid.
   struct Bin {
     int theta, phi, u, v;
   };
