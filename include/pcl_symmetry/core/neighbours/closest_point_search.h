@@ -37,7 +37,8 @@ public:
 };
 
 /// \param points 3 x N, finite, N >= 1; they are copied.
-/// \return a search by a k-d tree; exact. It gives the answers of makeFlannSearch() in less than half of the time.
+/// \return a search by a k-d tree; exact. It gives the answers of makeFlannSearch(), those of one neighbour in less than
+/// half of the time.
 ClosestPointSearch::Ptr makeTreeSearch(const PointsRef& points);
 
 /// \param points 3 x N, finite, N >= 1; they are copied.
