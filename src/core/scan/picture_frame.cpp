@@ -69,9 +69,7 @@ struct LastRows {
   FrameSide side;
   std::array<int, 3> counts{};
 
-  bool areCut() const {
-    return counts[0] >= kLeastPoints && counts[0] >= kLeastRatio * 0.5 * (counts[1] + counts[2]);
-  }
+  bool areCut() const { return counts[0] >= kLeastPoints && counts[0] >= kLeastRatio * 0.5 * (counts[1] + counts[2]); }
 };
 
 LastRows lastRows(const Places& places, double angle, double pitch) {
