@@ -50,7 +50,7 @@ std::optional<PixelRows> rowsOf(const Places& places) {
   for (Eigen::Index i = 0; i < samples.cols(); ++i) samples.col(i) = flat.col(i * stride);
   std::vector<int> closest;
   std::vector<float> sq_distances, distances;
-  constexpr int kCount = kGridNeighbours + 1;
+  constexpr int kCount = kGridNeighbours + 1;  // derived: the closest point is the sample itself
   makeFlannSearch(flat)->search(samples, kCount, closest, sq_distances);
   std::complex<double> sum = 0.0;
   for (std::size_t k = 0; k < closest.size(); ++k) {
