@@ -50,7 +50,7 @@ std::optional<PixelRows> rowsOf(const Places& places) {
   for (Eigen::Index i = 0; i < samples.cols(); ++i) samples.col(i) = flat.col(i * stride);
   std::vector<int> closest;
   std::vector<float> sq_distances, distances;
-  constexpr int kCount = kGridNeighbours + 1;
+  constexpr int kCount = kGridNeighbours + 1;  // derived: the closest point is the sample itself
   makeTreeSearch(flat)->search(samples, kCount, closest, sq_distances);
   std::complex<double> sum = 0.0;
   for (std::size_t k = 0; k < closest.size(); ++k) {
@@ -69,9 +69,7 @@ struct LastRows {
   FrameSide side;
   std::array<int, 3> counts{};
 
-  bool areCut() const {
-    return counts[0] >= kLeastPoints && counts[0] >= kLeastRatio * 0.5 * (counts[1] + counts[2]);
-  }
+  bool areCut() const { return counts[0] >= kLeastPoints && counts[0] >= kLeastRatio * 0.5 * (counts[1] + counts[2]); }
 };
 
 LastRows lastRows(const Places& places, double angle, double pitch) {

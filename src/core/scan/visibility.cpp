@@ -96,8 +96,8 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
                         image.grid.height, std::move(image.depths), kBackground);
   const Eigen::Matrix3d to_places = image.grid.toPixels().inverse();
   for (const FrameSide& side : frameSides(seen.places))
-    visibility.pictures_.front().sides.emplace_back(
-        to_places.transpose() * Eigen::Vector3d(side.normal.x(), side.normal.y(), -side.offset));
+    visibility.pictures_.front().sides.emplace_back(to_places.transpose() *
+                                                    Eigen::Vector3d(side.normal.x(), side.normal.y(), -side.offset));
   return visibility;
 }
 
