@@ -26,7 +26,7 @@ namespace fs = boost::filesystem;
 
 namespace {
 
-// Points that the reference planes are measured with. chosen: the share of a plane is then good to 0.004.
+// Points that the reference planes are measured with. derived: the standard error of a share of 0.97 is then 0.002.
 constexpr int kReferenceSamples = 5000;
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();  // derived: the value that is no distance
 

@@ -53,12 +53,14 @@ TEST(MergeSamples, RandDistancesFollowTheMerges) {
   }
 }
 
-TEST(MergeFitting, IsBetterThanTheFirstRuleAndTheSameForAnyNumberOfThreads) {
+TEST(MergeFitting, IsBetterThanPatchesAndOneRegionAndTheSameForAnyNumberOfThreads) {
   const PeopledDivision first = peopledDumbbell(0), second = peopledDumbbell(1);
   const std::vector<PeopledModel> models{{"a", &first}, {"b", &second}};
   MergeFitter fitter(models, cuesOf(MergingEvidence::SymmetryAndConcavity), 1);
   const MergeFitting fitting = fitter.fit();
-  EXPECT_LT(fitting.fit.rand, 0.05);
+  const MergeRun merges = runMerges(first, fitting.fit.weights);
+  EXPECT_LT(fitting.fit.rand, 0.5 * merges.rand.front()) << "patches";
+  EXPECT_LT(fitting.fit.rand, 0.5 * merges.rand.back()) << "one region";
   EXPECT_GT(fitting.num_samples, 50u);
   EXPECT_EQ(fitting.fit.weights[kSight], 0.0) << "no such cue";
   EXPECT_GT(fitting.half_width[kAlways], 0.0);

@@ -34,8 +34,8 @@ struct MergingOptions {
   int num_patches = 200;
 
   /// Divisions into patches, each grown from other seeds, whose merges are averaged, >= 1.
-  /// chosen: with one, borders and parts depend on where patches happen to lie; twice as many take twice the time and
-  /// change the distance from people by less than 0.002.
+  /// chosen: with one, borders and parts depend on where patches happen to lie (measured on 65 models: Rand distance
+  /// 0.134 with one, 0.124 with four divisions into 300 patches); twice as many take twice the time.
   int num_divisions = 4;
 
   /// Smaller regions join a neighbour; share of the surface, in [0, 1).

@@ -12,8 +12,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: share of the surface; smaller intersections of the divisions join the closest larger one. At half, ragged
-/// borders make twice as many cells; at twice, borders begin to move.
+/// chosen: share of the surface; smaller intersections of the divisions join the closest larger one. At half,
+/// ragged borders make more cells; at twice, borders move further.
 constexpr double kLeastCell = 0.0005;
 
 /// Elements that lie in one cell of every division.

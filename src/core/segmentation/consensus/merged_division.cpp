@@ -9,8 +9,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: log odds from which on two regions are surely one part, probability 0.73. At 0.5 too many decisions are
-/// taken before divisions are compared; at 2 there are twice as many cells, and the result changes by less than 0.001.
+/// chosen: log odds from which on two regions are surely one part, probability 0.73. At 0.5 more decisions are taken
+/// before divisions are compared; at 2 there are more cells, and comparing them takes longer.
 constexpr double kSurelyOne = 1.0;
 
 /// The first merge that is not sure, or that leaves fewer regions than asked for.
