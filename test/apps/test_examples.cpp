@@ -94,7 +94,8 @@ TEST_F(Example, Scene) {
                     "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n4 8 9 10 11\n");
   const std::string scan = folder_ / "scene.pcd", completed = folder_ / "completed.pcd";
   ASSERT_EQ(
-      std::system((SCAN_TOOL " " + mesh + " " + scan + " -direction 1,1.5,1 -quiet >" + (folder_ / "ignored")).c_str()), 0);
+      std::system((SCAN_TOOL " " + mesh + " " + scan + " -direction 1,1.5,1 -quiet >" + (folder_ / "ignored")).c_str()),
+      0);
   ASSERT_EQ(run("10_scene " + scan + " " + completed), 0) << error_;
   EXPECT_NE(output_.find("1 supporting planes"), std::string::npos) << output_;
   EXPECT_EQ(numLinesWith(output_, "object of "), 1) << output_;

@@ -19,7 +19,8 @@ std::map<std::string, LeafClass> classesOfModels(const std::string& path) {
   reader.count("version", 1, 1);
   // chosen: beyond any benchmark; keeps a damaged file from taking all memory
   constexpr std::uint64_t kMost = 1'000'000;
-  // letters of a name behind its parents. chosen: the same; half would do too, without it each class can hold all before
+  // letters of a name behind its parents. chosen: the same; half would do too, without it each class can hold all
+  // before
   constexpr std::size_t kLongestName = 10'000;
   const std::uint64_t num_classes = reader.count("number of classes", 1, kMost);
   const std::uint64_t num_models = reader.count("number of models", 1, kMost);
@@ -33,8 +34,8 @@ std::map<std::string, LeafClass> classesOfModels(const std::string& path) {
     const auto known = full_names.find(parent);
     const std::string full_name = known == full_names.end() ? name : known->second + "/" + name;
     if (full_name.size() > kLongestName)
-      throw InputError(path + ": class " + std::to_string(c) + ", its name and those of its parents must have <= " +
-                       std::to_string(kLongestName) + " letters");
+      throw InputError(path + ": class " + std::to_string(c) +
+                       ", its name and those of its parents must have <= " + std::to_string(kLongestName) + " letters");
     full_names[name] = full_name;
     const std::uint64_t size = reader.count("size of class", c, kMost);
     for (std::uint64_t i = 1; i <= size; ++i)

@@ -12,7 +12,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kSideOfGEDT = kTurnableGEDTCells;  // derived: a shorter name
+constexpr int kSideOfGEDT = kTurnableGEDTCells;                 // derived: a shorter name
 constexpr std::size_t kNumCellsOfGEDT = kTurnableGEDTSize / 2;  // derived: of one cube
 constexpr int kFineSideOfGEDT = 2 * kSideOfGEDT;                // derived: each cell is the mean of eight
 // Radius of the ball in mean distances of the points from the middle. chosen: as those of turnablePRST().

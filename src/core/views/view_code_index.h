@@ -28,7 +28,7 @@ public:
   std::vector<int> nearest(const ViewCode& scan, double size_weight, int count, int num_threads) const;
 
 private:
-  std::vector<std::int8_t> codes_;        // of all shapes, one behind the other
+  std::vector<std::int8_t> codes_;         // of all shapes, one behind the other
   std::vector<std::size_t> begins_ = {0};  // of the shapes, and the end, in views
 };
 

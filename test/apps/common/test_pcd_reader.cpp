@@ -150,11 +150,12 @@ TEST(ReadPCD, RefusesSizesBeyondAllNumbers) {
     }
     for (const std::string data : {"ascii", "binary", "binary_compressed"}) {
       const std::string header = "VERSION 0.7\n" + fields + "\n" + sizes + "\n" + types + "\n" + counts;
-      // Compressed: the size that is said is the product of the fields x, y and z with the number of points, modulo 2^64.
-      const std::string body = data == "binary_compressed" ? std::string("\x08\0\0\0\0\0\0\xc0........", 16)
-                                                           : std::string(1000, ' ');
-      const std::string path = folder.write("a.pcd", header + "\nWIDTH 268435456\nHEIGHT 1\nPOINTS 268435456\nDATA " +
-                                                         data + "\n" + body);
+      // Compressed: the size that is said is the product of the fields x, y and z with the number of points, modulo
+      // 2^64.
+      const std::string body =
+          data == "binary_compressed" ? std::string("\x08\0\0\0\0\0\0\xc0........", 16) : std::string(1000, ' ');
+      const std::string path =
+          folder.write("a.pcd", header + "\nWIDTH 268435456\nHEIGHT 1\nPOINTS 268435456\nDATA " + data + "\n" + body);
       EXPECT_THROW(readPCD(path), InputError) << data;
     }
   }

@@ -1,4 +1,4 @@
-#include "core/scan/range_image.h"
+#include "core/scan/picture/range_image.h"
 
 #include <algorithm>
 #include <cmath>

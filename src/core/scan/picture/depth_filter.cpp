@@ -1,4 +1,4 @@
-#include "core/scan/depth_filter.h"
+#include "core/scan/picture/depth_filter.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "core/scan/picture_frame.h"
+#include "core/scan/picture/picture_frame.h"
 
 #include <algorithm>
 #include <array>
