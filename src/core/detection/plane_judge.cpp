@@ -128,7 +128,11 @@ PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const 
   } else if (!cloud_.isVolume() && within < kSurelyWhole && static_cast<Eigen::Index>(size) == cloud_.points.cols()) {
     const double held = offsetStiffness(reflected.points, matchedNormals(step), matched, plane);
     const auto trust = static_cast<float>(std::clamp(held / kHeld - 1.0, 0.0, 1.0));
-    if (trust > 0.0f) unknown = missingCounterparts(matched, step.closest, cloud_.geometry, borders());
+    if (trust > 0.0f) {
+      unknown = missingCounterparts(matched, step.closest, cloud_.geometry, borders());
+      for (std::size_t i = 0; i < size; ++i)
+        if (!matched[i] && isCutOff(reflected.points.col(static_cast<Eigen::Index>(i)))) unknown[i] = 1.0f;
+    }
     for (float& value : unknown) value *= trust;
   }
   std::vector<float> telling;  // distances of the samples that say something
@@ -276,8 +280,13 @@ std::vector<SymmetryPlane> PlaneJudge::findParts(const std::vector<SymmetryPlane
 const std::vector<char>& PlaneJudge::borders() const {
   std::call_once(borders_found_, [this] {
     borders_ = openBorders(cloud_.points, *cloud_.search, cloud_.geometry.normals, options_.num_threads);
+    cuts_ = findCutPlanes(cloud_.points, borders_, cloud_.spacing, options_.seed);
   });
   return borders_;
+}
+
+bool PlaneJudge::isCutOff(const Eigen::Vector3f& x) const {
+  return std::any_of(cuts_.begin(), cuts_.end(), [&](const CutPlane& cut) { return cut.normal.dot(x) > cut.offset; });
 }
 
 }  // namespace pcl_symmetry

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/evidence/share/cut_planes.h"
 #include "core/evidence/share/split_surface.h"
 #include "core/neighbours/thin_shape.h"
 #include "core/refinement/part_search.h"
@@ -90,6 +91,8 @@ private:
   bool leavesAllInPlace(const ReflectionPlane& plane) const;
   PlaneKind kindOf(const ReflectionPlane& plane, double confidence) const;
   const std::vector<char>& borders() const;
+  /// \pre borders() was called.
+  bool isCutOff(const Eigen::Vector3f& x) const;
 
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
@@ -100,7 +103,8 @@ private:
   double own_share_;  ///< within the tolerance, of the points themselves and the surface of the others
   double own_score_;  ///< PlaneEvidence::own_score
   mutable std::once_flag borders_found_;
-  mutable std::vector<char> borders_;  ///< of the cloud; found where they are first asked for
+  mutable std::vector<char> borders_;   ///< of the cloud; found where they are first asked for
+  mutable std::vector<CutPlane> cuts_;  ///< found together with the borders
 };
 
 }  // namespace pcl_symmetry
