@@ -1,8 +1,10 @@
 #include "pcl_symmetry/registration/symmetry_registration.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "core/base/check.h"
+#include "core/base/constants.h"
 #include "core/base/stopwatch.h"
 #include "core/registration/frame_hypotheses.h"
 #include "core/registration/pose_starts.h"
@@ -83,6 +85,39 @@ std::vector<Eigen::Isometry3d> posesFromFrames(const PosedSurface& scan, const P
   return poses;
 }
 
+double angleOf(const Eigen::Isometry3d& motion) {
+  return Eigen::AngleAxisd(motion.linear()).angle();
+}
+
+/// Poses near a guess to start from: the guess and turns of it, each also where the outline of the scan suggests.
+std::vector<Eigen::Isometry3d> posesAround(const PosedSurface& scan, const PosedSurface& model,
+                                           const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options) {
+  const PoseStarts starts(scan, model);
+  std::vector<Eigen::Isometry3d> poses;
+  for (const Eigen::Matrix3d& turn : uniformRotations(options.search.num_rotations)) {
+    if (Eigen::AngleAxisd(turn).angle() > options.around->angle) continue;
+    Eigen::Isometry3d pose = guess;
+    pose.linear() = turn * guess.linear();
+    poses.push_back(pose);
+    poses.push_back(starts.pose(pose.linear()));
+  }
+  poses.push_back(starts.pose(guess.linear()));
+  return poses;
+}
+
+/// Leaves those of the poses that are around a guess.
+/// \param poses between search frames.
+void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const PoseNeighbourhood& around,
+                std::vector<RankedPose>& poses) {
+  const Eigen::Vector3d& center = clouds.frames().source_center;
+  const auto isFar = [&](const RankedPose& pose) {
+    const Eigen::Isometry3d T_target_source = clouds.toInput(pose.T_model_scan);
+    return angleOf(T_target_source * guess.inverse()) > around.angle ||
+           (T_target_source * center - guess * center).norm() > around.distance;
+  };
+  poses.erase(std::remove_if(poses.begin(), poses.end(), isFar), poses.end());
+}
+
 /// The options with threads and seed passed on to all parts, and lengths in units of the search.
 CloudRegistrationOptions inSearchUnits(CloudRegistrationOptions options, double scale) {
   options.search.num_threads = options.frame.num_threads = options.frame.edt.num_threads = options.num_threads;
@@ -97,6 +132,10 @@ void CloudRegistrationOptions::validate() const {
   frame.validate();
   search.validate();
   check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
+  if (around) {
+    check(around->angle > 0.0 && around->angle <= kPi, "around.angle", around->angle, "in (0, pi]");
+    check(around->distance >= 0.0, "around.distance", around->distance, ">= 0");
+  }
   if (max_correspondence) check(*max_correspondence > 0.0, "max_correspondence", *max_correspondence, "> 0");
   check(transformation_epsilon >= 0.0, "transformation_epsilon", transformation_epsilon, ">= 0");
   checkNumThreads(num_threads);
@@ -115,15 +154,28 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   done("prepare");
 
   std::vector<Eigen::Isometry3d> hypotheses{clouds.toSearch(guess)};
-  if (options.frames) {
-    const std::vector<Eigen::Isometry3d> poses = posesFromFrames(clouds.scan(), clouds.model(), inner.frame);
+  const auto add = [&](const std::vector<Eigen::Isometry3d>& poses) {
     hypotheses.insert(hypotheses.end(), poses.begin(), poses.end());
+  };
+  PoseSearchOptions search = inner.search;
+  if (options.around) {
+    add(posesAround(clouds.scan(), clouds.model(), hypotheses.front(), inner));
+    search.num_rotations = 0;
+  } else if (options.frames) {
+    add(posesFromFrames(clouds.scan(), clouds.model(), inner.frame));
     done("frames");
   }
-  const std::vector<RankedPose> poses = searchPoses(clouds.scan(), clouds.model(), hypotheses, inner.search);
+  std::vector<RankedPose> poses = searchPoses(clouds.scan(), clouds.model(), hypotheses, search);
+  if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("search");
-  const RankedPose best = refinePoses(clouds.scan(), clouds.model(), poses, inner);
+  if (!poses.empty()) poses = {refinePoses(clouds.scan(), clouds.model(), poses, inner)};
+  if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
+  if (poses.empty()) {
+    result.T_target_source = guess;
+    return result;
+  }
+  const RankedPose& best = poses.front();
   result.T_target_source = clouds.toInput(best.T_model_scan);
   result.score = best.score;
   return result;

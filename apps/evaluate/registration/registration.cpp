@@ -5,6 +5,7 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -13,6 +14,7 @@
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
 #include "core/base/constants.h"
+#include "core/base/random.h"
 #include "evaluate/clouds/test_clouds.h"
 #include "evaluate/planes/plane_statistics.h"
 #include "evaluate/references/reference_cache.h"
@@ -36,6 +38,8 @@ struct EvaluateRegistrationOptions {
   int num_points = 10'000, num_views = 8;
   double noise = 0.0, missing = 0.0;
   double max_angle = 5.0, max_distance = 0.02;
+  std::optional<double> around;  ///< degrees
+  double around_distance = 0.1;  ///< diagonals
   std::optional<std::string> methods;
   bool impostors = false;
   std::optional<std::string> csv;
@@ -58,6 +62,9 @@ CommandLine commandLine(EvaluateRegistrationOptions& o) {
       .number("max_angle", o.max_angle, Range::open(0, 180), "largest rotation error of a right registration, degrees")
       .number("max_distance", o.max_distance, Range::open(0, 1),
               "largest error at the center of the model of a right registration, in diagonals")
+      .number("around", o.around, Range::upTo(0, 90),
+              "tracks: gives a guess that is off by this angle, degrees, for a search within half as much again")
+      .number("around_distance", o.around_distance, Range::closed(0, 10), "and by this distance, diagonals")
       .text("methods", "A,B,...", o.methods,
             "methods: symmetry, frames, rotations, pca, features (symmetry,pca,features)")
       .flag("impostors", o.impostors, "also try each scan with the mesh before its own, where nothing should fit")
@@ -193,6 +200,25 @@ private:
     before_ = target;
   }
 
+  /// The true pose, turned about the middle of the target and moved, both in random directions.
+  PoseGuess guessFor(const std::string& name, const TestCloud& scan, const Target& target, double diagonal) const {
+    // Half as much again as the guess is off: the search has to find where to stop. chosen: at 1 the truth lies on the
+    // edge, at 2 the search takes longer.
+    constexpr double kSearched = 1.5;
+    RandomStream random(options_.common.seed + std::hash<std::string>{}(name));
+    const auto direction = [&]() -> Eigen::Vector3d {
+      const double z = 2.0 * random.uniform() - 1.0, phi = 2.0 * kPi * random.uniform(), r = std::sqrt(1.0 - z * z);
+      return {r * std::cos(phi), r * std::sin(phi), z};
+    };
+    const double angle = *options_.around * kDegree, distance = options_.around_distance * diagonal;
+    const Eigen::Vector3d middle = centerOfMass(target.cloud->getMatrixXfMap(3, 4, 0));
+    const Eigen::Isometry3d off = Eigen::Translation3d(middle + distance * direction()) *
+                                  Eigen::AngleAxisd(angle, direction()) * Eigen::Translation3d(-middle);
+    // The center of the scan is at most a diagonal from the middle that the guess turns about.
+    return {off * scan.T_cloud_model.inverse(), kSearched * angle,
+            kSearched * distance + 2.0 * std::sin(0.5 * kSearched * angle) * diagonal};
+  }
+
   ReferenceSymmetries referencesOf(const Model& model, const pcl::PolygonMesh& mesh) {
     if (const auto cached = cache_.find(model.key, mesh.polygons.size())) return *cached;
     ReferenceOptions options;
@@ -205,9 +231,11 @@ private:
   /// \param references of the target; null where it is an impostor.
   void tryAll(const std::string& name, const TestCloud& scan, const Target& target,
               const ReferenceSymmetries* references) {
+    std::optional<PoseGuess> guess;
+    if (options_.around && references) guess = guessFor(name, scan, target, references->diagonal);
     for (std::size_t k = 0; k < methods_.size(); ++k) {
       const auto run = [&] {
-        return methods_[k].run(scan.cloud, target.cloud, options_.common.seed + 1, options_.common.threads);
+        return methods_[k].run(scan.cloud, target.cloud, guess, options_.common.seed + 1, options_.common.threads);
       };
       if (trials_.size() < methods_.size()) run();  // threads, tables and pages are there from the second call on
       Trial trial{name, target.name, k, !references, run(), {}, false};

@@ -80,7 +80,7 @@ void prepareIcp(pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>& icp, c
 
 RegistrationAnswer runSymmetryRegistration(SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ>& registration,
                                            const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
-                                           std::uint64_t seed, int num_threads) {
+                                           const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads) {
   RegistrationAnswer answer;
   Stopwatch watch;
   registration.setInputSource(source);
@@ -88,7 +88,12 @@ RegistrationAnswer runSymmetryRegistration(SymmetryRegistration<pcl::PointXYZ, p
   registration.setRandomSeed(seed);
   registration.setNumberOfThreads(num_threads);
   Cloud aligned;
-  registration.align(aligned);
+  if (guess) {
+    registration.setSearchAround(guess->angle, guess->distance);
+    registration.align(aligned, guess->T_target_source.matrix().cast<float>());
+  } else {
+    registration.align(aligned);
+  }
   answer.converged = registration.hasConverged();
   answer.T_target_source = Eigen::Isometry3d(registration.getFinalTransformation().cast<double>());
   answer.support = registration.getScore().support;
@@ -97,30 +102,30 @@ RegistrationAnswer runSymmetryRegistration(SymmetryRegistration<pcl::PointXYZ, p
   return answer;
 }
 
-RegistrationAnswer registerBySymmetry(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target, std::uint64_t seed,
-                                      int num_threads) {
+RegistrationAnswer registerBySymmetry(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
+                                      const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads) {
   SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  return runSymmetryRegistration(registration, source, target, seed, num_threads);
+  return runSymmetryRegistration(registration, source, target, guess, seed, num_threads);
 }
 
-RegistrationAnswer registerByFrames(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target, std::uint64_t seed,
-                                    int num_threads) {
+RegistrationAnswer registerByFrames(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
+                                    const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads) {
   SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
   PoseSearchOptions options = registration.getSearchOptions();
   options.num_rotations = 0;
   registration.setSearchOptions(options);
-  return runSymmetryRegistration(registration, source, target, seed, num_threads);
+  return runSymmetryRegistration(registration, source, target, guess, seed, num_threads);
 }
 
-RegistrationAnswer registerByRotations(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target, std::uint64_t seed,
-                                       int num_threads) {
+RegistrationAnswer registerByRotations(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
+                                       const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads) {
   SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
   registration.setUseFrames(false);
-  return runSymmetryRegistration(registration, source, target, seed, num_threads);
+  return runSymmetryRegistration(registration, source, target, guess, seed, num_threads);
 }
 
-RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target, std::uint64_t,
-                                           int) {
+RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target,
+                                           const std::optional<PoseGuess>&, std::uint64_t, int) {
   RegistrationAnswer answer;
   Stopwatch watch;
   const Cloud::Ptr source = finitePoints(*raw);
@@ -174,8 +179,8 @@ FeatureCloud::Ptr featuresOf(const NormalCloud::ConstPtr& cloud, double radius, 
   return features;
 }
 
-RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target, std::uint64_t,
-                                      int num_threads) {
+RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target,
+                                      const std::optional<PoseGuess>&, std::uint64_t, int num_threads) {
   RegistrationAnswer answer;
   Stopwatch watch;
   const int threads = resolveNumThreads(num_threads);

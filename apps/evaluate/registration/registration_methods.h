@@ -5,6 +5,7 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,14 +18,21 @@ struct RegistrationAnswer {
   double milliseconds = 0.0;
 };
 
+/// What a method may know: the pose of the last frame of a track.
+struct PoseGuess {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  double angle, distance;  ///< radians and input units that it is off by, at most
+};
+
 struct RegistrationMethod {
   const char* name;
   const char* summary;
   /// \param source may hold points that are not finite.
+  /// \param guess used by SymmetryRegistration alone.
   /// \param num_threads 0 = all.
   RegistrationAnswer (*run)(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& source,
-                            const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& target, std::uint64_t seed,
-                            int num_threads);
+                            const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& target,
+                            const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads);
 };
 
 /// symmetry: SymmetryRegistration with its defaults; frames and rotations: with one of its two kinds of hypotheses.

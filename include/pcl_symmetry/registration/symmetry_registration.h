@@ -18,8 +18,16 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+/// Poses around a guess.
+struct PoseNeighbourhood {
+  double angle;     ///< radians, greatest turn away from the guess, in (0, pi]
+  double distance;  ///< input units, greatest way from where the guess puts the center of the source, >= 0
+};
+
 /// The search for a pose and its refinement.
 struct CloudRegistrationOptions {
+  /// Only poses around the guess, as a track needs them; not set: all poses. Frames are then not looked for.
+  std::optional<PoseNeighbourhood> around = {};
   bool frames = true;        ///< tries the poses that bring symmetry frames together, beside evenly spread rotations
   FrameOptions frame;        ///< of these frames
   PoseSearchOptions search;  ///< of the search for poses
@@ -47,9 +55,9 @@ struct CloudRegistration {
 /// last comparison with more points.
 /// \param source,target 3 x N, finite, not all equal, input units.
 /// \param source_seen,target_seen what the scanners saw of them; nothing = the cloud shows its object from all sides.
-/// \param guess T_target_source, tried beside the hypotheses.
+/// \param guess T_target_source, tried beside the hypotheses; the middle of options.around.
 /// \param options of frames, search and refinement.
-/// \return the pose of greatest merit.
+/// \return the pose of greatest merit; where no pose around the guess is left, the guess with a score of 0.
 /// \throws std::invalid_argument for bad options or points without extent.
 CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
                                  const Points& target, const std::optional<Visibility>& target_seen,
@@ -115,6 +123,16 @@ public:
     }
     min_merit_ = min_merit;
   }
+  /// Searches only around the guess that align() is given: a moving object is tracked from one frame to the next, and
+  /// does not turn to a pose farther away that symmetry makes equal. align() does not converge where nothing fits
+  /// there.
+  /// \param angle radians, in (0, pi].
+  /// \param distance of the center of the source, input units, >= 0.
+  void setSearchAround(double angle, double distance) {
+    detail::changeOptions(options_, [&](CloudRegistrationOptions& changed) { changed.around = {angle, distance}; });
+  }
+  /// Searches all poses again (default).
+  void setSearchEverywhere() { options_.around.reset(); }
   /// \param use_frames whether the symmetry frames of both clouds give candidates (default), or evenly spread rotations
   /// alone.
   void setUseFrames(bool use_frames) { options_.frames = use_frames; }

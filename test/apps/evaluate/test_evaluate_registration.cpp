@@ -136,6 +136,16 @@ TEST_F(EvaluateRegistration, TellsHowOftenEachMethodIsRight) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * (4 + 2));
 }
 
+TEST_F(EvaluateRegistration, TracksFromAGuess) {
+  ASSERT_EQ(run((folder_ / ".") + " -points 2000 -num_views 2 -methods symmetry -around 15 -quiet -json " +
+                (folder_ / "t.json")),
+            0)
+      << error_;
+  const nlohmann::json symmetry = nlohmann::json::parse(contentOf(folder_ / "t.json"))["methods"]["symmetry"];
+  EXPECT_GE(symmetry["right_rate"].get<double>(), 0.99);
+  EXPECT_EQ(run((folder_ / ".") + " -around 120"), 2);
+}
+
 TEST_F(EvaluateRegistration, RunsOneMethodUnderHarderConditions) {
   ASSERT_EQ(
       run((folder_ / ".") + " -points 2000 -num_views 1 -methods frames,rotations -noise 0.01 -missing 0.2 -quiet"), 0)

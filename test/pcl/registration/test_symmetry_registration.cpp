@@ -186,6 +186,57 @@ TEST_F(SymmetryRegistrationTest, TakesTheGuessAndIndices) {
   EXPECT_EQ(aligned.size(), size);
 }
 
+/// The motion from one frame of a track to the next, about the middle of the chair.
+Eigen::Isometry3d motion(double angle, double distance) {
+  const Eigen::Vector3d along = Eigen::Vector3d(2.0, -1.0, 0.5).normalized();
+  return Eigen::Translation3d(distance * along) * Eigen::AngleAxisd(angle, along.unitOrthogonal());
+}
+
+TEST_F(SymmetryRegistrationTest, TracksAroundTheGuess) {
+  const Eigen::Isometry3d pose = randomPose(7);
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  registration.setInputSource(chairScan(pose));
+  const auto model = chairModel();
+  registration.setInputTarget(model);
+  const double diagonal =
+      (model->getMatrixXfMap(3, 4, 0).rowwise().maxCoeff() - model->getMatrixXfMap(3, 4, 0).rowwise().minCoeff())
+          .norm();
+  const auto align = [&](const Eigen::Isometry3d& off) {
+    pcl::PointCloud<pcl::PointXYZ> aligned;
+    registration.align(aligned, (off * pose.inverse()).matrix().cast<float>());
+  };
+  registration.setSearchAround(25.0 * kDegree, 0.4 * diagonal);
+  align(motion(15.0 * kDegree, 0.1 * diagonal));
+  ASSERT_TRUE(registration.hasConverged()) << registration.getReason();
+  EXPECT_LT(angleOf(registration.getFinalTransformation() * pose.matrix().cast<float>()), 2.0 * kDegree);
+  for (const auto& [stage, time] : registration.getTiming()) EXPECT_NE(stage, "frames");
+
+  registration.setSearchAround(5.0 * kDegree, 0.4 * diagonal);
+  align(motion(60.0 * kDegree, 0.0));
+  EXPECT_FALSE(registration.hasConverged()) << "the true pose is farther away";
+  EXPECT_EQ(registration.getReason().rfind("nothing fits around the guess", 0), 0u) << registration.getReason();
+  registration.setSearchEverywhere();
+  align(motion(60.0 * kDegree, 0.0));
+  EXPECT_TRUE(registration.hasConverged());
+}
+
+/// Of a box with three half turns only the pose next to the last frame is right for a track.
+TEST_F(SymmetryRegistrationTest, TracksDoNotFlip) {
+  const auto box = test::toCloud(test::box(4000, Sampling::Random, 1));
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  registration.setInputSource(box);
+  registration.setInputTarget(box);
+  registration.setSearchAround(40.0 * kDegree, 10.0);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Isometry3d half_turn(Eigen::AngleAxisd(kPi, Eigen::Vector3d::Unit(k)));
+    const Eigen::Isometry3d guess = Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 3).normalized()) * half_turn;
+    pcl::PointCloud<pcl::PointXYZ> aligned;
+    registration.align(aligned, guess.matrix().cast<float>());
+    ASSERT_TRUE(registration.hasConverged()) << registration.getReason();
+    EXPECT_LT(angleOf(registration.getFinalTransformation() * half_turn.matrix().cast<float>()), 3.0 * kDegree);
+  }
+}
+
 TEST_F(SymmetryRegistrationTest, LeavesOutPointsThatAreNotFinite) {
   const Eigen::Isometry3d pose = randomPose(6);
   const Scan scan = test::scan(blockChair(), {3.0, -6.0, 4.0});
@@ -260,6 +311,8 @@ TEST_F(SymmetryRegistrationTest, RefusesWrongParameters) {
   EXPECT_EQ(messageOf([&] { registration.setMinMerit(1.5); }), "min_merit = 1.5, must be in [-1, 1]");
   EXPECT_EQ(messageOf([&] { registration.setMaxPoints(2); }), "max_points = 2, must be >= 3");
   EXPECT_EQ(messageOf([&] { registration.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
+  EXPECT_EQ(messageOf([&] { registration.setSearchAround(0.0, 1.0); }), "around.angle = 0, must be in (0, pi]");
+  EXPECT_EQ(messageOf([&] { registration.setSearchAround(0.1, -1.0); }), "around.distance = -1, must be >= 0");
   PoseSearchOptions options;
   options.max_poses = 0;
   EXPECT_THROW(registration.setSearchOptions(options), pcl::BadArgumentException);

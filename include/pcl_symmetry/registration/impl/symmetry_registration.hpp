@@ -83,7 +83,8 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
     return;
   }
   std::ostringstream reason;
-  reason << "nothing fits: the best pose has support " << score_.support << " and conflict " << score_.conflict;
+  reason << "nothing fits" << (options_.around ? " around the guess" : "") << ": the best pose has support "
+         << score_.support << " and conflict " << score_.conflict;
   reason_ = reason.str();
 }
 
