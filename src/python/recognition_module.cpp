@@ -89,7 +89,17 @@ void addRegistration(py::module_& module) {
       .def_property_readonly(
           "transform", [](const CloudRegistration& r) { return RowMajor4(r.T_target_source.matrix()); },
           "(4, 4) from the frame of the source to that of the target")
-      .def_readonly("score", &CloudRegistration::score, "PoseScore of the transform");
+      .def_property_readonly(
+          "score", [](const CloudRegistration& r) { return r.score; }, "PoseScore of the transform")
+      .def_property_readonly(
+          "poses",
+          [](const CloudRegistration& r) {
+            std::vector<std::pair<RowMajor4, PoseScore>> poses;
+            for (const RegisteredPose& pose : r.poses)
+              poses.emplace_back(RowMajor4(pose.T_target_source.matrix()), pose.score);
+            return poses;
+          },
+          "list of (transform, score), best first: poses that symmetry makes equal have like merits");
   module.def(
       "register", &registerPoints, py::arg("source"), py::arg("target"), py::kw_only(),
       py::arg("guess") = RowMajor4(RowMajor4::Identity()), py::arg("source_viewpoint") = "auto",

@@ -168,16 +168,12 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   std::vector<RankedPose> poses = searchPoses(clouds.scan(), clouds.model(), hypotheses, search);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("search");
-  if (!poses.empty()) poses = {refinePoses(clouds.scan(), clouds.model(), poses, inner)};
+  if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
-  if (poses.empty()) {
-    result.T_target_source = guess;
-    return result;
-  }
-  const RankedPose& best = poses.front();
-  result.T_target_source = clouds.toInput(best.T_model_scan);
-  result.score = best.score;
+  for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
+  if (poses.empty()) result.poses.push_back({guess, {}});
+  static_cast<RegisteredPose&>(result) = result.poses.front();
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <pcl/search/kdtree.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/registration/pose_scoring.h"
 
@@ -84,25 +85,22 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
   return pose;
 }
 
-RankedPose refinePoses(const PosedSurface& scan, const PosedSurface& model, const std::vector<RankedPose>& poses,
-                       const CloudRegistrationOptions& options) {
+std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
+                                    const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options) {
   const double accuracy = std::max(scan.accuracy, model.accuracy);
   const double reach = options.max_correspondence.value_or(std::max(kLeastReach, kReach * accuracy));
   PoseRefinement icp(scan, model, reach, options);
   const PoseScorer scorer(scan, model);
   const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, accuracy), true};
-  RankedPose best;
-  best.score.conflict = 1.0;
-  const auto offer = [&](const Eigen::Isometry3d& pose) {
-    const PoseScore score = scorer.score(pose, detail);
-    if (score.merit() > best.score.merit()) best = {pose, score};
-  };
+  const auto judged = [&](const Eigen::Isometry3d& pose) { return RankedPose{pose, scorer.score(pose, detail)}; };
+  std::vector<RankedPose> refined;
   for (const RankedPose& pose : poses) {
     if (pose.score.merit() < poses.front().score.merit() - kHopeless) break;
-    offer(pose.T_model_scan);
-    offer(icp.refined(pose.T_model_scan));
+    const RankedPose before = judged(pose.T_model_scan), after = judged(icp.refined(pose.T_model_scan));
+    refined.push_back(after.score.merit() > before.score.merit() ? after : before);
   }
-  return best;
+  const std::size_t size = refined.size();
+  return distinctPoses(std::move(refined), size, options.search);
 }
 
 }  // namespace pcl_symmetry

@@ -19,12 +19,12 @@ struct SearchFrames {
   Eigen::Isometry3d toInput(const Eigen::Isometry3d& T_target_source) const;
 };
 
-/// The pose of greatest merit among some poses and their refinements by PCL's point-to-plane ICP.
+/// Poses and their refinements by PCL's point-to-plane ICP, of each the one of greater merit.
 /// \param scan,model in search frames.
 /// \param poses from searchPoses(), best first, at least one. Poses far behind the best are left out.
 /// \param options of the refinement; max_correspondence in units of the search.
-/// \return T_model_scan between search frames.
-RankedPose refinePoses(const PosedSurface& scan, const PosedSurface& model, const std::vector<RankedPose>& poses,
-                       const CloudRegistrationOptions& options);
+/// \return distinct ones, at least one, best first; T_model_scan between search frames.
+std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
+                                    const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options);
 
 }  // namespace pcl_symmetry

@@ -215,6 +215,8 @@ class WithPCL(unittest.TestCase):
         found = pcl_symmetry.register(source, target, source_viewpoint=None, target_viewpoint=None)
         self.assertLess(np.abs(found.transform - truth).max(), 0.02)
         self.assertGreater(found.score.merit, 0.5)
+        np.testing.assert_array_equal(found.poses[0][0], found.transform)
+        self.assertEqual(found.poses[0][1].merit, found.score.merit)
         self.assertAlmostEqual(found.score.merit, found.score.support - found.score.conflict / 2)
         with self.assertRaisesRegex(ValueError, "guess"):
             pcl_symmetry.register(source, target, guess=np.ones((4, 4)))

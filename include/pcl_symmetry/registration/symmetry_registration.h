@@ -43,11 +43,18 @@ struct CloudRegistrationOptions {
   void validate() const;
 };
 
-/// The pose of a cloud in another one.
-struct CloudRegistration {
+/// A pose of a cloud in another one.
+struct RegisteredPose {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
-  /// Score of this pose. The source counts as the scan, unless only the target was seen from one side.
+  /// Of this pose. The source counts as the scan, unless only the target was seen from one side.
   PoseScore score;
+};
+
+/// The best pose of a cloud in another one, and the next ones.
+struct CloudRegistration : RegisteredPose {
+  /// Distinct poses by falling merit, the best one first, at most PoseSearchOptions::max_poses: those that symmetry
+  /// makes equal have like merits.
+  std::vector<RegisteredPose> poses;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
@@ -57,7 +64,7 @@ struct CloudRegistration {
 /// \param source_seen,target_seen what the scanners saw of them; nothing = the cloud shows its object from all sides.
 /// \param guess T_target_source, tried beside the hypotheses; the middle of options.around.
 /// \param options of frames, search and refinement.
-/// \return the pose of greatest merit; where no pose around the guess is left, the guess with a score of 0.
+/// \return the poses of greatest merit; where none around the guess is left, the guess with a score of 0.
 /// \throws std::invalid_argument for bad options or points without extent.
 CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
                                  const Points& target, const std::optional<Visibility>& target_seen,
@@ -157,6 +164,9 @@ public:
   /// \return how well the clouds agree with the transformation of the last align(), or with the best pose that was
   /// found where nothing fits.
   const PoseScore& getScore() const { return score_; }
+  /// \return the best poses that the last align() found, see CloudRegistration::poses; that of the transformation is the
+  /// first one. Empty where a cloud held no answer.
+  const std::vector<RegisteredPose>& getPoses() const { return poses_; }
   /// \return why the last align() did not converge, one sentence; empty where it did.
   const std::string& getReason() const { return reason_; }
   /// \return stages of the last align() and their milliseconds, in order.
@@ -191,6 +201,7 @@ private:
   double min_merit_ = 0.4;
   std::size_t max_points_ = 10'000;
   PoseScore score_;
+  std::vector<RegisteredPose> poses_;
   std::string reason_;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };

@@ -69,22 +69,6 @@ void improve(std::vector<RankedPose>& poses, const PoseScorer& scorer, const Imp
   });
 }
 
-/// The best poses, at most \p most, that differ from all better ones.
-std::vector<RankedPose> distinct(std::vector<RankedPose> poses, std::size_t most, const PoseSearchOptions& options) {
-  std::stable_sort(poses.begin(), poses.end(), better);
-  std::vector<RankedPose> kept;
-  for (const RankedPose& pose : poses) {
-    const auto same = [&](const RankedPose& other) {
-      const Eigen::Isometry3d motion = other.T_model_scan * pose.T_model_scan.inverse();
-      return Eigen::AngleAxisd(motion.linear()).angle() < options.merge_angle &&
-             motion.translation().norm() < options.merge_distance;
-    };
-    if (std::none_of(kept.begin(), kept.end(), same)) kept.push_back(pose);
-    if (kept.size() == most) break;
-  }
-  return kept;
-}
-
 }  // namespace
 
 void PoseSearchOptions::validate() const {
@@ -99,6 +83,22 @@ void PoseSearchOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
+std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most,
+                                      const PoseSearchOptions& options) {
+  std::stable_sort(poses.begin(), poses.end(), better);
+  std::vector<RankedPose> kept;
+  for (const RankedPose& pose : poses) {
+    const auto same = [&](const RankedPose& other) {
+      const Eigen::Isometry3d motion = other.T_model_scan * pose.T_model_scan.inverse();
+      return Eigen::AngleAxisd(motion.linear()).angle() < options.merge_angle &&
+             motion.translation().norm() < options.merge_distance;
+    };
+    if (std::none_of(kept.begin(), kept.end(), same)) kept.push_back(pose);
+    if (kept.size() == most) break;
+  }
+  return kept;
+}
+
 std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<Eigen::Isometry3d>& hypotheses,
                                     const PoseSearchOptions& options) {
@@ -109,9 +109,9 @@ std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface
 
   const double middle_width = std::sqrt(options.coarse_width * options.fine_width);
   improve(poses, scorer, {kCoarseSteps, kCoarsePoints, options.coarse_width, middle_width}, options.num_threads);
-  poses = distinct(std::move(poses), options.num_refined, options);
+  poses = distinctPoses(std::move(poses), options.num_refined, options);
   improve(poses, scorer, {kFineSteps, kFinePoints, middle_width, options.fine_width}, options.num_threads);
-  return distinct(std::move(poses), options.max_poses, options);
+  return distinctPoses(std::move(poses), options.max_poses, options);
 }
 
 }  // namespace pcl_symmetry

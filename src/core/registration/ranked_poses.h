@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <vector>
 
 #include "core/registration/posed_surface.h"
@@ -12,6 +13,11 @@ struct RankedPose {
   Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();
   PoseScore score;
 };
+
+/// The best poses, at most \p most, that differ from all better ones by the merge_angle or the merge_distance of the
+/// options.
+std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most,
+                                      const PoseSearchOptions& options);
 
 /// A few distinct poses of greatest merit (Section 5.1). Evenly spread rotations are screened by merit. The best of
 /// them and all hypotheses are improved coarsely, the best of those finely, by Gauss-Newton steps with a shrinking

@@ -5,6 +5,9 @@
 #include <pcl/console/print.h>
 #include <pcl/registration/icp.h>
 
+#include <cmath>
+#include <set>
+
 #include "pcl/support/clouds.h"
 #include "pcl/support/error_message.h"
 #include "shapes/scans.h"
@@ -235,6 +238,27 @@ TEST_F(SymmetryRegistrationTest, TracksDoNotFlip) {
     ASSERT_TRUE(registration.hasConverged()) << registration.getReason();
     EXPECT_LT(angleOf(registration.getFinalTransformation() * half_turn.matrix().cast<float>()), 3.0 * kDegree);
   }
+}
+
+TEST_F(SymmetryRegistrationTest, ListsThePosesThatSymmetryMakesEqual) {
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  registration.setInputSource(test::toCloud(test::box(4000, Sampling::Random, 1)));
+  registration.setInputTarget(test::toCloud(test::box(4000, Sampling::Random, 2)));
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  registration.align(aligned);
+  ASSERT_TRUE(registration.hasConverged());
+  const std::vector<RegisteredPose>& poses = registration.getPoses();
+  ASSERT_EQ(poses.size(), 4u) << "the identity and three half turns";
+  EXPECT_TRUE(poses[0].T_target_source.matrix().cast<float>().isApprox(registration.getFinalTransformation()));
+  EXPECT_EQ(poses[0].score.merit(), registration.getScore().merit());
+  std::set<int> turns;
+  for (const RegisteredPose& pose : poses) {
+    const Eigen::Vector3d signs = pose.T_target_source.linear().diagonal();
+    EXPECT_GT(signs.cwiseAbs().minCoeff(), std::cos(5.0 * kDegree));
+    turns.insert((signs.x() > 0 ? 1 : 0) + (signs.y() > 0 ? 2 : 0) + (signs.z() > 0 ? 4 : 0));
+    EXPECT_GT(pose.score.merit(), poses[0].score.merit() - 0.15);
+  }
+  EXPECT_EQ(turns, (std::set<int>{1, 2, 4, 7}));
 }
 
 TEST_F(SymmetryRegistrationTest, LeavesOutPointsThatAreNotFinite) {

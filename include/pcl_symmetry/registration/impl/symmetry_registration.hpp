@@ -41,6 +41,7 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformation(PointCloudSource& output,
                                                                                    const Matrix4& guess) {
   score_ = {};
+  poses_.clear();
   timing_ms_.clear();
   const detail::SelectedPoints source = detail::selectPoints(*input_, indices_.get(), max_points_, options_.seed);
   const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
@@ -76,6 +77,7 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
                                                     : detail::seenSpace(*target_, target, target_viewpoint_);
   const CloudRegistration result = registerClouds(source, source_seen, target, target_seen,
                                                   Eigen::Isometry3d(guess.template cast<double>()), options);
+  poses_ = result.poses;
   score_ = result.score;
   timing_ms_ = result.timing_ms;
   if (score_.merit() >= min_merit_) {
