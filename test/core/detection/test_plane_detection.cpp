@@ -1,4 +1,4 @@
-/// From points to planes: shapes whose planes are known, moved, scaled, disturbed and degenerate.
+/// From points to planes: shapes whose planes are known, moved, scaled, disturbed and flat.
 #include "pcl_symmetry/core/detection/plane_detection.h"
 
 #include <gtest/gtest.h>
@@ -411,63 +411,6 @@ TEST(RefineMaxima, IsTheSecondHalfOfDetection) {
   EXPECT_TRUE(half.map.empty());
 }
 
-void expectNoAnswer(const Points& cloud, const std::string& reason) {
-  const Detection detection = detectPlanes(cloud);
-  EXPECT_TRUE(detection.planes.empty() && detection.axes.empty() && detection.centers.empty()) << reason;
-  EXPECT_EQ(detection.reason, reason);
-}
-
-TEST(DetectPlanes, FewPointsHoldNoSymmetry) {
-  for (int k = 0; k < 24; ++k) {
-    const int num_points = 5 + k % 12;  // 5 to 16
-    expectNoAnswer(box(num_points, Sampling::Random, 100 + k).cloud(),
-                   std::to_string(num_points) + " distinct points, at least 20 are needed");
-  }
-  const Points nineteen = asymmetricBlob(19, 1).cloud();
-  expectNoAnswer(nineteen, "19 distinct points, at least 20 are needed");
-  expectNoAnswer(nineteen.replicate(1, 50), "19 distinct points, at least 20 are needed");
-  EXPECT_EQ(detectPlanes(asymmetricBlob(20, 1).cloud()).reason, "");
-}
-
-TEST(DetectPlanes, PointsWithoutExtentHoldNoSymmetry) {
-  expectNoAnswer(Points(3, 0), "0 distinct points, at least 20 are needed");
-  for (const float value : {0.0f, 1.0f, -1e9f}) {
-    expectNoAnswer(Points::Constant(3, 1, value), "1 distinct point, at least 20 are needed");
-    expectNoAnswer(Points::Constant(3, 1000, value), "1 distinct point, at least 20 are needed");
-  }
-}
-
-TEST(DetectPlanes, ALineHoldsNoSymmetry) {
-  RandomStream random(20);
-  const Eigen::Vector3d direction = Eigen::Vector3d(1.0, 2.0, -1.0).normalized(), start(5.0, -3.0, 2.0);
-  Points line(3, 1000);
-  for (int i = 0; i < 1000; ++i) line.col(i) = (start + random.uniform() * direction).cast<float>();
-  expectNoAnswer(line, "all points lie on one line");
-  // One point beside the line, farther than rounding explains: the search runs.
-  line.col(500) += 1e-5f * direction.cast<float>().unitOrthogonal();
-  EXPECT_EQ(detectPlanes(line).reason, "");
-}
-
-TEST(DetectPlanes, ValuesThatAreNotFiniteAreRefused) {
-  for (const int num_points : {3, 100}) {
-    Points cloud = box(num_points, Sampling::Random, 19).cloud();
-    cloud(2, 1) = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_THROW(detectPlanes(cloud), std::invalid_argument) << num_points;
-    cloud(2, 1) = std::numeric_limits<float>::infinity();
-    EXPECT_THROW(detectPlanes(cloud), std::invalid_argument) << num_points;
-  }
-}
-
-TEST(RefineMaxima, AsksTheSameOfPoints) {
-  const Points cloud = box(1000, Sampling::Random, 23).cloud();
-  const GaussianEdt edt(cloud);
-  const SymmetryMap map = detectPlanes(cloud).map;
-  const Detection few = refineMaxima(cloud.leftCols(12), edt, map);
-  EXPECT_TRUE(few.planes.empty() && few.axes.empty() && few.centers.empty());
-  EXPECT_EQ(few.reason, "12 distinct points, at least 20 are needed");
-  EXPECT_EQ(refineMaxima(cloud, edt, map).reason, "");
-}
-
 TEST(DetectPlanes, AFlatRectangleHasThree) {
   const Shape flat = moved(box({1.0, 0.6, 0.0}, 4000, Sampling::Mirrored, 21), randomPose(21));
   const Points cloud = flat.cloud();
@@ -478,76 +421,6 @@ TEST(DetectPlanes, AFlatRectangleHasThree) {
   EXPECT_EQ(comparison.num_matched, 3u);
   EXPECT_LT(comparison.worst_angle, 0.001 * kDegree);
   EXPECT_LT(comparison.worst_offset, 1e-5);
-}
-
-TEST(DetectPlanesOfMany, FindsTheSameBytesAsOneCloudAtATime) {
-  const auto cloud = [](std::size_t i) {
-    return moved(box({1.0, 0.7, 0.4}, 2000, Sampling::Mirrored, 30 + i), randomPose(static_cast<int>(i))).cloud();
-  };
-  constexpr std::size_t kNum = 6;
-  for (const int num_threads : {1, 3}) {
-    DetectionOptions options;
-    options.num_threads = num_threads;
-    std::vector<std::vector<SymmetryPlane>> planes(kNum);
-    std::vector<int> num_calls(kNum, 0);
-    const auto keep = [&](std::size_t i, Detection detection) {
-      ++num_calls[i];
-      planes[i] = std::move(detection.planes);
-    };
-    detectPlanesOfMany(kNum, cloud, keep, options);
-    EXPECT_EQ(num_calls, std::vector<int>(kNum, 1));
-    for (std::size_t i = 0; i < kNum; ++i) {
-      const std::vector<SymmetryPlane> expected = detectPlanes(cloud(i)).planes;
-      ASSERT_EQ(planes[i].size(), expected.size());
-      EXPECT_GE(planes[i].size(), 1u);
-      for (std::size_t k = 0; k < expected.size(); ++k) {
-        EXPECT_EQ(planes[i][k].normal(), expected[k].normal());
-        EXPECT_EQ(planes[i][k].offset(), expected[k].offset());
-        EXPECT_EQ(planes[i][k].confidence, expected[k].confidence);
-      }
-    }
-  }
-}
-
-TEST(DetectPlanesOfMany, HandsOnWhatFails) {
-  const auto keep = [](std::size_t, const Detection&) {};
-  const auto fails = [](std::size_t i) -> Points {
-    if (i == 2) throw std::runtime_error("cloud 2 cannot be read");
-    return box(100, Sampling::Random, 22).cloud();
-  };
-  EXPECT_THROW(detectPlanesOfMany(4, fails, keep), std::runtime_error);
-  DetectionOptions bad;
-  bad.num_threads = -1;
-  EXPECT_THROW(detectPlanesOfMany(0, fails, keep, bad), std::invalid_argument);
-  EXPECT_NO_THROW(detectPlanesOfMany(0, fails, keep));
-}
-
-TEST(DetectionOptions, RefusesBadOnes) {
-  const Points cloud = box(100, Sampling::Random, 22).cloud();
-  const auto refused = [&](auto&& change) {
-    DetectionOptions options;
-    change(options);
-    EXPECT_THROW(detectPlanes(cloud, options), std::invalid_argument);
-  };
-  refused([](auto& o) { o.edt.num_cells = 1; });
-  refused([](auto& o) { o.maxima.strength = 2.0; });
-  refused([](auto& o) { o.num_theta = 0; });
-  refused([](auto& o) { o.num_phi = 3; });
-  refused([](auto& o) { o.num_radius = 0; });
-  refused([](auto& o) { o.max_candidates = 0; });
-  refused([](auto& o) { o.max_drift = -1.0; });
-  refused([](auto& o) { o.num_coarse_samples = 9; });
-  refused([](auto& o) { o.num_refine_samples = 9; });
-  refused([](auto& o) { o.max_iterations = 0; });
-  refused([](auto& o) { o.merge_angle = -1.0; });
-  refused([](auto& o) { o.merge_offset = -1.0; });
-  refused([](auto& o) { o.min_confidence = 1.5; });
-  refused([](auto& o) { o.min_confidence = -0.1; });
-  refused([](auto& o) { o.min_possible = -0.1; });
-  refused([](auto& o) { o.min_possible = 1.1; });
-  refused([](auto& o) { o.max_possible = 0; });
-  refused([](auto& o) { o.max_planes = 0; });
-  refused([](auto& o) { o.num_threads = -1; });
 }
 
 }  // namespace
