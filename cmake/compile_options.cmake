@@ -20,7 +20,9 @@ if(PCL_SYMMETRY_SANITIZE)
     # access for the three takes half as much time again to compile (core/refinement: 74 s in place of 50 s).
     add_compile_options(-fno-sanitize=null,alignment,vptr)
   endif()
-  add_link_options(-fsanitize=${PCL_SYMMETRY_SANITIZE})
+  # The address sanitizer opens the modules of the tools in their place: only the older form of the path in the program
+  # is searched whoever asks.
+  add_link_options(-fsanitize=${PCL_SYMMETRY_SANITIZE} -Wl,--disable-new-dtags)
   # Eigen changes its allocation under the address sanitizer; PCL's libraries, compiled without, free what we allocate.
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()

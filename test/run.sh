@@ -7,8 +7,8 @@ usage() {
 usage: bash test/run.sh [-h] [--all] [--filter REGEX]
 
 Installs missing packages, builds libraries, tools and tests into build/ and runs the tests. With --all, builds the
-libraries once more with the address and undefined-behaviour sanitizers into build-sanitize/ and runs their tests, and
-the core, which starts all threads, with the thread sanitizer and without PCL into build-thread/ and runs its tests of
+libraries and tools once more with the address and undefined-behaviour sanitizers into build-sanitize/ and runs their
+tests, and the core, which starts all threads, with the thread sanitizer and without PCL into build-thread/ and runs its tests of
 threads. The last line says "N passed, N failed, N skipped"; a step that fails before its tests counts as one failure.
 Exit status 0 if tests ran and none failed.
 
@@ -98,7 +98,7 @@ step bash cmake/install_dependencies.sh
 build_and_test release build
 if $sanitize; then
   for preset in sanitize thread; do
-    build_and_test "$preset" "build-$preset" --label-regex '^(core|pcl)$'
+    build_and_test "$preset" "build-$preset" --label-regex '^(core|pcl|apps)$'
   done
 fi
 finish
