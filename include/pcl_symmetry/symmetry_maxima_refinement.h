@@ -68,7 +68,7 @@ public:
   /// \param approximate also reports maxima of less confidence: approximate symmetries and symmetries of parts, marked
   /// by SymmetryPlane::kind; default false.
   void setApproximate(bool approximate) { options_.approximate = approximate; }
-  /// \param max_planes greatest number of planes, >= 1; default 20.
+  /// \param max_planes greatest number of planes, >= 1; default 64.
   void setMaxPlanes(int max_planes) {
     change([&](DetectionOptions& changed) { changed.max_planes = max_planes; });
   }

@@ -1,5 +1,6 @@
 #include "core/detection/candidates.h"
 
+#include "core/detection/folds/plane_lattice.h"
 #include "core/geometry/principal_axes.h"
 
 namespace pcl_symmetry {
@@ -12,6 +13,8 @@ constexpr PlaneTolerance kBasin{0.1, 0.06};
 // Symmetries whose group is completed. chosen: the full group of a cube has 9, that of an icosahedron 15; more belong
 // to a family of planes, whose group never closes. measured: at twice, a sphere takes ten times as long.
 constexpr std::size_t kMaxClosed = 16;
+// Radii by which a plane may miss the line of a polygon. chosen: as planes of a family may (plane_families.cpp).
+constexpr double kLatticeOffset = 0.03;
 
 }  // namespace
 
@@ -41,15 +44,22 @@ std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& plan
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud_.toNormalized(plane));
   std::vector<Candidate> found;
-  if (cloud_.isScan() || symmetries.size() > kMaxClosed) return found;
+  if (cloud_.isScan()) return found;
   tried_.insert(tried_.end(), symmetries.begin(), symmetries.end());
+  const auto add = [&](const ReflectionPlane& plane) {
+    if (tolerance_.anySame(tried_, plane)) return;
+    tried_.push_back(plane);
+    found.push_back({plane, false});
+  };
+  // The planes of a regular polygon, from those of them that are known.
+  if (const std::optional<PlaneLattice> lattice = findLattice(symmetries, kLatticeOffset))
+    for (int k = 0; k < lattice->fold; ++k) add(lattice->plane(k));
+  if (symmetries.size() > kMaxClosed) return found;
   for (const ReflectionPlane& plane : symmetries) {
     for (const ReflectionPlane& across : symmetries) {
       const Eigen::Vector3d normal = plane.normal() - 2.0 * plane.normal().dot(across.normal()) * across.normal();
       const ReflectionPlane image(normal, normal.dot(across.reflect(plane.offset() * plane.normal())));
-      if (tolerance_.anySame(tried_, image)) continue;
-      tried_.push_back(image);
-      found.push_back({image, false});
+      add(image);
     }
   }
   return found;

@@ -18,7 +18,8 @@ std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const Symm
 /// Limits within which two maxima share one basin of refinement, normalised frame.
 PlaneTolerance basinTolerance();
 
-/// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate.
+/// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate, and
+/// the planes of a regular polygon of which some are known.
 class GroupClosure {
 public:
   /// \param cloud must outlive this object.
@@ -26,7 +27,7 @@ public:
   GroupClosure(const NormalizedCloud& cloud, const PlaneTolerance& tolerance) : cloud_(cloud), tolerance_(tolerance) {}
 
   /// \param planes found up to now, input frame; those that are symmetries count.
-  /// \return reflections of one symmetry in another that neither are known nor were returned before; none for scans.
+  /// \return such planes that neither are known nor were returned before; none for scans.
   std::vector<Candidate> next(const std::vector<SymmetryPlane>& planes);
 
 private:

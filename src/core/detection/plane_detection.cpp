@@ -10,14 +10,18 @@
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/candidates.h"
+#include "core/detection/folds/even_density.h"
+#include "core/detection/folds/fold_spectrum.h"
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_judge.h"
 #include "core/detection/plane_ranking.h"
 #include "core/detection/scan_axes/scan_axes.h"
 #include "core/detection/staged_refinement.h"
 #include "core/distance_transform/free_space.h"
+#include "core/geometry/point_samples.h"
 #include "core/neighbours/answerable_points.h"
 #include "core/neighbours/distinct_points.h"
+#include "core/refinement/surface_fit.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
 
 namespace pcl_symmetry {
@@ -126,22 +130,13 @@ void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::
   });
 }
 
-Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
-                       const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
-                       const Points* normals) {
-  options.validate();
-  if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
-  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
-  Detection detection;
-  Stopwatch watch;
-  const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
+namespace {
 
-  const DistinctPoints distinct(points);
-  const bool repeated = distinct.points.cols() < points.cols();
-  if (repeated) search = nullptr;  // it knows the copies
-  const Points distinct_normals = normals ? normalsOf(distinct, *normals) : Points();
-  const NormalizedCloud cloud(distinct.points, edt, std::move(search), visibility, options.num_threads,
-                              normals ? &distinct_normals : nullptr);
+/// Planes of a cloud, from the maxima of its map to the list.
+Detection planesOf(const NormalizedCloud& cloud, const SymmetryMap& map, const DetectionOptions& options,
+                   Stopwatch& watch) {
+  Detection detection;
+  const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(
       cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
   const StagedRefinement refinement(cloud, *fit, options);
@@ -160,7 +155,8 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   GroupClosure closure(cloud, {options.merge_angle, options.merge_offset});
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
     append(planes, judge.judge(refinement.full(std::move(candidates))));
-  planes = judge.preferringWhole(std::move(planes));
+  PlanesAndPolygon completed = withPolygon(judge.preferringWhole(std::move(planes)), cloud, judge, options);
+  planes = std::move(completed.planes);
   timed("closure");
   if (options.families) {
     PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, *fit, judge, options);
@@ -177,12 +173,59 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   if (!answered) detection.best = bestApproximate(planes, cloud, *fit);
   if (detection.best) detection.best->deviation = judge.deviation(*detection.best);
   detection.tolerance = judge.tolerance() * cloud.scale;
-  detection.planes = rankedPlanes(std::move(planes), cloud, *fit, options);
-  if (repeated) {
-    for (SymmetryPlane& plane : detection.planes) spreadSupport(plane, distinct);
-    if (detection.best) spreadSupport(*detection.best, distinct);
-  }
+  detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
   timed("report");
+  return detection;
+}
+
+/// The same where one side of the cloud is thinner than the other, by points as dense on both; the support of all
+/// points.
+/// \param input the points of the cloud in the input frame.
+/// \param kept indices of the points to judge by.
+Detection planesOfEven(const NormalizedCloud& cloud, const Points& input, const std::vector<int>& kept,
+                       const SymmetryMap& map, const DetectionOptions& options, Stopwatch& watch) {
+  GaussianEdtOptions edt_options;
+  edt_options.num_cells = cloud.edt.numCells();
+  edt_options.sigma = cloud.edt.sigma();
+  edt_options.center = cloud.edt.center();
+  edt_options.radius = cloud.edt.radius();
+  edt_options.num_threads = options.num_threads;
+  const Points even_points = pointsAt(input, kept);
+  const GaussianEdt edt(even_points, edt_options);
+  const NormalizedCloud even(even_points, edt, nullptr, nullptr, options.num_threads);
+  Detection detection = planesOf(even, map, options, watch);
+  const SurfaceFit all(
+      cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
+  const auto complete = [&](SymmetryPlane& plane) {
+    plane.point_support = all.PlaneFit::shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).point_support;
+  };
+  for (SymmetryPlane& plane : detection.planes) complete(plane);
+  if (detection.best) complete(*detection.best);
+  return detection;
+}
+
+}  // namespace
+
+Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
+                       const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
+                       const Points* normals) {
+  options.validate();
+  if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
+  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
+  Stopwatch watch;
+  const DistinctPoints distinct(points);
+  const bool repeated = distinct.points.cols() < points.cols();
+  if (repeated) search = nullptr;  // it knows the copies
+  const Points distinct_normals = normals ? normalsOf(distinct, *normals) : Points();
+  const NormalizedCloud cloud(distinct.points, edt, std::move(search), visibility, options.num_threads,
+                              normals ? &distinct_normals : nullptr);
+  const std::vector<int> kept = cloud.isVolume() ? evenlyDense(cloud, options.seed) : allOf(cloud.points.cols());
+  Detection detection = static_cast<Eigen::Index>(kept.size()) < cloud.points.cols()
+                            ? planesOfEven(cloud, distinct.points, kept, map, options, watch)
+                            : planesOf(cloud, map, options, watch);
+  if (!repeated) return detection;
+  for (SymmetryPlane& plane : detection.planes) spreadSupport(plane, distinct);
+  if (detection.best) spreadSupport(*detection.best, distinct);
   return detection;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/detection/folds/fold_spectrum.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/normals/revolution_of_normals.h"
@@ -80,15 +81,6 @@ Eigen::Vector3d commonPoint(const std::vector<ReflectionPlane>& planes, const Ei
   return start + solver.solve(distances);
 }
 
-AxisLine commonLine(const std::vector<ReflectionPlane>& planes) {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
-  const Eigen::Vector3d direction = solver.eigenvectors().col(0);
-  const Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
-  return AxisLine(point - direction.dot(point) * direction, direction);
-}
-
 /// Mean share of the planes of a family.
 /// \return 0 where the mean cannot reach \p least.
 template <typename PlaneAt>
@@ -141,6 +133,15 @@ std::optional<AxisFamily> axisAt(const AxisLine& start, double least, const Fami
 }
 
 }  // namespace
+
+AxisLine commonLine(const std::vector<ReflectionPlane>& planes) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
+  const Eigen::Vector3d direction = solver.eigenvectors().col(0);
+  const Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
+  return AxisLine(point - direction.dot(point) * direction, direction);
+}
 
 bool contains(const ReflectionPlane& plane, const AxisLine& line, double tolerance) {
   return std::abs(plane.normal().dot(line.direction())) <= std::sin(kContainedAngle) &&
@@ -195,7 +196,8 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
 
 namespace {
 
-FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const std::vector<int>& samples) {
+FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const std::vector<int>& samples,
+                      std::uint64_t seed) {
   // A plane that maps most of a scan to what was not seen says little: only what contradicts counts.
   const auto share_of = [&fit, is_scan = cloud.isScan()](const std::vector<int>& used) {
     return [&fit, used, is_scan](const ReflectionPlane& plane) {
@@ -206,8 +208,12 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   };
   FamilyTest test;
   test.share = share_of(samples);
-  test.rough_share = share_of(std::vector<int>(
-      samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / kRoughSampleShare)));
+  // Samples may be all points in the order of the file, whose first fifth is one end of the shape.
+  std::vector<int> fewer;
+  const auto num_samples = static_cast<Eigen::Index>(samples.size());
+  for (const int i : drawSamples(num_samples, static_cast<int>(num_samples) / kRoughSampleShare, seed))
+    fewer.push_back(samples[i]);
+  test.rough_share = share_of(fewer);
   test.refine = [&fit, samples](const ReflectionPlane& plane) {
     return fit.refined(plane, samples, kRefineIterations);
   };
@@ -256,7 +262,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   if (symmetries.empty()) return found;
   const std::vector<int> samples =
       drawSamples(cloud.points.cols(), cloud.isVolume() ? kVolumeFamilySamples : kFamilySamples, options.seed);
-  const FamilyTest test = familyTest(cloud, fit, samples);
+  const FamilyTest test = familyTest(cloud, fit, samples, options.seed);
   const FamilyGuesses guesses = guessFamilies(cloud, samples);
   const auto drop = [&](const auto& belongs) {
     found.planes.erase(std::remove_if(found.planes.begin(), found.planes.end(),
@@ -281,6 +287,8 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     }
   }
   for (const AxisFamily& family : findAxes(symmetries, test, guesses.axes)) {
+    // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
+    if (cloud.isVolume() && latticeBySpectrum(cloud, family.line, options.num_threads)) continue;
     const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
     // Nothing bounded turns about two parallel lines, but a thin disc seems to within the tolerance: the best is the

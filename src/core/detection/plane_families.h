@@ -30,6 +30,10 @@ struct FamilyTest {
 
 using AxisLine = Eigen::ParametrizedLine<double, 3>;
 
+/// The line closest to all planes that have one in common.
+/// \param planes at least two that are not parallel.
+AxisLine commonLine(const std::vector<ReflectionPlane>& planes);
+
 /// A line, all planes through which are symmetries.
 struct AxisFamily {
   AxisLine line;

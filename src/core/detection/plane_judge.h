@@ -48,6 +48,12 @@ public:
   /// \return input units.
   double deviation(const ReflectionPlane& plane) const;
 
+  /// Gives a plane another confidence, and the kind that follows from it.
+  void decide(SymmetryPlane& plane, double confidence) const {
+    plane.confidence = confidence;
+    plane.kind = kindOf(plane, confidence);
+  }
+
   /// Where a plane explains all of a cloud, nothing of it is missing: doubts planes that need a missing piece (the
   /// plane across an open cup needs a lid).
   /// \param planes that were judged.

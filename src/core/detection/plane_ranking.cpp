@@ -17,6 +17,7 @@ constexpr PlaneTolerance kSlope{0.2, 0.15};
 // Difference of D. chosen: what rounding and cells make of a level slope; larger values drop shallow maxima of their
 // own.
 constexpr double kSlopeDip = 0.005;
+constexpr double kPolygonOffset = 0.03;  // radii. chosen: as planes of a family (plane_families.cpp)
 
 int rankOf(const SymmetryPlane& plane) {
   switch (plane.kind) {
@@ -47,6 +48,11 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
   return cloud.score(cloud.toInput(between)) > plane.score - kSlopeDip;
 }
 
+/// Whether a plane is of a polygon, between whose planes noise may leave no dip.
+bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
+  return polygon && contains(cloud.toNormalized(plane), polygon->line, kPolygonOffset);
+}
+
 /// Judges every point, where the plane was judged by some of them.
 void completeSupport(SymmetryPlane& plane, const NormalizedCloud& cloud, const PlaneFit& fit) {
   if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
@@ -55,8 +61,9 @@ void completeSupport(SymmetryPlane& plane, const NormalizedCloud& cloud, const P
 
 }  // namespace
 
-std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
-                                        const PlaneFit& fit, const DetectionOptions& options) {
+std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
+                                        const NormalizedCloud& cloud, const PlaneFit& fit,
+                                        const DetectionOptions& options) {
   const PlaneTolerance tolerance{options.merge_angle, options.merge_offset};
   std::stable_sort(planes.begin(), planes.end(), isBefore);
   std::vector<SymmetryPlane> ranked;
@@ -64,8 +71,10 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
     if (static_cast<int>(ranked.size()) >= options.max_planes) break;
     if (rankOf(plane) == 2 && !options.approximate) continue;
     if (rankOf(plane) == 1 && static_cast<int>(ranked.size()) >= options.max_possible) continue;
+    const bool of_polygon = isOf(polygon, plane, cloud);
     const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
-      return tolerance.same(cloud.toNormalized(other), cloud.toNormalized(plane)) || isOnSlopeOf(other, plane, cloud);
+      if (tolerance.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
+      return !(of_polygon && isOf(polygon, other, cloud)) && isOnSlopeOf(other, plane, cloud);
     });
     if (!is_known) ranked.push_back(std::move(plane));
   }

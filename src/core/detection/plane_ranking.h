@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/detection/folds/plane_lattice.h"
 #include "core/refinement/plane_fit.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
 
@@ -13,9 +14,11 @@ namespace pcl_symmetry {
 /// Order: symmetries, then possible ones, both by falling confidence, then approximate and local ones by falling
 /// support.
 /// \param planes input frame.
+/// \param polygon whose planes are all of them maxima, normalised frame.
 /// \return with the support of every point.
-std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
-                                        const PlaneFit& fit, const DetectionOptions& options);
+std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
+                                        const NormalizedCloud& cloud, const PlaneFit& fit,
+                                        const DetectionOptions& options);
 
 /// The answer where nothing is a symmetry: of the planes of the whole, the one with the greatest share.
 /// \param planes input frame.

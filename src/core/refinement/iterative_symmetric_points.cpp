@@ -123,6 +123,35 @@ IspStep matchReflections(const IspSurface& surface, const Points& reflected, dou
   return step;
 }
 
+/// The pairs of samples and closest points to their reflections, before the plane moves.
+struct WeightedPairs {
+  Points x, y;
+  std::vector<double> weights;
+  IspStep step;  ///< of the plane itself
+
+  WeightedPairs(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane, double sigma,
+                const std::vector<int>* guesses)
+      : x(3, static_cast<Eigen::Index>(samples.size())), y(3, x.cols()), weights(samples.size()) {
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      x.col(i) = surface.points.col(samples[i]);
+      y.col(i) = plane.reflect(x.col(i).cast<double>()).cast<float>();
+    }
+    step = matchReflections(surface, y, sigma, guesses);
+    step.plane = plane;
+    double sum = 0.0, sq_sum = 0.0;
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      if (step.closest[i] < 0) continue;
+      y.col(i) = surface.points.col(step.closest[i]);
+      if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
+      weights[i] = std::exp(-step.sq_distances[i] / (sigma * sigma));
+      sum += weights[i];
+      sq_sum += weights[i] * step.sq_distances[i];
+    }
+    step.residual = sum > 0.0 ? std::sqrt(sq_sum / sum) : 0.0;
+    step.weight = x.cols() > 0 ? sum / static_cast<double>(x.cols()) : 0.0;
+  }
+};
+
 }  // namespace
 
 void IspOptions::validate() const {
@@ -187,38 +216,25 @@ ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, cons
 
 IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
                                double sigma, IspUpdate update, const std::vector<int>* guesses) {
-  const auto size = static_cast<Eigen::Index>(samples.size());
-  Points x(3, size), reflected(3, size), y(3, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    x.col(i) = surface.points.col(samples[i]);
-    reflected.col(i) = plane.reflect(x.col(i).cast<double>()).cast<float>();
-  }
-  IspStep step = matchReflections(surface, reflected, sigma, guesses);
-  std::vector<double> weights(samples.size());
-  double sum = 0.0, sq_sum = 0.0;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const bool matched = step.closest[i] >= 0;
-    y.col(i) = reflected.col(i);
-    if (!matched) continue;
-    y.col(i) = surface.points.col(step.closest[i]);
-    if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
-    weights[i] = std::exp(-step.sq_distances[i] / (sigma * sigma));
-    sum += weights[i];
-    sq_sum += weights[i] * step.sq_distances[i];
-  }
-  step.residual = sum > 0.0 ? std::sqrt(sq_sum / sum) : 0.0;
-  step.weight = size > 0 ? sum / static_cast<double>(size) : 0.0;
+  WeightedPairs pairs(surface, samples, plane, sigma, guesses);
+  IspStep& step = pairs.step;
   if (update == IspUpdate::PointToPoint) {
-    step.plane = fitReflectionPlane(x, y, weights, plane);
-    return step;
+    step.plane = fitReflectionPlane(pairs.x, pairs.y, pairs.weights, plane);
+    return std::move(step);
   }
+  const Eigen::Index size = pairs.x.cols();
   Points x_normals(3, size), y_normals(3, size);
   for (Eigen::Index i = 0; i < size; ++i) {
     x_normals.col(i) = surface.normals.col(samples[i]);
     y_normals.col(i) = surface.normals.col(step.closest[i] >= 0 ? step.closest[i] : samples[i]);
   }
-  step.plane = stepReflectionPlane(x, y, x_normals, y_normals, weights, plane);
-  return step;
+  step.plane = stepReflectionPlane(pairs.x, pairs.y, x_normals, y_normals, pairs.weights, plane);
+  return std::move(step);
+}
+
+IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                             double sigma, const std::vector<int>* guesses) {
+  return WeightedPairs(surface, samples, plane, sigma, guesses).step;
 }
 
 IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,

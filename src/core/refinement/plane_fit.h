@@ -64,8 +64,10 @@ public:
   }
 
   /// The closest points to the reflections of some samples, within reach of the narrowest weights.
-  IspStep matches(const ReflectionPlane& plane, const std::vector<int>& samples) const {
-    return iterateSymmetricPoints(cloud_.surface, samples, plane, cloud_.final_sigma, IspUpdate::PointToPoint);
+  /// \param guesses IspStep::closest of a plane nearby, which makes the search faster; null = not known.
+  IspStep matches(const ReflectionPlane& plane, const std::vector<int>& samples,
+                  const std::vector<int>* guesses = nullptr) const {
+    return matchSymmetricPoints(cloud_.surface, samples, plane, cloud_.final_sigma, guesses);
   }
 
   /// Support as a share of what the samples of a symmetry reach, in [0, 1].

@@ -72,22 +72,25 @@ void SurfaceFit::climb(Candidate& candidate, const std::vector<int>& samples, co
     return ReflectionPlane((n + by * (parameter == 0 ? u : n.cross(u))).normalized(), plane.offset());
   };
   ReflectionPlane plane = candidate.plane;
-  double best = merit(shares(plane, fewer));
+  IspStep here = matches(plane, fewer);
+  double best = merit(shares(plane, fewer, here));
   int num_climbs = 0;
   for (double step = kFirstClimb; step >= kLastClimb; step *= 0.5) {
     for (int fails = 0, k = 0; fails < 6 && num_climbs < kMostClimbs; k = (k + 1) % 6) {
       const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
-      const double value = merit(shares(next, fewer));
+      IspStep there = matches(next, fewer, &here.closest);
+      const double value = merit(shares(next, fewer, there));
       ++fails;
       if (value <= best) continue;
       best = value;
+      here = std::move(there);
       plane = next;
       ++num_climbs;
       fails = 0;
     }
   }
   if (num_climbs == 0) return;
-  IspStep step = iterateSymmetricPoints(cloud_.surface, samples, plane, cloud_.final_sigma, IspUpdate::PointToPoint);
+  IspStep step = matches(plane, samples);
   const double value = merit(shares(plane, samples, step));
   if (value <= candidate.merit + kLeastGain) return;
   candidate.plane = plane;

@@ -1,6 +1,7 @@
 #include "core/refinement/volume_fit.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
@@ -17,9 +18,10 @@ constexpr int kMaxIterations = 6;
 // Samples per sample of a surface. chosen: a look-up in the density costs about a tenth of a search for the closest
 // point; with more, a stage takes longer than that of a surface, with fewer its samples are noisier than need be.
 constexpr int kSampleFactor = 10;
-// Share of the overlap, which varies less from plane to plane than the support of a surface does. chosen: at a third,
-// sampling noise breaks up round bodies with noise of two spacings; what passes is judged by halves of the cloud.
-constexpr double kVolumeAllowance = 0.012;
+// Share of the overlap, which varies less from plane to plane than the support of a surface does, at this number of
+// points and more; fewer vary by more. chosen: at a third, sampling noise breaks up round bodies with noise of two
+// spacings; what passes is judged by halves of the cloud.
+constexpr double kVolumeAllowance = 0.012, kPointsOfAllowance = 10'000;
 
 }  // namespace
 
@@ -65,7 +67,7 @@ double VolumeFit::merit(const PlaneShares& shares) const {
 }
 
 double VolumeFit::familyAllowance() const {
-  return kVolumeAllowance;
+  return kVolumeAllowance * std::sqrt(std::max(1.0, kPointsOfAllowance / static_cast<double>(cloud_.points.cols())));
 }
 
 PlaneEvidence VolumeFit::evidence(double support, double conflict, double score) const {

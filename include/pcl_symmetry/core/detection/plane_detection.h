@@ -122,7 +122,7 @@ struct DetectionOptions {
   bool turns = true;     ///< axes of turns of scans are searched too; false saves about a third of the time
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
-  int max_planes = 20;  ///< >= 1
+  int max_planes = 64;  ///< >= 1; folds of rotations go up to 60
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 

@@ -43,9 +43,7 @@ TurnEvidence::TurnEvidence(const NormalizedCloud& cloud, double tolerance, std::
     : cloud_(cloud),
       tolerance_(tolerance),
       samples_(drawSamples(cloud.points.cols(), kSamplesOfTurn, seed)),
-      few_samples_(samples_.begin(),
-                   samples_.begin() +
-                       std::min<std::ptrdiff_t>(kFewSamplesOfTurn, static_cast<std::ptrdiff_t>(samples_.size()))) {}
+      few_samples_(drawSamples(cloud.points.cols(), kFewSamplesOfTurn, seed)) {}
 
 bool TurnEvidence::isSeenEmpty(const Eigen::Vector3d& x) const {
   const Visibility& visibility = *cloud_.visibility;

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/detection/folds/plane_lattice.h"
+#include "core/detection/plane_judge.h"
+
+namespace pcl_symmetry {
+
+/// The regular polygon about a line that a noisy cloud has: how well planes through the line reflect the cloud, by
+/// their angle, has one strong frequency. It is the sum over all planes, and finds folds that no single plane shows.
+/// \param line normalised frame.
+/// \param num_threads 0 = one per core.
+/// \return none where no frequency stands out: nothing turns the cloud into itself, or everything does.
+std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const AxisLine& line, int num_threads);
+
+struct PlanesAndPolygon {
+  std::vector<SymmetryPlane> planes;    ///< input frame
+  std::optional<PlaneLattice> polygon;  ///< normalised frame; whose planes are among them as they are symmetries
+};
+
+/// Judges the planes of a polygon together, as they are symmetries together or not at all. Only of noisy clouds: where
+/// points resolve a surface, each plane is judged well enough alone.
+/// \param planes found before, input frame.
+PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const PlaneJudge& judge,
+                             const DetectionOptions& options);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/detection/plane_families.h"
+#include "pcl_symmetry/core/geometry/reflection_plane.h"
+
+namespace pcl_symmetry {
+
+/// The planes of a regular polygon: \p fold planes through a line, at equal angles.
+struct PlaneLattice {
+  AxisLine line;
+  int fold = 0;        ///< number of planes, >= 3
+  double phase = 0.0;  ///< angle of the normal of plane 0 from line.direction().unitOrthogonal(), radians
+  int num_planes = 0;  ///< that were found
+
+  /// \param k of any sign, may be a fraction: k + 0.5 lies halfway between two planes.
+  ReflectionPlane plane(double k) const;
+};
+
+/// The lattice that most planes through one line fit.
+/// \param planes in one frame, most certain first.
+/// \return none where planes fit none better than chance would have it.
+std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes, double tolerance);
+
+/// The lattice of the planes that contain a line.
+std::optional<PlaneLattice> latticeAbout(const AxisLine& line, const std::vector<ReflectionPlane>& planes,
+                                         double tolerance);
+
+}  // namespace pcl_symmetry
