@@ -170,6 +170,7 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   }
   timed("families");
   planes = withScanAxes(std::move(planes), cloud, judge.tolerance(), options, detection);
+  planes = judge.preferringBest(std::move(planes), !detection.axes.empty() || !detection.centers.empty());
   timed("turns");
   if (options.approximate) append(planes, judge.findParts(planes));
   timed("parts");
