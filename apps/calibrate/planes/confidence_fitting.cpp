@@ -11,7 +11,8 @@ namespace pcl_symmetry::apps {
 namespace {
 
 constexpr double kLowShare = 0.025, kHighShare = 0.975;  // derived: 95 % of the errors lie between these shares of them
-constexpr int kFurtherPasses = 10;  // chosen: the best planes are the same ones from the third pass on
+// chosen: from the third pass on, two fits alternate whose numbers differ by 5 % at most and which decide alike.
+constexpr int kFurtherPasses = 10;
 
 double quantileOf(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));

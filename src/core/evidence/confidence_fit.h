@@ -15,7 +15,7 @@ struct ConfidenceFit {
 };
 
 // fitted: 322 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{3.319, -0.9923, -0.4702, -4.662, -0.8456, -1.186, -5.266},
+inline const ConfidenceFit kConfidenceFit{{{{3.373, -0.9631, -0.4842, -4.848, -0.851, -1.193, -5.123},
                                             {0.7305, -2.108, -11.61, -2.029},
                                             {5.467, -0.7502, -1.618, -0.8992, -11.6}}},
                                           {{{-5.01, 0.796}, {-18.2, 0.228}, {-20.3, 0.8}}}};
