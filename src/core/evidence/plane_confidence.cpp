@@ -125,7 +125,7 @@ double planeConfidence(const PlaneEvidence& evidence) {
 
 double furtherConfidence(double confidence, EvidenceKind kind, double unknown) {
   const double odds = std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back());
-  return confidence * odds / (confidence * odds + 1.0 - confidence);
+  return confidence * odds / (confidence * odds + (1.0 - confidence));
 }
 
 }  // namespace pcl_symmetry
