@@ -76,8 +76,9 @@ double shareUnit(const PlaneEvidence& evidence);
 /// in 95 of 100 cases; in [0, 1].
 ShareInterval shareInterval(const PlaneEvidence& evidence);
 
-/// Probability that the plane is a symmetry of the object: it maps 97 % of the surface to within the tolerance of the
-/// surface. A logistic regression for each kind of evidence, see README.md beside the source.
+/// Probability that the plane is a symmetry of the object: it, or a plane within 3 degrees and 2 % of the diagonal,
+/// maps 97 % of the surface to within the tolerance of the surface. A logistic regression for each kind of evidence,
+/// see README.md beside the source.
 /// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 
