@@ -83,6 +83,11 @@ void printReliability(const std::vector<Reliability>& groups) {
     for (const ReliabilityBin& bin : group.bins) std::printf(" %10s", cell(bin.right).c_str());
     std::printf("\n");
   }
+  const auto has_cases = [](const Reliability& group) {
+    return std::any_of(group.shares.begin(), group.shares.end(),
+                       [](const ShareBin& bin) { return bin.called.total > 0; });
+  };
+  if (std::none_of(groups.begin(), groups.end(), has_cases)) return;
   borders.clear();
   for (const ShareBin& bin : groups.front().shares)
     borders.push_back(fixed(bin.low, 0, 100) + "-" + fixed(bin.high, 0, 100));

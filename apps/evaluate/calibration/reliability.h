@@ -49,7 +49,8 @@ struct Reliability {
 Reliability reliabilityOf(const std::string& label, const std::vector<Forecast>& forecasts,
                           const std::vector<ShareCase>& cases);
 
-/// Two tables: right answers by confidence, and clouds called symmetric by the true share of their best plane.
+/// Two tables: right answers by confidence, and, where there are cases, clouds called symmetric by the true share of
+/// their best plane.
 void printReliability(const std::vector<Reliability>& groups);
 
 nlohmann::json toJson(const Reliability& reliability);

@@ -107,8 +107,10 @@ PlaneAnswers answersOf(SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, std:
 
 }  // namespace
 
-PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed, int num_threads) {
+PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed, int num_threads,
+                           double tolerance) {
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setTolerance(tolerance);
   refinement.setInputCloud(cloud);
   return answersOf(refinement, seed, num_threads);
 }

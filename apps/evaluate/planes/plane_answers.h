@@ -23,8 +23,10 @@ struct PlaneAnswers {
 
 /// Runs SymmetryMaximaRefinement with its defaults.
 /// \param num_threads 0 = all.
+/// \param tolerance of a symmetry, as a share of the diameter.
 /// \return failed where it throws.
-PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed, int num_threads);
+PlaneAnswers detectAnswers(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::uint64_t seed, int num_threads,
+                           double tolerance = 0.01);
 
 /// The same for an object of a scene.
 /// \param cluster its points, indices into the scene.

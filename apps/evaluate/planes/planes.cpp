@@ -39,6 +39,7 @@ struct EvaluatePlanesOptions {
   std::optional<std::string> rows;
   MatchLimits limits;
   OperatingPoint operating_point;
+  double detect_tolerance = 0.01;
   bool no_detect = false;
   std::optional<std::string> export_folder, planes_folder;
   std::optional<std::string> cloud_csv, model_csv, curve_csv, reliability_csv, share_csv, png;
@@ -98,6 +99,8 @@ CommandLine commandLine(EvaluatePlanesOptions& o) {
               "largest angle between a found axis and its reference, degrees")
       .number("max_offset", o.limits.max_offset, Range::open(0, 1),
               "largest offset between a finding and its reference, in diagonals")
+      .number("detect_tolerance", o.detect_tolerance, Range::upTo(0, 0.1),
+              "of a symmetry, asked of the detector, as a share of the diameter; -tolerance is that of the references")
       .number("min_confidence", o.operating_point.min_confidence, Range::closed(0, 1),
               "least confidence of an answer that decides: one operating point for right and wrong decisions")
       .text("export", "DIR", o.export_folder, "write every cloud as PCD, and ground_truth.json")
@@ -286,7 +289,9 @@ private:
 
   PlaneAnswers answersFor(const std::string& name, const TestCloud& cloud) {
     if (options_.planes_folder) return readAnswers(*options_.planes_folder, name);
-    const auto detect = [&] { return detectAnswers(cloud.cloud, options_.common.seed + 1, options_.common.threads); };
+    const auto detect = [&] {
+      return detectAnswers(cloud.cloud, options_.common.seed + 1, options_.common.threads, options_.detect_tolerance);
+    };
     if (!warm_) detect();  // threads, tables and pages are there from the second call on
     warm_ = true;
     return detect();

@@ -166,6 +166,7 @@ Detection planesOf(const NormalizedCloud& cloud, const SymmetryMap& map, const D
   }
   timed("families");
   planes = withScanAxes(std::move(planes), cloud, judge.tolerance(), options, detection);
+  planes = judge.preferringBest(std::move(planes), !detection.axes.empty() || !detection.centers.empty());
   timed("turns");
   if (options.approximate) append(planes, judge.findParts(planes));
   timed("parts");

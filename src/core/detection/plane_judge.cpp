@@ -224,6 +224,21 @@ std::vector<SymmetryPlane> PlaneJudge::preferringWhole(std::vector<SymmetryPlane
   return planes;
 }
 
+std::vector<SymmetryPlane> PlaneJudge::preferringBest(std::vector<SymmetryPlane> planes, bool has_family) const {
+  const EvidenceKind kind = cloud_.isScan()     ? EvidenceKind::Scan
+                            : cloud_.isVolume() ? EvidenceKind::Volume
+                                                : EvidenceKind::Surface;
+  const auto best = std::max_element(planes.begin(), planes.end(), [](const SymmetryPlane& a, const SymmetryPlane& b) {
+    return a.confidence < b.confidence;
+  });
+  for (auto plane = planes.begin(); plane != planes.end(); ++plane) {
+    if (plane == best && !has_family) continue;
+    plane->confidence = furtherConfidence(plane->confidence, kind, 1.0 - plane->seen);
+    plane->kind = kindOf(*plane, plane->confidence);
+  }
+  return planes;
+}
+
 JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
                                      const std::vector<int>& samples) const {
   const double count = static_cast<double>(planes.size());

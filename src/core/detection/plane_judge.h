@@ -60,6 +60,13 @@ public:
   /// \return the same planes, some of them with less confidence.
   std::vector<SymmetryPlane> preferringWhole(std::vector<SymmetryPlane> planes) const;
 
+  /// A scan or a cut hides a part of an object, and many planes are tried: those beside the best one are symmetries
+  /// less often.
+  /// \param planes that were judged.
+  /// \param has_family an axis or a center was found, which is better than all planes.
+  /// \return the same planes, all but the best with less confidence, by what is hidden.
+  std::vector<SymmetryPlane> preferringBest(std::vector<SymmetryPlane> planes, bool has_family) const;
+
   /// Planes of a family together.
   /// \param planes normalised frame, at least one.
   /// \param samples indices of the points that judge them.

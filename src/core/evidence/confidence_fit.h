@@ -14,10 +14,10 @@ struct ConfidenceFit {
   std::array<ShareInterval, 3> share_errors;    ///< of the share, units of shareUnit()
 };
 
-// fitted: 178 models, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{4.004, -0.5659, -0.6804, -8.096, -0.8323, -1.327},
-                                            {-0.2893, -2.111, -2.892},
-                                            {5.478, -0.7427, -1.632, -0.8914, -11.62}}},
-                                          {{{-3.94, 1.06}, {-45.9, 0.991}, {-20.3, 0.8}}}};
+// fitted: 322 models and shapes, tolerance 0.01 of the diameter.
+inline const ConfidenceFit kConfidenceFit{{{{3.373, -0.9631, -0.4842, -4.848, -0.851, -1.193, -5.123},
+                                            {0.7305, -2.108, -11.61, -2.029},
+                                            {5.467, -0.7502, -1.618, -0.8992, -11.6}}},
+                                          {{{-5.01, 0.796}, {-18.2, 0.228}, {-20.3, 0.8}}}};
 
 }  // namespace pcl_symmetry

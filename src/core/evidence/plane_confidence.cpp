@@ -12,21 +12,6 @@ namespace {
 
 // Share of the surface that is off, at which the log odds by the share are 0. derived: the definition of a symmetry.
 constexpr double kOffAtEvenOdds = 0.03;
-// Error of that share: of clouds without noise, the same per spacing in tolerances, and of scans, whose hidden parts
-// may differ. chosen: by a prototype on 11 to 14 symmetric planes each of whole clouds of 40 000, 10 000, 3000 and 1000
-// points, 95 % of which had an error of at most 0.006, 0.007, 0.02 and 0.027; half lets sampling decide, twice blurs 3
-// %.
-constexpr double kOffUnit = 0.005, kOffUnitPerSpacing = 0.002, kScanOffUnit = 0.01;
-// How exactly the share is known: twice the above, less where much says nothing; and from where on it does not matter.
-// chosen: with half of them nearly symmetric planes are possible ones, with twice of them symmetries are doubted.
-constexpr double kPrecision = 0.01, kPrecisionPerSpacing = 0.004, kPrecisionPerUnknown = 0.2, kMostOff = 0.1;
-// The same of the support. chosen: what sampling leaves of it; at half, single points count, at twice, small
-// asymmetries do not.
-constexpr double kLostSupportUnit = 0.01;
-// The same where points resolve no surface: of the share, of D and of the overlap. chosen: among 0.003 and 0.01, 0.001
-// to 0.005, and 0.01, by cross-validation over models of what calibrate_planes -csv writes: 0.247 nats a plane, 0.250
-// to 0.285 with others.
-constexpr double kVolumeOffUnit = 0.003, kExcessUnit = 0.002, kLostOverlapUnit = 0.01;
 constexpr double kLeastTelling =
     0.05;  // chosen: any value far below that of planes that are judged; avoids a division by 0
 constexpr double kLeastTolerance = 1e-6;  // radii. derived: rounding of coordinates about 1; avoids a division by 0
@@ -52,27 +37,32 @@ double byShare(const PlaneEvidence& evidence, double unit) {
 }
 
 /// \return the share of the surface that is off, in units of what is known of it.
-double byPrecision(const PlaneEvidence& evidence) {
-  const double unit =
-      kPrecision + kPrecisionPerSpacing * coarseness(evidence) + kPrecisionPerUnknown * evidence.unknown;
-  return std::min(1.0 - evidence.share, kMostOff) / unit;
+double byPrecision(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  const double unit = units.precision + units.precision_per_spacing * coarseness(evidence) +
+                      units.precision_per_unknown * evidence.unknown;
+  return std::min(1.0 - evidence.share, units.most_off) / unit;
 }
 
 /// \return log odds by the support that is lost where the surface says something, 0 where that is as likely as not.
-double byLostSupport(const PlaneEvidence& evidence) {
+double byLostSupport(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   const double telling = std::max(kLeastTelling, 1.0 - evidence.unknown);
-  return std::log((std::max(0.0, 1.0 - evidence.support / telling) + kLostSupportUnit) /
-                  (kOffAtEvenOdds + kLostSupportUnit));
+  return std::log((std::max(0.0, 1.0 - evidence.support / telling) + units.lost_support) /
+                  (kOffAtEvenOdds + units.lost_support));
 }
 
 /// \return log odds by what D loses beyond what noise explains.
-double byExcess(const PlaneEvidence& evidence) {
-  return std::log(std::max(0.0, evidence.own_score - evidence.score) / kExcessUnit + 1.0);
+double byExcess(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  return std::log(std::max(0.0, evidence.own_score - evidence.score) / units.excess + 1.0);
 }
 
 /// \return log odds by the overlap of densities that is lost.
-double byLostOverlap(const PlaneEvidence& evidence) {
-  return std::log(std::max(0.0, 1.0 - evidence.support) / kLostOverlapUnit + 1.0);
+double byLostOverlap(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  return std::log(std::max(0.0, 1.0 - evidence.support) / units.lost_overlap + 1.0);
+}
+
+/// \return how far a plane beside the best one is less probable; chance has a part in what is not known.
+double byFurther(EvidenceKind kind, double unknown) {
+  return kind == EvidenceKind::Scan ? 1.0 : kind == EvidenceKind::Surface ? std::sqrt(unknown) : 0.0;
 }
 
 double noiseOf(const PlaneEvidence& evidence) {
@@ -91,26 +81,30 @@ EvidenceKind kindOf(const PlaneEvidence& evidence) {
   return evidence.partial ? EvidenceKind::Scan : evidence.volume ? EvidenceKind::Volume : EvidenceKind::Surface;
 }
 
-std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
-  const double lost = 1.0 - evidence.score;
+std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  const double further = evidence.further ? byFurther(kindOf(evidence), evidence.unknown) : 0.0;
   switch (kindOf(evidence)) {
     case EvidenceKind::Scan:
-      return {1.0, byShare(evidence, kScanOffUnit), lost};
+      return {1.0, byShare(evidence, units.scan_off), std::pow(std::max(0.0, 1.0 - evidence.score), units.loss_power),
+              further};
     case EvidenceKind::Volume:
-      return {1.0, byShare(evidence, kVolumeOffUnit), byExcess(evidence), byLostOverlap(evidence),
+      return {1.0, byShare(evidence, units.volume_off), byExcess(evidence, units), byLostOverlap(evidence, units),
               std::sqrt(1.0 - evidence.own_score)};
     default:
       return {1.0,
-              byShare(evidence, kOffUnit + kOffUnitPerSpacing * coarseness(evidence)),
-              byPrecision(evidence),
+              byShare(evidence, units.off + units.off_per_spacing * coarseness(evidence)),
+              byPrecision(evidence, units),
               std::sqrt(evidence.unknown),
-              byLostSupport(evidence),
-              coarseness(evidence)};
+              byLostSupport(evidence, units),
+              coarseness(evidence),
+              further};
   }
 }
 
 double shareUnit(const PlaneEvidence& evidence) {
-  return kOffUnit + kOffUnitPerSpacing * coarseness(evidence) + noiseOf(evidence) + kUnknownShare * evidence.unknown;
+  const EvidenceUnits units;
+  return units.off + units.off_per_spacing * coarseness(evidence) + noiseOf(evidence) +
+         kUnknownShare * evidence.unknown;
 }
 
 ShareInterval shareInterval(const PlaneEvidence& evidence) {
@@ -127,6 +121,11 @@ double planeConfidence(const PlaneEvidence& evidence) {
   const double unresolved = kLostPerCoarseness * std::max(0.0, coarseness(evidence) - coarsest);
   const double log_odds = std::inner_product(terms.begin(), terms.end(), coefficients.begin(), 0.0) - unresolved;
   return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+double furtherConfidence(double confidence, EvidenceKind kind, double unknown) {
+  const double odds = std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back());
+  return confidence * odds / (confidence * odds + (1.0 - confidence));
 }
 
 }  // namespace pcl_symmetry

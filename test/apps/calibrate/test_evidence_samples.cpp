@@ -1,4 +1,4 @@
-#include "calibrate/evidence_samples.h"
+#include "calibrate/planes/evidence_samples.h"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +23,8 @@ TEST(EvidenceSamples, SharesAreThoseOfTheMesh) {
   for (const EvidenceSample& sample : samples) {
     rows.insert(sample.row);
     EXPECT_EQ(sample.model, "box");
+    EXPECT_GE(sample.near_share, sample.share);
+    EXPECT_EQ(sample.is_cut, sample.row.find("cut off") == 0);
     if (sample.row != "whole" || sample.share < 0.97) continue;
     ++num_symmetries;
     EXPECT_GT(sample.evidence.share, 0.97);

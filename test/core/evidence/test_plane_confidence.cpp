@@ -57,10 +57,29 @@ TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("unknown", [](PlaneEvidence& e, double t) { e.unknown = t; });
   expectFalls("score", [](PlaneEvidence& e, double t) { e.score = 1.0 - t; });
   expectFalls("support", [](PlaneEvidence& e, double t) { e.support = 1.0 - t; });
+  expectFalls("further", [](PlaneEvidence& e, double t) { e.further = t > 0.5; });
   expectFalls("noise", [](PlaneEvidence& e, double t) {
     e.score = std::max(0.0, e.score - 0.5 * t);
     if (e.volume) e.own_score -= 0.4 * t;
   });
+}
+
+TEST(PlaneConfidence, OfFurtherPlanesIsLessWhereSomethingIsHidden) {
+  for (const auto& [name, good] : regimes()) {
+    for (const double unknown : {0.0, 0.2}) {
+      PlaneEvidence evidence = good;
+      evidence.unknown = unknown;
+      const double alone = planeConfidence(evidence);
+      evidence.further = true;
+      const double further = planeConfidence(evidence);
+      const bool hidden = evidence.partial || (!evidence.volume && unknown > 0.0);
+      EXPECT_EQ(further < alone, hidden) << name << ", " << unknown;
+      EXPECT_LE(further, alone) << name << ", " << unknown;
+      EXPECT_NEAR(furtherConfidence(alone, kindOf(evidence), unknown), further, 1e-12) << name << ", " << unknown;
+    }
+    EXPECT_EQ(furtherConfidence(0.0, kindOf(good), 0.5), 0.0);
+    EXPECT_EQ(furtherConfidence(1.0, kindOf(good), 0.5), 1.0);
+  }
 }
 
 TEST(PlaneConfidence, IsHighForSymmetriesAndLowForOthers) {

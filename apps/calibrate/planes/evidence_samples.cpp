@@ -1,9 +1,13 @@
-#include "calibrate/evidence_samples.h"
+#include "calibrate/planes/evidence_samples.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "common/shape_input/shape_input.h"
+#include "core/base/constants.h"
 #include "core/detection/candidates.h"
 #include "core/detection/plane_judge.h"
 #include "core/detection/staged_refinement.h"
@@ -11,18 +15,26 @@
 #include "core/neighbours/answerable_points.h"
 #include "core/neighbours/diameter.h"
 #include "core/neighbours/distinct_points.h"
+#include "core/refinement/plane_tolerance.h"
 #include "core/transform/sampled_transform.h"
 #include "evaluate/mesh/mesh_reflection.h"
+#include "evaluate/planes/plane_matching.h"
 #include "evaluate/shapes/shape_report.h"
 #include "evaluate/shapes/swept_shape.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
 constexpr int kTruthSamples = 4000;  // of the mesh. chosen: the standard error of a share of 0.97 is 0.003
-// Scans of each model. chosen: two views say more than one; more views of one model say little new.
+// Every eighth of these tells which planes are far from a symmetry, below the second number. derived: the standard
+// error of a share of 0.8 is then 0.018, five of which are less than the distance from 0.9.
+constexpr int kScreenStride = 8;
+constexpr double kSurelyNone = 0.8;
+// Scans of each model with their viewpoint, and as many moved without it. chosen: two views say more than one; more
+// views of one model say little new.
 constexpr int kNumViews = 2;
 // Points of shapes with folds, in turn, each for as many shapes as there are bodies, noises and thinnings. chosen: as
 // of the clouds of models.
@@ -48,7 +60,8 @@ Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {
   return DistinctPoints(points).points;
 }
 
-/// Candidates of the whole, after all stages of refinement, as detectPlanes() judges them.
+/// Candidates of the whole, after all stages of refinement, as detectPlanes() judges them, best merit first and merged
+/// as answers are. No fitted number has a part in it: a fit can be repeated.
 std::vector<JudgedPlane> judgedCandidates(const Points& points, const Visibility* visibility,
                                           const DetectionOptions& options) {
   const GaussianEdt edt(points, options.edt);
@@ -64,9 +77,16 @@ std::vector<JudgedPlane> judgedCandidates(const Points& points, const Visibility
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(
       cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
   const StagedRefinement refinement(cloud, *fit, options);
-  const PlaneJudge judge(cloud, *fit, options);
-  return judge.judgeWithEvidence(
-      refinement.full(refinement.close(refinement.coarse(gatherCandidates(cloud, map, options), grid))));
+  std::vector<Candidate> candidates =
+      refinement.full(refinement.close(refinement.coarse(gatherCandidates(cloud, map, options), grid)));
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
+  const PlaneTolerance same{options.merge_angle, options.merge_offset};
+  std::vector<Candidate> distinct;
+  for (Candidate& candidate : candidates)
+    if (!same.anySame(distinct, candidate.plane, [](const Candidate& other) { return other.plane; }))
+      distinct.push_back(std::move(candidate));
+  return PlaneJudge(cloud, *fit, options).judgeWithEvidence(distinct);
 }
 
 DetectionOptions optionsOf(double tolerance) {
@@ -85,6 +105,54 @@ ReflectionPlane toScene(const ReflectionPlane& plane, const Eigen::Isometry3d& T
   return ReflectionPlane(normal, normal.dot(point - scene.center()) / scene.diagonal());
 }
 
+/// The planes of one model in the frame of its scene, and what they map.
+class PlaneTruths {
+public:
+  PlaneTruths(const TriangleScene& scene, double tolerance)
+      : scene_(scene), truth_(scene, kTruthSamples, 1), tolerance_(tolerance * diameter(truth_.samples())) {}
+
+  /// \param row of the cloud that the planes are of.
+  void add(const std::vector<JudgedPlane>& planes, const std::string& model, const std::string& row, bool is_cut,
+           const Eigen::Isometry3d& T_cloud_model) {
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const ReflectionPlane plane = toScene(planes[i].plane, T_cloud_model, scene_);
+      double share = truth_.share(plane, tolerance_, kScreenStride);
+      if (share >= kSurelyNone) share = truth_.share(plane, tolerance_);
+      samples_.push_back({model, row, planes[i].evidence, share, share, static_cast<int>(i), is_cut});
+      planes_.push_back(plane);
+    }
+  }
+
+  /// All samples, with the best plane that any cloud of the model has within the limits of a right answer.
+  std::vector<EvidenceSample> samples() const {
+    const MatchLimits limits;
+    std::vector<EvidenceSample> samples = samples_;
+    for (std::size_t j = 0; j < samples.size(); ++j) {
+      if (samples_[j].share < kSurelyNone) continue;
+      for (std::size_t i = 0; i < samples.size(); ++i)
+        if (samples_[j].share > samples[i].near_share && difference(planes_[i], planes_[j], Eigen::Vector3d::Zero())
+                                                             .within(limits.max_angle * kDegree, limits.max_offset))
+          samples[i].near_share = samples_[j].share;
+    }
+    return samples;
+  }
+
+private:
+  const TriangleScene& scene_;
+  MeshReflection truth_;
+  double tolerance_;  ///< diagonals
+  std::vector<EvidenceSample> samples_;
+  std::vector<ReflectionPlane> planes_;  ///< one for each sample
+};
+
+/// Candidates of a cloud, of which the data say what the scanner saw, as for a user.
+std::vector<JudgedPlane> judgedCandidates(const TestCloud& cloud, const DetectionOptions& options) {
+  const Points points = finitePoints(*cloud.cloud);
+  if (!whyUnanswerable(points).empty()) return {};
+  const std::optional<Visibility> seen = detail::seenSpace(*cloud.cloud, points, Viewpoint());
+  return judgedCandidates(points, seen ? &*seen : nullptr, options);
+}
+
 }  // namespace
 
 std::vector<CloudRecipe> calibrationRecipes() {
@@ -94,8 +162,12 @@ std::vector<CloudRecipe> calibrationRecipes() {
       recipe("noise 0.005", 10'000, 0.005, 0, -1), recipe("noise 0.01", 10'000, 0.01, 0.0, -1),
       recipe("noise 0.02", 10'000, 0.02, 0.0, -1), recipe("cut off 0.05", 10'000, 0.0, 0.05, -1),
       recipe("cut off 0.2", 10'000, 0.0, 0.2, -1), recipe("cut off 0.5", 10'000, 0.0, 0.5, -1)};
-  for (int view = 0; view < kNumViews; ++view)
-    recipes.push_back(recipe("scan " + std::to_string(view + 1), 10'000, 0.0, 0.0, view));
+  for (const bool moved : {false, true}) {
+    for (int view = 0; view < kNumViews; ++view) {
+      recipes.push_back(recipe((moved ? "moved " : "scan ") + std::to_string(view + 1), 10'000, 0.0, 0.0, view));
+      recipes.back().moved = moved;
+    }
+  }
   return recipes;
 }
 
@@ -103,38 +175,26 @@ std::vector<EvidenceSample> sampleFoldedEvidence(int i, double tolerance) {
   ShapeRowOptions seeds;
   const FoldedCloud folded = foldedCloud(i, seeds.caseSeed(i), seeds.report, kFoldedPoints[i / kFoldedCases % 3]);
   const TriangleScene scene(folded.shape.mesh);
-  const MeshReflection truth(scene, kTruthSamples, 1);
-  const double mesh_tolerance = tolerance * diameter(truth.samples());
-  std::vector<EvidenceSample> samples;
-  const std::string row = "folds, noise " + std::to_string(folded.noise);
-  for (const JudgedPlane& judged : judgedCandidates(finitePoints(*folded.cloud), nullptr, optionsOf(tolerance)))
-    samples.push_back({folded.body + " " + std::to_string(i), row, judged.evidence,
-                       truth.share(toScene(judged.plane, folded.pose, scene), mesh_tolerance)});
-  return samples;
+  PlaneTruths truths(scene, tolerance);
+  truths.add(judgedCandidates(finitePoints(*folded.cloud), nullptr, optionsOf(tolerance)),
+             folded.body + " " + std::to_string(i), "folds noise " + std::to_string(folded.noise), false, folded.pose);
+  return truths.samples();
 }
 
 std::vector<EvidenceSample> sampleEvidence(const Model& model, double tolerance) {
   const Shape shape = loadShape(model.path);
   if (!shape.mesh) throw InputError(model.path + ": has no faces");
   const TriangleScene scene(*shape.mesh);
-  const MeshReflection truth(scene, kTruthSamples, 1);
-  const double mesh_tolerance = tolerance * diameter(truth.samples());
   TestCloudOptions cloud_options;
   cloud_options.random_views = true;
   const TestCloudMaker maker(*shape.mesh, model.key, cloud_options);
-  const DetectionOptions options = optionsOf(tolerance);
-  std::vector<EvidenceSample> samples;
+  PlaneTruths truths(scene, tolerance);
   for (const CloudRecipe& recipe : calibrationRecipes()) {
     const TestCloud cloud = maker.make(recipe);
-    const Points points = finitePoints(*cloud.cloud);
-    if (!whyUnanswerable(points).empty()) continue;
-    std::optional<Visibility> seen;
-    if (recipe.view >= 0) seen = spaceSeenFrom(points, cloud.cloud->sensor_origin_.head<3>().cast<double>());
-    for (const JudgedPlane& judged : judgedCandidates(points, seen ? &*seen : nullptr, options))
-      samples.push_back({model.name, recipe.name, judged.evidence,
-                         truth.share(toScene(judged.plane, cloud.T_cloud_model, scene), mesh_tolerance)});
+    truths.add(judgedCandidates(cloud, optionsOf(tolerance)), model.name, recipe.name, recipe.missing > 0.0,
+               cloud.T_cloud_model);
   }
-  return samples;
+  return truths.samples();
 }
 
 }  // namespace pcl_symmetry::apps
