@@ -16,11 +16,12 @@
 #include "common/command_line/tool_errors.h"
 #include "common/shape_output/shape_output.h"
 #include "core/base/median.h"
-#include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "evaluate/rotations/rotation_solids.h"
+#include "evaluate/shared/resumable_run.h"
 #include "evaluate/shared/table_text.h"
 #include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
 
@@ -31,7 +32,7 @@ struct EvaluateRotationsOptions {
   std::vector<double> noise{0.0, 0.003};
   int num_seeds = 1;
   ObjectSymmetryOptions symmetries;
-  std::optional<std::string> kind, csv;
+  std::optional<std::string> kind, csv, journal;
   CommonOptions common;
 };
 
@@ -47,8 +48,9 @@ CommandLine commandLine(EvaluateRotationsOptions& o) {
               "how far a symmetric surface may be off, share of the diameter")
       .number("feature", o.symmetries.max_feature, Range::closed(0, 1), "share of the surface that may be off by more")
       .text("kind", "NAME", o.kind, "solids of this kind alone")
-      .text("csv", "FILE", o.csv, "a row for each cloud")
-      .common(o.common, kJson | kSeed | kThreads | kQuiet);
+      .text("csv", "FILE", o.csv, "a row for each cloud");
+  ResumableRun::addFlag(line, o.journal);
+  line.common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }
 
@@ -62,7 +64,19 @@ struct Trial {
   double confidence = 0.0, ms = 0.0;
 
   bool isRight() const { return found == solid->group; }
+  std::string name() const {
+    return solid->name + " " + std::to_string(num_points) + " " + std::to_string(noise) + " " + std::to_string(seed);
+  }
 };
+
+/// What is found of a trial, on its way from one process to another.
+std::string packedAnswer(const std::string& group, double confidence, double ms) {
+  detail::PackedBytes bytes;
+  bytes.put(confidence);
+  bytes.put(ms);
+  bytes.append(group);
+  return bytes.bytes();
+}
 
 /// Right answers of all.
 struct Count {
@@ -77,14 +91,24 @@ struct Count {
 
 class RotationEvaluation {
 public:
-  explicit RotationEvaluation(const EvaluateRotationsOptions& options)
-      : options_(options), console_(options.common.quiet), solids_(rotationSolids()) {}
+  RotationEvaluation(const EvaluateRotationsOptions& options, ResumableRun& work)
+      : options_(options),
+        work_(work),
+        console_(options.common.quiet || !work.isFirst()),
+        solids_(rotationSolids()) {}
 
   void run() {
     makeTrials();
     if (trials_.empty()) throw UsageError("-kind " + options_.kind.value_or("") + ": there is no such kind");
     Step step(console_, "Finding groups of " + std::to_string(trials_.size()) + " clouds");
-    parallelBlocks(trials_.size(), options_.common.threads, [&](std::size_t i) { find(trials_[i]); });
+    std::vector<std::string> names;
+    for (const Trial& trial : trials_) names.push_back(trial.name());
+    work_.run(names,
+              {[this](std::size_t i) { return find(trials_[i]); },
+               [this](std::size_t i, const std::string& answer) { take(trials_[i], answer); },
+               [](std::size_t) { return packedAnswer("none, processes died", 0.0, 0.0); }},
+              options_.common.threads);
+    if (!work_.isFirst()) return;
     step.done();
     report();
   }
@@ -101,7 +125,7 @@ private:
     }
   }
 
-  void find(Trial& trial) const {
+  std::string find(const Trial& trial) const {
     const auto count = static_cast<std::uint64_t>(trial.num_points);
     const Points points = trial.solid->sampled(trial.num_points, trial.seed * 1'000'003 + count, trial.noise);
     ObjectSymmetryOptions options = options_.symmetries;
@@ -109,9 +133,15 @@ private:
     options.num_threads = 1;
     Stopwatch watch;
     const ObjectSymmetries found = objectSymmetries(points, options);
-    trial.ms = watch.lap();
-    trial.found = found.name();
-    trial.confidence = found.confidence;
+    return packedAnswer(found.name(), found.confidence, watch.lap());
+  }
+
+  static void take(Trial& trial, const std::string& answer) {
+    detail::UnpackedBytes bytes(answer);
+    trial.confidence = bytes.get<double>();
+    trial.ms = bytes.get<double>();
+    const std::size_t size = bytes.left();
+    trial.found.assign(bytes.take(size), size);
   }
 
   /// Sets of clouds of one solid, noise and seed whose groups are the same for all numbers of points.
@@ -201,6 +231,7 @@ private:
   }
 
   const EvaluateRotationsOptions& options_;
+  ResumableRun& work_;
   const Console console_;
   const std::vector<RotationSolid> solids_;
   std::vector<Trial> trials_;
@@ -208,11 +239,12 @@ private:
 
 }  // namespace
 
-int evaluateRotations(int argc, char** argv) {
+int evaluateRotations(int argc, char** argv, SharedWork& processes) {
   EvaluateRotationsOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  RotationEvaluation(options).run();
+  ResumableRun work(processes, options.journal, argc, argv);
+  RotationEvaluation(options, work).run();
   return 0;
 }
 
