@@ -25,8 +25,8 @@ struct Message {
   std::string bytes = {};
 };
 
-/// Sends and receives messages; one thread at a time. A process that dies leaves the others able to go on, where MPI lets
-/// them.
+/// Sends and receives messages; one thread at a time. A process that dies leaves the others able to go on, where MPI
+/// lets them.
 class MessageChannel {
 public:
   MessageChannel();

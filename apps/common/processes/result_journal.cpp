@@ -55,8 +55,8 @@ void ResultJournal::read(const std::string& purpose) {
     while (bytes.left() > 0) {
       const auto checksum = bytes.get<std::int64_t>();
       std::string name = textOf(bytes), result = textOf(bytes);
-      if (recordOf(name, result).compare(0, sizeof(checksum), reinterpret_cast<const char*>(&checksum),
-                                         sizeof(checksum)) != 0)
+      if (recordOf(name, result)
+              .compare(0, sizeof(checksum), reinterpret_cast<const char*>(&checksum), sizeof(checksum)) != 0)
         break;
       if (num_records++ > 0)
         results_[name] = std::move(result);

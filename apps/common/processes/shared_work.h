@@ -31,8 +31,8 @@ public:
   /// \param num_threads 0 = one per core.
   /// \throws what the work throws on this process, and what taking throws on the first one.
   void run(std::size_t count, const WorkFunctions& functions, int num_threads = 1);
-  /// Call it at the end of main(): waits for the other processes, and ends them where this one failed before run() ended
-  /// or where one has died, as MPI would wait for that one.
+  /// Call it at the end of main(): waits for the other processes, and ends them where this one failed before run()
+  /// ended or where one has died, as MPI would wait for that one.
   /// \param code exit code of this process.
   /// \return the same.
   int end(int code);

@@ -11,8 +11,8 @@ namespace {
 constexpr std::chrono::seconds kSilence(10);
 // Pause between two looks for messages. chosen: an item takes tens of milliseconds; half and twice take the same time.
 constexpr std::chrono::milliseconds kLook(1);
-// Processes that may die of an item. chosen: with one, a process that is killed costs its item; with three, an item that
-// kills whoever works on it takes one process more.
+// Processes that may die of an item. chosen: with one, a process that is killed costs its item; with three, an item
+// that kills whoever works on it takes one process more.
 constexpr int kMostDeaths = 2;
 
 }  // namespace

@@ -39,8 +39,8 @@ private:
   using Clock = std::chrono::steady_clock;
 
   struct Process {
-    Clock::time_point heard;            ///< when it last said something
-    std::optional<std::size_t> item;    ///< that it works on
+    Clock::time_point heard;          ///< when it last said something
+    std::optional<std::size_t> item;  ///< that it works on
     bool gone = false, is_dead = false, is_stuck = false;
   };
 
@@ -68,8 +68,8 @@ private:
   std::int64_t run_ = 0;
   std::size_t next_ = 0, num_done_ = 0;
   std::vector<bool> done_;
-  std::deque<std::size_t> returned_;            ///< by processes that died
-  std::map<std::size_t, int> num_deaths_;       ///< of processes that worked on an item
+  std::deque<std::size_t> returned_;       ///< by processes that died
+  std::map<std::size_t, int> num_deaths_;  ///< of processes that worked on an item
   std::exception_ptr error_;
   bool leaving_ = false, closing_ = false;  ///< nothing more will be done; the thread ends
   std::thread thread_;

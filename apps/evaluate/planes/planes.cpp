@@ -13,9 +13,9 @@
 #include "evaluate/planes/models/model_evaluation.h"
 #include "evaluate/planes/plane_report.h"
 #include "evaluate/references/reference_cache.h"
+#include "evaluate/runs/resumable_run.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
-#include "evaluate/shared/resumable_run.h"
 
 namespace pcl_symmetry::apps {
 

@@ -16,10 +16,10 @@
 #include "core/base/parallel.h"
 #include "evaluate/retrieval/retrieval_methods.h"
 #include "evaluate/retrieval/retrieval_statistics.h"
+#include "evaluate/runs/resumable_run.h"
 #include "evaluate/shared/class_file.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
-#include "evaluate/shared/resumable_run.h"
 #include "evaluate/shared/table_text.h"
 #include "pcl_symmetry/mesh_sampling.h"
 
@@ -55,8 +55,9 @@ CommandLine commandLine(EvaluateRetrievalOptions& o) {
       .flag("database", o.database, "only SymmetryDatabase::match(), each model turned at random")
       .text("csv", "FILE", o.csv, "precision at each recall, for each method")
       .text("class_csv", "FILE", o.class_csv, "a row for each class and method (Figure 14)")
-      .picture("png", o.png,
-               "precision against recall (Figure 13), NAME_files.png and NAME_turned.png; NAME_classes.png (Figure 14)");
+      .picture(
+          "png", o.png,
+          "precision against recall (Figure 13), NAME_files.png and NAME_turned.png; NAME_classes.png (Figure 14)");
   ResumableRun::addFlag(line, o.journal);
   line.common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
@@ -78,16 +79,16 @@ public:
     select();
     if (options_.database) return askDatabase();
     for (const ModelAxes axes : {ModelAxes::AsGiven, ModelAxes::Symmetry, ModelAxes::Principal}) {
-      const auto models = described<SymmetryDescriptors>("in the " + nameOf(axes), axes != ModelAxes::AsGiven,
-                                                         [&](const Points& cloud) { return publishedForms(cloud, axes); });
+      const auto models =
+          described<SymmetryDescriptors>("in the " + nameOf(axes), axes != ModelAxes::AsGiven,
+                                         [&](const Points& cloud) { return publishedForms(cloud, axes); });
       if (axes == ModelAxes::AsGiven) leaveOut();
       if (work_.isFirst()) add(publishedMethods(models, axes, options_.retrieval));
     }
     auto models = described<TurnableForms>("by signatures", true, turnableForms);
     if (!work_.isFirst()) return;
-    compare("Comparing signatures", [&](const auto& progress) {
-      return signatureMethods(std::move(models), options_.retrieval, progress);
-    });
+    compare("Comparing signatures",
+            [&](const auto& progress) { return signatureMethods(std::move(models), options_.retrieval, progress); });
     report();
   }
 
@@ -117,7 +118,8 @@ private:
   /// Processes share the models.
   /// \return one for each model; where a model cannot be used, reasons_ say so, and its place is kept until leaveOut().
   template <typename Forms>
-  std::vector<Forms> described(const std::string& how, bool turned, const std::function<Forms(const Points&)>& describe) {
+  std::vector<Forms> described(const std::string& how, bool turned,
+                               const std::function<Forms(const Points&)>& describe) {
     constexpr char kDone = 'd', kFailed = 'f';  // chosen: the first letters
     Step step(console_, "Describing " + std::to_string(models_.size()) + " models " + how);
     std::vector<std::string> names;
@@ -196,9 +198,8 @@ private:
       step.done(std::to_string(clouds.size()) + " models");
     }
     leaveOut();
-    compare("Asking a database", [&](const auto& progress) {
-      return std::vector{databaseMethod(clouds, options_.retrieval, progress)};
-    });
+    compare("Asking a database",
+            [&](const auto& progress) { return std::vector{databaseMethod(clouds, options_.retrieval, progress)}; });
     printTable();
   }
 

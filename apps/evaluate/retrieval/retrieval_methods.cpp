@@ -150,9 +150,8 @@ void addMethod(const std::string& name, const Eigen::MatrixXf& distances, bool c
 std::vector<RetrievalMethod> publishedMethods(const std::vector<SymmetryDescriptors>& models, ModelAxes axes,
                                               const RetrievalOptions& options) {
   const auto distances = [&](const auto& distance) {
-    return symmetricDistances(models.size(), options.num_threads, [&](std::size_t i, std::size_t j) -> float {
-      return distance(models[i], models[j]);
-    });
+    return symmetricDistances(models.size(), options.num_threads,
+                              [&](std::size_t i, std::size_t j) -> float { return distance(models[i], models[j]); });
   };
   using D = const SymmetryDescriptors&;
   const Eigen::MatrixXf prsd =

@@ -18,7 +18,7 @@
 #include "core/base/median.h"
 #include "core/base/stopwatch.h"
 #include "evaluate/rotations/rotation_solids.h"
-#include "evaluate/shared/resumable_run.h"
+#include "evaluate/runs/resumable_run.h"
 #include "evaluate/shared/table_text.h"
 #include "pcl_symmetry/core/rotation/rotational_symmetry.h"
 #include "recognition/packing/packed_bytes.h"
@@ -92,10 +92,7 @@ struct Count {
 class RotationEvaluation {
 public:
   RotationEvaluation(const EvaluateRotationsOptions& options, ResumableRun& work)
-      : options_(options),
-        work_(work),
-        console_(options.common.quiet || !work.isFirst()),
-        solids_(rotationSolids()) {}
+      : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()), solids_(rotationSolids()) {}
 
   void run() {
     makeTrials();

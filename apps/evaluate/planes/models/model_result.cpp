@@ -32,8 +32,8 @@ void getOptional(UnpackedBytes& bytes, std::optional<Value>& value) {
 void put(PackedBytes& bytes, const MatchResult& match) {
   bytes.put(static_cast<std::uint32_t>(match.judgements.size()));
   for (const Judgement& judgement : match.judgements) bytes.put(judgement);
-  for (const int number :
-       {match.num_right, match.num_neutral, match.num_false, match.num_references, match.num_found, match.num_axes_found})
+  for (const int number : {match.num_right, match.num_neutral, match.num_false, match.num_references, match.num_found,
+                           match.num_axes_found})
     bytes.put(number);
   putOptional(bytes, match.rank);
   putOptional(bytes, match.first_error);
@@ -108,7 +108,8 @@ CloudResult cloudFrom(UnpackedBytes& bytes, const std::vector<CloudRecipe>& reci
   get(bytes, cloud.answers);
   get(bytes, cloud.match);
   cloud.operating_point = bytes.get<OperatingPoint>();
-  for (auto left = bytes.get<std::uint32_t>(); left > 0; --left) cloud.view_verdicts.push_back(bytes.get<ViewVerdict>());
+  for (auto left = bytes.get<std::uint32_t>(); left > 0; --left)
+    cloud.view_verdicts.push_back(bytes.get<ViewVerdict>());
   return cloud;
 }
 

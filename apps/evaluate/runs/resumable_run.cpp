@@ -1,4 +1,4 @@
-#include "evaluate/shared/resumable_run.h"
+#include "evaluate/runs/resumable_run.h"
 
 namespace pcl_symmetry::apps {
 
