@@ -89,6 +89,16 @@ double RotationLimits::excess(const OffShares& shares) const {
   return std::max(by_off, shares.far / far);
 }
 
+double RotationLimits::margin(const OffShares& shares) const {
+  return max_feature > 0.0 ? max_feature * (1.0 - excess(shares)) : -shares.off;
+}
+
+double RotationLimits::confidence(const OffShares& shares, std::size_t num_points) const {
+  const double unit =
+      kShareUnit + kStandardErrors * std::sqrt(max_feature * (1.0 - max_feature) / static_cast<double>(num_points));
+  return 1.0 / (1.0 + std::exp(-margin(shares) / unit));
+}
+
 /// Least squares of the distances m . (x' - y) in small turns omega of all axes and moves t of the center: unknowns
 /// (omega, t).
 struct RotationFit::NormalEquations {
@@ -302,11 +312,7 @@ OffShares RotationFit::worstShares(const RotationSet& set, int num_samples, doub
 }
 
 double RotationFit::confidence(const OffShares& shares) const {
-  const double phi = limits_.max_feature;
-  const double unit =
-      kShareUnit + kStandardErrors * std::sqrt(phi * (1.0 - phi) / static_cast<double>(surface_->order.size()));
-  const double margin = phi > 0.0 ? phi * (1.0 - limits_.excess(shares)) : -shares.off;
-  return 1.0 / (1.0 + std::exp(-margin / unit));
+  return limits_.confidence(shares, surface_->order.size());
 }
 
 Eigen::Vector3d RotationFit::whereOff(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const {
