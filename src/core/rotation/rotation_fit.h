@@ -36,11 +36,8 @@ struct RotationLimits {
   /// By how much a rotation fails: the greater of its two shares over what is allowed of each.
   /// \return <= 1 for a symmetry.
   double excess(const OffShares& shares) const;
-  /// \return what is allowed less what is measured, as a share of the surface; >= 0 for a symmetry.
-  double margin(const OffShares& shares) const;
   /// Probability that rotations of these measured shares are symmetries at the limits.
   /// \param num_points that the shares are of.
-  /// \return at least 1/2 where the excess is at most 1.
   double confidence(const OffShares& shares, std::size_t num_points) const;
 };
 
