@@ -29,6 +29,10 @@ std::string bytesOf(const ModelInfo& info, const detail::PackedModel& model) {
   return bytes.bytes();
 }
 
+std::string failed(const std::string& reason) {
+  return static_cast<char>(Outcome::Failed) + reason;
+}
+
 std::string textOf(detail::UnpackedBytes& bytes) {
   const auto size = bytes.get<std::uint32_t>();
   return {bytes.take(size), size};
@@ -47,9 +51,9 @@ public:
     std::set<std::string> names;
     for (std::size_t i = 0; i < inputs_.size(); ++i)
       if (!names.insert(inputs_[i].name).second) repeated_.insert(i);
-    processes_.run(
-        inputs_.size(), [&](std::size_t i) { return described(i); },
-        [&](std::size_t i, const std::string& bytes) { take(i, bytes); });
+    processes_.run(inputs_.size(), {[this](std::size_t i) { return described(i); },
+                                    [this](std::size_t i, const std::string& bytes) { take(i, bytes); },
+                                    [](std::size_t) { return failed("the processes that described it died"); }});
     for (const auto& [i, reason] : failures_) report_.failures.emplace_back(inputs_[i].name, reason);
     if (parts_) detail::withBadArguments([&] { parts_->save(); });
     return report_;
@@ -82,7 +86,7 @@ private:
       const Points points = detail::finitePoints(input.load(), options_.max_points);
       return bytesOf(info, detail::describedModel(points, options_).packed);
     } catch (const std::exception& error) {
-      return static_cast<char>(Outcome::Failed) + std::string(error.what());
+      return failed(error.what());
     }
   }
 

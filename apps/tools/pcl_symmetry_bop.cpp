@@ -52,7 +52,7 @@ CommandLine commandLine(BopOptions& options) {
       .number("absolute_tolerance", options.models.symmetries.absolute_tolerance, Range::atLeast(0),
               "the same in the unit of the input; 0: the share decides")
       .number("min_confidence", options.models.symmetries.min_confidence, Range::closed(0, 1),
-              "least confidence of rotations that are called symmetries; 0.5 is at the limits")
+              "least confidence of rotations that are called symmetries")
       .flag("colour", options.models.use_colours, "only rotations that keep the colours of the vertices")
       .number("colour_tolerance", options.models.colour_tolerance, Range::above(0),
               "difference of colours that counts as none, in CIELAB")

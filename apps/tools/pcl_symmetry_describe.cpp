@@ -7,7 +7,6 @@
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,7 +24,6 @@
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/shape_output.h"
-#include "core/base/parallel.h"
 #include "core/descriptors/symmetry_descriptor.h"
 #include "core/matching/shape_description.h"
 #include "pcl_symmetry/features/point_types.h"
@@ -194,19 +192,16 @@ int run(int argc, char** argv, SharedWork& processes) {
   options.inputs = std::move(paths);
   const std::vector<std::string> outputs = outputPaths(options);
   std::vector<std::string> failures(options.inputs.size());
-  std::mutex mutex;
   std::size_t num_done = 0;
   Step step(console, "Describing " + std::to_string(options.inputs.size()) + " shapes");
-  const auto work = [&](std::size_t i) { return describeFile(options.inputs[i], outputs[i], options); };
-  const auto take = [&](std::size_t i, const std::string& failure) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    failures[i] = failure;
-    step.progress(static_cast<double>(++num_done) / static_cast<double>(options.inputs.size()));
-  };
-  if (processes.isShared())
-    processes.run(options.inputs.size(), work, take);
-  else
-    parallelBlocks(options.inputs.size(), options.common.threads, [&](std::size_t i) { take(i, work(i)); });
+  const WorkFunctions functions{
+      [&](std::size_t i) { return describeFile(options.inputs[i], outputs[i], options); },
+      [&](std::size_t i, const std::string& failure) {
+        failures[i] = failure;
+        step.progress(static_cast<double>(++num_done) / static_cast<double>(options.inputs.size()));
+      },
+      [&](std::size_t i) { return options.inputs[i] + ": the processes that described it died"; }};
+  processes.run(options.inputs.size(), functions, options.common.threads);
   if (!processes.isFirst()) return 0;
   if (options.csv_path) writeTable(options, outputs, failures);
   failures.erase(std::remove(failures.begin(), failures.end(), ""), failures.end());

@@ -237,7 +237,7 @@ void addFrame(py::module_& module) {
           "list of (point, direction) of axes of revolution")
       .def_readonly("support", &ObjectSymmetries::support, "share of the surface that is mapped onto the surface")
       .def_readonly("confidence", &ObjectSymmetries::confidence,
-                    "how far within the limits, in [0, 1], 0.5 at them: a grade, not a probability");
+                    "probability that the whole surface, not its points alone, keeps to the limits");
 }
 
 void addMap(py::module_& module) {

@@ -1,23 +1,19 @@
 #include "evaluate/planes/planes.h"
 
-#include <pcl/conversions.h>
-
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
-#include <cmath>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
-#include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
-#include "core/base/constants.h"
+#include "evaluate/planes/models/model_evaluation.h"
 #include "evaluate/planes/plane_report.h"
 #include "evaluate/references/reference_cache.h"
+#include "evaluate/runs/resumable_run.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
 
@@ -28,23 +24,6 @@ namespace {
 // Milliseconds between two savings of the references. chosen: an interrupted run loses no more; half writes more often,
 // twice loses more.
 constexpr double kSaveEvery = 10'000.0;
-
-struct EvaluatePlanesOptions {
-  std::vector<std::string> folders;
-  ModelSelection selection;
-  ReferenceOptions references;
-  std::optional<std::string> references_path;
-  TestCloudOptions clouds;
-  std::string sweep = "none", views = "corners", tolerance_of = "diameter", references_by = "brute_force";
-  std::optional<std::string> rows;
-  MatchLimits limits;
-  OperatingPoint operating_point;
-  double detect_tolerance = 0.01;
-  bool no_detect = false;
-  std::optional<std::string> export_folder, planes_folder;
-  std::optional<std::string> cloud_csv, model_csv, curve_csv, reliability_csv, share_csv, png;
-  CommonOptions common;
-};
 
 void addReferenceFlags(CommandLine& line, EvaluatePlanesOptions& o) {
   line.text("references", "FILE", o.references_path,
@@ -113,8 +92,9 @@ CommandLine commandLine(EvaluatePlanesOptions& o) {
       .text("reliability_csv", "FILE", o.reliability_csv, "right answers by confidence")
       .text("share_csv", "FILE", o.share_csv, "clouds called symmetric by the true share of the model's best plane")
       .text("curve_csv", "FILE", o.curve_csv, "precision and recall at every score")
-      .picture("png", o.png, "chart: precision against recall, or the rates of a sweep")
-      .common(o.common, kJson | kSeed | kThreads | kQuiet);
+      .picture("png", o.png, "chart: precision against recall, or the rates of a sweep");
+  ResumableRun::addFlag(line, o.journal);
+  line.common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }
 
@@ -160,34 +140,22 @@ void completeOptions(EvaluatePlanesOptions& o, const CommandLine& line) {
   o.references.num_threads = o.common.threads;
 }
 
-/// Degrees between the view direction and the normal of the best reference plane, as lines.
-std::optional<double> viewAngle(const TestCloud& cloud, const ReferenceSymmetries& references) {
-  if (!cloud.view || references.planes.empty()) return std::nullopt;
-  const double cosine = std::abs(cloud.view->direction.dot(references.planes.front().plane.normal()));
-  return std::acos(std::min(1.0, cosine)) * 180.0 / kPi;
-}
-
 class PlanesEvaluation {
 public:
-  explicit PlanesEvaluation(const EvaluatePlanesOptions& options)
+  PlanesEvaluation(const EvaluatePlanesOptions& options, ResumableRun& work)
       : options_(options),
-        console_(options.common.quiet),
+        work_(work),
+        console_(options.common.quiet || !work.isFirst()),
         recipes_(recipesFor(options.clouds)),
         cache_(options.references_path.value_or(""), options.references) {}
 
   void run() {
     const std::vector<Model> models = listModels(options_.folders, options_.selection);
     if (options_.export_folder) boost::filesystem::create_directories(*options_.export_folder);
-    Step step(console_, "Evaluating " + std::to_string(models.size()) + " models");
-    int num_used = 0;
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
-      num_used += evaluate(models[i]) ? 1 : 0;
-    }
-    cache_.save();
-    step.done(std::to_string(num_used) + " models, " + std::to_string(num_clouds_) + " clouds");
+    evaluate(models);
+    if (!work_.isFirst()) return;
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
-    if (num_used == 0) throw InputError(options_.folders.front() + ": no mesh could be used");
+    if (num_used_ == 0) throw InputError(options_.folders.front() + ": no mesh could be used");
     if (options_.export_folder) {
       const auto path = boost::filesystem::path(*options_.export_folder) / "ground_truth.json";
       writeText(path.string(), nlohmann::json{{"clouds", ground_truth_}}.dump(1) + "\n");
@@ -196,118 +164,49 @@ public:
   }
 
 private:
-  struct Prepared {
-    ReferenceSymmetries references;
-    TestCloudMaker maker;
-    TriangleScene scene;
-    MeshReflection reflection;
-
-    Prepared(const ReferenceSymmetries& found, const Model& model, const pcl::PolygonMesh& mesh,
-             const EvaluatePlanesOptions& options)
-        : references(found),
-          maker(mesh, model.key, options.clouds),
-          scene(mesh),
-          reflection(scene, options.references.num_samples, options.references.seed) {}
-  };
-
-  /// \return what it gives; none where it throws, and the reason is kept.
-  template <typename Function>
-  auto attempt(const std::string& what, const Function& function) -> std::optional<decltype(function())> {
-    try {
-      return function();
-    } catch (const InputError& error) {
-      left_out_.push_back(error.what());
-    } catch (const std::exception& error) {
-      left_out_.push_back(what + ": " + error.what());
-    }
-    return std::nullopt;
+  /// Processes share the models.
+  void evaluate(const std::vector<Model>& models) {
+    Step step(console_, "Evaluating " + std::to_string(models.size()) + " models");
+    const ReferenceCache known = cache_;  // not changed while other threads read it
+    ModelEvaluation evaluation(options_, recipes_, known);
+    std::vector<std::string> names;
+    for (const Model& model : models) names.push_back(model.name);
+    std::vector<ModelResult> results(models.size());
+    std::size_t num_done = 0;
+    work_.run(names, {[&](std::size_t i) { return packedResult(evaluation.evaluate(models[i]), recipes_); },
+                      [&](std::size_t i, const std::string& packed) {
+                        results[i] = unpackedResult(packed, recipes_);
+                        keepReferences(models[i], results[i]);
+                        step.progress(static_cast<double>(++num_done) / static_cast<double>(models.size()));
+                      },
+                      [&](std::size_t i) {
+                        ModelResult lost;
+                        lost.left_out.push_back(models[i].path + ": the processes that evaluated it died");
+                        return packedResult(lost, recipes_);
+                      }});
+    if (!work_.isFirst()) return;
+    for (ModelResult& result : results) add(result);
+    cache_.save();
+    step.done(std::to_string(num_used_) + " models, " + std::to_string(num_clouds_) + " clouds");
   }
 
-  /// \return whether the model could be used.
-  bool evaluate(const Model& model) {
-    const auto attempted = attempt(model.path, [&] {
-      const Shape shape = loadShape(model.path);
-      if (!shape.mesh) throw InputError(model.path + ": has no faces");
-      return std::make_unique<Prepared>(referencesOf(model, *shape.mesh), model, *shape.mesh, options_);
-    });
-    if (!attempted) return false;
-    const Prepared& prepared = **attempted;
-    ++num_models_[prepared.references.kind];
-    if (options_.no_detect && !options_.export_folder) return true;
-    for (const CloudRecipe& recipe : recipes_) {
-      const std::string name = model.name + "_" + recipe.name;
-      if (const auto cloud = attempt(name, [&] { return prepared.maker.make(recipe); }))
-        evaluate(name, model, recipe, *cloud, prepared);
-    }
-    return true;
-  }
-
-  ReferenceSymmetries referencesOf(const Model& model, const pcl::PolygonMesh& mesh) {
-    if (const auto cached = cache_.find(model.key, mesh.polygons.size())) return *cached;
-    const ReferenceSymmetries references = findReferenceSymmetries(mesh, options_.references);
-    cache_.add(model.key, mesh.polygons.size(), references);
+  void keepReferences(const Model& model, ModelResult& result) {
+    if (!result.found_references) return;
+    cache_.add(model.key, result.num_faces, *result.found_references);
+    result.found_references.reset();
     unsaved_ms_ += since_save_.lap();
-    if (unsaved_ms_ > kSaveEvery) {
-      cache_.save();
-      unsaved_ms_ = 0.0;
-    }
-    return references;
+    if (unsaved_ms_ < kSaveEvery) return;
+    cache_.save();
+    unsaved_ms_ = 0.0;
   }
 
-  void evaluate(const std::string& name, const Model& model, const CloudRecipe& recipe, const TestCloud& cloud,
-                const Prepared& prepared) {
-    const ReferenceSymmetries references = prepared.references.transformed(cloud.T_cloud_model);
-    ++num_clouds_;
-    if (options_.export_folder) exportCloud(name, model, recipe, cloud, references);
-    if (options_.no_detect) return;
-    CloudResult result;
-    result.model = model.name;
-    result.cloud = name;
-    result.recipe = recipe;
-    for (const pcl::PointXYZ& point : *cloud.cloud) result.num_points += point.getVector3fMap().allFinite() ? 1 : 0;
-    result.view_angle = viewAngle(cloud, references);
-    result.kind = references.kind;
-    result.best_share = references.best_share;
-    result.num_reference_axes = static_cast<int>(references.axes.size());
-    result.answers = answersFor(name, cloud);
-    result.match = matchAnswers(result.answers.answers, references, options_.limits);
-    result.operating_point = options_.operating_point;
-    if (cloud.view) judgeByView(prepared, cloud, result);
-    results_.push_back(std::move(result));
-  }
-
-  /// Whether the scan contradicts an answer is asked of those that are called symmetries and are wrong.
-  void judgeByView(const Prepared& prepared, const TestCloud& cloud, CloudResult& result) const {
-    result.view_verdicts.resize(result.answers.answers.size(), ViewVerdict::Undecidable);
-    if (result.numFalse() == 0) return;
-    const double tolerance = prepared.references.tolerance / prepared.references.diagonal;
-    const VisibleSurface visible(prepared.scene, prepared.reflection, cloud, tolerance);
-    for (std::size_t i = 0; i < result.view_verdicts.size(); ++i)
-      if (result.match.judgements[i].verdict == Verdict::False)
-        result.view_verdicts[i] = visible.verdictOf(result.answers.answers[i]);
-  }
-
-  PlaneAnswers answersFor(const std::string& name, const TestCloud& cloud) {
-    if (options_.planes_folder) return readAnswers(*options_.planes_folder, name);
-    const auto detect = [&] {
-      return detectAnswers(cloud.cloud, options_.common.seed + 1, options_.common.threads, options_.detect_tolerance);
-    };
-    if (!warm_) detect();  // threads, tables and pages are there from the second call on
-    warm_ = true;
-    return detect();
-  }
-
-  void exportCloud(const std::string& name, const Model& model, const CloudRecipe& recipe, const TestCloud& cloud,
-                   const ReferenceSymmetries& references) {
-    const auto path = boost::filesystem::path(*options_.export_folder) / (name + ".pcd");
-    pcl::PCLPointCloud2 blob;
-    pcl::toPCLPointCloud2(*cloud.cloud, blob);
-    saveCloud(path.string(), blob, cloud.cloud->sensor_origin_, cloud.cloud->sensor_orientation_);
-    nlohmann::json truth = toJson(references);
-    truth["file"] = name + ".pcd";
-    truth["model"] = model.name;
-    truth["group"] = recipe.group;
-    ground_truth_[name] = std::move(truth);
+  void add(ModelResult& result) {
+    if (result.kind) ++num_models_[*result.kind];
+    num_used_ += result.kind ? 1 : 0;
+    num_clouds_ += result.num_clouds;
+    left_out_.insert(left_out_.end(), result.left_out.begin(), result.left_out.end());
+    results_.insert(results_.end(), result.clouds.begin(), result.clouds.end());
+    if (!result.ground_truth.empty()) ground_truth_.update(nlohmann::json::parse(result.ground_truth));
   }
 
   void report() {
@@ -351,13 +250,13 @@ private:
   }
 
   const EvaluatePlanesOptions& options_;
+  ResumableRun& work_;
   const Console console_;
   const std::vector<CloudRecipe> recipes_;
   ReferenceCache cache_;
   Stopwatch since_save_;
   double unsaved_ms_ = 0.0;  ///< since the references were last saved
-  bool warm_ = false;
-  int num_clouds_ = 0;
+  int num_used_ = 0, num_clouds_ = 0;
   std::map<SymmetryKind, int> num_models_;
   std::vector<std::string> left_out_;
   std::vector<CloudResult> results_;
@@ -366,12 +265,14 @@ private:
 
 }  // namespace
 
-int evaluatePlanes(int argc, char** argv) {
+int evaluatePlanes(int argc, char** argv, SharedWork& processes) {
   EvaluatePlanesOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   completeOptions(options, line);
-  PlanesEvaluation(options).run();
+  ResumableRun work(processes, options.journal, argc, argv);
+  options.common.threads = options.references.num_threads = work.threadsOfItem(options.common.threads);
+  PlanesEvaluation(options, work).run();
   return 0;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -15,6 +16,7 @@
 #include "core/base/parallel.h"
 #include "evaluate/retrieval/retrieval_methods.h"
 #include "evaluate/retrieval/retrieval_statistics.h"
+#include "evaluate/runs/resumable_run.h"
 #include "evaluate/shared/class_file.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
@@ -32,7 +34,7 @@ struct EvaluateRetrievalOptions {
   int num_points = 20'000;
   RetrievalOptions retrieval;
   bool database = false;
-  std::optional<std::string> csv, class_csv, png;
+  std::optional<std::string> csv, class_csv, png, journal;
   CommonOptions common;
 };
 
@@ -53,9 +55,11 @@ CommandLine commandLine(EvaluateRetrievalOptions& o) {
       .flag("database", o.database, "only SymmetryDatabase::match(), each model turned at random")
       .text("csv", "FILE", o.csv, "precision at each recall, for each method")
       .text("class_csv", "FILE", o.class_csv, "a row for each class and method (Figure 14)")
-      .picture("png", o.png,
-               "precision against recall (Figure 13), NAME_files.png and NAME_turned.png; NAME_classes.png (Figure 14)")
-      .common(o.common, kJson | kSeed | kThreads | kQuiet);
+      .picture(
+          "png", o.png,
+          "precision against recall (Figure 13), NAME_files.png and NAME_turned.png; NAME_classes.png (Figure 14)");
+  ResumableRun::addFlag(line, o.journal);
+  line.common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }
 
@@ -68,79 +72,153 @@ struct Result {
 
 class RetrievalEvaluation {
 public:
-  explicit RetrievalEvaluation(const EvaluateRetrievalOptions& options)
-      : options_(options), console_(options.common.quiet) {}
+  RetrievalEvaluation(const EvaluateRetrievalOptions& options, ResumableRun& work)
+      : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()) {}
 
   void run() {
-    load();
-    if (options_.database) {
-      evaluate("Asking a database", [&](const auto& progress) {
-        return std::vector{databaseMethod(clouds_, options_.retrieval, progress)};
-      });
-      return printTable();
+    select();
+    if (options_.database) return askDatabase();
+    for (const ModelAxes axes : {ModelAxes::AsGiven, ModelAxes::Symmetry, ModelAxes::Principal}) {
+      const auto models =
+          described<SymmetryDescriptors>("in the " + nameOf(axes), axes != ModelAxes::AsGiven,
+                                         [&](const Points& cloud) { return publishedForms(cloud, axes); });
+      if (axes == ModelAxes::AsGiven) leaveOut();
+      if (work_.isFirst()) add(publishedMethods(models, axes, options_.retrieval));
     }
-    evaluate("Describing models as they are",
-             [&](const auto& progress) { return published(ModelAxes::AsGiven, progress); });
-    for (std::size_t i = 0; i < clouds_.size(); ++i) {
-      const Eigen::Isometry3d pose = randomPose(options_.common.seed + 1 + i, 0.0);
-      clouds_[i] = pose.linear().cast<float>() * clouds_[i];
-    }
-    evaluate("Describing models in the axes of their symmetry",
-             [&](const auto& progress) { return published(ModelAxes::Symmetry, progress); });
-    evaluate("Describing models in their principal axes",
-             [&](const auto& progress) { return published(ModelAxes::Principal, progress); });
-    evaluate("Comparing signatures",
-             [&](const auto& progress) { return signatureMethods(clouds_, options_.retrieval, progress); });
+    auto models = described<TurnableForms>("by signatures", true, turnableForms);
+    if (!work_.isFirst()) return;
+    compare("Comparing signatures",
+            [&](const auto& progress) { return signatureMethods(std::move(models), options_.retrieval, progress); });
     report();
   }
 
 private:
-  std::vector<RetrievalMethod> published(ModelAxes axes, const RetrievalProgress& progress) const {
-    return publishedMethods(clouds_, axes, options_.retrieval, progress);
+  void select() {
+    const std::map<std::string, std::string> class_of_models = readClassFile(*options_.class_path);
+    for (const Model& model : listModels(options_.folders, options_.selection)) {
+      const auto found = class_of_models.find(model.name);
+      if (found == class_of_models.end()) continue;
+      models_.push_back(model);
+      classes_.push_back(found->second);
+    }
+    reasons_.resize(models_.size());
   }
 
-  void load() {
-    const std::map<std::string, std::string> class_of_models = readClassFile(*options_.class_path);
-    std::vector<Model> models = listModels(options_.folders, options_.selection);
-    models.erase(
-        std::remove_if(models.begin(), models.end(), [&](const Model& m) { return !class_of_models.count(m.name); }),
-        models.end());
-    Step step(console_, "Loading " + std::to_string(models.size()) + " models");
-    std::vector<Points> clouds(models.size());
-    std::mutex mutex;
-    parallelBlocks(models.size(), options_.common.threads, [&](std::size_t i) {
+  Points cloudOf(std::size_t i) const {
+    const Shape shape = loadShape(models_[i].path);
+    if (!shape.mesh) throw InputError(models_[i].path + ": has no faces");
+    return sampleMesh(*shape.mesh, options_.num_points)->getMatrixXfMap(3, 4, 0);
+  }
+
+  Points turnedCloudOf(std::size_t i) const {
+    const Eigen::Isometry3d pose = randomPose(options_.common.seed + 1 + i, 0.0);
+    return pose.linear().cast<float>() * cloudOf(i);
+  }
+
+  /// Processes share the models.
+  /// \return one for each model; where a model cannot be used, reasons_ say so, and its place is kept until leaveOut().
+  template <typename Forms>
+  std::vector<Forms> described(const std::string& how, bool turned,
+                               const std::function<Forms(const Points&)>& describe) {
+    constexpr char kDone = 'd', kFailed = 'f';  // chosen: the first letters
+    Step step(console_, "Describing " + std::to_string(models_.size()) + " models " + how);
+    std::vector<std::string> names;
+    for (const Model& model : models_) names.push_back(how + " " + model.name);
+    std::vector<Forms> forms(models_.size());
+    std::size_t num_done = 0;
+    const auto work = [&](std::size_t i) {
       try {
-        const Shape shape = loadShape(models[i].path);
-        if (!shape.mesh) throw InputError(models[i].path + ": has no faces");
-        clouds[i] = sampleMesh(*shape.mesh, options_.num_points)->getMatrixXfMap(3, 4, 0);
+        return kDone + packed(describe(turned ? turnedCloudOf(i) : cloudOf(i)));
       } catch (const std::exception& error) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        left_out_.push_back(error.what());
+        return kFailed + std::string(error.what());
       }
-    });
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      if (clouds[i].cols() == 0) continue;
-      classes_.push_back(class_of_models.at(models[i].name));
-      clouds_.push_back(std::move(clouds[i]));
+    };
+    const auto take = [&](std::size_t i, const std::string& result) {
+      if (result.front() == kDone)
+        unpack(result.substr(1), forms[i]);
+      else
+        reasons_[i] = result.substr(1);
+      step.progress(static_cast<double>(++num_done) / static_cast<double>(models_.size()));
+    };
+    const auto lost = [&](std::size_t i) {
+      return kFailed + models_[i].path + ": the processes that described it died";
+    };
+    work_.run(names, {work, take, lost}, options_.common.threads);
+    if (!work_.isFirst()) return {};
+    if (turned) checkAll();
+    removeUnused(forms);
+    step.done(std::to_string(forms.size()) + " models");
+    return forms;
+  }
+
+  /// What could be read once can be read again.
+  void checkAll() const {
+    for (const std::string& reason : reasons_)
+      if (!reason.empty()) throw InputError(reason);
+  }
+
+  template <typename Value>
+  void removeUnused(std::vector<Value>& values) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (reasons_[i].empty() && kept++ != i) values[kept - 1] = std::move(values[i]);
+    values.resize(kept);
+  }
+
+  /// Models that cannot be used: all processes go on without them.
+  void leaveOut() {
+    std::string unused;
+    for (const std::string& reason : reasons_) unused += reason.empty() ? '0' : '1';
+    work_.broadcast(unused);
+    for (std::size_t i = 0; i < reasons_.size(); ++i) {
+      if (unused[i] == '1' && reasons_[i].empty()) reasons_[i] = "left out";  // the first process knows why
+      if (unused[i] == '1') left_out_.push_back(reasons_[i]);
     }
-    step.done(std::to_string(clouds_.size()) + " models");
+    removeUnused(models_);
+    removeUnused(classes_);
+    reasons_.assign(models_.size(), "");
     std::sort(left_out_.begin(), left_out_.end());
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
-    if (clouds_.size() < 3) throw InputError(*options_.class_path + ": names fewer than 3 of the meshes");
+    if (models_.size() < 3) throw InputError(*options_.class_path + ": names fewer than 3 of the meshes");
+  }
+
+  /// By this process alone.
+  void askDatabase() {
+    std::vector<Points> clouds(models_.size());
+    {
+      Step step(console_, "Loading " + std::to_string(models_.size()) + " models");
+      parallelBlocks(models_.size(), options_.common.threads, [&](std::size_t i) {
+        try {
+          clouds[i] = cloudOf(i);
+        } catch (const std::exception& error) {
+          reasons_[i] = error.what();
+        }
+      });
+      removeUnused(clouds);
+      step.done(std::to_string(clouds.size()) + " models");
+    }
+    leaveOut();
+    compare("Asking a database",
+            [&](const auto& progress) { return std::vector{databaseMethod(clouds, options_.retrieval, progress)}; });
+    printTable();
   }
 
   template <typename Methods>
-  void evaluate(const std::string& what, const Methods& methods) {
+  void compare(const std::string& what, const Methods& methods) {
     Step step(console_, what);
     std::mutex mutex;
-    for (RetrievalMethod& method : methods([&](double share) {
-           const std::lock_guard<std::mutex> lock(mutex);
-           step.progress(share);
-         })) {
+    add(methods([&](double share) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      step.progress(share);
+    }));
+    step.done();
+  }
+
+  void add(std::vector<RetrievalMethod> methods) {
+    for (RetrievalMethod& method : methods) {
       RetrievalStatistics all = retrievalStatistics(method.distances, classes_);
       results_.push_back({std::move(method), std::move(all)});
     }
-    step.done();
   }
 
   void report() const {
@@ -305,22 +383,28 @@ private:
   }
 
   const EvaluateRetrievalOptions& options_;
+  ResumableRun& work_;
   const Console console_;
-  std::vector<Points> clouds_;
-  std::vector<std::string> classes_, left_out_;
+  std::vector<Model> models_;
+  std::vector<std::string> classes_;  ///< of the models
+  std::vector<std::string> reasons_;  ///< why a model cannot be used, or nothing
+  std::vector<std::string> left_out_;
   std::vector<Result> results_;
 };
 
 }  // namespace
 
-int evaluateRetrieval(int argc, char** argv) {
+int evaluateRetrieval(int argc, char** argv, SharedWork& processes) {
   EvaluateRetrievalOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (!options.class_path) throw UsageError("missing flag '-cla FILE'");
   options.retrieval.seed = options.common.seed;
   options.retrieval.num_threads = options.common.threads;
-  RetrievalEvaluation(options).run();
+  if (options.database && processes.isShared())
+    throw UsageError("-database is for one process: start it without mpirun");
+  ResumableRun work(processes, options.journal, argc, argv);
+  RetrievalEvaluation(options, work).run();
   return 0;
 }
 

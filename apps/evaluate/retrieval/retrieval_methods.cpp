@@ -145,36 +145,13 @@ void addMethod(const std::string& name, const Eigen::MatrixXf& distances, bool c
   methods.push_back({name + ", scaled", scaled(distances, references, options), false});
 }
 
-Eigen::Matrix3d axesOf(const Points& cloud, ModelAxes axes) {
-  if (axes == ModelAxes::AsGiven) return Eigen::Matrix3d::Identity();
-  if (axes == ModelAxes::Principal) return principalAxes(cloud).axes;
-  DescriptionOptions description;
-  description.num_threads = 1;
-  return describeShape(cloud, description).frame.axes;
-}
-
 }  // namespace
 
-std::string nameOf(ModelAxes axes) {
-  if (axes == ModelAxes::Symmetry) return "symmetry axes";
-  return axes == ModelAxes::Principal ? "principal axes" : "axes of the files";
-}
-
-std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, ModelAxes axes,
-                                              const RetrievalOptions& options, const RetrievalProgress& progress) {
-  std::vector<SymmetryDescriptors> descriptors(clouds.size());
-  forEachModel(clouds.size(), options, progress, [&](std::size_t i) {
-    Eigen::Isometry3d T_frame_input = Eigen::Isometry3d::Identity();
-    T_frame_input.linear() = axesOf(clouds[i], axes).transpose();
-    T_frame_input.translation() = -T_frame_input.linear() * centerOfMass(clouds[i]);
-    DescriptorOptions descriptor;
-    descriptor.num_threads = 1;
-    descriptors[i] = symmetryDescriptors(clouds[i], T_frame_input, descriptor);
-  });
+std::vector<RetrievalMethod> publishedMethods(const std::vector<SymmetryDescriptors>& models, ModelAxes axes,
+                                              const RetrievalOptions& options) {
   const auto distances = [&](const auto& distance) {
-    return symmetricDistances(clouds.size(), options.num_threads, [&](std::size_t i, std::size_t j) -> float {
-      return distance(descriptors[i], descriptors[j]);
-    });
+    return symmetricDistances(models.size(), options.num_threads,
+                              [&](std::size_t i, std::size_t j) -> float { return distance(models[i], models[j]); });
   };
   using D = const SymmetryDescriptors&;
   const Eigen::MatrixXf prsd =
@@ -197,34 +174,19 @@ std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds,
           {"PRSD by the maximum" + where, greatest, false}};
 }
 
-std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,
+std::vector<RetrievalMethod> signatureMethods(std::vector<TurnableForms> models, const RetrievalOptions& options,
                                               const RetrievalProgress& progress) {
-  const std::vector<Eigen::MatrixXf> none(clouds.size());
-  TurnableDescriptors prst{"PRST", none, rotateTurnablePRST}, gedt{"GEDT", none, rotateTurnableGEDT},
-      signatures{"signatures", none, rotateSignature};
-  forEachModel(
-      clouds.size(), options, [&](double share) { progress(0.5 * share); },
-      [&](std::size_t i) {
-        DescriptionOptions description;
-        description.num_threads = 1;
-        const ShapeDescription shape = describeShape(clouds[i], description);
-        signatures.forms[i] = shape.signatures;
-        const std::vector<Eigen::Matrix3d> frames = signatureFrames(clouds[i], shape.frame);
-        const auto fill = [&](Eigen::MatrixXf& forms, const auto& describe) {
-          for (std::size_t f = 0; f < frames.size(); ++f) {
-            const std::vector<float> values = describe(clouds[i], frames[f]);
-            if (f == 0)
-              forms.resize(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(frames.size()));
-            forms.col(static_cast<Eigen::Index>(f)) = Eigen::Map<const Eigen::VectorXf>(values.data(), forms.rows());
-          }
-        };
-        fill(prst.forms[i], turnablePRST);
-        fill(gedt.forms[i], turnableGEDT);
-      });
+  TurnableDescriptors prst{"PRST", {}, rotateTurnablePRST}, gedt{"GEDT", {}, rotateTurnableGEDT},
+      signatures{"signatures", {}, rotateSignature};
+  for (TurnableForms& model : models) {
+    prst.forms.push_back(std::move(model.prst));
+    gedt.forms.push_back(std::move(model.gedt));
+    signatures.forms.push_back(std::move(model.signatures));
+  }
   std::vector<RetrievalMethod> methods;
-  double done = 0.5;
+  double done = 0.0;
   const auto least = [&](const std::vector<const TurnableDescriptors*>& of) {
-    constexpr double kShare = 0.125;  // derived: four comparisons make the second half of the work
+    constexpr double kShare = 0.25;  // derived: four comparisons
     const Eigen::MatrixXf distances = leastDistances(of, options, [&](double x) { progress(done + kShare * x); });
     done += kShare;
     return distances;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "evaluate/retrieval/model_forms.h"
 
 namespace pcl_symmetry::apps {
 
@@ -29,20 +29,14 @@ struct RetrievalMethod {
 /// Told the share of the work that is done, in [0, 1].
 using RetrievalProgress = std::function<void(double)>;
 
-/// Axes that a model is described in.
-enum class ModelAxes { AsGiven, Symmetry, Principal };
-
-/// \return e.g. "symmetry axes".
-std::string nameOf(ModelAxes axes);
-
 /// PRSD, PRST, GEDT and the product of the latter two: L2 in one frame each, about the center of mass; and PRSD by the
 /// greatest difference, as Kazhdan et al. (2004) compare it.
-std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, ModelAxes axes,
-                                              const RetrievalOptions& options, const RetrievalProgress& progress);
+std::vector<RetrievalMethod> publishedMethods(const std::vector<SymmetryDescriptors>& models, ModelAxes axes,
+                                              const RetrievalOptions& options);
 
 /// PRST and GEDT in forms that turn, and signatures, in the best of all rotations of axes; their compact forms; and all
 /// these with distances scaled by those to the references. The product of PRST and GEDT, in the best rotation of both.
-std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,
+std::vector<RetrievalMethod> signatureMethods(std::vector<TurnableForms> models, const RetrievalOptions& options,
                                               const RetrievalProgress& progress);
 
 /// SymmetryDatabase::match(): each cloud, turned once more at random, asks a database of all.

@@ -14,13 +14,18 @@
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/tool_errors.h"
+#include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
 #include "core/base/median.h"
-#include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "evaluate/calibration/reliability.h"
+#include "evaluate/rotations/mesh_rotations.h"
 #include "evaluate/rotations/rotation_solids.h"
+#include "evaluate/runs/resumable_run.h"
+#include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/table_text.h"
 #include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
 
@@ -31,14 +36,16 @@ struct EvaluateRotationsOptions {
   std::vector<double> noise{0.0, 0.003};
   int num_seeds = 1;
   ObjectSymmetryOptions symmetries;
-  std::optional<std::string> kind, csv;
+  std::optional<std::string> kind, csv, journal, meshes;
+  ModelSelection selection;
   CommonOptions common;
 };
 
 CommandLine commandLine(EvaluateRotationsOptions& o) {
   CommandLine line("pcl_symmetry_evaluate rotations",
                    "Finds the groups of rotations of solids of known groups, in random poses: those of the kinds that "
-                   "the constants of the library were chosen on, and others.",
+                   "the constants of the library were chosen on, and others. With -meshes, finds those of meshes, and "
+                   "measures by exact distances how often groups and rejected turns of a confidence are symmetries.",
                    "pcl_symmetry_evaluate rotations -seeds 5 -csv groups.csv");
   line.numbers("counts", o.counts, Range::closed(100, 10'000'000), "numbers of points")
       .numbers("noise", o.noise, Range::closed(0, 0.1), "standard deviations of the coordinates, share of the diameter")
@@ -47,8 +54,11 @@ CommandLine commandLine(EvaluateRotationsOptions& o) {
               "how far a symmetric surface may be off, share of the diameter")
       .number("feature", o.symmetries.max_feature, Range::closed(0, 1), "share of the surface that may be off by more")
       .text("kind", "NAME", o.kind, "solids of this kind alone")
-      .text("csv", "FILE", o.csv, "a row for each cloud")
-      .common(o.common, kJson | kSeed | kThreads | kQuiet);
+      .text("meshes", "DIR", o.meshes, "meshes in place of solids, clouds of the first of -counts")
+      .text("csv", "FILE", o.csv, "a row for each cloud; with -meshes for each group and rejected turn");
+  addSelectionFlags(line, o.selection);
+  ResumableRun::addFlag(line, o.journal);
+  line.common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }
 
@@ -62,7 +72,19 @@ struct Trial {
   double confidence = 0.0, ms = 0.0;
 
   bool isRight() const { return found == solid->group; }
+  std::string name() const {
+    return solid->name + " " + std::to_string(num_points) + " " + std::to_string(noise) + " " + std::to_string(seed);
+  }
 };
+
+/// What is found of a trial, on its way from one process to another.
+std::string packedAnswer(const std::string& group, double confidence, double ms) {
+  detail::PackedBytes bytes;
+  bytes.put(confidence);
+  bytes.put(ms);
+  bytes.append(group);
+  return bytes.bytes();
+}
 
 /// Right answers of all.
 struct Count {
@@ -77,14 +99,21 @@ struct Count {
 
 class RotationEvaluation {
 public:
-  explicit RotationEvaluation(const EvaluateRotationsOptions& options)
-      : options_(options), console_(options.common.quiet), solids_(rotationSolids()) {}
+  RotationEvaluation(const EvaluateRotationsOptions& options, ResumableRun& work)
+      : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()), solids_(rotationSolids()) {}
 
   void run() {
     makeTrials();
     if (trials_.empty()) throw UsageError("-kind " + options_.kind.value_or("") + ": there is no such kind");
     Step step(console_, "Finding groups of " + std::to_string(trials_.size()) + " clouds");
-    parallelBlocks(trials_.size(), options_.common.threads, [&](std::size_t i) { find(trials_[i]); });
+    std::vector<std::string> names;
+    for (const Trial& trial : trials_) names.push_back(trial.name());
+    work_.run(names,
+              {[this](std::size_t i) { return find(trials_[i]); },
+               [this](std::size_t i, const std::string& answer) { take(trials_[i], answer); },
+               [](std::size_t) { return packedAnswer("none, processes died", 0.0, 0.0); }},
+              options_.common.threads);
+    if (!work_.isFirst()) return;
     step.done();
     report();
   }
@@ -101,7 +130,7 @@ private:
     }
   }
 
-  void find(Trial& trial) const {
+  std::string find(const Trial& trial) const {
     const auto count = static_cast<std::uint64_t>(trial.num_points);
     const Points points = trial.solid->sampled(trial.num_points, trial.seed * 1'000'003 + count, trial.noise);
     ObjectSymmetryOptions options = options_.symmetries;
@@ -109,9 +138,15 @@ private:
     options.num_threads = 1;
     Stopwatch watch;
     const ObjectSymmetries found = objectSymmetries(points, options);
-    trial.ms = watch.lap();
-    trial.found = found.name();
-    trial.confidence = found.confidence;
+    return packedAnswer(found.name(), found.confidence, watch.lap());
+  }
+
+  static void take(Trial& trial, const std::string& answer) {
+    detail::UnpackedBytes bytes(answer);
+    trial.confidence = bytes.get<double>();
+    trial.ms = bytes.get<double>();
+    const std::size_t size = bytes.left();
+    trial.found.assign(bytes.take(size), size);
   }
 
   /// Sets of clouds of one solid, noise and seed whose groups are the same for all numbers of points.
@@ -201,18 +236,86 @@ private:
   }
 
   const EvaluateRotationsOptions& options_;
+  ResumableRun& work_;
   const Console console_;
   const std::vector<RotationSolid> solids_;
   std::vector<Trial> trials_;
 };
 
+/// Do stated probabilities of groups and rejected turns of meshes come true?
+class MeshRotationEvaluation {
+public:
+  MeshRotationEvaluation(const EvaluateRotationsOptions& options, ResumableRun& work)
+      : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()) {}
+
+  void run() {
+    const std::vector<Model> models = listModels({*options_.meshes}, options_.selection);
+    std::vector<std::string> names;
+    for (const Model& model : models) names.push_back(model.name);
+    judged_.resize(models.size());
+    Step step(console_, "Finding groups of " + std::to_string(models.size()) + " meshes");
+    work_.run(names,
+              {[&](std::size_t i) { return judge(models[i]); },
+               [&](std::size_t i, const std::string& bytes) { judged_[i] = unpackedRotations(bytes); },
+               [](std::size_t) { return std::string(); }},
+              options_.common.threads);
+    if (!work_.isFirst()) return;
+    step.done();
+    report(names);
+  }
+
+private:
+  /// Meshes that cannot be used have nothing to judge.
+  std::string judge(const Model& model) const {
+    try {
+      const Shape shape = loadShape(model.path);
+      if (!shape.mesh) throw InputError(model.path + ": has no faces");
+      ObjectSymmetryOptions options = options_.symmetries;
+      // chosen: groups that are hardly believed show whether low confidences come true; half finds no more
+      options.min_confidence = 0.02;
+      options.seed = options_.common.librarySeed();
+      options.num_threads = 1;
+      return packed(judgedRotations(*shape.mesh, options, static_cast<int>(options_.counts.front())));
+    } catch (const std::exception& error) {
+      console_.warn(std::string("left out: ") + error.what());
+      return "";
+    }
+  }
+
+  void report(const std::vector<std::string>& names) const {
+    std::vector<Forecast> groups, turns;
+    std::string text = Row().add("mesh").add("group").add("confidence").add("excess").end();
+    for (std::size_t i = 0; i < names.size(); ++i)
+      for (const JudgedRotation& rotation : judged_[i]) {
+        (rotation.group == "rejected" ? turns : groups).push_back({rotation.confidence, rotation.isRight()});
+        text += Row().add(names[i]).add(rotation.group).add(rotation.confidence).add(rotation.excess).end();
+      }
+    const std::vector<Reliability> all = {reliabilityOf("groups", groups, {}),
+                                          reliabilityOf("rejected turns", turns, {})};
+    printReliability(all);
+    if (options_.csv) writeText(*options_.csv, text);
+    if (options_.common.json_path)
+      writeText(*options_.common.json_path,
+                nlohmann::json{{"groups", toJson(all[0])}, {"rejected", toJson(all[1])}}.dump(2) + "\n");
+  }
+
+  const EvaluateRotationsOptions& options_;
+  ResumableRun& work_;
+  const Console console_;
+  std::vector<std::vector<JudgedRotation>> judged_;
+};
+
 }  // namespace
 
-int evaluateRotations(int argc, char** argv) {
+int evaluateRotations(int argc, char** argv, SharedWork& processes) {
   EvaluateRotationsOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  RotationEvaluation(options).run();
+  ResumableRun work(processes, options.journal, argc, argv);
+  if (options.meshes)
+    MeshRotationEvaluation(options, work).run();
+  else
+    RotationEvaluation(options, work).run();
   return 0;
 }
 

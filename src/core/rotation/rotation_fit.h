@@ -36,6 +36,9 @@ struct RotationLimits {
   /// By how much a rotation fails: the greater of its two shares over what is allowed of each.
   /// \return <= 1 for a symmetry.
   double excess(const OffShares& shares) const;
+  /// Probability that rotations of these measured shares are symmetries at the limits.
+  /// \param num_points that the shares are of.
+  double confidence(const OffShares& shares, std::size_t num_points) const;
 };
 
 /// The surface that rotations are compared with, fitted to and judged on.
@@ -83,8 +86,7 @@ public:
   OffShares worstShares(const RotationSet& set, int num_samples = std::numeric_limits<int>::max(),
                         double most = std::numeric_limits<double>::infinity()) const;
 
-  /// Probability that rotations are symmetries at the limits, given what sampling leaves uncertain.
-  /// \return at least 1/2 where the excess is at most 1.
+  /// See RotationLimits::confidence().
   double confidence(const OffShares& shares) const;
 
   /// Center of the samples that a rotation maps off the surface.

@@ -29,7 +29,7 @@ struct ObjectSymmetryOptions {
   /// In [0, 1].
   double max_feature = 0.10;
   bool other_tolerances = false;  ///< finds the groups at half and twice the tolerance too
-  double min_confidence = 0.5;    ///< least confidence, in [0, 1]; 0.5 is where the shares meet the limits
+  double min_confidence = 0.5;    ///< least confidence of rotations that are called symmetries, in [0, 1]
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -86,7 +86,7 @@ struct ObjectSymmetries {
   /// Share of the surface that each rotation maps to within the tolerance of the surface, relative to what sampling and
   /// noise allow, in [0, 1]; for rotations by any angle their mean.
   double support = 1.0;
-  double confidence = 1.0;  ///< how far within the limits, in [0, 1], 0.5 at them: a grade, no probability
+  double confidence = 1.0;  ///< probability that the whole surface, not its points alone, keeps to the limits
   double tolerance = 0.0;   ///< that was decided at, input units
   /// Groups at half and at twice the tolerance, with ObjectSymmetryOptions::other_tolerances.
   std::optional<GroupName> at_half_tolerance, at_twice_tolerance;
