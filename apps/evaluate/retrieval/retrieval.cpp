@@ -72,12 +72,13 @@ public:
       : options_(options), console_(options.common.quiet) {}
 
   void run() {
+    if (options_.database && options_.png) throw UsageError("-png draws the published descriptors, not -database");
     load();
     if (options_.database) {
       evaluate("Asking a database", [&](const auto& progress) {
         return std::vector{databaseMethod(clouds_, options_.retrieval, progress)};
       });
-      return printTable();
+      return report();
     }
     evaluate("Describing models as they are",
              [&](const auto& progress) { return published(ModelAxes::AsGiven, progress); });
@@ -147,12 +148,14 @@ private:
     if (results_.front().all.num_queries == 0)
       throw InputError(*options_.class_path + ": no class holds two of the meshes");
     printTable();
-    printWhatSymmetryBrings();
-    printGains();
+    if (!options_.database) {
+      printWhatSymmetryBrings();
+      printGains();
+    }
     if (options_.csv) writeText(*options_.csv, curves());
     if (options_.class_csv) writeText(*options_.class_csv, classTable());
     if (options_.common.json_path) writeText(*options_.common.json_path, summary().dump(2) + "\n");
-    if (options_.png) draw();
+    if (options_.png && !options_.database) draw();
   }
 
   void printTable() const {
