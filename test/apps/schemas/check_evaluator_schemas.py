@@ -32,9 +32,9 @@ def main(apps, schemas):
         run("recognition", models, "-points", "1000")
         run("registration", models, "-points", "1000", "-num_views", "1", "-methods", "pca", "-references", at("references.json"))
         run("retrieval", models, "-cla", at("two.cla"), "-points", "1000", "-database")
-        run("rotations", "-counts", "500", "-noise", "0", "-kind", "antiprism")
+        run("rotations", "-counts", "500", "-noise", "0", "-kind", "nuts")
         run("segmentation", at("cut"), at("people"), "-methods", "one", "-categories")
-        run("scenes", models, "-scenes", "1", "-objects", "2", "-noise", "0", "-no_planes", "-references", at("references.json"))
+        run("scenes", models, "-scenes", "1", "-objects", "2", "-noise", "0", "-references", at("references.json"))
         run("shapes", "random", "-num", "2", "-points", "200")
     if check.unused:
         sys.exit("the evaluator was not held to " + ", ".join(sorted(check.unused)))
