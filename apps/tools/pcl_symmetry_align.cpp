@@ -146,6 +146,7 @@ PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
   scene.mesh = input.shape.mesh;
   PicturePanel panel;
   panel.label = "center and axes: 1 red, 2 green, 3 blue";
+  panel.show_points = !scene.mesh;
   for (int k = 0; k < 3; ++k) panel.axes.push_back({frame.center, frame.axes.col(k), Eigen::Vector3d::Unit(k)});
   scene.panels = {panel};
   return scene;
@@ -161,7 +162,7 @@ PictureScene sceneOf(const InputShape& input, const InputShape& target, const Ei
   }
   PictureScene scene;
   PicturePanel panel;
-  panel.label = "target, and the input in it";
+  panel.label = "target (1) and the input in it (2)";
   panel.segments.assign(target.points->size(), 0);
   panel.segments.resize(both->size(), 1);
   both->width = static_cast<std::uint32_t>(both->size());

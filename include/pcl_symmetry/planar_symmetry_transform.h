@@ -36,7 +36,7 @@ public:
 
   /// \param method sampled (default), convolution or voting; all estimate the same normalised quantity.
   void setMethod(TransformMethod method) { transform_.method = method; }
-  TransformMethod getMethod() const { return transform_.method; }
+  TransformMethod getMethod() const { return transform_.method; }  ///< see setMethod()
 
   /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
   /// even, in [8, 512].
@@ -79,7 +79,7 @@ public:
   void setNumPairs(std::int64_t num_pairs) {
     detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.num_pairs = num_pairs; });
   }
-  void setRandomSeed(std::uint64_t seed) { transform_.sampled.seed = transform_.voting.seed = seed; }
+  void setRandomSeed(std::uint64_t seed) { transform_.sampled.seed = transform_.voting.seed = seed; }  ///< of all draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);

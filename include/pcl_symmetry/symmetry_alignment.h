@@ -28,7 +28,7 @@ public:
   void setOptions(const FrameOptions& options) {
     change([&](FrameOptions& changed) { changed = options; });
   }
-  const FrameOptions& getOptions() const { return options_; }
+  const FrameOptions& getOptions() const { return options_; }  ///< see setOptions()
 
   /// \param tie frames whose scores differ by no more than this are equally good, >= 0; default 0.06.
   void setTie(double tie) {
@@ -38,7 +38,7 @@ public:
   void setGridSize(int num_cells) {
     change([&](FrameOptions& changed) { changed.edt.num_cells = num_cells; });
   }
-  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }
+  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     change([&](FrameOptions& changed) { changed.num_threads = changed.edt.num_threads = num_threads; });

@@ -54,7 +54,7 @@ public:
   void setOptions(const DetectionOptions& options) {
     change([&](DetectionOptions& changed) { changed = options; });
   }
-  const DetectionOptions& getOptions() const { return options_; }
+  const DetectionOptions& getOptions() const { return options_; }  ///< see setOptions()
 
   /// \param min_confidence a plane of at least this confidence is a symmetry, in [0, 1]; default 0.5.
   void setMinConfidence(double min_confidence) {
@@ -81,7 +81,7 @@ public:
   void setSigma(double sigma) {
     change([&](DetectionOptions& changed) { changed.edt.sigma = sigma; });
   }
-  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }
+  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     change([&](DetectionOptions& changed) { changed.num_threads = changed.edt.num_threads = num_threads; });
@@ -95,7 +95,7 @@ public:
   /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not
   /// zero; false, and for other point types: all normals are estimated from the neighbours.
   void setUseInputNormals(bool use_input_normals) { use_input_normals_ = use_input_normals; }
-  bool getUseInputNormals() const { return use_input_normals_; }
+  bool getUseInputNormals() const { return use_input_normals_; }  ///< see setUseInputNormals()
 
   /// Refines the maxima of this map in place of one that the class computes. Follows setInputCloud(), which forgets it.
   /// \param map,edt made by PlanarSymmetryTransform for the same cloud.

@@ -54,7 +54,7 @@ public:
   void setOptions(const SegmentationOptions& options) {
     change([&](SegmentationOptions& changed) { changed = options; });
   }
-  const SegmentationOptions& getOptions() const { return options_; }
+  const SegmentationOptions& getOptions() const { return options_; }  ///< see setOptions()
 
   /// \param depth greatest number of splits in a row, for SegmentationMethod::Splitting, in [0, 30]; default 3.
   void setDepth(int depth) {
@@ -64,7 +64,7 @@ public:
   void setNumberOfParts(int num_parts) {
     change([&](SegmentationOptions& changed) { changed.num_parts = num_parts; });
   }
-  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }
+  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     change([&](SegmentationOptions& changed) { changed.num_threads = num_threads; });

@@ -17,12 +17,12 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Where the scanner stood.
 struct Viewpoint {
-  enum class Mode {
+  /** What is known of it. */ enum class Mode {
     Auto,  ///< decided from the data: see ViewpointSource
     None,  ///< nowhere: the cloud shows the object from all sides
     Given  ///< at position
   };
-  Mode mode = Mode::Auto;
+  Mode mode = Mode::Auto;                              ///< whether and from what it is known
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< input frame and units; used with Mode::Given
 };
 
@@ -76,8 +76,8 @@ class SeenSpace {
 public:
   using ConstPtr = std::shared_ptr<const SeenSpace>;
 
-  /// Nothing is known: clouds show their objects from all sides.
-  SeenSpace() = default;
+  SeenSpace() = default;  ///< nothing is known: clouds show their objects from all sides
+  /// \param source how the place of the scanner is known.
   SeenSpace(Visibility visibility, ViewpointSource source) : visibility_(std::move(visibility)), source_(source) {}
 
   /// Of a whole scene. An organized cloud shows it by its own pixels, any other cloud by a range image from the
@@ -102,7 +102,7 @@ public:
 
   /// \return null where there is no viewpoint.
   const Visibility* visibility() const { return visibility_ ? &*visibility_ : nullptr; }
-  ViewpointSource source() const { return source_; }
+  ViewpointSource source() const { return source_; }  ///< how the viewpoint is known
 
 private:
   SeenSpace(const detail::ScannerOutput& scene, const Viewpoint& viewpoint, std::size_t max_pixels);

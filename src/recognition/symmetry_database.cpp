@@ -1,5 +1,6 @@
 #include "pcl_symmetry/recognition/symmetry_database.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -16,10 +17,17 @@ namespace {
   throw std::invalid_argument("name = '" + name + "', must be that of a model");
 }
 
+/// Names are looked up in an index of the file, which can be damaged apart from the models.
+bool isListed(detail::ModelStore& store, const std::string& name) {
+  const std::vector<detail::StoredModel>& models = store.models();
+  return std::any_of(models.begin(), models.end(), [&](const auto& model) { return model.name == name; });
+}
+
 std::pair<std::int64_t, ModelInfo> findModel(detail::DatabaseParts& parts, const std::string& name) {
   return detail::withBadArguments([&] {
     const std::lock_guard<std::mutex> lock(parts.mutex);
     auto found = parts.store.find(name);
+    if (!found && isListed(parts.store, name)) detail::failIO(parts.store.file(), "the index of names is damaged");
     if (!found) failUnknown(name);
     return std::move(*found);
   });

@@ -1,7 +1,8 @@
 #include "scene/scene_parts.h"
 
+#include <pcl/sample_consensus/ransac.h>
+#include <pcl/sample_consensus/sac_model_plane.h>
 #include <pcl/segmentation/extract_clusters.h>
-#include <pcl/segmentation/sac_segmentation.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -56,19 +57,20 @@ struct Consensus {
 
 std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
                                        double distance) {
-  pcl::SACSegmentation<pcl::PointXYZ> segmentation;
-  segmentation.setModelType(pcl::SACMODEL_PLANE);
-  segmentation.setMethodType(pcl::SAC_RANSAC);
-  segmentation.setMaxIterations(kConsensusIterations);
-  segmentation.setDistanceThreshold(distance);
-  segmentation.setInputCloud(scene);
-  segmentation.setIndices(pcl::make_shared<pcl::Indices>(points));
-  pcl::PointIndices inliers;
-  pcl::ModelCoefficients coefficients;
-  segmentation.segment(inliers, coefficients);
-  if (inliers.indices.empty() || coefficients.values.size() != 4) return std::nullopt;
-  const Eigen::Vector4d plane = Eigen::Map<const Eigen::Vector4f>(coefficients.values.data()).cast<double>();
-  return Consensus{plane / plane.head<3>().norm(), std::move(inliers.indices)};
+  // What pcl::SACSegmentation does, without its other models.
+  const auto model = pcl::make_shared<pcl::SampleConsensusModelPlane<pcl::PointXYZ>>(scene, points);
+  pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(model, distance);
+  consensus.setMaxIterations(kConsensusIterations);
+  if (!consensus.computeModel()) return std::nullopt;
+  Consensus plane;
+  Eigen::VectorXf found, coefficients;
+  consensus.getInliers(plane.inliers);
+  consensus.getModelCoefficients(found);
+  model->optimizeModelCoefficients(plane.inliers, found, coefficients);
+  model->selectWithinDistance(coefficients, distance, plane.inliers);
+  if (plane.inliers.empty() || coefficients.size() != 4) return std::nullopt;
+  plane.coefficients = coefficients.cast<double>() / coefficients.head<3>().cast<double>().norm();
+  return plane;
 }
 
 /// The plane of least squares of the points that are nearest to a plane: sample consensus ends with one through three

@@ -22,6 +22,9 @@ namespace {
 /// Points of a page. chosen: a page of half as many is 4 MB smaller, of twice as many takes seconds to open.
 constexpr std::size_t kMaxPagePoints = 200'000;
 constexpr int kBarColors = 12;  // derived: the anchors of the colour scale
+/// Segments of a panel whose colours stand before its name. chosen: as many as have colours of their own; twice fill
+/// two lines with colours that repeat.
+constexpr int kMostSwatches = 8;
 
 template <typename Value>
 std::string base64(const std::vector<Value>& values) {
@@ -136,7 +139,8 @@ private:
                         {"point_colors", nullptr},
                         {"mesh_colors", nullptr},
                         {"planes", nlohmann::json::array()},
-                        {"axes", nlohmann::json::array()}};
+                        {"axes", nlohmann::json::array()},
+                        {"segments", segmentSwatches(panel)}};
     if (on_points) json["point_colors"] = pointColors(panel);
     if (of_faces || (!panel.show_points && num_vertices_ == panel.support.size() && num_vertices_ > 0))
       json["mesh_colors"] = meshColors(panel);
@@ -151,6 +155,14 @@ private:
           {{"ends", {numbers(normalize_(begin)), numbers(normalize_(end))}}, {"color", numbers(axis.color)}});
     }
     return json;
+  }
+
+  static nlohmann::json segmentSwatches(const PicturePanel& panel) {
+    nlohmann::json swatches = nlohmann::json::array();
+    const auto last = std::max_element(panel.segments.begin(), panel.segments.end());
+    if (last == panel.segments.end() || *last >= kMostSwatches) return swatches;
+    for (int segment = 0; segment <= *last; ++segment) swatches.push_back({{"color", numbers(segmentColor(segment))}});
+    return swatches;
   }
 
   std::string pointColors(const PicturePanel& panel) const {

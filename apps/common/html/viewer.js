@@ -143,7 +143,7 @@ document.getElementById('text').textContent = scene.text;
 document.getElementById('bar').style.background = 'linear-gradient(to right,' + scene.support_colors.join(',') + ')';
 scene.panels.forEach((panel, i) => {
   const button = document.createElement('button');
-  for (const part of [...panel.planes, ...panel.axes]) {
+  for (const part of [...panel.planes, ...panel.axes, ...panel.segments]) {
     const swatch = document.createElement('span');
     swatch.className = 'swatch';
     swatch.style.background = 'rgb(' + part.color.map(c => Math.round(255 * c)).join(',') + ')';

@@ -76,6 +76,7 @@ public:
       : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()) {}
 
   void run() {
+    if (options_.database && options_.png) throw UsageError("-png draws the published descriptors, not -database");
     select();
     if (options_.database) return askDatabase();
     for (const ModelAxes axes : {ModelAxes::AsGiven, ModelAxes::Symmetry, ModelAxes::Principal}) {
@@ -225,12 +226,14 @@ private:
     if (results_.front().all.num_queries == 0)
       throw InputError(*options_.class_path + ": no class holds two of the meshes");
     printTable();
-    printWhatSymmetryBrings();
-    printGains();
+    if (!options_.database) {
+      printWhatSymmetryBrings();
+      printGains();
+    }
     if (options_.csv) writeText(*options_.csv, curves());
     if (options_.class_csv) writeText(*options_.class_csv, classTable());
     if (options_.common.json_path) writeText(*options_.common.json_path, summary().dump(2) + "\n");
-    if (options_.png) draw();
+    if (options_.png && !options_.database) draw();
   }
 
   void printTable() const {

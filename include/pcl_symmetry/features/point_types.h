@@ -12,28 +12,28 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The planar-reflective symmetry transform: sqrt(max(D, 0)) in 32 x 32 x 32 bins (theta, phi, r), r fastest.
 struct PRSTSignature32768 {
-  float prst[32768] = {};
-  static constexpr int descriptorSize() { return 32768; }
+  float prst[32768] = {};                                  ///< not negative
+  static constexpr int descriptorSize() { return 32768; }  ///< number of values
 };
 
 /// The planar-reflective symmetry descriptor of Kazhdan et al. (2004): sqrt(max(D, 0)) of the planes through the center
 /// in 32 x 32 bins (theta, phi), phi fastest.
 struct PRSDSignature1024 {
-  float prsd[1024] = {};
-  static constexpr int descriptorSize() { return 1024; }
+  float prsd[1024] = {};                                  ///< not negative
+  static constexpr int descriptorSize() { return 1024; }  ///< number of values
 };
 
 /// The Gaussian Euclidean distance transform f in 32 x 32 x 32 cells, x fastest.
 struct GEDTSignature32768 {
-  float gedt[32768] = {};
-  static constexpr int descriptorSize() { return 32768; }
+  float gedt[32768] = {};                                  ///< in [0, 1]
+  static constexpr int descriptorSize() { return 32768; }  ///< number of values
 };
 
 /// Where the surface of a shape lies and which way it faces, in a frame of its symmetry: two cubes of 6 x 12^3 values.
 /// SymmetryDatabase compares its compact form.
 struct ShapeSignature20736 {
-  float signature[20736] = {};
-  static constexpr int descriptorSize() { return 20736; }
+  float signature[20736] = {};                             ///< of unit length together
+  static constexpr int descriptorSize() { return 20736; }  ///< number of values
 };
 
 }  // namespace pcl_symmetry

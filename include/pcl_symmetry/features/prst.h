@@ -66,7 +66,7 @@ public:
   /// \param use_input_axes true: about the center of mass in the axes of the cloud, as the paper does with models that
   /// were aligned by hand. false (default): in the canonical frame of the cloud, see SymmetryAlignment.
   void setUseInputAxes(bool use_input_axes) { parameters_.use_input_axes = use_input_axes; }
-  bool getUseInputAxes() const { return parameters_.use_input_axes; }
+  bool getUseInputAxes() const { return parameters_.use_input_axes; }  ///< see setUseInputAxes()
 
   /// Sets the size of the ball that is described. It is relative to the cloud, unlike that of setRadiusSearch(), which
   /// is ignored.
@@ -76,9 +76,9 @@ public:
   void setRadius(double radius) {
     detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.radius = radius; });
   }
-  double getRadius() const { return parameters_.radius; }
+  double getRadius() const { return parameters_.radius; }  ///< see setRadius()
 
-  void setRandomSeed(std::uint64_t seed) { parameters_.seed = seed; }
+  void setRandomSeed(std::uint64_t seed) { parameters_.seed = seed; }  ///< of all random draws
 
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   /// \throws pcl::BadArgumentException for a negative number.

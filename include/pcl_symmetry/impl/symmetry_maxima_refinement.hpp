@@ -104,5 +104,6 @@ std::vector<float> SymmetryMaximaRefinement<PointT>::computePointSupport(const R
 
 }  // namespace pcl_symmetry
 
+// The attribute of GNU, because Clang takes none in brackets here.
 #define PCL_INSTANTIATE_SymmetryMaximaRefinement(T) \
-  template class PCL_SYMMETRY_EXPORTS pcl_symmetry::SymmetryMaximaRefinement<T>;
+  template class __attribute__((visibility("default"))) pcl_symmetry::SymmetryMaximaRefinement<T>;

@@ -69,7 +69,7 @@ struct RecognitionOptions {
 
 /// A model that is like a query.
 struct ModelMatch {
-  std::string name;
+  std::string name;  ///< of the model
   /// L2 distance of the compact signatures, divided by the root of the product of the two mean distances to the ten
   /// nearest references: 1 between shapes that are as far from each other as from what is most like them.
   double distance;
@@ -77,9 +77,9 @@ struct ModelMatch {
 
 /// A model that a scan shows, and where.
 struct RecognizedModel {
-  std::string name;
-  Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();
-  PoseScore score;
+  std::string name;                                                ///< of the model
+  Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();  ///< frame of the scan to that of the model
+  PoseScore score;                                                 ///< how well the scan fits there
   /// How likely the scan shows this model and no other one of the database, in [0, 1]: the soft maximum over the merits
   /// of all accepted models, times the root of (merit - min_merit) / (1 - min_merit). The sum is at most 1.
   double confidence = 0.0;
@@ -97,25 +97,25 @@ struct ModelSource {
 
 /// What is stored of a model beside its points.
 struct ModelInfo {
-  std::string name;
-  std::int64_t time = 0;  ///< when it was stored, seconds since 1970 (UTC)
-  ModelSource source;
-  std::size_t num_points = 0;
+  std::string name;            ///< unique in the database
+  std::int64_t time = 0;       ///< when it was stored, seconds since 1970 (UTC)
+  ModelSource source;          ///< empty where none was given
+  std::size_t num_points = 0;  ///< that are stored
 };
 
 /// A model of a long build. Its functions are called by several threads at once.
 struct ModelInput {
-  std::string name;
+  std::string name;                                           ///< that it gets in the database
   std::function<ModelSource()> source;                        ///< nothing: no source is stored
   std::function<pcl::PointCloud<pcl::PointXYZ>()> load = {};  ///< called unless the source is stored already
 };
 
 /// What SymmetryDatabase::build() did.
 struct BuildReport {
-  std::size_t num_added = 0;
+  std::size_t num_added = 0;                                  ///< models that were stored
   std::size_t num_kept = 0;                                   ///< models whose source was stored before
   std::vector<std::pair<std::string, std::string>> failures;  ///< name and reason, in the order of the inputs
-  bool cancelled = false;
+  bool cancelled = false;                                     ///< the progress function said so
 };
 
 /// Told the share of the work that is done, in [0, 1]. Returns whether to go on.
@@ -148,13 +148,13 @@ public:
   /// \throws pcl::BadArgumentException for bad options.
   explicit SymmetryDatabase(const std::string& file, const DatabaseOptions& options = {});
   ~SymmetryDatabase();
-  SymmetryDatabase(SymmetryDatabase&&) noexcept;
-  SymmetryDatabase& operator=(SymmetryDatabase&&) noexcept;
+  SymmetryDatabase(SymmetryDatabase&&) noexcept;             ///< the other one may only be destroyed or assigned to
+  SymmetryDatabase& operator=(SymmetryDatabase&&) noexcept;  ///< as above
 
   /// \return names of all models, sorted by their bytes.
   std::vector<std::string> names() const;
-  std::size_t size() const;
-  bool contains(const std::string& name) const;
+  std::size_t size() const;                      ///< number of models
+  bool contains(const std::string& name) const;  ///< whether there is such a model
   /// \throws pcl::BadArgumentException where there is no such model.
   ModelInfo info(const std::string& name) const;
   /// \return the unit that the database was made with.
@@ -235,11 +235,13 @@ public:
   void add(const std::string& name, const pcl::PointCloud<PointT>& cloud, const ModelSource& source = {}) {
     add(name, positionsOf(cloud), source);
   }
+  /// As match() of a Cloud.
   template <typename PointT>
   std::vector<ModelMatch> match(const pcl::PointCloud<PointT>& cloud, int num_nearest = 10,
                                 const Viewpoint& viewpoint = {}) const {
     return match(positionsOf(cloud), num_nearest, viewpoint);
   }
+  /// As recognize() of a Cloud.
   template <typename PointT>
   Recognition recognize(const pcl::PointCloud<PointT>& scan, const RecognitionOptions& options = {},
                         const Viewpoint& viewpoint = {}) const {

@@ -36,8 +36,8 @@ struct CloudRegistrationOptions {
   std::optional<double> max_correspondence = {};
   double transformation_epsilon = 1e-8;  ///< of the refinement, as in pcl::Registration, but in radii, >= 0
   double rotation_epsilon = 0.0;         ///< of the refinement, as in pcl::Registration
-  std::uint64_t seed = 1;
-  int num_threads = 0;  ///< >= 0; 0 = one per core
+  std::uint64_t seed = 1;                ///< of all random draws
+  int num_threads = 0;                   ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -45,7 +45,7 @@ struct CloudRegistrationOptions {
 
 /// A pose of a cloud in another one.
 struct RegisteredPose {
-  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();  ///< moves the source onto the target
   /// Of this pose. The source counts as the scan, unless only the target was seen from one side.
   PoseScore score;
 };
@@ -112,11 +112,11 @@ public:
 
   /// Where the scanner of each cloud stood; by default the data decide, see ScanAnalysis.
   void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = viewpoint; }
-  void setTargetViewpoint(const Viewpoint& viewpoint) { target_viewpoint_ = viewpoint; }
+  void setTargetViewpoint(const Viewpoint& viewpoint) { target_viewpoint_ = viewpoint; }  ///< see setSourceViewpoint()
   /// Gives what the scanners of a scene saw, made once for all its objects, in place of what the viewpoint tells.
   /// \param seen in the frame of that cloud; null (default): each align() finds out for itself.
   void setSourceSeenSpace(const SeenSpace::ConstPtr& seen) { source_seen_space_ = seen; }
-  void setTargetSeenSpace(const SeenSpace::ConstPtr& seen) { target_seen_space_ = seen; }
+  void setTargetSeenSpace(const SeenSpace::ConstPtr& seen) { target_seen_space_ = seen; }  ///< see setSourceSeenSpace()
 
   /// \param min_merit a pose of at least this getScore().merit() has converged, in [-1, 1]; default 0.4: scans of
   /// benchmark models, also scans with noise and holes, reach 0.5 at their own model and stay below 0.32 at models of
@@ -147,14 +147,14 @@ public:
   void setSearchOptions(const PoseSearchOptions& options) {
     detail::changeOptions(options_.search, [&](PoseSearchOptions& changed) { changed = options; });
   }
-  const PoseSearchOptions& getSearchOptions() const { return options_.search; }
+  const PoseSearchOptions& getSearchOptions() const { return options_.search; }  ///< see setSearchOptions()
   /// Larger clouds are reduced to this number of points, see CloudAnalysis::setMaxPoints().
   /// \param max_points >= 3; default 10 000.
   void setMaxPoints(std::size_t max_points) {
     detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 3);
     max_points_ = max_points;
   }
-  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }
+  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);

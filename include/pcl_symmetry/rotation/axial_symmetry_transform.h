@@ -60,7 +60,7 @@ public:
   void setNumSamples(int num_samples) {
     detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.num_samples = num_samples; });
   }
-  void setRandomSeed(std::uint64_t seed) { transform_.seed = seed; }
+  void setRandomSeed(std::uint64_t seed) { transform_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_threads = num_threads; });

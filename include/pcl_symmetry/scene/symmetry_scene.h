@@ -38,11 +38,11 @@ struct SceneOptions {
   bool frames = true;  ///< finds the frame of each object
   /// Completes objects whose best plane, or a plane through their axis, decides.
   bool complete = true;
-  DetectionOptions detection;
-  FrameOptions frame;
-  CompletionOptions completion;
-  RecognitionOptions recognition;
-  int num_threads = 0;  ///< >= 0; 0 = one per core
+  DetectionOptions detection;      ///< of the planes of each object
+  FrameOptions frame;              ///< of the frame of each object
+  CompletionOptions completion;    ///< of its completion
+  RecognitionOptions recognition;  ///< of its name, with a database
+  int num_threads = 0;             ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -56,12 +56,12 @@ struct SupportingPlane {
 
 /// A cluster of a scene, and what was found.
 struct SceneObject {
-  pcl::Indices indices;  ///< of its points, into the scene
-  std::string reason;    ///< why the cluster holds no answer, one sentence; empty where it was analysed
-  std::vector<SymmetryPlane> planes;
-  std::vector<SymmetryAxis> axes;
-  std::vector<SymmetryCenter> centers;
-  std::optional<SymmetryFrame> frame;
+  pcl::Indices indices;                 ///< of its points, into the scene
+  std::string reason;                   ///< why the cluster holds no answer, one sentence; empty where it was analysed
+  std::vector<SymmetryPlane> planes;    ///< as in Detection, frame of the scene
+  std::vector<SymmetryAxis> axes;       ///< as in Detection
+  std::vector<SymmetryCenter> centers;  ///< as in Detection
+  std::optional<SymmetryFrame> frame;   ///< nothing without SceneOptions::frames
   /// The plane that the object was completed by: the best one, or through the axis and across the view. Nothing where
   /// no plane decides.
   std::optional<ReflectionPlane> completed_by;
@@ -71,11 +71,11 @@ struct SceneObject {
 
 /// What SymmetryScene found.
 struct SceneAnalysis {
-  SeenSpace::ConstPtr seen;  ///< what the sensor saw, for further analyses
-  std::vector<SupportingPlane> supports;
-  std::vector<SceneObject> objects;                       ///< most points first
-  double plane_distance = 0.0, cluster_distance = 0.0;    ///< that were used, input units
-  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+  SeenSpace::ConstPtr seen;               ///< what the sensor saw, for further analyses
+  std::vector<SupportingPlane> supports;  ///< tables, floors and walls, as they were found
+  std::vector<SceneObject> objects;       ///< most points first
+  double plane_distance = 0.0, /**< that was used, input units */ cluster_distance = 0.0;  ///< as well
+  std::vector<std::pair<std::string, double>> timing_ms;                                   ///< stages in order
 };
 
 /// Takes the errors of a depth camera out of its frame: each point becomes that of the plane through the pixels around
@@ -106,7 +106,7 @@ public:
 
   /// \throws pcl::BadArgumentException "field = value, must be rule".
   void setOptions(const SceneOptions& options);
-  const SceneOptions& getOptions() const { return options_; }
+  const SceneOptions& getOptions() const { return options_; }  ///< see setOptions()
 
   /// Where the sensor stood; by default the data decide, see SeenSpace.
   void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
@@ -116,6 +116,7 @@ public:
 
   /// \param cloud one frame: organized, or points without order with the viewpoint that they were seen from.
   void setInputCloud(const Cloud::ConstPtr& cloud) { input_ = cloud; }
+  /// The same for other point types; their other fields are not used.
   template <typename PointT>
   void setInputCloud(const typename pcl::PointCloud<PointT>::ConstPtr& cloud) {
     auto positions = pcl::make_shared<Cloud>();

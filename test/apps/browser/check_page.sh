@@ -5,8 +5,8 @@ set -euo pipefail
 case "${1-}" in
   -h | --help)
     echo "usage: bash test/apps/browser/check_page.sh [-h] APPS [PICTURE.png]"
-    echo "Writes a page of a box with pcl_symmetry_planes of the folder APPS, opens it in headless Chromium and looks whether its"
-    echo "script came to its end. With PICTURE.png keeps a screenshot."
+    echo "Writes pages of a box with pcl_symmetry_planes and pcl_symmetry_align of the folder APPS, opens them in headless Chromium and"
+    echo "looks whether their scripts came to their end. With PICTURE.png keeps a screenshot of the planes."
     exit 0 ;;
   "") echo "check_page.sh: missing folder of the tools" >&2; exit 2 ;;
 esac
@@ -35,18 +35,25 @@ OFF
 4 3 0 4 7
 END
 "$1/pcl_symmetry_planes" "$work/box.off" -quiet -html "$work/box.html" >/dev/null
+"$1/pcl_symmetry_align" "$work/box.off" -quiet -target "$work/box.off" -html "$work/pose.html" >/dev/null
+# browse PAGE ARGUMENT...
 # A proxy that is not there: what the page asked of the network would fail.
 browse() {
+  local page=$1
+  shift
   timeout 100 "$chromium" --headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update \
     --disable-sync --disable-quic --proxy-server=127.0.0.1:9 --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
-    --user-data-dir="$work/profile" --window-size=1300,800 --virtual-time-budget=4000 "$@" "file://$work/box.html" 2>"$work/log"
+    --user-data-dir="$work/profile" --window-size=1300,800 --virtual-time-budget=4000 "$@" "file://$work/$page.html" 2>"$work/log"
 }
-if (($# > 1)); then browse --screenshot="$(realpath "$2")"; fi
-browse --dump-dom >"$work/dom"
-grep -q 'data-ready="true"' "$work/dom" || {
-  echo "check_page.sh: the script of the page did not come to its end" >&2
-  tail -5 "$work/log" >&2
-  exit 1
-}
-[[ $(grep -o '<button' "$work/dom" | wc -l) == 3 ]] || { echo "check_page.sh: the page does not list three planes" >&2; exit 1; }
-echo "The page opens and lists three planes."
+if (($# > 1)); then browse box --screenshot="$(realpath "$2")"; fi
+for page in box pose; do
+  browse $page --dump-dom >"$work/$page"
+  grep -q 'data-ready="true"' "$work/$page" || {
+    echo "check_page.sh: the script of the page did not come to its end: $page" >&2
+    tail -5 "$work/log" >&2
+    exit 1
+  }
+done
+[[ $(grep -o '<button' "$work/box" | wc -l) == 3 ]] || { echo "check_page.sh: the page does not list three planes" >&2; exit 1; }
+[[ $(grep -o '<span class="swatch"' "$work/pose" | wc -l) == 2 ]] || { echo "check_page.sh: the pose has no two colours" >&2; exit 1; }
+echo "The pages open and list three planes, and two clouds in one frame."

@@ -109,6 +109,7 @@ TEST(ScenePage, ShowsThePartsOfAMesh) {
   EXPECT_EQ(numBytes(json["mesh"]), 36 * num_triangles);
   EXPECT_EQ(numBytes(json["panels"][0]["mesh_colors"]), 9 * num_triangles);
   EXPECT_EQ(json["panels"][0]["show_points"], false);
+  EXPECT_EQ(json["panels"][0]["segments"].size(), 3u) << "a swatch for each";
 }
 
 }  // namespace

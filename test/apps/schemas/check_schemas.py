@@ -43,12 +43,16 @@ class Checker:
     def run(self, arguments, schema=None, status=0, lines=False):
         """Runs a tool; the last argument is the JSON file where a schema is given."""
         tool, *rest = arguments
+        if schema is not None:
+            Path(rest[-1]).unlink(missing_ok=True)
         done = subprocess.run([self.apps / f"pcl_symmetry_{tool}", *rest], capture_output=True, text=True)
         if done.returncode != status:
             sys.exit(f"{tool} {' '.join(rest)}: exit status {done.returncode}, {done.stderr}")
         if schema is None:
             return
         self.unused.discard(schema)
+        if not Path(rest[-1]).exists():
+            sys.exit(f"{tool} {' '.join(rest)}: no JSON was written")
         text = Path(rest[-1]).read_text()
         for document in map(json.loads, text.splitlines() if lines else [text]):
             for error in self.validators[schema].iter_errors(document):

@@ -89,7 +89,7 @@ TEST_F(AlignTool, WritesPagesOfFramesAndPoses) {
   Eigen::Isometry3d T_scan_model;
   const std::string scan = scanOfChair(T_scan_model);
   ASSERT_EQ(run(scan + " -target " + chair_ + flags), 0) << error_;
-  EXPECT_NE(contentOf(page).find("target, and the input in it"), std::string::npos);
+  EXPECT_NE(contentOf(page).find("target (1) and the input in it (2)"), std::string::npos);
   EXPECT_GT(contentOf(page).size(), 500'000u) << "with the library that draws";
 }
 

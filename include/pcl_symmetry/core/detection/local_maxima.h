@@ -19,7 +19,7 @@ struct LocalMaximaOptions {
 
 /// A bin higher than all its neighbours.
 struct LocalMaximum {
-  PlaneGrid::Bin bin;
+  PlaneGrid::Bin bin;     ///< whose value is the greatest among its neighbours
   ReflectionPlane plane;  ///< at the bin center, input frame
   double value;           ///< D
 };

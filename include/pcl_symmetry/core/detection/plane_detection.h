@@ -27,9 +27,9 @@ enum class PlaneKind {
 /// A refined local maximum of the transform. Canonical: theta of the normal in [0, pi/2].
 struct SymmetryPlane : ReflectionPlane {
   SymmetryPlane() = default;
-  explicit SymmetryPlane(const ReflectionPlane& plane) : ReflectionPlane(plane.canonical()) {}
+  explicit SymmetryPlane(const ReflectionPlane& plane) : ReflectionPlane(plane.canonical()) {}  ///< in canonical form
 
-  PlaneKind kind = PlaneKind::Approximate;
+  PlaneKind kind = PlaneKind::Approximate;  ///< what the decision is
   /// Probability that this is a symmetry of the object, in [0, 1]; comparable between objects, densities, noise levels,
   /// whole and partial clouds. src/core/evidence/README.md has the formula, its calibration and its limits.
   double confidence = 0.0;
@@ -41,7 +41,7 @@ struct SymmetryPlane : ReflectionPlane {
   /// part of the surface that says something. A plane is a symmetry of the object if that share is at least 0.97.
   double share = 0.0;
   /// Limits of that share for the whole object: it lies between them in 95 of 100 cases, in [0, 1].
-  double share_low = 0.0, share_high = 1.0;
+  double share_low = 0.0, share_high = 1.0;  ///< as share_low
   /// Distance that 97 % of the reflected points stay within from the surface, input units: the least tolerance at which
   /// the plane would be a symmetry.
   double deviation = 0.0;
@@ -84,32 +84,32 @@ struct SymmetryTurn {
 
 /// All planes through a point are symmetries: a sphere.
 struct SymmetryCenter {
-  Eigen::Vector3d point;                                ///< input frame
-  double confidence = 0.0, score = 0.0, support = 0.0;  ///< as those of SymmetryAxis
+  Eigen::Vector3d point;                                                                           ///< input frame
+  double confidence = 0.0, /**< as of SymmetryAxis */ score = 0.0, /**< as well */ support = 0.0;  ///< as well
 };
 
 /// Options of detectPlanes(); the defaults suit any shape and unit.
 struct DetectionOptions {
-  GaussianEdtOptions edt;
+  GaussianEdtOptions edt;  ///< of the transform of distances
   /// Bins of the map that candidates come from. chosen: as many as the paper's 64 x 64 directions, but as fine in phi
   /// at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
   int num_theta = 32;    ///< >= 1
   int num_phi = 128;     ///< even, >= 2
   int num_radius = 64;   ///< >= 1
   int num_samples = 64;  ///< samples of the transform, >= 1. measured: the error is 1 % of PRST, enough to find maxima
-  LocalMaximaOptions maxima;
+  LocalMaximaOptions maxima;     ///< of the maxima of the map that become candidates
   int max_candidates = 24;       ///< strongest maxima that are refined, >= 1
   bool principal_planes = true;  ///< planes across the principal axes are candidates too
   /// A candidate that refinement moves by more than this many bins beyond its own is unstable and dropped, >= 0.
   /// Departure from the paper, which has 0: one bin leaves room for the noise of the sampled map.
   double max_drift = 1.0;
-  IspUpdate update = IspUpdate::PointToPlane;
-  int num_coarse_samples = 100;     ///< points reflected in early iterations, >= 10
-  int num_refine_samples = 10'000;  ///< points reflected in late iterations (the paper's figure), >= 10
-  int max_iterations = 30;          ///< of each stage, >= 1
-  double merge_angle = 0.035;       ///< radians, >= 0: planes that differ by no more than this in angle ...
-  double merge_offset = 0.02;       ///< ... and by this share of the radius in offset are one, >= 0
-  double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
+  IspUpdate update = IspUpdate::PointToPlane;  ///< what a step of the refinement makes least
+  int num_coarse_samples = 100;                ///< points reflected in early iterations, >= 10
+  int num_refine_samples = 10'000;             ///< points reflected in late iterations (the paper's figure), >= 10
+  int max_iterations = 30;                     ///< of each stage, >= 1
+  double merge_angle = 0.035;                  ///< radians, >= 0: planes that differ by no more than this in angle ...
+  double merge_offset = 0.02;                  ///< ... and by this share of the radius in offset are one, >= 0
+  double min_confidence = 0.5;                 ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
   /// A plane is reported as possible if confidence >= min_possible; in [0, 1].
   double min_possible = 0.2;
   int max_possible = 5;  ///< symmetries and possible planes together, where there are possible ones, >= 1
@@ -122,9 +122,9 @@ struct DetectionOptions {
   bool turns = true;     ///< axes of turns of scans are searched too; false saves about a third of the time
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
-  int max_planes = 64;  ///< >= 1; folds of rotations go up to 60
-  std::uint64_t seed = 1;
-  int num_threads = 0;  ///< >= 0; 0 = one per core
+  int max_planes = 64;     ///< >= 1; folds of rotations go up to 60
+  std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
+  int num_threads = 0;     ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -138,11 +138,11 @@ struct Detection {
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
   /// Where there is no symmetry and no possible one: the plane that maps the greatest share of the surface; else empty.
   std::optional<SymmetryPlane> best;
-  double tolerance = 0.0;          ///< that was decided at, input units
-  std::vector<SymmetryAxis> axes;  ///< best first; their planes are not among planes
-  std::vector<SymmetryCenter> centers;
-  std::vector<SymmetryTurn> turns;  ///< of scans: axes of turns, most confident first, from min_possible on
-  SymmetryMap map;                  ///< empty where one was given
+  double tolerance = 0.0;               ///< that was decided at, input units
+  std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
+  std::vector<SymmetryCenter> centers;  ///< of spheres
+  std::vector<SymmetryTurn> turns;      ///< of scans: axes of turns, most confident first, from min_possible on
+  SymmetryMap map;                      ///< empty where one was given
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 

@@ -27,8 +27,8 @@ struct FrameOptions {
   /// The paper's own method: three planes picked greedily by D, through bin centers of the map and at num_phi angles
   /// within the plane across the first axis. It ignores what a scanner saw, and no scores tie.
   bool as_published = false;
-  std::uint64_t seed = 1;
-  int num_threads = 0;  ///< >= 0; 0 = one per core
+  std::uint64_t seed = 1;  ///< of all random draws
+  int num_threads = 0;     ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

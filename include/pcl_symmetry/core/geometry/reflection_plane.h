@@ -27,8 +27,8 @@ public:
   /// \throws std::invalid_argument for equal points.
   static ReflectionPlane between(const Eigen::Vector3d& x, const Eigen::Vector3d& y);
 
-  const Eigen::Vector3d& normal() const { return normal_; }
-  double offset() const { return offset_; }
+  const Eigen::Vector3d& normal() const { return normal_; }  ///< n, unit, input frame
+  double offset() const { return offset_; }                  ///< r, input units
 
   /// \return [n, -r], the coefficients of n.x - r = 0.
   Eigen::Vector4d coefficients() const { return {normal_.x(), normal_.y(), normal_.z(), -offset_}; }

@@ -17,7 +17,7 @@ enum class IspUpdate {
 
 /// Options of Iterative Symmetric Points (Section 4.4).
 struct IspOptions {
-  IspUpdate update = IspUpdate::PointToPlane;
+  IspUpdate update = IspUpdate::PointToPlane;  ///< what a step makes least
   double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
   double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane rests
   int max_iterations = 30;   ///< >= 1
@@ -36,9 +36,9 @@ class FarTest;
 
 /// The surface that reflected samples are matched to.
 struct IspSurface {
-  const Points& points;   ///< 3 x N
-  const Points& normals;  ///< 3 x N unit normals of any sign; may be empty with PointToPoint
-  const ClosestPointSearch& search;
+  const Points& points;              ///< 3 x N
+  const Points& normals;             ///< 3 x N unit normals of any sign; may be empty with PointToPoint
+  const ClosestPointSearch& search;  ///< finds the closest of points
   /// N values; matches to points with 1 get no weight, because the true match at the rim of a scan may not have been
   /// seen. Null: no such points.
   const std::vector<char>* at_border = nullptr;
@@ -57,10 +57,10 @@ struct IspStep {
 
 /// A refined plane.
 struct IspResult {
-  ReflectionPlane plane;
-  int iterations = 0;
-  bool converged = false;
-  IspStep last;  ///< the last iteration: its distances are those before a step that no longer mattered
+  ReflectionPlane plane;   ///< where the steps ended, input frame
+  int iterations = 0;      ///< steps that were made
+  bool converged = false;  ///< the last step moved the plane by less than the tolerance
+  IspStep last;            ///< the last iteration: its distances are those before a step that no longer mattered
 };
 
 /// The plane that minimises sum w |x' - y|^2 over pairs (x, y) of a sample and the closest point to its reflection x'.

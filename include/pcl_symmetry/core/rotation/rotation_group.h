@@ -38,7 +38,7 @@ Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction);
 /// C_n and D_n have their main axis along z, D_n a half turn about x. The axes of order 2 of T and I, and those of
 /// order 4 of O, are x, y and z.
 struct RotationGroup {
-  RotationGroupKind kind = RotationGroupKind::Cyclic;
+  RotationGroupKind kind = RotationGroupKind::Cyclic;  ///< which of the finite or continuous groups
   int fold = 1;  ///< n of C_n and D_n; for T, O and I the greatest order of a rotation: 3, 4 and 5
 
   /// All rotations of the group.

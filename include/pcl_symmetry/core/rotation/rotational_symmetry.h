@@ -30,8 +30,8 @@ struct ObjectSymmetryOptions {
   double max_feature = 0.10;
   bool other_tolerances = false;  ///< finds the groups at half and twice the tolerance too
   double min_confidence = 0.5;    ///< least confidence of rotations that are called symmetries, in [0, 1]
-  std::uint64_t seed = 1;
-  int num_threads = 0;  ///< >= 0; 0 = one per core
+  std::uint64_t seed = 1;         ///< of all random draws
+  int num_threads = 0;            ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -61,10 +61,10 @@ struct RejectedRotation {
 
 /// A group by its name.
 struct GroupName {
-  RotationGroupKind kind = RotationGroupKind::Cyclic;
-  int fold = 1;
+  RotationGroupKind kind = RotationGroupKind::Cyclic;  ///< which of the finite or continuous groups
+  int fold = 1;                                        ///< order of the main axis; 0 where it is one of revolution
 
-  std::string name() const { return nameOf(kind, fold); }
+  std::string name() const { return nameOf(kind, fold); }  ///< as nameOf() gives it
 };
 
 /// The rotations that map a shape onto itself.
@@ -73,8 +73,8 @@ struct GroupName {
 /// symmetry S. The methods below take all symmetries into account: the turns of a continuous group in closed form,
 /// without samples of their angles. discrete and continuous are a group, as detection and from() leave them.
 struct ObjectSymmetries {
-  RotationGroupKind kind = RotationGroupKind::Cyclic;
-  int fold = 1;  ///< order of the main axis; 0 where it is one of revolution
+  RotationGroupKind kind = RotationGroupKind::Cyclic;  ///< which of the finite or continuous groups
+  int fold = 1;                                        ///< order of the main axis; 0 where it is one of revolution
   /// The point that all axes pass through, input frame; the center of the bounding ball where there is no axis.
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   /// Rotations as motions x -> T x in the input frame, without the identity. Together with it they are a group, exactly
@@ -89,12 +89,12 @@ struct ObjectSymmetries {
   double confidence = 1.0;  ///< probability that the whole surface, not its points alone, keeps to the limits
   double tolerance = 0.0;   ///< that was decided at, input units
   /// Groups at half and at twice the tolerance, with ObjectSymmetryOptions::other_tolerances.
-  std::optional<GroupName> at_half_tolerance, at_twice_tolerance;
+  std::optional<GroupName> at_half_tolerance, at_twice_tolerance;  ///< as at_half_tolerance
   std::vector<RejectedRotation> rejected;                 ///< what was tried and failed, the least failure first
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
   std::string reason;  ///< why there is no answer, set by detectObjectSymmetries() for clouds; empty where there is one
 
-  std::string name() const { return nameOf(kind, fold); }
+  std::string name() const { return nameOf(kind, fold); }  ///< as nameOf() gives it
 
   /// The group that given motions and axes generate, exact but for rounding: how what people wrote into a file becomes
   /// symmetries. A sphere may be given by two axes of revolution, or by one and a motion that tilts it.

@@ -93,7 +93,7 @@ public:
   std::size_t numPictures() const { return pictures_.size(); }
   /// Columns and rows of the first picture.
   int width() const { return pictures_.front().width; }
-  int height() const { return pictures_.front().height; }
+  int height() const { return pictures_.front().height; }  ///< rows
   /// \return depth of a pixel of the first picture, input units.
   float depth(int u, int v) const { return pictures_.front().depth(u, v); }
 

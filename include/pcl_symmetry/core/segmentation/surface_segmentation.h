@@ -27,7 +27,7 @@ enum class MergingEvidence {
 
 /// Options of SegmentationMethod::Merging.
 struct MergingOptions {
-  MergingEvidence evidence = MergingEvidence::All;
+  MergingEvidence evidence = MergingEvidence::All;  ///< what the costs of merging are made of
 
   /// Patches at the beginning, >= 1.
   /// chosen: half as many blur borders and lose small parts; twice as many take four times the time and memory.
@@ -98,12 +98,12 @@ struct SplittingOptions {
 
 /// Options of segmentSurface().
 struct SegmentationOptions {
-  SegmentationMethod method = SegmentationMethod::Merging;
-  MergingOptions merging;
-  SplittingOptions splitting;  ///< strength and max_planes are used by merging, too
-  int num_parts = 0;           ///< >= 0; 0: the method finds the number. Splitting then splits the largest part first.
-  std::uint64_t seed = 1;      ///< of the random samples
-  int num_threads = 0;         ///< >= 0; 0: one per core
+  SegmentationMethod method = SegmentationMethod::Merging;  ///< how parts are found
+  MergingOptions merging;                                   ///< with SegmentationMethod::Merging
+  SplittingOptions splitting;                               ///< strength and max_planes are used by merging, too
+  int num_parts = 0;       ///< >= 0; 0: the method finds the number. Splitting then splits the largest part first.
+  std::uint64_t seed = 1;  ///< of the random samples
+  int num_threads = 0;     ///< >= 0; 0: one per core
   /// Called now and then with the share of the work that is done, in [0, 1]; may be empty.
   std::function<void(double)> progress;
 
@@ -132,8 +132,8 @@ constexpr double kMappedShare = 0.75;
 
 /// The result of segmentSurface().
 struct Segmentation {
-  std::vector<int> labels;  ///< one per element: number of its segment, from 0; segment 0 has the largest area
-  int num_segments = 0;
+  std::vector<int> labels;        ///< one per element: number of its segment, from 0; segment 0 has the largest area
+  int num_segments = 0;           ///< parts; labels are below it
   std::vector<SegmentNode> tree;  ///< the root first, children after their parents
   /// One list per plane of the root with share >= kMappedShare, in the same order: the segment that each segment is
   /// reflected onto, which may be itself.

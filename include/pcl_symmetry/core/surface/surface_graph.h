@@ -12,15 +12,15 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 struct SurfaceGraph {
   /// Two neighbouring elements and the border that they share.
   struct Edge {
-    int from, to;     ///< elements, in [0, N)
-    float length;     ///< of the border, input units
+    int from, /**< element, in [0, N) */ to;  ///< element, in [0, N)
+    float length;                             ///< of the border, input units
     float concavity;  ///< angle between the two normals, in [-pi, pi] radians; > 0 where the surface is concave
   };
 
-  Points centers;            ///< 3 x N, input frame
-  Points normals;            ///< 3 x N, unit, outward; zero for an element without a normal
-  std::vector<float> areas;  ///< N, input units squared, >= 0
-  std::vector<Edge> edges;
+  Points centers;               ///< 3 x N, input frame
+  Points normals;               ///< 3 x N, unit, outward; zero for an element without a normal
+  std::vector<float> areas;     ///< N, input units squared, >= 0
+  std::vector<Edge> edges;      ///< each pair of neighbours once
   std::vector<int> first_edge;  ///< N + 1 indices into edge_of: where the edges of each element begin
   std::vector<int> edge_of;     ///< indices into edges, element by element
 

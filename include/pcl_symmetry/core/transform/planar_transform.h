@@ -95,10 +95,10 @@ SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const
 
 /// The estimator, and the options of each.
 struct PlanarTransformOptions {
-  TransformMethod method = TransformMethod::Sampled;
-  SampledTransformOptions sampled;
-  ConvolutionTransformOptions convolution;
-  VotingTransformOptions voting;
+  TransformMethod method = TransformMethod::Sampled;  ///< which of the three below is used
+  SampledTransformOptions sampled;                    ///< of TransformMethod::Sampled
+  ConvolutionTransformOptions convolution;            ///< of TransformMethod::Convolution
+  VotingTransformOptions voting;                      ///< of TransformMethod::Voting
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

@@ -20,9 +20,9 @@ class PlaneGrid {
 public:
   /// Indices of a cell of the grid.
   struct Bin {
-    int theta;
-    int phi;
-    int radius;
+    int theta;   ///< in [0, numTheta())
+    int phi;     ///< in [0, numPhi())
+    int radius;  ///< in [0, numRadius())
   };
 
   PlaneGrid() = default;
@@ -34,13 +34,13 @@ public:
   /// \throws std::invalid_argument naming field, value and rule.
   PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Vector3d& center, double radius);
 
-  int numTheta() const { return num_theta_; }
-  int numPhi() const { return num_phi_; }
-  int numRadius() const { return num_radius_; }
-  std::size_t numDirections() const { return static_cast<std::size_t>(num_theta_) * num_phi_; }
-  std::size_t size() const { return numDirections() * num_radius_; }
-  const Eigen::Vector3d& center() const { return center_; }
-  double radius() const { return radius_; }
+  int numTheta() const { return num_theta_; }                                                    ///< bins of theta
+  int numPhi() const { return num_phi_; }                                                        ///< bins of phi
+  int numRadius() const { return num_radius_; }                                                  ///< bins of r
+  std::size_t numDirections() const { return static_cast<std::size_t>(num_theta_) * num_phi_; }  ///< theta times phi
+  std::size_t size() const { return numDirections() * num_radius_; }                             ///< all bins
+  const Eigen::Vector3d& center() const { return center_; }  ///< that r is measured from, input frame
+  double radius() const { return radius_; }                  ///< greatest |r|, input units
 
   double thetaStep() const;   ///< radians
   double phiStep() const;     ///< radians

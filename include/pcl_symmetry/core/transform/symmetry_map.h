@@ -21,11 +21,11 @@ enum class TransformMethod {
 /// The planar-reflective symmetry transform of a shape: D(f, gamma) = f . gamma(f) / |f|^2 (Equation 2) for every bin
 /// of planes.
 struct SymmetryMap {
-  PlaneGrid grid;
+  PlaneGrid grid;  ///< the planes of the values
   /// grid.size() values of D, 1 for a perfect symmetry. Estimates exceed [0, 1] by their error.
   std::vector<float> values;
-  TransformMethod method = TransformMethod::Sampled;
-  double sigma = 0.0;  ///< width of the GEDT that the map was made from, input units
+  TransformMethod method = TransformMethod::Sampled;  ///< that made the values
+  double sigma = 0.0;                                 ///< width of the GEDT that the map was made from, input units
   /// Mean of the points, input frame. The threshold 1 - r / R of Section 4.4 measures r from it.
   Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();
 
@@ -38,7 +38,7 @@ struct SymmetryMap {
   /// \return index of the bin with the greatest value; 0 for an empty map.
   std::size_t strongest() const;
 
-  bool empty() const { return values.empty(); }
+  bool empty() const { return values.empty(); }  ///< no transform was computed
 };
 
 /// The transform mapped back from planes to points (Figures 1 and 2): for each point the greatest D of any plane

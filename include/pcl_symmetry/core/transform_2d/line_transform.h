@@ -25,9 +25,9 @@ public:
   /// \throws std::invalid_argument for a value that is not finite.
   ReflectionLine(double theta, double offset);
 
-  double theta() const { return theta_; }
-  double offset() const { return offset_; }
-  const Eigen::Vector2d& normal() const { return normal_; }
+  double theta() const { return theta_; }                    ///< of the normal, radians in [0, pi)
+  double offset() const { return offset_; }                  ///< r, input units
+  const Eigen::Vector2d& normal() const { return normal_; }  ///< unit, input frame
 
   /// \return n.x - r, input units.
   double signedDistance(const Eigen::Vector2d& x) const { return normal_.dot(x) - offset_; }
@@ -55,8 +55,8 @@ class LineGrid {
 public:
   /// Indices of a cell of the grid.
   struct Bin {
-    int theta;
-    int radius;
+    int theta;   ///< in [0, numTheta())
+    int radius;  ///< in [0, numRadius())
   };
 
   LineGrid() = default;
@@ -67,11 +67,11 @@ public:
   /// \throws std::invalid_argument naming field, value and rule.
   LineGrid(int num_theta, int num_radius, const Eigen::Vector2d& center, double radius);
 
-  int numTheta() const { return num_theta_; }
-  int numRadius() const { return num_radius_; }
-  std::size_t size() const { return static_cast<std::size_t>(num_theta_) * num_radius_; }
-  const Eigen::Vector2d& center() const { return center_; }
-  double radius() const { return radius_; }
+  int numTheta() const { return num_theta_; }                                              ///< bins of theta
+  int numRadius() const { return num_radius_; }                                            ///< bins of r
+  std::size_t size() const { return static_cast<std::size_t>(num_theta_) * num_radius_; }  ///< all bins
+  const Eigen::Vector2d& center() const { return center_; }  ///< that r is measured from, input frame
+  double radius() const { return radius_; }                  ///< greatest |r|, input units
 
   double thetaStep() const;   ///< radians
   double radiusStep() const;  ///< input units
@@ -104,7 +104,7 @@ private:
 
 /// The transform of a planar shape: D(f, gamma) = f . gamma(f) / |f|^2 (Equation 2) for every bin of lines.
 struct LineMap {
-  LineGrid grid;
+  LineGrid grid;              ///< the lines of the values
   std::vector<float> values;  ///< grid.size() values of D, about [0, 1]; 1 for a perfect symmetry
   double sigma = 0.0;         ///< width of the distance transform that the map was made from, input units
   /// Mean of the points, input frame. The threshold 1 - r / R of Section 4.4 measures r from it.
@@ -112,7 +112,7 @@ struct LineMap {
 
   /// \return D at a bin.
   float operator[](std::size_t index) const { return values[index]; }
-  bool empty() const { return values.empty(); }
+  bool empty() const { return values.empty(); }  ///< no transform was computed
 
   /// \return index of the bin with the greatest value; 0 for an empty map.
   std::size_t strongest() const;

@@ -24,7 +24,7 @@ class AxisGrid {
 public:
   /// Indices of a cell of the grid.
   struct Bin {
-    int theta, phi, u, v;
+    int theta, /**< of the direction */ phi, /**< as well */ u, /**< of the offset */ v;  ///< as well
   };
 
   AxisGrid() = default;
@@ -35,13 +35,13 @@ public:
   /// \throws std::invalid_argument naming field, value and rule; for more than 2^28 bins too.
   AxisGrid(int num_theta, int num_phi, int num_offset, const Eigen::Vector3d& center, double radius);
 
-  int numTheta() const { return num_theta_; }
-  int numPhi() const { return num_phi_; }
-  int numOffset() const { return num_offset_; }
-  std::size_t numDirections() const { return static_cast<std::size_t>(num_theta_) * num_phi_; }
-  std::size_t size() const { return numDirections() * num_offset_ * num_offset_; }
-  const Eigen::Vector3d& center() const { return center_; }
-  double radius() const { return radius_; }
+  int numTheta() const { return num_theta_; }    ///< bins of theta
+  int numPhi() const { return num_phi_; }        ///< bins of phi
+  int numOffset() const { return num_offset_; }  ///< bins of u, and of v
+  std::size_t numDirections() const { return static_cast<std::size_t>(num_theta_) * num_phi_; }  ///< theta times phi
+  std::size_t size() const { return numDirections() * num_offset_ * num_offset_; }               ///< all bins
+  const Eigen::Vector3d& center() const { return center_; }          ///< that u and v are measured from, input frame
+  double radius() const { return radius_; }                          ///< greatest |u| and |v|, input units
   double offsetStep() const { return 2.0 * radius_ / num_offset_; }  ///< input units
 
   /// \return ((theta * num_phi + phi) * num_offset + v) * num_offset + u: bins of one direction lie side by side.
@@ -88,7 +88,7 @@ struct AxialTransformOptions {
 /// invariant under them has the squared length (1 + (n - 1) D_n) / n in units of |f|^2, which is Equation 1 for n = 2.
 /// For turns by any angle it is the mean over all angles.
 struct AxisMap {
-  AxisGrid grid;
+  AxisGrid grid;                           ///< the axes of the values
   std::vector<int> folds;                  ///< as asked for
   std::vector<std::vector<float>> values;  ///< for each fold grid.size() values of D_n; 0 where u^2 + v^2 > radius^2
   std::vector<float> greatest;             ///< of all folds, one value per bin
@@ -98,7 +98,7 @@ struct AxisMap {
   std::size_t strongest() const;
   /// \return the fold at a bin, as from bestFold().
   int fold(std::size_t index) const;
-  bool empty() const { return greatest.empty(); }
+  bool empty() const { return greatest.empty(); }  ///< no transform was computed
 };
 
 /// The order of the turns that a shape has about an axis: any angle where these reach the greatest D, else the greatest
@@ -120,7 +120,7 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
 
 /// A local maximum of the axial transform, between bins.
 struct AxisMaximum {
-  TurningLine axis;
+  TurningLine axis;            ///< input frame
   int fold = 0;                ///< as from bestFold()
   double value = 0.0;          ///< the greatest D_n
   std::vector<double> values;  ///< D_n of each fold of the map

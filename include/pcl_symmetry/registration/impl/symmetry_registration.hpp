@@ -92,5 +92,6 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
 
 }  // namespace pcl_symmetry
 
+// The attribute of GNU, because Clang takes none in brackets here.
 #define PCL_INSTANTIATE_SymmetryRegistration(S, T, Scalar) \
-  template class PCL_SYMMETRY_EXPORTS pcl_symmetry::SymmetryRegistration<S, T, Scalar>;
+  template class __attribute__((visibility("default"))) pcl_symmetry::SymmetryRegistration<S, T, Scalar>;
