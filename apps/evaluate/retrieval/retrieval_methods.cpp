@@ -145,6 +145,14 @@ void addMethod(const std::string& name, const Eigen::MatrixXf& distances, bool c
   methods.push_back({name + ", scaled", scaled(distances, references, options), false});
 }
 
+/// PRST = sqrt((1 + D) / 2) as equation 1 has it, from the root of D that descriptors hold.
+std::vector<float> byEquation1(const std::vector<float>& roots) {
+  std::vector<float> values;
+  values.reserve(roots.size());
+  for (const float root : roots) values.push_back(std::sqrt(0.5f * (1.0f + root * root)));
+  return values;
+}
+
 Eigen::Matrix3d axesOf(const Points& cloud, ModelAxes axes) {
   if (axes == ModelAxes::AsGiven) return Eigen::Matrix3d::Identity();
   if (axes == ModelAxes::Principal) return principalAxes(cloud).axes;
@@ -188,13 +196,18 @@ std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds,
   };
   const Eigen::MatrixXf greatest =
       distances([&](D a, D b) { return (values(a.prsd) - values(b.prsd)).abs().maxCoeff(); });
+  for (SymmetryDescriptors& descriptor : descriptors) descriptor.prst = byEquation1(descriptor.prst);
+  const Eigen::MatrixXf letter =
+      distances([](D a, D b) { return planeDescriptorDistance(a.prst.data(), b.prst.data(), a.prst.size()); });
   const std::string where = ", " + nameOf(axes);
   const bool charted = axes != ModelAxes::Principal;
   return {{"PRSD" + where, prsd, charted},
           {"PRST" + where, prst, charted},
           {"GEDT" + where, gedt, charted},
           {"PRST x GEDT" + where, prst.cwiseProduct(gedt), charted},
-          {"PRSD by the maximum" + where, greatest, false}};
+          {"PRSD by the maximum" + where, greatest, false},
+          {"PRST by equation 1" + where, letter, false},
+          {"PRST by equation 1 x GEDT" + where, letter.cwiseProduct(gedt), false}};
 }
 
 std::vector<RetrievalMethod> signatureMethods(const std::vector<Points>& clouds, const RetrievalOptions& options,

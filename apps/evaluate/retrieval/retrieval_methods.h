@@ -36,7 +36,7 @@ enum class ModelAxes { AsGiven, Symmetry, Principal };
 std::string nameOf(ModelAxes axes);
 
 /// PRSD, PRST, GEDT and the product of the latter two: L2 in one frame each, about the center of mass; and PRSD by the
-/// greatest difference, as Kazhdan et al. (2004) compare it.
+/// greatest difference, as Kazhdan et al. (2004) compare it; and PRST and the product with values by equation 1.
 std::vector<RetrievalMethod> publishedMethods(const std::vector<Points>& clouds, ModelAxes axes,
                                               const RetrievalOptions& options, const RetrievalProgress& progress);
 
