@@ -24,8 +24,8 @@ struct SymmetryMeasure {
   std::vector<AxisLine> axes = {};                ///< the best axes, for pictures
 };
 
-/// The measure of equation 1, PRST = sqrt((1 + D) / 2), in place of D. Estimates of D beyond [0, 1] count as its ends, so
-/// that values lie within [0.707, 1].
+/// The measure of equation 1, PRST = sqrt((1 + D) / 2), in place of D. Estimates of D beyond [0, 1] count as its ends,
+/// so that values lie within [0.707, 1].
 SymmetryMeasure byEquation1(SymmetryMeasure measure);
 
 /// \param of planes, axes or centers.

@@ -54,7 +54,8 @@ CommandLine commandLine(EvaluateAlignmentOptions& o) {
               "standard deviation of the noise, along the ray for scans, in diagonals")
       .number("missing", o.missing, Range{0, 1, false, true}, "share of the points of each cloud, taken in ten patches")
       .text("methods", "A,B,...", o.methods,
-            "rows beside symmetry and mass and PCA: no free space, first maximum, exact map, exact map ISP, mass + 0.15 R "
+            "rows beside symmetry and mass and PCA: no free space, first maximum, exact map, exact map ISP, mass + "
+            "0.15 R "
             "(all)")
       .flag("ties", o.ties,
             "compare with the frame of the whole up to the symmetries of the mesh, by brute force (a second a mesh)")
@@ -149,8 +150,7 @@ private:
     const Eigen::Isometry3d T_model_cloud = made.T_cloud_model.inverse();
     for (std::size_t m = 0; m < methods_.size(); ++m) {
       const auto find = [&] {
-        return findFrame(methods_[m], made.cloud, viewpoint, options_.common.seed + 1,
-                         options_.common.threads);
+        return findFrame(methods_[m], made.cloud, viewpoint, options_.common.seed + 1, options_.common.threads);
       };
       if (!warm_) find();  // threads, tables and pages are there from the second call on
       warm_ = true;

@@ -23,10 +23,10 @@ enum class AlignmentMethod {
 };
 
 /// In the order of the table. derived: all of the enumeration.
-constexpr AlignmentMethod kAlignmentMethods[] = {
-    AlignmentMethod::Symmetry, AlignmentMethod::NoFreeSpace,     AlignmentMethod::FirstMaximum,
-    AlignmentMethod::ExactMap, AlignmentMethod::ExactMapRefined, AlignmentMethod::CenterOfMass,
-    AlignmentMethod::PushedMass};
+constexpr AlignmentMethod kAlignmentMethods[] = {AlignmentMethod::Symmetry,        AlignmentMethod::NoFreeSpace,
+                                                 AlignmentMethod::FirstMaximum,    AlignmentMethod::ExactMap,
+                                                 AlignmentMethod::ExactMapRefined, AlignmentMethod::CenterOfMass,
+                                                 AlignmentMethod::PushedMass};
 
 std::string toString(AlignmentMethod method);
 

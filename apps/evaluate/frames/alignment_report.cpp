@@ -215,23 +215,22 @@ void printTable(const std::vector<AlignmentStatistics>& statistics) {
 void printIntervals(const std::vector<AlignmentStatistics>& statistics) {
   const bool ties = statistics.front().counted_ties.total > 0;
   std::printf("\n%-14s | %-31s | %-31s | %-22s | %-31s | %-31s%s\n", "", "closer, models", "closer, scans",
-              "mass / this, mean", "own axes of scans", "own axes of wholes",
-              ties ? " | like for like" : "");
+              "mass / this, mean", "own axes of scans", "own axes of wholes", ties ? " | like for like" : "");
   std::printf("%-14s | %-31s | %-31s | %-22s | %-31s | %-31s%s\n", "the paper", "", "90 %", "1.5", "70 %", "",
               ties ? " |" : "");
   for (const AlignmentStatistics& s : statistics) {
     const Interval& ratio = s.mean_ratio_interval;
-    const std::string text =
-        fixed(s.mean_ratio, 2) + " (" + fixed(ratio.low, 2) + " to " + fixed(ratio.high, 2) + ")";
+    const std::string text = fixed(s.mean_ratio, 2) + " (" + fixed(ratio.low, 2) + " to " + fixed(ratio.high, 2) + ")";
     std::printf("%-14s | %-31s | %-31s | %-22s | %-31s | %-31s%s\n", toString(s.method).c_str(),
                 s.counted_closer_models.text().c_str(), s.counted_closer_scans.text().c_str(), text.c_str(),
                 s.counted_own_scans.text().c_str(), s.counted_own_wholes.text().c_str(),
                 ties ? (" | " + s.counted_ties.text()).c_str() : "");
   }
-  std::printf("95 %% intervals.%s\n",
-              ties ? " like for like: axes of scans within 5 deg of those of the whole, up to the symmetries of the mesh "
-                     "that brute force finds."
-                   : "");
+  std::printf(
+      "95 %% intervals.%s\n",
+      ties ? " like for like: axes of scans within 5 deg of those of the whole, up to the symmetries of the mesh "
+             "that brute force finds."
+           : "");
 }
 
 nlohmann::json toJson(const std::vector<AlignmentStatistics>& statistics) {

@@ -22,9 +22,11 @@ struct FrameErrors {
   double axes_angle = 0.0;        ///< of a scan's axes from those of the whole, any order and sign
   double frame_angle = 0.0;       ///< of a scan's frame from that of the whole, or one that is equally good
   double equal_axes_angle = 0.0;  ///< the same, any order and sign
-  /// Of a scan's axes from those of the whole, up to the symmetries of the mesh; not set where these were not asked for.
+  /// Of a scan's axes from those of the whole, up to the symmetries of the mesh; not set where these were not asked
+  /// for.
   std::optional<double> tied_angle;
-  bool as_good = false;  ///< near a frame that the method calls equally good, or of planes that are as good on the whole as those of its own frame
+  bool as_good = false;  ///< near a frame that the method calls equally good, or of planes that are as good on the
+                         ///< whole as those of its own frame
   double milliseconds = 0.0;
 };
 
@@ -72,7 +74,8 @@ std::vector<Histogram> rotationHistograms(const std::vector<FrameErrors>& errors
 
 std::string histogramCSV(const std::vector<FrameErrors>& errors);
 
-/// Figure 12 a and b with bands of 95 % intervals, of four methods, beside \p path: NAME_translation.png and NAME_rotation.png.
+/// Figure 12 a and b with bands of 95 % intervals, of four methods, beside \p path: NAME_translation.png and
+/// NAME_rotation.png.
 void drawHistograms(const std::vector<FrameErrors>& errors, const std::string& path);
 
 }  // namespace pcl_symmetry::apps

@@ -27,11 +27,11 @@ constexpr int kProfileSamples = 2048;
 // Maxima that are refined. chosen: the plane of greatest D was never behind these on ten models; twice takes twice the
 // time.
 constexpr std::size_t kMostRefined = 8;
-// Points that an iteration reflects. chosen: the paper takes 10 000; with 2000 the angle of a plane varies by a tenth of
-// a degree, far below the 5 degrees that count.
+// Points that an iteration reflects. chosen: the paper takes 10 000; with 2000 the angle of a plane varies by a tenth
+// of a degree, far below the 5 degrees that count.
 constexpr std::size_t kReflected = 2000;
-// Steps of the refinement, and the motion at which it ends, radians and radii. chosen: half of the steps leave planes on
-// their way; a tenth of the motion changes no frame by more than 0.05 degrees.
+// Steps of the refinement, and the motion at which it ends, radians and radii. chosen: half of the steps leave planes
+// on their way; a tenth of the motion changes no frame by more than 0.05 degrees.
 constexpr int kMostSteps = 50;
 constexpr double kAtRest = 1e-4;
 
@@ -79,8 +79,7 @@ public:
       const std::vector<float> s =
           profiles_.scores(normal.cast<float>(), static_cast<float>(-half), 1.0f, 2 * half + 1);
       const auto at = std::max_element(s.begin(), s.end()) - s.begin();
-      planes[i] =
-          ReflectionPlane(normal, normal.dot(middle_) + static_cast<double>(at - half) * edt_.cellSize());
+      planes[i] = ReflectionPlane(normal, normal.dot(middle_) + static_cast<double>(at - half) * edt_.cellSize());
       values[i] = s[static_cast<std::size_t>(at)];
     });
     const auto best = static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
@@ -117,8 +116,7 @@ private:
     const Points no_normals;
     const IspSurface surface{points_, no_normals, *search_};
     for (int step = 0; step < kMostSteps; ++step) {
-      const IspStep found =
-          iterateSymmetricPoints(surface, reflected_, plane, edt_.sigma(), IspUpdate::PointToPoint);
+      const IspStep found = iterateSymmetricPoints(surface, reflected_, plane, edt_.sigma(), IspUpdate::PointToPoint);
       const ReflectionPlane next = basis.cols() == 3 ? found.plane : fitted(found, basis, plane);
       const double moved = std::abs(next.signedDistance(edt_.center())) - std::abs(plane.signedDistance(edt_.center()));
       const bool rests = next.angleTo(plane) < kAtRest && std::abs(moved) < kAtRest * edt_.radius();

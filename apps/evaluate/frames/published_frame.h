@@ -22,8 +22,8 @@ struct PublishedFrameOptions {
 };
 
 /// Each axis is the normal of the plane of greatest symmetry among those that are left; the center is where the three
-/// planes meet. The map is exact, by convolution over 64 x 64 x 64 planes (Section 4.2). What a scanner saw is not used,
-/// and nothing breaks ties.
+/// planes meet. The map is exact, by convolution over 64 x 64 x 64 planes (Section 4.2). What a scanner saw is not
+/// used, and nothing breaks ties.
 /// \param points 3 x N, finite, with extent.
 PublishedFrame publishedFrame(const Points& points, const PublishedFrameOptions& options);
 

@@ -218,8 +218,8 @@ private:
     const QueryScores of_prst = queryScores(results_[1].method.distances, classes_);
     const QueryScores of_gedt = queryScores(results_[2].method.distances, classes_);
     for (const auto& [name, statistics] : prst)
-      gains.push_back({name, statistics.dcg, gedt.at(name).dcg, product.at(name).dcg,
-                       gainWithin(name, of_prst, of_gedt)});
+      gains.push_back(
+          {name, statistics.dcg, gedt.at(name).dcg, product.at(name).dcg, gainWithin(name, of_prst, of_gedt)});
     std::stable_sort(gains.begin(), gains.end(),
                      [](const ClassGain& a, const ClassGain& b) { return a.prst - a.gedt > b.prst - b.gedt; });
     return gains;

@@ -98,8 +98,8 @@ public:
   int size() const { return num_patches_; }
 
 private:
-  /// Numbers in the order of ways and, where these are equal, of elements: the bits of a float >= 0 rise with it, and one
-  /// number is compared faster than a pair.
+  /// Numbers in the order of ways and, where these are equal, of elements: the bits of a float >= 0 rise with it, and
+  /// one number is compared faster than a pair.
   static std::uint64_t keyOf(float way, int element) {
     std::uint32_t bits = 0;
     std::memcpy(&bits, &way, sizeof(bits));

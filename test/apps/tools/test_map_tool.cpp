@@ -51,8 +51,8 @@ TEST_F(MapTool, Equation1LiesBetweenItsEnds) {
   const std::string common = mesh_ + " -quiet -grid 32 -points 2000 -json " + (folder_ / "a.json");
   const auto ends = [&](const std::string& measure) {
     EXPECT_EQ(run(common + " -measure " + measure), 0) << error_;
-    const auto json = nlohmann::json::parse(contentOf(folder_ / "a.json"));
-    return std::make_pair(json["least"].get<double>(), json["greatest"].get<double>());
+    const auto summary = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+    return std::make_pair(summary["least"].get<double>(), summary["greatest"].get<double>());
   };
   const auto [least, greatest] = ends("D");
   const auto [least_prst, greatest_prst] = ends("prst");
