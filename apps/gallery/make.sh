@@ -169,8 +169,7 @@ draw_benchmark_charts() {
     -noise 0,0.002,0.005,0.01,0.02,0.03,0.05 -png "$pictures/planes_by_noise.png"
   draw misalignment pcl_symmetry_evaluate alignment "$psb" -classes "$classes" -fold 1 -every 8 -first 3 -num_views 4 \
     -png "$pictures/misalignment.png"
-  draw figure_13 pcl_symmetry_evaluate retrieval "$psb" -cla "$classes" -classes "$classes" -fold 1 \
-    -png "$gallery/figure_13.png"
+  draw figure_13 pcl_symmetry_evaluate retrieval "$psb" -cla "$classes" -png "$gallery/figure_13.png"
 }
 
 draw_scans_and_parts
