@@ -48,7 +48,7 @@ void addBand(vtkChartXY& plots, const ChartSeries& series, const Color& color) {
   band->SetInputArray(0, "x");
   band->SetInputArray(1, "low");
   band->SetInputArray(2, "high");
-  // chosen: four bands over each other can be told apart; at half a single one is hardly seen.
+  // chosen: four bands over each other let the lines show; at half bands fade, at twice they cover each other.
   constexpr unsigned char kOpacity = 50;
   band->SetColor(color[0], color[1], color[2], kOpacity);
   band->SetLegendVisibility(false);

@@ -21,17 +21,16 @@ namespace {
 constexpr int kBins = 64;  // over theta, phi and r; derived: the paper's grid
 // Angles of the second plane over the half-turn. derived: as far apart as the bins of theta, pi / 2 over 64.
 constexpr int kPublishedAngles = 128;
-// Samples of D where a plane is none of the map. chosen: D within 0.3 %; half raises the error by sqrt(2), twice takes
-// twice the time.
+// Samples of D where a plane is none of the map. chosen: half raises the error by sqrt(2), twice takes twice the time.
 constexpr int kProfileSamples = 2048;
-// Maxima that are refined. chosen: the plane of greatest D was never behind these on ten models; twice takes twice the
-// time.
+// Maxima that are refined. chosen: half may leave out the plane that is strongest once it is refined, twice takes twice
+// the time.
 constexpr std::size_t kMostRefined = 8;
-// Points that an iteration reflects. chosen: the paper takes 10 000; with 2000 the angle of a plane varies by a tenth
-// of a degree, far below the 5 degrees that count.
+// Points that an iteration reflects. chosen: the paper takes 10 000, in five times the time; half makes planes less
+// exact.
 constexpr std::size_t kReflected = 2000;
-// Steps of the refinement, and the motion at which it ends, radians and radii. chosen: half of the steps leave planes
-// on their way; a tenth of the motion changes no frame by more than 0.05 degrees.
+// Steps of the refinement, and the motion at which it ends, radians and radii. chosen: half of the steps may leave a
+// plane on its way; the motion is far below the 5 degrees that count, twice of it as well.
 constexpr int kMostSteps = 50;
 constexpr double kAtRest = 1e-4;
 
