@@ -167,7 +167,8 @@ draw_benchmark_charts() {
   done
   draw planes_by_noise pcl_symmetry_evaluate planes "$psb" -every 8 -max 100 -sweep noise \
     -noise 0,0.002,0.005,0.01,0.02,0.03,0.05 -png "$pictures/planes_by_noise.png"
-  draw misalignment pcl_symmetry_evaluate alignment "$psb" -png "$pictures/misalignment.png"
+  draw misalignment pcl_symmetry_evaluate alignment "$psb" -classes "$classes" -fold 1 -every 8 -first 3 -num_views 4 \
+    -png "$pictures/misalignment.png"
   draw figure_13 pcl_symmetry_evaluate retrieval "$psb" -cla "$classes" -png "$gallery/figure_13.png"
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "common/command_line/file_errors.h"
 #include "common/files/json_values.h"
@@ -103,6 +104,15 @@ SymmetryMeasure ofCenters(const InputShape& input, const CommonOptions& common) 
 }
 
 }  // namespace
+
+SymmetryMeasure byEquation1(SymmetryMeasure measure) {
+  measure.through = [of_d = std::move(measure.through)](const Points& points, int threads) {
+    std::vector<float> values = of_d(points, threads);
+    for (float& value : values) value = std::sqrt(0.5f * (1.0f + std::clamp(value, 0.0f, 1.0f)));
+    return values;
+  };
+  return measure;
+}
 
 SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const std::string& of, int fold) {
   return namingFile(input.path, [&] {

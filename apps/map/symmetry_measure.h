@@ -24,6 +24,10 @@ struct SymmetryMeasure {
   std::vector<AxisLine> axes = {};                ///< the best axes, for pictures
 };
 
+/// The measure of equation 1, PRST = sqrt((1 + D) / 2), in place of D. Estimates of D beyond [0, 1] count as its ends,
+/// so that values lie within [0.707, 1].
+SymmetryMeasure byEquation1(SymmetryMeasure measure);
+
 /// \param of planes, axes or centers.
 /// \param fold of axes: order of the turns, 0 = any angle; below 0: 2 to 8 and any angle.
 /// \throws InputError where the input holds no answer.

@@ -32,7 +32,7 @@ struct MapOptions {
   BatchOptions batch;
   std::string input;
   std::optional<std::string> output, volume_path, slices_path, png_path;
-  std::string of = "planes";
+  std::string of = "planes", measure = "D";
   std::optional<int> fold;
   int cells = 96, size = 300;
   CommonOptions common;
@@ -46,6 +46,8 @@ CommandLine commandLine(MapOptions& options) {
       .positional("output", options.output, ".pcd or .ply: the points with one more field, intensity, about 0 to 1")
       .choice("of", options.of, {"planes", "axes", "centers"},
               "what is symmetric: reflections, turns about axes, or point symmetry")
+      .choice("measure", options.measure, {"D", "prst"},
+              "what is written: D of equation 2, or PRST = sqrt((1 + D) / 2) of equation 1, within 0.707 and 1")
       .number("fold", options.fold, Range::closed(0, 60),
               "with -of axes: order of the turns, 0 = by any angle, not 1; default: the best of 2 to 8 and any angle")
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
@@ -224,7 +226,8 @@ void analyse(const MapOptions& options, FileJob& job) {
   Step transforming(job.console(), "Transforming");
   CommonOptions common = options.common;
   common.threads = job.numThreads();
-  const SymmetryMeasure map = measureSymmetry(input, common, options.of, options.fold.value_or(-1));
+  SymmetryMeasure map = measureSymmetry(input, common, options.of, options.fold.value_or(-1));
+  if (options.measure == "prst") map = byEquation1(std::move(map));
   const double transforming_ms = transforming.done(std::to_string(map.num_tried) + " " + map.of);
 
   Step mapping(job.console(), "Mapping back to points");

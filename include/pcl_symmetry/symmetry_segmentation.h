@@ -2,7 +2,7 @@
 
 #include <pcl/PointIndices.h>
 #include <pcl/PolygonMesh.h>
-#include <pcl/search/kdtree.h>
+#include <pcl/search/search.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -19,6 +19,10 @@ namespace detail {
 /// \return whether any polygon with finite corners has an area.
 /// \throws std::invalid_argument where the mesh refers to vertices that it does not have.
 bool hasArea(const pcl::PolygonMesh& mesh);
+
+/// \param points 3 x N.
+/// \return for each point the num_neighbors closest others, or all where there are fewer, nearest first.
+std::vector<std::vector<int>> nearestOthers(const Points& points, int num_neighbors);
 
 }  // namespace detail
 
@@ -71,7 +75,7 @@ public:
   }
 
   /// Finds the neighbours of the points by any search of PCL.
-  /// \param search is given a cloud of the points used. Null: a k-d tree (default).
+  /// \param search is given a cloud of the points used. Null: makeTreeSearch() (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
   /// \param num_neighbors number of neighbours that each point is joined with, >= 3; default 12.
   void setNumberOfNeighbors(int num_neighbors) {
@@ -112,7 +116,7 @@ private:
   }
   void segmentMesh();
   void segmentCloud();
-  /// For each point the closest others, nearest first.
+  /// For each point the closest others by the search of the user, nearest first.
   std::vector<std::vector<int>> neighborsOf(const pcl::Indices& used) const;
 
   SegmentationOptions options_;
@@ -153,7 +157,9 @@ void SymmetrySegmentation<PointT>::segmentCloud() {
   const Points points = this->selectInput(options_.seed);
   if (points.cols() == 0) return;
   const pcl::Indices& used = this->getUsedIndices();
-  segmentation_ = segmentSurface(cloudGraph(points, neighborsOf(used)), options_);
+  const std::vector<std::vector<int>> neighbors =
+      search_ ? neighborsOf(used) : detail::nearestOthers(points, num_neighbors_);
+  segmentation_ = segmentSurface(cloudGraph(points, neighbors), options_);
 
   labels_.assign(input_->size(), -1);
   const detail::SelectedPoints all =
@@ -169,13 +175,12 @@ template <typename PointT>
 std::vector<std::vector<int>> SymmetrySegmentation<PointT>::neighborsOf(const pcl::Indices& used) const {
   const auto num_neighbors = std::min<std::size_t>(num_neighbors_, used.size() - 1);
   const auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>(*input_, used);
-  const SearchPtr search = search_ ? search_ : pcl::make_shared<pcl::search::KdTree<PointT>>();
-  search->setInputCloud(cloud);
+  search_->setInputCloud(cloud);
   std::vector<std::vector<int>> neighbors(cloud->size());
   pcl::Indices found;
   std::vector<float> sq_distances;
   for (std::size_t i = 0; i < cloud->size(); ++i) {
-    search->nearestKSearch((*cloud)[i], static_cast<int>(num_neighbors) + 1, found, sq_distances);
+    search_->nearestKSearch((*cloud)[i], static_cast<int>(num_neighbors) + 1, found, sq_distances);
     for (const pcl::index_t j : found)
       if (static_cast<std::size_t>(j) != i && neighbors[i].size() < num_neighbors) neighbors[i].push_back(j);
   }

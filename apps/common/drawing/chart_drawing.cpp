@@ -9,6 +9,7 @@
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkPen.h>
+#include <vtkPlotArea.h>
 #include <vtkPlotPoints.h>
 #include <vtkRect.h>
 #include <vtkRenderWindow.h>
@@ -23,6 +24,35 @@
 namespace pcl_symmetry::apps {
 
 namespace {
+
+using Color = Eigen::Matrix<unsigned char, 3, 1>;
+
+/// A translucent band between the ends of intervals, without an entry in the legend.
+void addBand(vtkChartXY& plots, const ChartSeries& series, const Color& color) {
+  vtkNew<vtkFloatArray> x, low, high;
+  x->SetName("x");
+  low->SetName("low");
+  high->SetName("high");
+  for (std::size_t i = 0; i < series.low.size(); ++i) {
+    x->InsertNextValue(static_cast<float>(series.x[i]));
+    low->InsertNextValue(static_cast<float>(series.low[i]));
+    high->InsertNextValue(static_cast<float>(series.high[i]));
+  }
+  if (x->GetNumberOfTuples() == 0) return;
+  vtkNew<vtkTable> table;
+  table->AddColumn(x);
+  table->AddColumn(low);
+  table->AddColumn(high);
+  auto* band = vtkPlotArea::SafeDownCast(plots.AddPlot(vtkChart::AREA));
+  band->SetInputData(table);
+  band->SetInputArray(0, "x");
+  band->SetInputArray(1, "low");
+  band->SetInputArray(2, "high");
+  // chosen: four bands over each other let the lines show; at half bands fade, at twice they cover each other.
+  constexpr unsigned char kOpacity = 50;
+  band->SetColor(color[0], color[1], color[2], kOpacity);
+  band->SetLegendVisibility(false);
+}
 
 void addSeries(vtkChartXY& plots, const ChartSeries& series, std::size_t index) {
   vtkNew<vtkFloatArray> x, y;
@@ -43,9 +73,9 @@ void addSeries(vtkChartXY& plots, const ChartSeries& series, std::size_t index) 
     plot->GetPen()->SetLineType(vtkPen::DASH_LINE);
     return;
   }
-  const Eigen::Vector3d color = 255.0 * distinctColor(index);
-  plot->SetColor(static_cast<unsigned char>(color[0]), static_cast<unsigned char>(color[1]),
-                 static_cast<unsigned char>(color[2]), 255);
+  const Color color = (255.0 * distinctColor(index)).cast<unsigned char>();
+  plot->SetColor(color[0], color[1], color[2], 255);
+  addBand(plots, series, color);
   plot->SetWidth(3.0f);
   if (series.points) {
     vtkPlotPoints::SafeDownCast(plot)->SetMarkerStyle(vtkPlotPoints::CIRCLE);

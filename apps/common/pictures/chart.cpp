@@ -43,12 +43,18 @@ Chart readyToDraw(Chart chart) {
   const auto x_range = rangeOf(chart, chart.x, &ChartSeries::x), y_range = rangeOf(chart, chart.y, &ChartSeries::y);
   for (ChartSeries& series : chart.series) {
     ChartSeries drawn = series;
+    const bool banded = !series.low.empty();
     drawn.x.clear();
     drawn.y.clear();
+    drawn.low.clear();
+    drawn.high.clear();
     for (std::size_t i = 0; i < series.x.size(); ++i) {
       if (!drawable(chart, series, i)) continue;
       drawn.x.push_back(series.x[i]);
       drawn.y.push_back(series.y[i]);
+      if (!banded) continue;
+      drawn.low.push_back(series.low[i]);
+      drawn.high.push_back(series.high[i]);
     }
     series = std::move(drawn);
   }
@@ -70,6 +76,9 @@ void writeChart(const Chart& chart, const std::string& path, int width, int heig
       throw std::invalid_argument("chart: series '" + series.name + "' holds " + std::to_string(series.x.size()) +
                                   " values of x and " + std::to_string(series.y.size()) + " of y, must be as many");
     }
+    const bool banded = !series.low.empty() || !series.high.empty();
+    if (banded && (series.low.size() != series.y.size() || series.high.size() != series.y.size()))
+      throw std::invalid_argument("chart: series '" + series.name + "' has a band of other length");
   }
   writeAtomically(path, [&](const std::string& temporary) {
     drawing().drawChart(readyToDraw(chart), {path, temporary, width, height});

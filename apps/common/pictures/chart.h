@@ -15,6 +15,8 @@ struct ChartSeries {
   std::vector<double> x, y;  ///< as many of one as of the other; values that are not finite are left out
   bool points = true;        ///< marks every value
   bool reference = false;    ///< a thin dashed grey line to compare with
+  /// Ends of a band about the series, as many as values, such as those of intervals; empty: there is none.
+  std::vector<double> low = {}, high = {};
 };
 
 struct ChartAxis {

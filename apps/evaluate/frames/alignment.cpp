@@ -1,6 +1,7 @@
 #include "evaluate/frames/alignment.h"
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,8 @@
 #include "evaluate/clouds/test_clouds.h"
 #include "evaluate/frames/alignment_report.h"
 #include "evaluate/frames/frame_difference.h"
+#include "evaluate/frames/mesh_ties.h"
+#include "evaluate/references/reference_symmetries.h"
 #include "evaluate/segmentation/patches.h"
 #include "evaluate/shared/class_file.h"
 #include "evaluate/shared/model_flags.h"
@@ -32,6 +35,8 @@ struct EvaluateAlignmentOptions {
   std::optional<std::string> class_path;
   int num_points = 10'000, num_views = 8;
   double noise = 0.0, missing = 0.0;
+  bool ties = false;
+  std::optional<std::string> methods;
   std::optional<std::string> cloud_csv, histogram_csv, png;
   CommonOptions common;
 };
@@ -48,6 +53,12 @@ CommandLine commandLine(EvaluateAlignmentOptions& o) {
       .number("noise", o.noise, Range::closed(0, 1),
               "standard deviation of the noise, along the ray for scans, in diagonals")
       .number("missing", o.missing, Range{0, 1, false, true}, "share of the points of each cloud, taken in ten patches")
+      .text("methods", "A,B,...", o.methods,
+            "rows beside symmetry and mass and PCA: no free space, first maximum, exact map, exact map ISP, mass + "
+            "0.15 R "
+            "(all)")
+      .flag("ties", o.ties,
+            "compare with the frame of the whole up to the symmetries of the mesh, by brute force (a second a mesh)")
       .text("csv", "FILE", o.cloud_csv, "a row for each cloud and method")
       .text("histogram_csv", "FILE", o.histogram_csv, "histograms of misalignment (Figure 12)")
       .picture("png", o.png, "their charts: NAME_translation.png, NAME_rotation.png")
@@ -63,6 +74,9 @@ public:
     clouds_.noise = clouds_.scan_noise = {options.noise};
     clouds_.num_views = options.num_views;
     clouds_.seed = options.common.seed;
+    std::vector<std::string> names;
+    if (options.methods) boost::split(names, *options.methods, boost::is_any_of(","));
+    methods_ = alignmentMethods(names);
   }
 
   void run() {
@@ -77,7 +91,7 @@ public:
       step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
       evaluate(models[i]);
     }
-    step.done(std::to_string(errors_.size() / std::size(kAlignmentMethods)) + " clouds");
+    step.done(std::to_string(errors_.size() / methods_.size()) + " clouds");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
     if (errors_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
     report();
@@ -91,6 +105,7 @@ private:
       const TestCloudMaker maker(*shape.mesh, model.key, clouds_);
       const double diagonal = VirtualScanner(*shape.mesh).diagonal();
       Wholes wholes;
+      if (options_.ties) wholes.ties = tiesOf(findReferenceSymmetries(*shape.mesh, referenceOptions()));
       std::vector<FrameErrors> errors;
       std::vector<Eigen::Matrix3d> axes;  // axes of each frame, in the frame of the whole cloud
       for (const CloudRecipe& recipe : recipesFor(clouds_))
@@ -109,7 +124,15 @@ private:
     std::vector<FoundFrame> frames;  ///< by each method, in the model's frame
     pcl::PointCloud<pcl::PointXYZ>::ConstPtr cloud;
     Eigen::Isometry3d T_cloud_model = Eigen::Isometry3d::Identity();
+    std::optional<MeshTies> ties;  ///< of the mesh, in its frame
   };
+
+  ReferenceOptions referenceOptions() const {
+    ReferenceOptions search;
+    search.seed = options_.common.seed + 1;
+    search.num_threads = options_.common.threads;
+    return search;
+  }
 
   /// \param wholes filled by the first recipe.
   void evaluate(const Model& model, const TestCloudMaker& maker, const CloudRecipe& recipe, double diagonal,
@@ -125,19 +148,19 @@ private:
     std::optional<Eigen::Vector3d> viewpoint;
     if (!whole) viewpoint = made.cloud->sensor_origin_.head<3>().cast<double>();
     const Eigen::Isometry3d T_model_cloud = made.T_cloud_model.inverse();
-    for (std::size_t m = 0; m < std::size(kAlignmentMethods); ++m) {
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
       const auto find = [&] {
-        return findFrame(kAlignmentMethods[m], made.cloud, viewpoint, options_.common.seed + 1,
-                         options_.common.threads);
+        return findFrame(methods_[m], made.cloud, viewpoint, options_.common.seed + 1, options_.common.threads);
       };
       if (!warm_) find();  // threads, tables and pages are there from the second call on
       warm_ = true;
       const FoundFrame found = find().transformed(T_model_cloud);
       if (whole) wholes.frames.push_back(found);
       FrameErrors e = errorsOf(found, wholes.frames[m], diagonal);
+      if (wholes.ties) e.tied_angle = angleUpToTies(found.axes, wholes.frames[m].axes, *wholes.ties);
       e.model = model.name;
       e.view = recipe.view;
-      e.method = kAlignmentMethods[m];
+      e.method = methods_[m];
       errors.push_back(std::move(e));
       axes.emplace_back(wholes.T_cloud_model.linear() * found.axes);
     }
@@ -183,6 +206,7 @@ private:
   void report() {
     const std::vector<AlignmentStatistics> statistics = summarize(errors_);
     printTable(statistics);
+    printIntervals(statistics);
     if (options_.cloud_csv) writeText(*options_.cloud_csv, frameCSV(errors_));
     if (options_.histogram_csv) writeText(*options_.histogram_csv, histogramCSV(errors_));
     if (options_.common.json_path) {
@@ -199,6 +223,7 @@ private:
   const EvaluateAlignmentOptions& options_;
   const Console console_;
   TestCloudOptions clouds_;
+  std::vector<AlignmentMethod> methods_;
   bool warm_ = false;
   std::vector<FrameErrors> errors_;
   std::vector<std::string> left_out_;

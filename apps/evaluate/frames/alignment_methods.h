@@ -13,17 +13,27 @@
 namespace pcl_symmetry::apps {
 
 enum class AlignmentMethod {
-  Symmetry,      ///< SymmetryAlignment
-  AsPublished,   ///< the paper's own method: greedily by D alone, blind to what was seen
-  CenterOfMass,  ///< and principal axes of the points
-  PushedMass     ///< the center of mass of a scan moved away from the scanner by 0.15 radii, and principal axes
+  Symmetry,         ///< SymmetryAlignment
+  NoFreeSpace,      ///< the same without a viewpoint: scans count as whole clouds, and nothing is known to be free
+  FirstMaximum,     ///< the paper's, at bin centers of a map of 64 samples
+  ExactMap,         ///< the paper's, at bin centers of the exact map
+  ExactMapRefined,  ///< the paper's, with maxima of the exact map refined by Iterative Symmetric Points
+  CenterOfMass,     ///< and principal axes of the points
+  PushedMass        ///< the center of mass of a scan moved away from the scanner by 0.15 radii, and principal axes
 };
 
 /// In the order of the table. derived: all of the enumeration.
-constexpr AlignmentMethod kAlignmentMethods[] = {AlignmentMethod::Symmetry, AlignmentMethod::AsPublished,
-                                                 AlignmentMethod::CenterOfMass, AlignmentMethod::PushedMass};
+constexpr AlignmentMethod kAlignmentMethods[] = {AlignmentMethod::Symmetry,        AlignmentMethod::NoFreeSpace,
+                                                 AlignmentMethod::FirstMaximum,    AlignmentMethod::ExactMap,
+                                                 AlignmentMethod::ExactMapRefined, AlignmentMethod::CenterOfMass,
+                                                 AlignmentMethod::PushedMass};
 
 std::string toString(AlignmentMethod method);
+
+/// \return the named methods in the order of the table, or all where none is named; symmetry and the center of mass, which
+/// others are compared with, are always among them.
+/// \throws UsageError for a name that is none.
+std::vector<AlignmentMethod> alignmentMethods(const std::vector<std::string>& names);
 
 struct FoundFrame {
   Eigen::Vector3d center;

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "common/pictures/chart.h"
+#include "core/base/random.h"
 #include "evaluate/planes/plane_statistics.h"
 #include "evaluate/shared/table_text.h"
 
@@ -21,6 +22,12 @@ constexpr double kReportedRightAngle = 5.0;  // degrees; chosen: as in alignment
 constexpr double kTranslationBin = 1.0;  // per cent of the diagonal
 constexpr double kRotationBin = 2.5;     // degrees
 constexpr int kTranslationBins = 20, kRotationBins = 25;
+
+// Curves of Figure 12. chosen: bands of more than four cover each other.
+constexpr AlignmentMethod kChartedMethods[] = {AlignmentMethod::Symmetry, AlignmentMethod::ExactMapRefined,
+                                               AlignmentMethod::CenterOfMass, AlignmentMethod::PushedMass};
+// Draws of the bootstrap. derived: the 25th from either side ends 95 %; as in pairedGain(), half of it.
+constexpr std::size_t kNumResampled = 1000;
 
 using Value = double FrameErrors::*;
 using Errors = std::vector<const FrameErrors*>;
@@ -37,10 +44,14 @@ std::vector<double> valuesOf(const Errors& errors, Value value) {
   return values;
 }
 
+Proportion countRight(const Errors& errors, Value value) {
+  Proportion right;
+  for (const FrameErrors* e : errors) right.add(e->*value < kReportedRightAngle);
+  return right;
+}
+
 double shareRight(const Errors& errors, Value value) {
-  std::vector<double> right;
-  for (const FrameErrors* e : errors) right.push_back(e->*value < kReportedRightAngle ? 1.0 : 0.0);
-  return mean(right);
+  return countRight(errors, value).rate();
 }
 
 Errors select(const std::vector<FrameErrors>& errors, AlignmentMethod method, bool scans) {
@@ -58,13 +69,54 @@ std::map<std::string, double> meanCenters(const Errors& scans) {
   return means;
 }
 
+/// Of the ratio of the mean errors, models drawn anew with all their scans (Efron 1979).
+Interval ratioInterval(const Errors& by_mass, const Errors& scans) {
+  std::map<std::string, std::pair<double, double>> sums;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    sums[scans[i]->model].first += by_mass[i]->center;
+    sums[scans[i]->model].second += scans[i]->center;
+  }
+  std::vector<std::pair<double, double>> models;
+  for (const auto& [name, sum] : sums) models.push_back(sum);
+  if (models.empty()) return {0.0, 0.0};
+  RandomStream random(1);
+  std::vector<double> ratios;
+  for (std::size_t draw = 0; draw < kNumResampled; ++draw) {
+    double mass = 0.0, own = 0.0;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const auto& [of_mass, of_method] = models[random.below(models.size())];
+      mass += of_mass;
+      own += of_method;
+    }
+    ratios.push_back(mass / own);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  constexpr std::size_t kTail = kNumResampled / 40;  // derived: 2.5 % at either end
+  return {ratios[kTail], ratios[kNumResampled - 1 - kTail]};
+}
+
+/// The counts behind the rates, where a model counts once or each scan does.
+void addCounts(const Errors& by_mass, const Errors& scans, const Errors& wholes, AlignmentStatistics& s) {
+  const auto mass_means = meanCenters(by_mass);
+  for (std::size_t i = 0; i < scans.size(); ++i) s.counted_closer_scans.add(scans[i]->center < by_mass[i]->center);
+  for (const auto& [model, center] : meanCenters(scans)) s.counted_closer_models.add(center < mass_means.at(model));
+  s.counted_own_scans = countRight(scans, &FrameErrors::own_angle);
+  s.counted_own_wholes = countRight(wholes, &FrameErrors::own_angle);
+  s.counted_axes = countRight(scans, &FrameErrors::axes_angle);
+  for (const FrameErrors* e : scans)
+    if (e->tied_angle) s.counted_ties.add(*e->tied_angle < kReportedRightAngle);
+  s.mean_ratio_interval = ratioInterval(by_mass, scans);
+}
+
 std::vector<Histogram> histograms(const std::vector<FrameErrors>& errors, Value value, double scale, double bin,
                                   int num_bins) {
   std::vector<Histogram> result;
   for (const AlignmentMethod method : kAlignmentMethods) {
-    Histogram histogram{method, {}, std::vector<double>(num_bins + 1, 0.0)};
+    Histogram histogram{method, {}, std::vector<double>(num_bins + 1, 0.0), 0};
     for (int k = 0; k <= num_bins; ++k) histogram.lower_ends.push_back(k * bin);
     const Errors scans = select(errors, method, true);
+    if (scans.empty()) continue;
+    histogram.num_scans = static_cast<int>(scans.size());
     for (const FrameErrors* e : scans)
       histogram.shares[std::min(num_bins, static_cast<int>(scale * (e->*value) / bin))] +=
           1.0 / static_cast<double>(scans.size());
@@ -80,9 +132,18 @@ void draw(const std::vector<Histogram>& histograms, const std::string& title, co
   chart.x.title = x;
   chart.y.title = "share of the scans";
   for (const Histogram& histogram : histograms) {
+    if (std::find(std::begin(kChartedMethods), std::end(kChartedMethods), histogram.method) ==
+        std::end(kChartedMethods))
+      continue;
     ChartSeries series{toString(histogram.method), {}, histogram.shares};
     const double half = 0.5 * histogram.lower_ends[1];
     for (const double end : histogram.lower_ends) series.x.push_back(end + half);
+    for (const double share : histogram.shares) {
+      const int count = static_cast<int>(std::lround(share * histogram.num_scans));
+      const Interval interval = Proportion{count, histogram.num_scans}.wilson();
+      series.low.push_back(interval.low);
+      series.high.push_back(interval.high);
+    }
     chart.series.push_back(std::move(series));
   }
   writeChart(chart, path);
@@ -92,21 +153,17 @@ void draw(const std::vector<Histogram>& histograms, const std::string& title, co
 
 std::vector<AlignmentStatistics> summarize(const std::vector<FrameErrors>& errors) {
   const Errors by_mass = select(errors, AlignmentMethod::CenterOfMass, true);
-  const auto mass_means = meanCenters(by_mass);
   std::vector<AlignmentStatistics> result;
   for (const AlignmentMethod method : kAlignmentMethods) {
     const Errors scans = select(errors, method, true), wholes = select(errors, method, false);
+    if (wholes.empty()) continue;
     AlignmentStatistics s;
     s.method = method;
     s.num_models = static_cast<int>(wholes.size());
     s.num_scans = static_cast<int>(scans.size());
-    std::vector<double> closer_scans, closer_models;
-    for (std::size_t i = 0; i < scans.size(); ++i)
-      closer_scans.push_back(scans[i]->center < by_mass[i]->center ? 1.0 : 0.0);
-    for (const auto& [model, center] : meanCenters(scans))
-      closer_models.push_back(center < mass_means.at(model) ? 1.0 : 0.0);
-    s.closer_scans = mean(closer_scans);
-    s.closer_models = mean(closer_models);
+    addCounts(by_mass, scans, wholes, s);
+    s.closer_scans = s.counted_closer_scans.rate();
+    s.closer_models = s.counted_closer_models.rate();
     const std::vector<double> centers = valuesOf(scans, &FrameErrors::center);
     const std::vector<double> mass_centers = valuesOf(by_mass, &FrameErrors::center);
     s.mean_center = mean(centers);
@@ -155,6 +212,27 @@ void printTable(const std::vector<AlignmentStatistics>& statistics) {
       "or one that it calls equally good.\nas good: that, or each plane scores on the whole as one of its own.\n");
 }
 
+void printIntervals(const std::vector<AlignmentStatistics>& statistics) {
+  const bool ties = statistics.front().counted_ties.total > 0;
+  std::printf("\n%-14s | %-31s | %-31s | %-22s | %-31s | %-31s%s\n", "", "closer, models", "closer, scans",
+              "mass / this, mean", "own axes of scans", "own axes of wholes", ties ? " | like for like" : "");
+  std::printf("%-14s | %-31s | %-31s | %-22s | %-31s | %-31s%s\n", "the paper", "", "90 %", "1.5", "70 %", "",
+              ties ? " |" : "");
+  for (const AlignmentStatistics& s : statistics) {
+    const Interval& ratio = s.mean_ratio_interval;
+    const std::string text = fixed(s.mean_ratio, 2) + " (" + fixed(ratio.low, 2) + " to " + fixed(ratio.high, 2) + ")";
+    std::printf("%-14s | %-31s | %-31s | %-22s | %-31s | %-31s%s\n", toString(s.method).c_str(),
+                s.counted_closer_models.text().c_str(), s.counted_closer_scans.text().c_str(), text.c_str(),
+                s.counted_own_scans.text().c_str(), s.counted_own_wholes.text().c_str(),
+                ties ? (" | " + s.counted_ties.text()).c_str() : "");
+  }
+  std::printf(
+      "95 %% intervals.%s\n",
+      ties ? " like for like: axes of scans within 5 deg of those of the whole, up to the symmetries of the mesh "
+             "that brute force finds."
+           : "");
+}
+
 nlohmann::json toJson(const std::vector<AlignmentStatistics>& statistics) {
   nlohmann::json list = nlohmann::json::array();
   for (const AlignmentStatistics& s : statistics) {
@@ -167,6 +245,7 @@ nlohmann::json toJson(const std::vector<AlignmentStatistics>& statistics) {
                     {"own_axes_rate", {{"scans", s.own_scans}, {"wholes", s.own_wholes}}},
                     {"own_axes_turned_rate", {{"scans", s.own_turned_scans}, {"wholes", s.own_turned_wholes}}},
                     {"axes_rate", s.axes},
+                    {"like_for_like_rate", s.counted_ties.total > 0 ? nlohmann::json(s.counted_ties.rate()) : nullptr},
                     {"frame_rate", s.frames},
                     {"equal_axes_rate", s.equal_axes},
                     {"as_good_rate", s.as_good},

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "evaluate/frames/alignment_methods.h"
+#include "evaluate/shared/proportion.h"
 
 namespace pcl_symmetry::apps {
 
@@ -20,7 +22,11 @@ struct FrameErrors {
   double axes_angle = 0.0;        ///< of a scan's axes from those of the whole, any order and sign
   double frame_angle = 0.0;       ///< of a scan's frame from that of the whole, or one that is equally good
   double equal_axes_angle = 0.0;  ///< the same, any order and sign
-  bool as_good = false;           ///< that, or its planes are symmetries of the whole as good as those of its own frame
+  /// Of a scan's axes from those of the whole, up to the symmetries of the mesh; not set where these were not asked
+  /// for.
+  std::optional<double> tied_angle;
+  bool as_good = false;  ///< near a frame that the method calls equally good, or of planes that are as good on the
+                         ///< whole as those of its own frame
   double milliseconds = 0.0;
 };
 
@@ -36,6 +42,11 @@ struct AlignmentStatistics {
   double own_turned_scans = 0.0, own_turned_wholes = 0.0;
   double axes = 0.0, frames = 0.0, equal_axes = 0.0, as_good = 0.0;
   double median_ms = 0.0, p95_ms = 0.0;  ///< of scans
+
+  /// The rates above as counts, for their intervals.
+  Proportion counted_closer_models, counted_closer_scans, counted_own_scans, counted_own_wholes, counted_axes;
+  Proportion counted_ties;       ///< FrameErrors::tied_angle
+  Interval mean_ratio_interval;  ///< 95 %, models drawn anew
 };
 
 /// One for each method.
@@ -43,6 +54,9 @@ struct AlignmentStatistics {
 std::vector<AlignmentStatistics> summarize(const std::vector<FrameErrors>& errors);
 
 void printTable(const std::vector<AlignmentStatistics>& statistics);
+
+/// Counts with 95 % intervals, beside the figures that the paper gives.
+void printIntervals(const std::vector<AlignmentStatistics>& statistics);
 nlohmann::json toJson(const std::vector<AlignmentStatistics>& statistics);
 
 /// A row for each cloud and method.
@@ -53,13 +67,15 @@ struct Histogram {
   AlignmentMethod method;
   std::vector<double> lower_ends;  ///< of the bins; the last one is open
   std::vector<double> shares;
+  int num_scans = 0;
 };
 std::vector<Histogram> translationHistograms(const std::vector<FrameErrors>& errors);  ///< per cent of the diagonal
 std::vector<Histogram> rotationHistograms(const std::vector<FrameErrors>& errors);     ///< degrees
 
 std::string histogramCSV(const std::vector<FrameErrors>& errors);
 
-/// Figure 12 a and b, beside \p path: NAME_translation.png and NAME_rotation.png.
+/// Figure 12 a and b with bands of 95 % intervals, of four methods, beside \p path: NAME_translation.png and
+/// NAME_rotation.png.
 void drawHistograms(const std::vector<FrameErrors>& errors, const std::string& path);
 
 }  // namespace pcl_symmetry::apps

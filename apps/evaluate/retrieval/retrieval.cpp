@@ -63,7 +63,7 @@ CommandLine commandLine(EvaluateRetrievalOptions& o) {
   return line;
 }
 
-constexpr std::size_t kNumPublished = 5;  // derived: rows of publishedMethods()
+constexpr std::size_t kNumPublished = 7;  // derived: rows of publishedMethods()
 
 struct Result {
   RetrievalMethod method;
@@ -248,7 +248,9 @@ private:
   void printWhatSymmetryBrings() const {
     const std::vector<std::array<std::string, 2>> pairs = {
         {"PRST x GEDT, axes of the files", "GEDT, axes of the files"},
+        {"PRST by equation 1 x GEDT, axes of the files", "GEDT, axes of the files"},
         {"PRST x GEDT, symmetry axes", "GEDT, symmetry axes"},
+        {"PRST by equation 1 x GEDT, symmetry axes", "GEDT, symmetry axes"},
         {"GEDT, symmetry axes", "GEDT, principal axes"},
         {"PRST x GEDT, all turns", "GEDT, all turns"},
         {"compact PRST x GEDT", "compact GEDT"},
@@ -272,7 +274,21 @@ private:
   struct ClassGain {
     std::string name;
     double prst, gedt, product;  ///< discounted cumulative gain in the axes of the files
+    Gain ahead;                  ///< of PRST over GEDT, interval over the queries
   };
+
+  /// The gain of the queries of one class, each drawn by itself.
+  static Gain gainWithin(const std::string& name, const QueryScores& with, const QueryScores& without) {
+    std::vector<double> a, b;
+    std::vector<std::string> queries;
+    for (std::size_t i = 0; i < with.classes.size(); ++i) {
+      if (with.classes[i] != name) continue;
+      a.push_back(with.dcg[i]);
+      b.push_back(without.dcg[i]);
+      queries.push_back(std::to_string(i));
+    }
+    return pairedGain(a, b, queries);
+  }
 
   /// First those that PRST finds best compared with GEDT.
   std::vector<ClassGain> classGains() const {
@@ -280,8 +296,11 @@ private:
     const auto gedt = statisticsByClass(results_[2].method.distances, classes_);
     const auto product = statisticsByClass(results_[3].method.distances, classes_);
     std::vector<ClassGain> gains;
+    const QueryScores of_prst = queryScores(results_[1].method.distances, classes_);
+    const QueryScores of_gedt = queryScores(results_[2].method.distances, classes_);
     for (const auto& [name, statistics] : prst)
-      gains.push_back({name, statistics.dcg, gedt.at(name).dcg, product.at(name).dcg});
+      gains.push_back(
+          {name, statistics.dcg, gedt.at(name).dcg, product.at(name).dcg, gainWithin(name, of_prst, of_gedt)});
     std::stable_sort(gains.begin(), gains.end(),
                      [](const ClassGain& a, const ClassGain& b) { return a.prst - a.gedt > b.prst - b.gedt; });
     return gains;
@@ -353,7 +372,7 @@ private:
     drawClasses();
   }
 
-  /// Figure 13: no more curves than there are colours, eight.
+  /// Figure 13 with bands of 95 % intervals over classes: no more curves than there are colours, eight.
   void drawCurves(const std::string& title, std::size_t begin, std::size_t end, const std::string& what) const {
     Chart chart;
     chart.title = title;
@@ -363,13 +382,20 @@ private:
       const Result& r = results_[i];
       if (!r.method.charted) continue;
       ChartSeries series{r.method.name, {}, r.all.precision, false};
-      for (int k = 0; k < kNumRecalls; ++k) series.x.push_back((k + 1.0) / kNumRecalls);
+      const QueryScores scores = queryScores(r.method.distances, classes_);
+      for (int k = 0; k < kNumRecalls; ++k) {
+        const std::vector<double>& precision = scores.precision[static_cast<std::size_t>(k)];
+        const Gain of_none = pairedGain(precision, std::vector<double>(precision.size(), 0.0), scores.classes);
+        series.x.push_back((k + 1.0) / kNumRecalls);
+        series.low.push_back(of_none.low);
+        series.high.push_back(of_none.high);
+      }
       chart.series.push_back(std::move(series));
     }
     writeChart(chart, chartBeside(*options_.png, what));
   }
 
-  /// Figure 14: class by class.
+  /// Figure 14: class by class, with the 95 % intervals of PRST.
   void drawClasses() const {
     Chart chart;
     chart.title = "Classes, axes of the files";
@@ -379,6 +405,8 @@ private:
     for (const ClassGain& gain : classGains()) {
       for (ChartSeries& series : chart.series) series.x.push_back(1.0 + static_cast<double>(series.x.size()));
       chart.series[0].y.push_back(gain.prst - gain.gedt);
+      chart.series[0].low.push_back(gain.ahead.low);
+      chart.series[0].high.push_back(gain.ahead.high);
       chart.series[1].y.push_back(gain.product - gain.gedt);
       chart.series[2].y.push_back(0.0);
     }

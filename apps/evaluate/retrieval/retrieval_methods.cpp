@@ -145,6 +145,14 @@ void addMethod(const std::string& name, const Eigen::MatrixXf& distances, bool c
   methods.push_back({name + ", scaled", scaled(distances, references, options), false});
 }
 
+/// PRST = sqrt((1 + D) / 2) as equation 1 has it, from the root of D that descriptors hold.
+std::vector<float> byEquation1(const std::vector<float>& roots) {
+  std::vector<float> values;
+  values.reserve(roots.size());
+  for (const float root : roots) values.push_back(std::sqrt(0.5f * (1.0f + root * root)));
+  return values;
+}
+
 }  // namespace
 
 std::vector<RetrievalMethod> publishedMethods(const std::vector<SymmetryDescriptors>& models, ModelAxes axes,
@@ -165,13 +173,22 @@ std::vector<RetrievalMethod> publishedMethods(const std::vector<SymmetryDescript
   };
   const Eigen::MatrixXf greatest =
       distances([&](D a, D b) { return (values(a.prsd) - values(b.prsd)).abs().maxCoeff(); });
+  std::vector<std::vector<float>> by_letter;
+  by_letter.reserve(models.size());
+  for (D model : models) by_letter.push_back(byEquation1(model.prst));
+  const Eigen::MatrixXf letter =
+      symmetricDistances(models.size(), options.num_threads, [&](std::size_t i, std::size_t j) -> float {
+        return planeDescriptorDistance(by_letter[i].data(), by_letter[j].data(), by_letter[i].size());
+      });
   const std::string where = ", " + nameOf(axes);
   const bool charted = axes != ModelAxes::Principal;
   return {{"PRSD" + where, prsd, charted},
           {"PRST" + where, prst, charted},
           {"GEDT" + where, gedt, charted},
           {"PRST x GEDT" + where, prst.cwiseProduct(gedt), charted},
-          {"PRSD by the maximum" + where, greatest, false}};
+          {"PRSD by the maximum" + where, greatest, false},
+          {"PRST by equation 1" + where, letter, false},
+          {"PRST by equation 1 x GEDT" + where, letter.cwiseProduct(gedt), false}};
 }
 
 std::vector<RetrievalMethod> signatureMethods(std::vector<TurnableForms> models, const RetrievalOptions& options,

@@ -30,7 +30,7 @@ struct RetrievalMethod {
 using RetrievalProgress = std::function<void(double)>;
 
 /// PRSD, PRST, GEDT and the product of the latter two: L2 in one frame each, about the center of mass; and PRSD by the
-/// greatest difference, as Kazhdan et al. (2004) compare it.
+/// greatest difference, as Kazhdan et al. (2004) compare it; and PRST and the product with values by equation 1.
 std::vector<RetrievalMethod> publishedMethods(const std::vector<SymmetryDescriptors>& models, ModelAxes axes,
                                               const RetrievalOptions& options);
 

@@ -95,6 +95,7 @@ QueryScores queryScores(const Eigen::MatrixXf& distances, const std::vector<std:
     add(ranks, one);
     scores.nearest.push_back(one.nearest);
     scores.dcg.push_back(one.dcg);
+    for (std::size_t r = 0; r < kNumRecalls; ++r) scores.precision[r].push_back(one.precision[r]);
     scores.classes.push_back(classes[query]);
   }
   return scores;

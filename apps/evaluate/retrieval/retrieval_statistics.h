@@ -38,6 +38,8 @@ std::map<std::string, RetrievalStatistics> statisticsByClass(const Eigen::Matrix
 struct QueryScores {
   std::vector<double> nearest;  ///< 1 where the nearest model is of the query's class, else 0
   std::vector<double> dcg;
+  /// Of each recall, as RetrievalStatistics::precision, a value for each query.
+  std::vector<std::vector<double>> precision = std::vector<std::vector<double>>(kNumRecalls);
   std::vector<std::string> classes;
 };
 

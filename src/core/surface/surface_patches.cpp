@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <queue>
@@ -29,12 +32,36 @@ std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_piec
   return elements;
 }
 
+/// Steps between neighbouring elements, element by element as SurfaceGraph::edge_of.
+struct Steps {
+  struct Step {
+    int to;
+    float length;  ///< with the detour across concave edges, input units
+  };
+  const std::vector<int>& first;  ///< where the steps of each element begin
+  std::vector<Step> steps;
+
+  Steps(const SurfaceGraph& graph, float concave_detour) : first(graph.first_edge), steps(graph.edge_of.size()) {
+    std::vector<float> lengths;
+    lengths.reserve(graph.edges.size());
+    for (const SurfaceGraph::Edge& edge : graph.edges) {
+      const float step = (graph.centers.col(edge.to) - graph.centers.col(edge.from)).norm();
+      lengths.push_back(step * (1.0f + concave_detour * std::max(0.0f, edge.concavity)));
+    }
+    for (int element = 0; element < graph.size(); ++element) {
+      for (int i = first[element]; i < first[element + 1]; ++i) {
+        const SurfaceGraph::Edge& edge = graph.edges[graph.edge_of[i]];
+        steps[i] = {edge.from == element ? edge.to : edge.from, lengths[graph.edge_of[i]]};
+      }
+    }
+  }
+};
+
 /// Patches that grow around seeds; each element belongs to the seed with the shortest way along the surface.
 class GrowingPatches {
 public:
   GrowingPatches(const SurfaceGraph& graph, float concave_detour)
-      : graph_(graph),
-        concave_detour_(concave_detour),
+      : steps_(graph, concave_detour),
         distance_(static_cast<std::size_t>(graph.size()), std::numeric_limits<float>::infinity()),
         patch_(distance_.size(), -1) {}
 
@@ -46,33 +73,49 @@ public:
 
   /// Adds a patch, which takes the elements that are closer to its seed than to earlier ones.
   void addSeed(int seed) {
+    const int patch = num_patches_++;
     distance_[seed] = 0.0f;
-    patch_[seed] = num_patches_++;
-    using Entry = std::pair<float, int>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-    front.emplace(0.0f, seed);
-    while (!front.empty()) {
-      const auto [so_far, element] = front.top();
-      front.pop();
-      if (so_far > distance_[element]) continue;
-      graph_.visitNeighbours(element, [&, from = element, reached = so_far](int to, const SurfaceGraph::Edge& edge) {
-        const float step = (graph_.centers.col(to) - graph_.centers.col(from)).norm();
-        const float there = reached + step * (1.0f + concave_detour_ * std::max(0.0f, edge.concavity));
-        if (there >= distance_[to]) return;
+    patch_[seed] = patch;
+    front_.assign(1, keyOf(0.0f, seed));
+    while (!front_.empty()) {
+      std::pop_heap(front_.begin(), front_.end(), std::greater<>());
+      const auto element = static_cast<int>(front_.back() & 0xffffffffu);
+      const float reached = wayOf(front_.back());
+      front_.pop_back();
+      if (reached > distance_[element]) continue;
+      for (int i = steps_.first[element]; i < steps_.first[element + 1]; ++i) {
+        const auto [to, length] = steps_.steps[i];
+        const float there = reached + length;
+        if (there >= distance_[to]) continue;
         distance_[to] = there;
-        patch_[to] = patch_[from];
-        front.emplace(there, to);
-      });
+        patch_[to] = patch;
+        front_.push_back(keyOf(there, to));
+        std::push_heap(front_.begin(), front_.end(), std::greater<>());
+      }
     }
   }
 
   int size() const { return num_patches_; }
 
 private:
-  const SurfaceGraph& graph_;
-  const float concave_detour_;
+  /// Numbers in the order of ways and, where these are equal, of elements: the bits of a float >= 0 rise with it, and
+  /// one number is compared faster than a pair.
+  static std::uint64_t keyOf(float way, int element) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &way, sizeof(bits));
+    return std::uint64_t{bits} << 32 | static_cast<std::uint32_t>(element);
+  }
+  static float wayOf(std::uint64_t key) {
+    const auto bits = static_cast<std::uint32_t>(key >> 32);
+    float way = 0.0f;
+    std::memcpy(&way, &bits, sizeof(way));
+    return way;
+  }
+
+  const Steps steps_;
   std::vector<float> distance_;
   std::vector<int> patch_;
+  std::vector<std::uint64_t> front_;  ///< a heap of keys, the shortest way first
   int num_patches_ = 0;
 };
 
@@ -98,19 +141,27 @@ std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> p
 std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour, int first) {
   GrowingPatches patches(graph, concave_detour);
   if (first >= 0) patches.addSeed(first);
-  // The next seed is the element farthest from all seeds. Distances in the queue may be longer than they are now.
-  std::priority_queue<std::pair<float, int>> farthest;
-  for (const int element : elementsOfLargestPieces(graph, num_patches))
-    if (graph.areas[element] > 0.0f) farthest.emplace(patches.distance(element), element);
-  while (!farthest.empty()) {
+  std::vector<int> elements = elementsOfLargestPieces(graph, num_patches);
+  elements.erase(std::remove_if(elements.begin(), elements.end(), [&](int i) { return !(graph.areas[i] > 0.0f); }),
+                 elements.end());
+  // Each large piece has a seed. After that the next one is the element farthest from all seeds.
+  std::vector<int> others;
+  for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
+    if (std::isinf(patches.distance(*element)))
+      patches.addSeed(*element);
+    else
+      others.push_back(*element);
+  }
+  std::vector<std::pair<float, int>> ways;
+  for (const int element : others) ways.emplace_back(patches.distance(element), element);
+  std::priority_queue farthest(std::less<>(), std::move(ways));
+  while (!farthest.empty() && patches.size() < num_patches) {
     const auto [distance, element] = farthest.top();
     farthest.pop();
-    if (distance > patches.distance(element)) {
-      farthest.emplace(patches.distance(element), element);
-      continue;
-    }
-    if (std::isfinite(distance) && patches.size() >= num_patches) break;
-    patches.addSeed(element);
+    if (distance > patches.distance(element))
+      farthest.emplace(patches.distance(element), element);  // a seed has come closer since
+    else
+      patches.addSeed(element);
   }
   return filledFromClosest(graph, patches.patches());
 }

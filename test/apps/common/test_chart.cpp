@@ -36,6 +36,15 @@ TEST(Chart, DrawsWhatItsSeriesHold) {
   chart.series[1].y = {0.2, 0.4, 0.5};
   writeChart(chart, folder / "b.png", 400, 300);
   EXPECT_NE(contentOf(folder / "a.png"), contentOf(folder / "b.png"));
+  ChartSeries& banded = chart.series[1];
+  for (const double y : banded.y) {
+    banded.low.push_back(y - 0.1);
+    banded.high.push_back(y + 0.1);
+  }
+  writeChart(chart, folder / "c.png", 400, 300);
+  EXPECT_NE(contentOf(folder / "b.png"), contentOf(folder / "c.png")) << "the band";
+  banded.high.pop_back();
+  EXPECT_THROW(writeChart(chart, folder / "d.png"), std::invalid_argument);
 }
 
 TEST(Chart, RefusesWhatItCannotDraw) {

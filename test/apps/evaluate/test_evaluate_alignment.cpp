@@ -8,7 +8,10 @@
 #include "apps/support/lathe_mesh.h"
 #include "apps/support/tool_run.h"
 #include "common/shape_input/shape_input.h"
+#include "core/base/random.h"
 #include "evaluate/frames/frame_difference.h"
+#include "evaluate/frames/mesh_ties.h"
+#include "evaluate/frames/published_frame.h"
 #include "evaluate/segmentation/patches.h"
 #include "evaluate/shared/class_file.h"
 
@@ -42,6 +45,56 @@ TEST(FrameDifference, AllowsAnyAngleAboutAnAxisOfRevolution) {
     EXPECT_NEAR(angleOfAxes(a, tilted, axis), 4.0, 1e-5);
     EXPECT_EQ(angleOfAxes(a, tilted, 3), 0.0);
   }
+}
+
+/// A symmetry of reflections in the three planes of a box turns frames whose axes lie askew, as the method of one box.
+TEST(MeshTies, AreTheSymmetriesOfTheMesh) {
+  ReferenceSymmetries box;
+  for (int k = 0; k < 3; ++k) box.planes.push_back({pcl_symmetry::ReflectionPlane(Eigen::Vector3d::Unit(k), 0.0), 1.0});
+  const MeshTies ties = tiesOf(box);
+  EXPECT_EQ(ties.turns.size(), 4u) << "the identity and three half-turns";
+  const Eigen::Matrix3d askew = turned(25.0, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(angleOfAxes(askew.transpose(), askew), 40.0, 1e-6) << "50 degrees are as good as 40";
+  EXPECT_NEAR(angleUpToTies(askew.transpose(), askew, ties), 0.0, 1e-5) << "each is the other's reflection";
+  EXPECT_NEAR(angleUpToTies(askew, askew, tiesOf({})), 0.0, 1e-5);
+  EXPECT_NEAR(angleUpToTies(askew.transpose(), askew, tiesOf({})), 40.0, 1e-5);
+}
+
+TEST(MeshTies, OfABodyOfRevolutionTurnAboutItsAxis) {
+  ReferenceSymmetries vase;
+  vase.axes.push_back({Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), 1.0});
+  const Eigen::Matrix3d a = turned(30.0, {1.0, 2.0, 0.5}), b = turned(77.0, Eigen::Vector3d::UnitX()) * a;
+  EXPECT_NEAR(angleUpToTies(b, a, tiesOf(vase)), 0.0, 1e-5);
+  // Tilted by 4 degrees away from the axis: no turn about it takes that back.
+  const Eigen::Matrix3d straight = Eigen::Matrix3d::Identity(), tilted = turned(4.0, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(angleUpToTies(tilted, straight, tiesOf(vase)), 4.0, 1e-5);
+  vase.centers.push_back({Eigen::Vector3d::Zero(), 1.0});
+  EXPECT_EQ(angleUpToTies(tilted, straight, tiesOf(vase)), 0.0);
+}
+
+/// A box whose sides differ: every plane is found by either form of the method.
+TEST(PublishedFrame, FindsTheAxesOfABox) {
+  pcl_symmetry::Points points(3, 4000);
+  pcl_symmetry::RandomStream random(4);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const auto side = static_cast<Eigen::Index>(random.below(3));
+    for (Eigen::Index k = 0; k < 3; ++k) points(k, i) = static_cast<float>(2.0 * random.uniform() - 1.0);
+    points(side, i) = points(side, i) < 0.0f ? -1.0f : 1.0f;
+    points(0, i) *= 2.0f;
+    points(1, i) *= 1.4f;
+  }
+  const Eigen::Matrix3d turn = turned(33.0, {1.0, -0.4, 0.7});
+  const Eigen::Vector3d center(4.0, -2.0, 1.0);
+  points = ((turn.cast<float>() * points).colwise() + center.cast<float>()).eval();
+  PublishedFrameOptions options;
+  const PublishedFrame refined = publishedFrame(points, options);
+  EXPECT_LT(angleOfAxes(refined.axes, turn), 0.5);
+  EXPECT_LT((refined.center - center).norm(), 0.02);
+  EXPECT_NEAR(refined.axes.determinant(), 1.0, 1e-9);
+  options.refined = false;
+  const PublishedFrame coarse = publishedFrame(points, options);
+  EXPECT_LT(angleOfAxes(coarse.axes, turn), 6.0) << "bins are up to 5.6 degrees apart";
+  EXPECT_LT(angleOfAxes(refined.axes, turn), angleOfAxes(coarse.axes, turn));
 }
 
 TEST(Patches, TakeTheirShareOfTheFinitePoints) {
@@ -80,7 +133,7 @@ TEST_F(EvaluateAlignment, ComparesFramesOfScansWithThoseOfWholes) {
   const std::string csv = folder_ / "c.csv", histograms = folder_ / "h.csv";
   ASSERT_EQ(evaluate("-num_views 2 -csv " + csv + " -histogram_csv " + histograms + " -png " + (folder_ / "a.png")), 0)
       << error_;
-  const json symmetry = method(0), mass = method(2);
+  const json symmetry = method(0), mass = method(5);
   EXPECT_EQ(symmetry["method"], "symmetry");
   EXPECT_EQ(symmetry["num_models"], 3);
   EXPECT_EQ(symmetry["num_scans"], 6);
@@ -88,7 +141,8 @@ TEST_F(EvaluateAlignment, ComparesFramesOfScansWithThoseOfWholes) {
   EXPECT_EQ(mass["closer_rate"]["scans"], 0.0);
   EXPECT_LT(symmetry["center"]["mean"].get<double>(), mass["center"]["mean"].get<double>());
   EXPECT_GE(symmetry["own_axes_turned_rate"]["wholes"].get<double>(), 0.6) << "a box and a vase";
-  EXPECT_NE(output_.find("as published"), std::string::npos);
+  for (const char* name : {"no free space", "first maximum", "exact map", "exact map ISP", "90 %"})
+    EXPECT_NE(output_.find(name), std::string::npos) << name;
 
   std::istringstream rows(contentOf(csv));
   std::string line;
@@ -96,7 +150,7 @@ TEST_F(EvaluateAlignment, ComparesFramesOfScansWithThoseOfWholes) {
   const auto num_commas = std::count(line.begin(), line.end(), ',');
   int num_rows = 0;
   for (; std::getline(rows, line); ++num_rows) EXPECT_EQ(std::count(line.begin(), line.end(), ','), num_commas);
-  EXPECT_EQ(num_rows, 3 * 3 * 4) << "three clouds of three models, four methods";
+  EXPECT_EQ(num_rows, 3 * 3 * 7) << "three clouds of three models, seven methods";
 
   std::istringstream shares(contentOf(histograms));
   std::getline(shares, line);
@@ -113,7 +167,9 @@ TEST_F(EvaluateAlignment, RestrictsToAClassification) {
   const std::string classes = folder_ / "some.cla";
   folder_.write("some.cla", "PSB 1\n2 1\n\nvessel 0 0\n\nvase vessel 1\n7\n");
   EXPECT_EQ(modelsOfClassFile(classes), std::set<std::string>{"m7"});
-  ASSERT_EQ(evaluate("-num_views 1 -noise 0.01 -missing 0.2 -cla " + classes), 0) << error_;
+  ASSERT_EQ(evaluate("-num_views 1 -noise 0.01 -missing 0.2 -ties -methods 'exact map' -cla " + classes), 0) << error_;
+  EXPECT_NE(output_.find("like for like"), std::string::npos);
+  EXPECT_TRUE(method(0)["like_for_like_rate"].is_number());
   EXPECT_EQ(method(0)["num_models"], 1);
 
   folder_.write("some.cla", "PSB 1\n2 5\n\nvessel 0 0\n\nvase vessel 1\n7\n");
@@ -124,6 +180,8 @@ TEST_F(EvaluateAlignment, RestrictsToAClassification) {
 TEST_F(EvaluateAlignment, RefusesWrongUsage) {
   EXPECT_EQ(evaluate("-missing 1"), 2);
   EXPECT_EQ(evaluate("-num_views 9"), 2);
+  EXPECT_EQ(evaluate("-methods guess"), 2);
+  EXPECT_NE(error_.find("must be one of symmetry, no free space"), std::string::npos) << error_;
   EXPECT_EQ(run("alignment " + (folder_ / "nothing")), 1);
 }
 

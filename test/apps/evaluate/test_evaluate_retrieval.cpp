@@ -65,6 +65,9 @@ TEST(RetrievalStatistics, QueriesAloneAddUpToTheMeans) {
   ASSERT_EQ(scores.classes, (std::vector<std::string>{"a", "b", "a", "a", "b"}));
   EXPECT_NEAR(std::accumulate(scores.nearest.begin(), scores.nearest.end(), 0.0) / 5.0, all.nearest, 1e-12);
   EXPECT_NEAR(std::accumulate(scores.dcg.begin(), scores.dcg.end(), 0.0) / 5.0, all.dcg, 1e-12);
+  for (std::size_t r = 0; r < kNumRecalls; ++r)
+    EXPECT_NEAR(std::accumulate(scores.precision[r].begin(), scores.precision[r].end(), 0.0) / 5.0, all.precision[r],
+                1e-12);
 }
 
 TEST(RetrievalStatistics, GainsAreOfTheSameQueries) {
@@ -131,7 +134,7 @@ TEST_F(EvaluateRetrieval, ComparesMethods) {
       << error_;
   const json summary = json::parse(contentOf(folder_ / "s.json"));
   EXPECT_EQ(summary["num_queries"], 6);
-  EXPECT_EQ(summary["methods"].size(), 31u);  // 5 in each of 3 frames, 8 in all turns, each also scaled
+  EXPECT_EQ(summary["methods"].size(), 37u);  // 7 in each of 3 frames, 8 in all turns, each also scaled
   for (const auto& [name, method] : summary["methods"].items()) EXPECT_EQ(method["precision"].size(), 20u) << name;
   EXPECT_GE(summary["methods"]["compact signatures"]["nearest"].get<double>(), 0.6);
   EXPECT_NE(output_.find("compact signatures, scaled"), std::string::npos);

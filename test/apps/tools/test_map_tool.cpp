@@ -2,7 +2,10 @@
 #include <pcl/common/io.h>
 #include <pcl/conversions.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/support/tool_run.h"
 #include "common/pictures/raster_image.h"
@@ -42,6 +45,21 @@ TEST_F(MapTool, PointsOnThePlanesOfABoxAreTheMostSymmetric) {
   EXPECT_GT(near / num_near, 0.85);
   EXPECT_LT(far / num_far, 0.75);
   EXPECT_EQ(nlohmann::json::parse(contentOf(folder_ / "a.json"))["num_points"], 10000);
+}
+
+TEST_F(MapTool, Equation1LiesBetweenItsEnds) {
+  const std::string common = mesh_ + " -quiet -grid 32 -points 2000 -json " + (folder_ / "a.json");
+  const auto ends = [&](const std::string& measure) {
+    EXPECT_EQ(run(common + " -measure " + measure), 0) << error_;
+    const auto summary = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+    return std::make_pair(summary["least"].get<double>(), summary["greatest"].get<double>());
+  };
+  const auto [least, greatest] = ends("D");
+  const auto [least_prst, greatest_prst] = ends("prst");
+  EXPECT_NEAR(least_prst, std::sqrt(0.5 * (1.0 + least)), 1e-5);
+  EXPECT_NEAR(greatest_prst, std::sqrt(0.5 * (1.0 + std::min(1.0, greatest))), 1e-5);
+  EXPECT_LE(greatest_prst, 1.0);
+  EXPECT_EQ(run(common + " -measure PRST"), 2);
 }
 
 TEST_F(MapTool, KeepsFieldsAndPointsThatAreNotFinite) {

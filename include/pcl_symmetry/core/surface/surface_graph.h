@@ -14,7 +14,9 @@ struct SurfaceGraph {
   struct Edge {
     int from, /**< element, in [0, N) */ to;  ///< element, in [0, N)
     float length;                             ///< of the border, input units
-    float concavity;  ///< angle between the two normals, in [-pi, pi] radians; > 0 where the surface is concave
+    /// Angle between the two normals, in [-pi, pi] radians; > 0 where the surface is concave. For points 1.5 times
+    /// that, because their normals are means over neighbours.
+    float concavity;
   };
 
   Points centers;               ///< 3 x N, input frame
