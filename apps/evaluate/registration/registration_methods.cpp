@@ -9,7 +9,9 @@
 #include <pcl/registration/icp.h>
 #include <pcl/registration/sample_consensus_prerejective.h>
 
+#include <ctime>
 #include <limits>
+#include <memory>
 
 #include "common/command_line/console.h"
 #include "core/base/parallel.h"
@@ -78,56 +80,81 @@ void prepareIcp(pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>& icp, c
   icp.setTransformationEpsilon(1e-10);
 }
 
-RegistrationAnswer runSymmetryRegistration(SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ>& registration,
-                                           const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
-                                           const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads) {
-  RegistrationAnswer answer;
-  Stopwatch watch;
-  registration.setInputSource(source);
-  registration.setInputTarget(target);
-  registration.setRandomSeed(seed);
-  registration.setNumberOfThreads(num_threads);
-  Cloud aligned;
-  if (guess) {
-    registration.setSearchAround(guess->angle, guess->distance);
-    registration.align(aligned, guess->T_target_source.matrix().cast<float>());
-  } else {
-    registration.align(aligned);
+/// Wall time and processor time.
+class Timer {
+public:
+  void stop(RegistrationAnswer& answer) {
+    answer.milliseconds = watch_.lap();
+    answer.processor_ms = 1000.0 * static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC;
   }
-  answer.converged = registration.hasConverged();
-  answer.T_target_source = Eigen::Isometry3d(registration.getFinalTransformation().cast<double>());
-  answer.support = registration.getScore().support;
-  answer.conflict = registration.getScore().conflict;
-  answer.milliseconds = watch.lap();
-  return answer;
+
+private:
+  Stopwatch watch_;
+  const std::clock_t start_ = std::clock();
+};
+
+using Registration = SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ>;
+
+/// \param keeps whether tracks keep the target that was prepared.
+RegisterToTarget bySymmetry(const std::shared_ptr<Registration>& registration, const Cloud::ConstPtr& target,
+                            std::uint64_t seed, int num_threads, bool keeps = true) {
+  registration->setRandomSeed(seed);
+  registration->setNumberOfThreads(num_threads);
+  const auto is_prepared = std::make_shared<bool>(false);
+  return [=](const Cloud::ConstPtr& source, const std::optional<PoseGuess>& guess) {
+    Cloud aligned;
+    const auto align = [&] {
+      registration->setInputSource(source);
+      if (!*is_prepared) registration->setInputTarget(target);
+      if (guess) {
+        registration->setSearchAround(guess->angle, guess->distance);
+        registration->align(aligned, guess->T_target_source.matrix().cast<float>());
+      } else {
+        registration->setSearchEverywhere();
+        registration->align(aligned);
+      }
+    };
+    if (guess && keeps && !*is_prepared) {
+      align();
+      *is_prepared = true;
+    }
+    RegistrationAnswer answer;
+    Timer timer;
+    align();
+    timer.stop(answer);
+    answer.converged = registration->hasConverged();
+    answer.T_target_source = Eigen::Isometry3d(registration->getFinalTransformation().cast<double>());
+    answer.support = registration->getScore().support;
+    answer.conflict = registration->getScore().conflict;
+    return answer;
+  };
 }
 
-RegistrationAnswer registerBySymmetry(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
-                                      const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads) {
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  return runSymmetryRegistration(registration, source, target, guess, seed, num_threads);
+RegisterToTarget registerBySymmetry(const Cloud::ConstPtr& target, std::uint64_t seed, int num_threads) {
+  return bySymmetry(std::make_shared<Registration>(), target, seed, num_threads);
 }
 
-RegistrationAnswer registerByFrames(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
-                                    const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads) {
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  PoseSearchOptions options = registration.getSearchOptions();
+RegisterToTarget registerAnew(const Cloud::ConstPtr& target, std::uint64_t seed, int num_threads) {
+  return bySymmetry(std::make_shared<Registration>(), target, seed, num_threads, false);
+}
+
+RegisterToTarget registerByFrames(const Cloud::ConstPtr& target, std::uint64_t seed, int num_threads) {
+  const auto registration = std::make_shared<Registration>();
+  PoseSearchOptions options = registration->getSearchOptions();
   options.num_rotations = 0;
-  registration.setSearchOptions(options);
-  return runSymmetryRegistration(registration, source, target, guess, seed, num_threads);
+  registration->setSearchOptions(options);
+  return bySymmetry(registration, target, seed, num_threads);
 }
 
-RegistrationAnswer registerByRotations(const Cloud::ConstPtr& source, const Cloud::ConstPtr& target,
-                                       const std::optional<PoseGuess>& guess, std::uint64_t seed, int num_threads) {
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  registration.setUseFrames(false);
-  return runSymmetryRegistration(registration, source, target, guess, seed, num_threads);
+RegisterToTarget registerByRotations(const Cloud::ConstPtr& target, std::uint64_t seed, int num_threads) {
+  const auto registration = std::make_shared<Registration>();
+  registration->setUseFrames(false);
+  return bySymmetry(registration, target, seed, num_threads);
 }
 
-RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target,
-                                           const std::optional<PoseGuess>&, std::uint64_t, int) {
+RegistrationAnswer alignByPrincipalAxes(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target) {
   RegistrationAnswer answer;
-  Stopwatch watch;
+  Timer timer;
   const Cloud::Ptr source = finitePoints(*raw);
   const Leaf leaf(*target);
   const PrincipalAxes of_source = principalAxes(pointsOf(*source)), of_target = principalAxes(pointsOf(*target));
@@ -147,7 +174,7 @@ RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Clo
   const IcpResult result = alignByIcp(fine, best.transform);
   answer.T_target_source = Eigen::Isometry3d(result.transform.cast<double>());
   answer.converged = result.converged;
-  answer.milliseconds = watch.lap();
+  timer.stop(answer);
   return answer;
 }
 
@@ -179,10 +206,15 @@ FeatureCloud::Ptr featuresOf(const NormalCloud::ConstPtr& cloud, double radius, 
   return features;
 }
 
-RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target,
-                                      const std::optional<PoseGuess>&, std::uint64_t, int num_threads) {
+RegisterToTarget registerByPrincipalAxes(const Cloud::ConstPtr& target, std::uint64_t, int) {
+  return [=](const Cloud::ConstPtr& source, const std::optional<PoseGuess>&) {
+    return alignByPrincipalAxes(source, target);
+  };
+}
+
+RegistrationAnswer alignByFeatures(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target, int num_threads) {
   RegistrationAnswer answer;
-  Stopwatch watch;
+  Timer timer;
   const int threads = resolveNumThreads(num_threads);
   const Cloud::Ptr source = finitePoints(*raw);
   const Leaf leaf(*target);
@@ -212,8 +244,14 @@ RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::C
     answer.T_target_source = Eigen::Isometry3d(result.transform.cast<double>());
     answer.converged = result.converged;
   }
-  answer.milliseconds = watch.lap();
+  timer.stop(answer);
   return answer;
+}
+
+RegisterToTarget registerByFeatures(const Cloud::ConstPtr& target, std::uint64_t, int num_threads) {
+  return [=](const Cloud::ConstPtr& source, const std::optional<PoseGuess>&) {
+    return alignByFeatures(source, target, num_threads);
+  };
 }
 
 }  // namespace
@@ -221,6 +259,7 @@ RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::C
 const std::vector<RegistrationMethod>& registrationMethods() {
   static const std::vector<RegistrationMethod> methods = {
       {"symmetry", "SymmetryRegistration", registerBySymmetry},
+      {"anew", "SymmetryRegistration, the target prepared for each scan", registerAnew},
       {"frames", "SymmetryRegistration, symmetry frames alone", registerByFrames},
       {"rotations", "SymmetryRegistration, rotations spread evenly alone", registerByRotations},
       {"pca", "principal axes + ICP", registerByPrincipalAxes},
