@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "common/files/json_values.h"
-#include "common/pictures/picture.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_output/answer_words.h"
 #include "common/shape_output/cloud_fields.h"
@@ -82,6 +81,7 @@ std::string summaryOf(const SceneObject& object) {
       text = possible ? counted(possible, "possible plane") : "no symmetry";
     }
   }
+  if (object.from_split) text += ", touches another";
   if (!object.models.empty())
     text += ", " + object.models.front().name + formatted(" (%.2f)", object.models.front().confidence);
   return text;
@@ -97,11 +97,9 @@ nlohmann::json describeFrame(const SymmetryFrame& frame, const Eigen::Vector3d& 
 }
 
 nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& shift) {
-  nlohmann::json json{{"num_points", object.indices.size()},
-                      {"planes", nlohmann::json::array()},
-                      {"axes", nlohmann::json::array()},
-                      {"centers", nlohmann::json::array()},
-                      {"models", nlohmann::json::array()}};
+  nlohmann::json json{{"num_points", object.indices.size()}, {"from_split", object.from_split},
+                      {"planes", nlohmann::json::array()},   {"axes", nlohmann::json::array()},
+                      {"centers", nlohmann::json::array()},  {"models", nlohmann::json::array()}};
   if (!object.reason.empty()) json["reason"] = object.reason;
   for (const SymmetryPlane& plane : object.planes)
     json["planes"].push_back({{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
@@ -169,33 +167,6 @@ void markFindings(PicturePanel& panel, const SceneObject& object, const Symmetry
   for (const SymmetryPlane& plane : object.planes)
     if (plane.kind == PlaneKind::Symmetry)
       panel.planes.push_back({plane.normal(), plane.offset(), middle, kPlaneReach * reach, color});
-}
-
-PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
-  const std::vector<int> numbers = objectNumbers(scene, input.points->size());
-  auto points = pcl::make_shared<SymmetryScene::Cloud>();
-  PicturePanel panel;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  const std::size_t stride = 1 + input.points->size() / kDrawnPoints;
-  double num_of_objects = 0.0;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const pcl::PointXYZ& point = (*input.points)[i];
-    if (!pcl::isXYZFinite(point) || (numbers[i] <= 0 && i % stride != 0)) continue;
-    points->push_back(point);
-    panel.segments.push_back(numbers[i] - 1);
-    if (numbers[i] <= 0) panel.segments.back() = -1;
-    if (numbers[i] > 0) middle += point.getVector3fMap().cast<double>(), ++num_of_objects;
-  }
-  if (num_of_objects > 0.0) middle /= num_of_objects;
-  for (std::size_t k = 0; k < scene.objects.size(); ++k)
-    markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
-                 segmentColor(static_cast<int>(k)));
-  panel.label = counted(scene.objects.size(), "object") + ", " + counted(scene.supports.size(), "supporting plane");
-  PictureScene picture;
-  picture.points = points;
-  picture.panels = {panel};
-  lookFromSensor(picture, scene, middle);
-  return picture;
 }
 
 PictureScene closeUp(const InputShape& input, const SceneAnalysis& scene, std::size_t k) {
@@ -267,6 +238,33 @@ pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis&
   }
   completed.resize(points.size(), 1.0f);
   return withFields(toFields(points, input.shift()), {"object", "completed"}, {object, completed});
+}
+
+PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
+  const std::vector<int> numbers = objectNumbers(scene, input.points->size());
+  auto points = pcl::make_shared<SymmetryScene::Cloud>();
+  PicturePanel panel;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  const std::size_t stride = 1 + input.points->size() / kDrawnPoints;
+  double num_of_objects = 0.0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const pcl::PointXYZ& point = (*input.points)[i];
+    if (!pcl::isXYZFinite(point) || (numbers[i] <= 0 && i % stride != 0)) continue;
+    points->push_back(point);
+    panel.segments.push_back(numbers[i] - 1);
+    if (numbers[i] <= 0) panel.segments.back() = -1;
+    if (numbers[i] > 0) middle += point.getVector3fMap().cast<double>(), ++num_of_objects;
+  }
+  if (num_of_objects > 0.0) middle /= num_of_objects;
+  for (std::size_t k = 0; k < scene.objects.size(); ++k)
+    markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
+                 segmentColor(static_cast<int>(k)));
+  panel.label = counted(scene.objects.size(), "object") + ", " + counted(scene.supports.size(), "supporting plane");
+  PictureScene picture;
+  picture.points = points;
+  picture.panels = {panel};
+  lookFromSensor(picture, scene, middle);
+  return picture;
 }
 
 void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path) {
