@@ -109,8 +109,9 @@ private:
   std::optional<std::vector<SceneObject>> partsOf(const pcl::Indices& cluster) {
     const SupportingPlane* support = supportOf(cluster);
     if (!support || !found_.seen->visibility()) return std::nullopt;
-    for (const detail::TouchingParts& parts : detail::touchingParts(
-             *scene_, cluster, *found_.seen->visibility(), support->coefficients, options_.min_points, footHeight())) {
+    for (const detail::TouchingParts& parts :
+         detail::touchingParts(*scene_, cluster, *found_.seen->visibility(), support->coefficients, options_.min_points,
+                               footHeight(cluster, *support))) {
       std::vector<SceneObject> objects{withPlanes(parts.first)};
       if (!isDecided(objects.front())) continue;
       objects.push_back(withPlanes(parts.second));

@@ -31,6 +31,7 @@ extern "C" void stopWatching(int) {
 
 namespace {
 
+// derived: what a user, a service manager and a closed terminal end a program by.
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
 // Bytes. chosen: some hundred names at once; fewer need more reads, more take memory.

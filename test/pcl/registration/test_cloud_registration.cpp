@@ -6,7 +6,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
-#include "core/registration/pose_covariance.h"
+#include "core/registration/covariance/pose_covariance.h"
 
 namespace pcl_symmetry {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/registration/pose_covariance.h"
+#include "core/registration/covariance/pose_covariance.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
