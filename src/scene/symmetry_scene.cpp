@@ -11,7 +11,6 @@
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "scene/object_feet.h"
 #include "scene/scene_parts.h"
-#include "scene/touching_objects.h"
 
 namespace pcl_symmetry {
 
@@ -31,13 +30,6 @@ constexpr double kAboveShare = 0.98;
 // Plane distances that an object may seem to reach into its support where the noise of the support is not known.
 // chosen: half takes noise of its foot for a contradiction, twice lets reflections sink into the table.
 constexpr double kSupportMargin = 2.0;
-
-// Share of an object's points that the symmetry of one that touches it maps to where nothing is. chosen: at half, parts
-// of one object are told apart, at twice, objects of one width that stand in a row are not.
-constexpr double kContradicted = 0.3;
-// Height of a cluster below which objects on the support begin, beyond the distances of the plane and of the points.
-// chosen: half refuses objects whose feet are hidden, at twice, parts that rest on another part pass.
-constexpr double kFootHeight = 0.1;
 
 /// The finite points that are near enough, seen along the rays of the sensor.
 pcl::Indices nearPoints(const Cloud& scene, const std::optional<Eigen::Vector3d>& viewpoint, double max_range) {
@@ -64,12 +56,6 @@ std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const 
   return object.planes.front();
 }
 
-/// Whether a symmetry of the whole object is certain enough.
-bool isDecided(const SceneObject& object) {
-  const bool has_plane = !object.planes.empty() && object.planes.front().kind == PlaneKind::Symmetry;
-  return has_plane || !object.axes.empty() || !object.centers.empty();
-}
-
 class ObjectAnalysis {
 public:
   /// \param found has what the sensor saw and the supporting planes.
@@ -78,92 +64,19 @@ public:
                  const SymmetryDatabase* database)
       : scene_(scene), found_(found), spacing_(spacing), options_(options), database_(database) {}
 
-  /// \return one object, or two that touch.
-  std::vector<SceneObject> analyse(const pcl::Indices& cluster) {
-    std::vector<SceneObject> objects{withPlanes(cluster)};
-    if (options_.split_touching && !isDecided(objects.front()) && objects.front().reason.empty())
-      if (auto parts = partsOf(cluster)) objects = std::move(*parts);
-    for (SceneObject& object : objects) finish(object);
-    return objects;
-  }
-
-private:
-  SceneObject withPlanes(const pcl::Indices& cluster) {
+  SceneObject analyse(const pcl::Indices& cluster) {
     seen_ = seenSpaceOf(cluster);
     SceneObject object;
     object.indices = cluster;
     findPlanes(object);
+    if (!object.reason.empty()) return object;
+    if (options_.frames) findFrame(object);
+    if (options_.complete) complete(object);
+    if (database_) object.models = database_->recognize(*scene_, cluster, options_.recognition, seen_);
     return object;
   }
 
-  /// What follows from the planes.
-  void finish(SceneObject& object) {
-    if (!object.reason.empty()) return;
-    if (options_.frames || options_.complete || database_) seen_ = seenSpaceOf(object.indices);
-    if (options_.frames) findFrame(object);
-    if (options_.complete) complete(object);
-    if (database_) object.models = database_->recognize(*scene_, object.indices, options_.recognition, seen_);
-  }
-
-  /// The two objects of a cluster that was not decided, where both are decided and do not go together.
-  std::optional<std::vector<SceneObject>> partsOf(const pcl::Indices& cluster) {
-    const SupportingPlane* support = supportOf(cluster);
-    if (!support || !found_.seen->visibility()) return std::nullopt;
-    for (const detail::TouchingParts& parts :
-         detail::touchingParts(*scene_, cluster, *found_.seen->visibility(), support->coefficients, options_.min_points,
-                               footHeight(cluster, *support))) {
-      std::vector<SceneObject> objects{withPlanes(parts.first)};
-      if (!isDecided(objects.front())) continue;
-      objects.push_back(withPlanes(parts.second));
-      if (!isDecided(objects.back())) continue;
-      if (!contradicts(objects.front(), parts.second) || !contradicts(objects.back(), parts.first)) continue;
-      for (SceneObject& object : objects) object.from_split = true;
-      return objects;
-    }
-    return std::nullopt;
-  }
-
-  /// Height over a support in which an object that stands on it begins.
-  double footHeight(const pcl::Indices& cluster, const SupportingPlane& support) const {
-    double height = 0.0;
-    for (const pcl::index_t i : cluster)
-      height =
-          std::max(height, support.coefficients.dot((*scene_)[i].getVector3fMap().cast<double>().homogeneous().eval()));
-    return found_.plane_distance + found_.cluster_distance + kFootHeight * height;
-  }
-
-  /// \return null where the cluster stands on none.
-  const SupportingPlane* supportOf(const pcl::Indices& cluster) const {
-    for (const SupportingPlane& support : found_.supports) {
-      const double foot = detail::footOf(*scene_, cluster, support.coefficients);
-      const double most = footHeight(cluster, support);
-      if (foot > -most && foot < most) return &support;
-    }
-    return nullptr;
-  }
-
-  /// Whether a symmetry of an object does not hold for the points of another one.
-  bool contradicts(const SceneObject& object, const pcl::Indices& other) const {
-    double most = 0.0;
-    const auto consider = [&](const ReflectionPlane& plane) {
-      most = std::max(most, detail::contradictedShare(*scene_, other, *found_.seen->visibility(), plane));
-    };
-    for (const SymmetryPlane& plane : object.planes)
-      if (plane.kind == PlaneKind::Symmetry) consider(plane);
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const pcl::index_t i : other) middle += (*scene_)[i].getVector3fMap().cast<double>();
-    middle /= static_cast<double>(other.size());
-    for (const SymmetryAxis& axis : object.axes) {
-      const Eigen::Vector3d across = middle - axis.point - (middle - axis.point).dot(axis.direction) * axis.direction;
-      if (across.norm() > 0.0) consider(ReflectionPlane(across.normalized(), across.normalized().dot(axis.point)));
-    }
-    for (const SymmetryCenter& center : object.centers) {
-      const Eigen::Vector3d towards = (middle - center.point).normalized();
-      if (towards.allFinite()) consider(ReflectionPlane(towards, towards.dot(center.point)));
-    }
-    return most >= kContradicted;
-  }
-
+private:
   /// Behind a plane that carries or backs the object, none of the object is.
   SeenSpace::ConstPtr seenSpaceOf(const pcl::Indices& cluster) const {
     SeenSpace seen = *found_.seen;
@@ -288,10 +201,7 @@ SceneAnalysis SymmetryScene::compute() const {
   detail::returnFeet(frame, analysis.supports, clusters, scale.spacing, analysis.cluster_distance);
   timed("clusters");
   ObjectAnalysis objects(frame, analysis, scale.spacing, options_, database_.get());
-  for (const pcl::Indices& cluster : clusters)
-    for (SceneObject& object : objects.analyse(cluster)) analysis.objects.push_back(std::move(object));
-  std::stable_sort(analysis.objects.begin(), analysis.objects.end(),
-                   [](const SceneObject& a, const SceneObject& b) { return a.indices.size() > b.indices.size(); });
+  for (const pcl::Indices& cluster : clusters) analysis.objects.push_back(objects.analyse(cluster));
   timed("objects");
   return analysis;
 }

@@ -35,8 +35,6 @@ struct SceneOptions {
   /// Points of a cluster that are analysed, >= 100. chosen: time grows with them; half makes weak planes less certain.
   int max_points = 5'000;
   bool filter = true;  ///< takes the errors of depth cameras out of organized frames, see withoutDepthErrors()
-  /// Splits clusters without a symmetry into two objects that touch, where each then has one, see SymmetryScene.
-  bool split_touching = true;
   bool frames = true;  ///< finds the frame of each object
   /// Completes objects whose best plane, or a plane through their axis, decides.
   bool complete = true;
@@ -58,9 +56,8 @@ struct SupportingPlane {
 
 /// A cluster of a scene, and what was found.
 struct SceneObject {
-  pcl::Indices indices;     ///< of its points, into the scene
-  std::string reason;       ///< why the cluster holds no answer, one sentence; empty where it was analysed
-  bool from_split = false;  ///< one of two objects that touch: a part of a cluster
+  pcl::Indices indices;  ///< of its points, into the scene
+  std::string reason;    ///< why the cluster holds no answer, one sentence; empty where it was analysed
   std::vector<SymmetryPlane> planes;
   std::vector<SymmetryAxis> axes;
   std::vector<SymmetryCenter> centers;
@@ -97,10 +94,6 @@ pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointClou
 /// clustering, with distances that follow from the points. What the sensor saw is made once of the whole scene
 /// (SeenSpace), so that an object in front does not count as seen empty space beside the one behind it. Space behind a
 /// supporting plane counts as free of the objects before it (SeenSpace::withSupport()).
-///
-/// Objects that touch fall into one cluster. A cluster that has no symmetry is split where two planes, upright on the
-/// support, each explain one part and contradict the other one, if both parts stand on the support and are decided
-/// then. A cluster with a symmetry is never split, and more than two objects in a row are not told apart.
 ///
 /// \code
 /// pcl_symmetry::SymmetryScene scene;
