@@ -81,7 +81,6 @@ std::string summaryOf(const SceneObject& object) {
       text = possible ? counted(possible, "possible plane") : "no symmetry";
     }
   }
-  if (object.from_split) text += ", touches another";
   if (!object.models.empty())
     text += ", " + object.models.front().name + formatted(" (%.2f)", object.models.front().confidence);
   return text;
@@ -97,9 +96,11 @@ nlohmann::json describeFrame(const SymmetryFrame& frame, const Eigen::Vector3d& 
 }
 
 nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& shift) {
-  nlohmann::json json{{"num_points", object.indices.size()}, {"from_split", object.from_split},
-                      {"planes", nlohmann::json::array()},   {"axes", nlohmann::json::array()},
-                      {"centers", nlohmann::json::array()},  {"models", nlohmann::json::array()}};
+  nlohmann::json json{{"num_points", object.indices.size()},
+                      {"planes", nlohmann::json::array()},
+                      {"axes", nlohmann::json::array()},
+                      {"centers", nlohmann::json::array()},
+                      {"models", nlohmann::json::array()}};
   if (!object.reason.empty()) json["reason"] = object.reason;
   for (const SymmetryPlane& plane : object.planes)
     json["planes"].push_back({{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
