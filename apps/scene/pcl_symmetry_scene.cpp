@@ -1,4 +1,7 @@
-/// The objects of one frame of a sensor and their symmetries: a table, JSON, the completed scene, a picture.
+/// The objects of one frame of a sensor and their symmetries: a table, JSON, the completed scene, a picture, a page; or
+/// of each frame that arrives in a folder.
+#include <boost/algorithm/string/case_conv.hpp>
+#include <boost/filesystem/path.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,11 +13,13 @@
 #include "common/command_line/run_tool.h"
 #include "common/files/file_text.h"
 #include "common/files/json_values.h"
+#include "common/html/scene_page.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/shape_output.h"
 #include "pcl_symmetry/scene/symmetry_scene.h"
 #include "scene/report/scene_report.h"
+#include "scene/watch/folder_watch.h"
 
 namespace {
 
@@ -22,8 +27,7 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct SceneToolOptions {
-  std::string input;
-  std::optional<std::string> output, database_path, png_path;
+  std::optional<std::string> input, output, database_path, png_path, html_path, watched;
   bool no_filter = false, no_frames = false, no_completion = false;
   SceneOptions scene;
   CommonOptions common;
@@ -33,12 +37,16 @@ CommandLine commandLine(SceneToolOptions& o) {
   CommandLine line("pcl_symmetry_scene",
                    "Finds the objects of one frame of a depth camera or scanner, and their symmetries.",
                    "pcl_symmetry_scene table.pcd completed.pcd -json objects.json -png objects.png");
-  line.positional("input", o.input, ".pcd or .ply: organized, or with the viewpoint of the sensor")
+  line.positional("input", o.input, ".pcd or .ply: organized, or with the viewpoint of the sensor; not with -watch")
       .positional(
           "output", o.output,
           "completed scene, .pcd or .ply, with the fields object (-1 = supporting plane, 0 = none) and completed")
       .text("database", "FILE", o.database_path, "names objects by the models of this file of pcl_symmetry_database")
       .picture("png", o.png_path, "picture: the scene, and each object with what its symmetry adds")
+      .text("html", "FILE", o.html_path, "page that shows the scene, its objects, planes and axes in any browser")
+      .text("watch", "FOLDER", o.watched,
+            "handles each .pcd or .ply that is written to this folder or moved there, one line of JSON each, until "
+            "interrupted")
       .number("max_range", o.scene.max_range, Range::atLeast(0),
               "points farther from the sensor are left out, input units; 0 = none is")
       .number("plane_distance", o.scene.plane_distance, Range::atLeast(0),
@@ -57,7 +65,7 @@ CommandLine commandLine(SceneToolOptions& o) {
   return line;
 }
 
-SceneAnalysis analyse(const Console& console, const InputShape& input, const SceneToolOptions& options) {
+SymmetryScene makeScene(const SceneToolOptions& options) {
   SymmetryScene scene;
   SceneOptions used = options.scene;
   options.common.applyTo(used.detection);
@@ -67,12 +75,23 @@ SceneAnalysis analyse(const Console& console, const InputShape& input, const Sce
   used.frames = !options.no_frames;
   used.complete = !options.no_completion;
   scene.setOptions(used);
-  scene.setViewpoint(shifted(options.common.viewpoint, input.shift()));
   if (options.database_path) {
     checkReadableFile(*options.database_path);
     scene.setDatabase(namingFile(*options.database_path,
                                  [&] { return std::make_shared<const SymmetryDatabase>(*options.database_path); }));
   }
+  return scene;
+}
+
+InputShape loadFrame(const Console& console, const std::string& path, const CommonOptions& common) {
+  InputShape input = loadInput(console, path, common);
+  if (input.shape.mesh) throw InputError(path + ": is a mesh, must be a cloud as a sensor sees it");
+  return input;
+}
+
+SceneAnalysis analyse(const Console& console, SymmetryScene& scene, const InputShape& input,
+                      const CommonOptions& common) {
+  scene.setViewpoint(shifted(common.viewpoint, input.shift()));
   scene.setInputCloud(input.points);
   Step searching(console, "Searching objects");
   SceneAnalysis found;
@@ -84,16 +103,58 @@ SceneAnalysis analyse(const Console& console, const InputShape& input, const Sce
   return found;
 }
 
+/// Whether a file of the watched folder is meant: hidden files are those that programs write before they move them.
+bool isFrame(const std::string& path) {
+  const boost::filesystem::path file(path);
+  const std::string extension = boost::algorithm::to_lower_copy(file.extension().string());
+  return file.filename().string().front() != '.' && (extension == ".pcd" || extension == ".ply");
+}
+
+/// Handles files as they arrive. A file that cannot be handled has a line with "error".
+int watch(const SceneToolOptions& options) {
+  const Console console(options.common.quiet);
+  SymmetryScene scene = makeScene(options);
+  FolderWatch folder(*options.watched);
+  console.info("Watching " + *options.watched);
+  while (const std::optional<std::string> path = folder.next()) {
+    if (folder.hasMissed()) console.error(*options.watched + ": files came too fast, some were missed");
+    if (!isFrame(*path)) continue;
+    nlohmann::json line;
+    try {
+      namingFile(*path, [&] {
+        const InputShape input = loadFrame(console, *path, options.common);
+        line = describeScene(input, analyse(console, scene, input, options.common));
+      });
+    } catch (const InputError& error) {
+      line = {{"file", *path}, {"error", error.what()}};
+      console.error(error.what());
+    }
+    std::puts(line.dump().c_str());
+    if (std::fflush(stdout) != 0) throw InputError("standard output: cannot be written");
+  }
+  return 0;
+}
+
+void checkUse(const SceneToolOptions& o) {
+  if (o.watched && (o.input || o.png_path || o.html_path || o.common.json_path))
+    throw UsageError(
+        "-watch writes lines of JSON to standard output, and goes without input, output, -json, -png, -html");
+  if (!o.watched && !o.input) throw UsageError("missing argument 'input'");
+  if (o.output) checkCloudExtension(*o.output);
+}
+
 int run(int argc, char** argv) {
   SceneToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  if (options.output) checkCloudExtension(*options.output);
+  checkUse(options);
+  if (options.watched) return watch(options);
   const Console console(options.common.quiet);
-  const InputShape input = loadInput(console, options.input, options.common);
-  if (input.shape.mesh) throw InputError(options.input + ": is a mesh, must be a cloud as a sensor sees it");
-  const SceneAnalysis scene = analyse(console, input, options);
-  std::fputs(tableOf(scene, input.shift()).c_str(), stdout);
+  const InputShape input = loadFrame(console, *options.input, options.common);
+  SymmetryScene searched = makeScene(options);
+  const SceneAnalysis scene = analyse(console, searched, input, options.common);
+  const std::string table = tableOf(scene, input.shift());
+  std::fputs(table.c_str(), stdout);
   if (options.common.json_path) writeText(*options.common.json_path, jsonText(describeScene(input, scene)) + "\n");
   if (options.output)
     saveCloud(*options.output, completedScene(input, scene), input.shape.sensor_origin, input.shape.sensor_orientation);
@@ -102,6 +163,7 @@ int run(int argc, char** argv) {
     drawScene(input, scene, *options.png_path);
     drawing.done();
   }
+  if (options.html_path) writePage(overview(input, scene), {*options.input, table}, *options.html_path);
   return 0;
 }
 

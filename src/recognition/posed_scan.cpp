@@ -38,7 +38,8 @@ Recognition PosedScan::refined(int num_refined) {
   Recognition found;
   for (const PosedModel& model : models_) {
     if (found.size() == static_cast<std::size_t>(num_refined)) break;
-    const RankedPose best = refinePoses(surface_, model.surface, model.poses, options_).front();
+    const RankedPose best =
+        refinePoses(surface_, model.surface, RefinementTarget(model.surface), model.poses, options_).front();
     found.push_back({model.name, model.frames.toInput(best.T_model_scan), best.score, 0.0});
   }
   return found;

@@ -1,44 +1,40 @@
 #include "pcl_symmetry/registration/symmetry_registration.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/stopwatch.h"
+#include "core/registration/covariance/pose_covariance.h"
 #include "core/registration/frame_hypotheses.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/ranked_poses.h"
 #include "registration/pose_refinement.h"
+#include "registration/prepared_cloud.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// The least number of points that fix a pose. derived: three points fix a rotation.
-constexpr Eigen::Index kLeastPoints = 3;
-
-BoundingBall ballOf(const char* name, const Points& points) {
-  const BoundingBall ball = boundingBall(points);
-  if (points.cols() < kLeastPoints || !(ball.radius > 0.0))
-    throw std::invalid_argument(std::string(name) + ": no extent, must have three different finite points");
-  return ball;
-}
-
 /// Two clouds in search frames. The scan is the one that was seen from a viewpoint, the model the one that shows its
 /// object from all sides: where only the target was seen from one side, the two change places.
 class CloudPair {
 public:
-  CloudPair(const Points& source, const std::optional<Visibility>& source_seen, const Points& target,
-            const std::optional<Visibility>& target_seen, const CloudRegistrationOptions& options)
-      : swapped_(target_seen && !source_seen),
-        frames_(framesOf(source, target, swapped_)),
-        source_(surfaceOf(source, frames_.source_center, source_seen, options)),
-        target_(surfaceOf(target, frames_.target_center, target_seen, options)) {}
+  CloudPair(const PreparedCloud& source, const PreparedCloud& target)
+      : swapped_(target.isScan() && !source.isScan()),
+        frames_{source.ball().center, target.ball().center, swapped_ ? source.ball().radius : target.ball().radius},
+        scan_cloud_(swapped_ ? target : source),
+        model_cloud_(swapped_ ? source : target),
+        scan_(scan_cloud_.surface(frames_.scale)),
+        model_(model_cloud_.surface(frames_.scale)),
+        refinement_target_(model_cloud_.refinementTarget(frames_.scale)) {}
 
   const SearchFrames& frames() const { return frames_; }
-  const PosedSurface& scan() const { return swapped_ ? target_ : source_; }
-  const PosedSurface& model() const { return swapped_ ? source_ : target_; }
+  const PosedSurface& scan() const { return *scan_; }
+  const PosedSurface& model() const { return *model_; }
+  const RefinementTarget& refinementTarget() const { return *refinement_target_; }
+  std::shared_ptr<const SymmetryFrame> scanFrame() const { return scan_cloud_.frame(frames_.scale); }
+  std::shared_ptr<const SymmetryFrame> modelFrame() const { return model_cloud_.frame(frames_.scale); }
 
   /// T_target_source between input frames as T_model_scan between search frames.
   Eigen::Isometry3d toSearch(const Eigen::Isometry3d& T_target_source) const {
@@ -48,37 +44,43 @@ public:
   Eigen::Isometry3d toInput(const Eigen::Isometry3d& T_model_scan) const {
     return frames_.toInput(swappedPose(T_model_scan));
   }
+  /// The covariance of a motion of the model's search frame as that of a motion of the target's input frame.
+  /// \param T_model_scan between search frames, before the motion.
+  MotionCovariance toInput(const MotionCovariance& covariance, const Eigen::Isometry3d& T_model_scan) const {
+    // derived: exp(m) T of the model's frame is T^-1 exp(-m) = exp(-Ad(T^-1) m) T^-1 of the scan's; a motion about the
+    // center c in units s, x to x + w x (x - c) + s t, is w and s t + c x w about the origin.
+    MotionCovariance to_target = MotionCovariance::Identity();
+    if (swapped_) to_target = adjoint(T_model_scan.inverse());
+    MotionCovariance to_input = MotionCovariance::Identity();
+    to_input.bottomLeftCorner<3, 3>() = crossMatrix(frames_.target_center);
+    to_input.bottomRightCorner<3, 3>() *= frames_.scale;
+    const MotionCovariance map = to_input * to_target;
+    return map * covariance * map.transpose();
+  }
 
 private:
-  static SearchFrames framesOf(const Points& source, const Points& target, bool swapped) {
-    const BoundingBall source_ball = ballOf("source", source), target_ball = ballOf("target", target);
-    return {source_ball.center, target_ball.center, swapped ? source_ball.radius : target_ball.radius};
-  }
-
-  PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, const std::optional<Visibility>& seen,
-                         const CloudRegistrationOptions& options) const {
-    return {normalizePoints(points, center, frames_.scale),
-            seen ? std::optional(seen->normalized(center, frames_.scale)) : std::nullopt, options.seed,
-            options.num_threads};
-  }
-
   Eigen::Isometry3d swappedPose(const Eigen::Isometry3d& pose) const { return swapped_ ? pose.inverse() : pose; }
+
+  static MotionCovariance adjoint(const Eigen::Isometry3d& pose) {
+    MotionCovariance adjoint = MotionCovariance::Zero();
+    adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = pose.linear();
+    adjoint.bottomLeftCorner<3, 3>() = crossMatrix(pose.translation()) * pose.linear();
+    return adjoint;
+  }
 
   bool swapped_;
   SearchFrames frames_;
-  PosedSurface source_, target_;
+  const PreparedCloud &scan_cloud_, &model_cloud_;
+  std::shared_ptr<const PosedSurface> scan_, model_;
+  std::shared_ptr<const RefinementTarget> refinement_target_;
 };
 
 /// The poses that bring the symmetry frames of both clouds together. Each is tried with the center of symmetry that was
 /// found, and with the place that the outline of the scan suggests.
-std::vector<Eigen::Isometry3d> posesFromFrames(const PosedSurface& scan, const PosedSurface& model,
-                                               const FrameOptions& options) {
-  const auto frameOf = [&](const PosedSurface& surface) {
-    return symmetryFrame(surface.points, options, surface.seen ? &*surface.seen : nullptr);
-  };
-  const PoseStarts starts(scan, model);
+std::vector<Eigen::Isometry3d> posesFromFrames(const CloudPair& clouds) {
+  const PoseStarts starts(clouds.scan(), clouds.model());
   std::vector<Eigen::Isometry3d> poses;
-  for (const Eigen::Isometry3d& pose : frameHypotheses(frameOf(scan), frameOf(model))) {
+  for (const Eigen::Isometry3d& pose : frameHypotheses(*clouds.scanFrame(), *clouds.modelFrame())) {
     poses.push_back(pose);
     poses.push_back(starts.pose(pose.linear()));
   }
@@ -118,10 +120,16 @@ void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const P
   poses.erase(std::remove_if(poses.begin(), poses.end(), isFar), poses.end());
 }
 
+MotionCovariance covarianceOf(const CloudPair& clouds, const RankedPose& pose, const CloudRegistrationOptions& inner) {
+  const double reach = refinementReach(clouds.scan(), clouds.model(), inner.max_correspondence);
+  return clouds.toInput(
+      poseCovariance(clouds.scan(), clouds.model(), pose.T_model_scan, std::max(1, pose.num_points), reach),
+      pose.T_model_scan);
+}
+
 /// The options with threads and seed passed on to all parts, and lengths in units of the search.
 CloudRegistrationOptions inSearchUnits(CloudRegistrationOptions options, double scale) {
-  options.search.num_threads = options.frame.num_threads = options.frame.edt.num_threads = options.num_threads;
-  options.frame.seed = options.seed;
+  options.search.num_threads = options.num_threads;
   if (options.max_correspondence) *options.max_correspondence /= scale;
   return options;
 }
@@ -141,15 +149,28 @@ void CloudRegistrationOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
+RegistrationTarget::RegistrationTarget(const Points& points, const std::optional<Visibility>& seen,
+                                       const CloudRegistrationOptions& options) {
+  options.validate();
+  cloud_ = std::make_shared<const PreparedCloud>("target", points, seen, options);
+}
+
 CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
                                  const Points& target, const std::optional<Visibility>& target_seen,
                                  const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options) {
+  return registerClouds(source, source_seen, RegistrationTarget(target, target_seen, options), guess, options);
+}
+
+CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
+                                 const RegistrationTarget& target, const Eigen::Isometry3d& guess,
+                                 const CloudRegistrationOptions& options) {
   options.validate();
   CloudRegistration result;
   Stopwatch watch;
   const auto done = [&](const char* stage) { result.timing_ms.emplace_back(stage, watch.lap()); };
 
-  const CloudPair clouds(source, source_seen, target, target_seen, options);
+  const PreparedCloud prepared_source("source", source, source_seen, options);
+  const CloudPair clouds(prepared_source, *target.cloud_);
   const CloudRegistrationOptions inner = inSearchUnits(options, clouds.frames().scale);
   done("prepare");
 
@@ -162,16 +183,17 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     add(posesAround(clouds.scan(), clouds.model(), hypotheses.front(), inner));
     search.num_rotations = 0;
   } else if (options.frames) {
-    add(posesFromFrames(clouds.scan(), clouds.model(), inner.frame));
+    add(posesFromFrames(clouds));
     done("frames");
   }
   std::vector<RankedPose> poses = searchPoses(clouds.scan(), clouds.model(), hypotheses, search);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("search");
-  if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
+  if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), clouds.refinementTarget(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
   for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
+  if (!poses.empty()) result.covariance = covarianceOf(clouds, poses.front(), inner);
   if (poses.empty()) result.poses.push_back({guess, {}});
   static_cast<RegisteredPose&>(result) = result.poses.front();
   return result;

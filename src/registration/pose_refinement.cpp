@@ -1,8 +1,6 @@
 #include "registration/pose_refinement.h"
 
-#include <pcl/point_types.h>
 #include <pcl/registration/icp.h>
-#include <pcl/search/kdtree.h>
 
 #include <algorithm>
 #include <utility>
@@ -43,13 +41,10 @@ NormalCloud::Ptr cloudOf(const PosedSurface& surface, int max_points) {
 /// Point-to-plane ICP from several poses.
 class PoseRefinement {
 public:
-  PoseRefinement(const PosedSurface& scan, const PosedSurface& model, double reach,
+  PoseRefinement(const PosedSurface& scan, const RefinementTarget& target, double reach,
                  const CloudRegistrationOptions& options) {
-    const auto target = cloudOf(model, static_cast<int>(model.order.size()));
-    auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>();
-    tree->setInputCloud(target);
-    icp_.setSearchMethodTarget(tree, true);
-    icp_.setInputTarget(target);
+    icp_.setSearchMethodTarget(target.tree, true);
+    icp_.setInputTarget(target.cloud);
     icp_.setInputSource(cloudOf(scan, kRefinedPoints));
     icp_.setUseSymmetricObjective(true);
     icp_.setEnforceSameDirectionNormals(true);
@@ -73,6 +68,16 @@ private:
 
 }  // namespace
 
+RefinementTarget::RefinementTarget(const PosedSurface& model)
+    : cloud(cloudOf(model, static_cast<int>(model.order.size()))),
+      tree(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>()) {
+  tree->setInputCloud(cloud);
+}
+
+double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence) {
+  return max_correspondence.value_or(std::max(kLeastReach, kReach * std::max(scan.accuracy, model.accuracy)));
+}
+
 Eigen::Isometry3d SearchFrames::toSearch(const Eigen::Isometry3d& T_target_source) const {
   Eigen::Isometry3d pose = T_target_source;
   pose.translation() = (T_target_source * source_center - target_center) / scale;
@@ -85,18 +90,20 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
   return pose;
 }
 
-std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
+std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model, const RefinementTarget& target,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options) {
   const double accuracy = std::max(scan.accuracy, model.accuracy);
-  const double reach = options.max_correspondence.value_or(std::max(kLeastReach, kReach * accuracy));
-  PoseRefinement icp(scan, model, reach, options);
+  PoseRefinement icp(scan, target, refinementReach(scan, model, options.max_correspondence), options);
   const PoseScorer scorer(scan, model);
   const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, accuracy), true};
-  const auto judged = [&](const Eigen::Isometry3d& pose) { return RankedPose{pose, scorer.score(pose, detail)}; };
+  const auto judged = [&](const Eigen::Isometry3d& pose, int num_points) {
+    return RankedPose{pose, scorer.score(pose, detail), num_points};
+  };
   std::vector<RankedPose> refined;
   for (const RankedPose& pose : poses) {
     if (pose.score.merit() < poses.front().score.merit() - kHopeless) break;
-    const RankedPose before = judged(pose.T_model_scan), after = judged(icp.refined(pose.T_model_scan));
+    const RankedPose before = judged(pose.T_model_scan, pose.num_points);
+    const RankedPose after = judged(icp.refined(pose.T_model_scan), kRefinedPoints);
     refined.push_back(after.score.merit() > before.score.merit() ? after : before);
   }
   const std::size_t size = refined.size();

@@ -80,7 +80,7 @@ void prepareIcp(pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>& icp, c
 
 RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target) {
   RegistrationAnswer answer;
-  Stopwatch watch;
+  RegistrationTimer timer;
   const Cloud::Ptr source = finitePoints(*raw);
   const Leaf leaf(*target);
   const PrincipalAxes of_source = principalAxes(pointsOf(*source)), of_target = principalAxes(pointsOf(*target));
@@ -100,7 +100,7 @@ RegistrationAnswer registerByPrincipalAxes(const Cloud::ConstPtr& raw, const Clo
   const IcpResult result = alignByIcp(fine, best.transform);
   answer.T_target_source = Eigen::Isometry3d(result.transform.cast<double>());
   answer.converged = result.converged;
-  answer.milliseconds = watch.lap();
+  timer.stop(answer);
   return answer;
 }
 
@@ -134,7 +134,7 @@ FeatureCloud::Ptr featuresOf(const NormalCloud::ConstPtr& cloud, double radius, 
 
 RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::ConstPtr& target, int num_threads) {
   RegistrationAnswer answer;
-  Stopwatch watch;
+  RegistrationTimer timer;
   const int threads = resolveNumThreads(num_threads);
   const Cloud::Ptr source = finitePoints(*raw);
   const Leaf leaf(*target);
@@ -164,7 +164,7 @@ RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::C
     answer.T_target_source = Eigen::Isometry3d(result.transform.cast<double>());
     answer.converged = result.converged;
   }
-  answer.milliseconds = watch.lap();
+  timer.stop(answer);
   return answer;
 }
 

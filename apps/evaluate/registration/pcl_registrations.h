@@ -7,7 +7,7 @@
 
 namespace pcl_symmetry::apps {
 
-/// Implemented by the module pcl_symmetry_pcl_registrations.so. Arguments as those of RegistrationMethod::run.
+/// Implemented by the module pcl_symmetry_pcl_registrations.so. Arguments as those of RegistrationMethod::toTarget and of what it returns.
 class PCLRegistrations {
 public:
   virtual ~PCLRegistrations() = default;

@@ -51,6 +51,8 @@ struct EvaluateScenesOptions {
   std::vector<double> noise = {0.0, 1.0};
   int num_scenes = 100, min_points = 300, leave_out = 0, most_in_band = 0;
   bool no_planes = false;
+  std::string place = "table", sensor = "camera";
+  int num_rings = 64;
   SceneOptionsOfTable table;
   MatchLimits limits;
   OperatingPoint operating_point;
@@ -61,8 +63,8 @@ struct EvaluateScenesOptions {
 CommandLine commandLine(EvaluateScenesOptions& o) {
   CommandLine line(
       "pcl_symmetry_evaluate scenes",
-      "Puts meshes on a table, looks at them with a depth camera, and measures how well planes and models of "
-      "objects are found that others hide in part. Clusters are the true ones.",
+      "Puts meshes on a table or in a bin, looks at them with a depth camera or a LiDAR scanner, and measures how well "
+      "planes and models of objects are found that others hide in part. Clusters are the true ones.",
       "pcl_symmetry_evaluate scenes psb/train -max 100 -scenes 100 -references references.json");
   addModelFlags(line, o.folders, o.selection);
   line.text("references", "FILE", o.references_path,
@@ -70,7 +72,10 @@ CommandLine commandLine(EvaluateScenesOptions& o) {
       .number("scenes", o.num_scenes, Range::closed(1, 1'000'000), "number of scenes")
       .number("objects", o.table.most_objects, Range::closed(1, 100), "greatest number of objects of a scene")
       .numbers("noise", o.noise, Range::closed(0, 10),
-               "factors of the depth noise of a structured-light camera; 0 = exact depths")
+               "factors of the depth noise of a structured-light camera, or of the range noise of a scanner; 0 = exact")
+      .choice("place", o.place, {"table", "bin"}, "where objects stand: on a table, or in an open box seen from above")
+      .choice("sensor", o.sensor, {"camera", "lidar"}, "depth camera of 640 x 480 pixels, or a scanner with rings")
+      .number("rings", o.num_rings, Range::closed(4, 1024), "number of rings of the scanner")
       .number("min_points", o.min_points, Range::closed(20, 1'000'000), "least number of points of an object")
       .number("most_in_band", o.most_in_band, Range::closed(0, 1'000'000),
               "objects of a band of occlusion after which others of it are passed over; 0 = none are")
@@ -176,10 +181,9 @@ private:
       if (image.ids[i] >= 0 && pcl::isXYZFinite((*image.cloud)[i]))
         clusters[static_cast<std::size_t>(image.ids[i])].push_back(static_cast<pcl::index_t>(i));
     const auto seen = std::make_shared<const SeenSpace>(*image.cloud);
-    const auto on_table = std::make_shared<const SeenSpace>(seen->withSupport(Eigen::Vector4d::UnitZ(), kTableMargin));
+    const auto on_table = std::make_shared<const SeenSpace>(withPlace(*seen, scene));
     const Cloud::ConstPtr filtered = withoutDepthErrors(image.cloud, *seen, options_.common.threads);
-    const auto filtered_seen =
-        std::make_shared<const SeenSpace>(SeenSpace(*filtered).withSupport(Eigen::Vector4d::UnitZ(), kTableMargin));
+    const auto filtered_seen = std::make_shared<const SeenSpace>(withPlace(SeenSpace(*filtered), scene));
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       if (image.cropped[k] || clusters[k].size() < static_cast<std::size_t>(options_.min_points)) continue;
       if (!isWanted(image.occlusion(k), noise)) continue;
@@ -205,6 +209,14 @@ private:
       judgeIn("table", image.cloud, on_table);
       if (filtered != image.cloud) judgeIn("filtered", filtered, filtered_seen);
     }
+  }
+
+  /// No object reaches into the table or into the walls of a bin.
+  static SeenSpace withPlace(const SeenSpace& seen, const TableScene& scene) {
+    SeenSpace result = seen.withSupport(Eigen::Vector4d::UnitZ(), kTableMargin);
+    if (!scene.bin) return result;
+    for (const Eigen::Vector4d& face : scene.bin->innerFaces()) result = result.withSupport(face, kTableMargin);
+    return result;
   }
 
   /// Counts the objects of each band.
@@ -291,10 +303,9 @@ private:
     std::fputs(sceneTable(results_).c_str(), stdout);
     if (options_.csv) writeText(*options_.csv, sceneCSV(results_));
     if (!options_.common.json_path) return;
-    const nlohmann::json summary{{"models", models_.size()},
-                                 {"scenes", options_.num_scenes},
-                                 {"seed", options_.common.seed},
-                                 {"left_out", left_out_},
+    const nlohmann::json summary{{"models", models_.size()},     {"scenes", options_.num_scenes},
+                                 {"place", options_.place},      {"sensor", options_.sensor},
+                                 {"seed", options_.common.seed}, {"left_out", left_out_},
                                  {"rows", sceneJson(results_)}};
     writeText(*options_.common.json_path, summary.dump(2) + "\n");
   }
@@ -317,6 +328,8 @@ int evaluateScenes(int argc, char** argv) {
   EvaluateScenesOptions options;
   if (!commandLine(options).parse(argc, argv)) return 0;
   if (options.no_planes && options.leave_out < 1) throw UsageError("-no_planes needs -leave_out");
+  options.table.in_bin = options.place == "bin";
+  if (options.sensor == "lidar") options.table.sensor = SceneSensor::lidar(options.num_rings);
   ScenesEvaluation(options).run();
   return 0;
 }

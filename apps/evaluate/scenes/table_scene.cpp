@@ -22,8 +22,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();  // derive
 constexpr double kPlaceOfOne = 0.02, kPlacePerRoot = 0.08;
 // Half the side of the table beyond that square, metres. chosen: room for the objects; any larger one will do.
 constexpr double kTableRim = 0.4;
-// Least depth of a ball, metres. chosen: avoids a division by 0; the camera stands much farther away.
-constexpr double kNearest = 1e-3;
+// Metres, the walls of a bin, and from its objects to the walls. chosen: as high as objects of 0.15 to 0.3 m are; at
+// half, walls hide nothing, at twice, little is seen.
+constexpr double kBinHeight = 0.15, kBinThickness = 0.01, kBinGap = 0.01;
+// Radians: a part of a turn that shows the scene, between columns, and from the first ring to the last. derived: a
+// scanner with 16 rings that turns five times a second has 0.1 degrees from column to column (VLP-16), one with 64
+// rings has them over 26.8 degrees (HDL-64E).
+constexpr double kScannedTurn = 60.0 * kDegree, kColumnStep = 0.1 * kDegree, kRingField = 26.8 * kDegree;
 // Trials for a place. chosen: half leaves more objects out, twice takes time.
 constexpr int kTrials = 100;
 
@@ -92,7 +97,9 @@ double azimuthOf(const std::vector<Standing>& placed, RandomStream& random) {
 }
 
 Eigen::Isometry3d lookAtMiddle(const SceneOptionsOfTable& options, double azimuth, RandomStream& random) {
-  const double elevation = between(random, options.least_elevation, options.greatest_elevation) * kDegree;
+  const double low = options.in_bin ? options.least_elevation_of_bin : options.least_elevation;
+  const double high = options.in_bin ? options.greatest_elevation_of_bin : options.greatest_elevation;
+  const double elevation = between(random, low, high) * kDegree;
   const double distance = between(random, options.least_distance, options.greatest_distance);
   const Eigen::Vector3d towards(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                 std::sin(elevation));
@@ -103,80 +110,131 @@ Eigen::Isometry3d lookAtMiddle(const SceneOptionsOfTable& options, double azimut
   return T_scene_camera;
 }
 
-/// Depths along the forward axis of a camera, of one thing.
+/// Depths of one thing along the rays of a sensor, in lengths of the rays.
 class DepthOf {
 public:
-  DepthOf(const SceneModel& model, const PlacedModel& placed, const DepthCamera& camera)
-      : triangles_(*model.triangles), T_model_camera_(placed.T_scene_model.inverse() * camera.T_scene_camera) {
-    const Eigen::Vector3d center = T_model_camera_.inverse() * triangles_.center();
-    const double radius = 0.5 * triangles_.diagonal();
-    // The picture of a ball lies in that of a square around it at its nearest depth.
-    const double depth = std::max(center.z() - radius, kNearest);
-    const double reach = radius * (1.0 + center.norm() / depth);
-    for (int k = 0; k < 2; ++k) {
-      const double size = k == 0 ? camera.width : camera.height;
-      const double middle = camera.focal * center[k] / center.z() + 0.5 * size;
-      const double half = camera.focal * reach / center.z();
-      low_[k] = static_cast<int>(std::clamp(middle - half, 0.0, size));
-      high_[k] = static_cast<int>(std::clamp(middle + half + 1.0, 0.0, size));
-    }
-  }
+  DepthOf(const SceneModel& model, const PlacedModel& placed, const SceneSensor& sensor)
+      : triangles_(*model.triangles),
+        T_model_sensor_(placed.T_scene_model.inverse() * sensor.T_scene_sensor),
+        center_(T_model_sensor_.inverse() * triangles_.center()),
+        origin_((T_model_sensor_.translation() - triangles_.center()) / triangles_.diagonal()) {}
 
-  /// \param ray z = 1 in the frame of the camera.
-  double along(int column, int row, const Eigen::Vector3d& ray) const {
-    if (column < low_[0] || column >= high_[0] || row < low_[1] || row >= high_[1]) return kInfinity;
-    const Eigen::Vector3d origin = (T_model_camera_.translation() - triangles_.center()) / triangles_.diagonal();
-    const double length = ray.norm();
-    return distanceAlong(triangles_, origin, T_model_camera_.linear() * ray / length) * triangles_.diagonal() / length;
+  /// \param ray in the frame of the sensor.
+  double along(const Eigen::Vector3d& ray) const {
+    const double radius = 0.5 * triangles_.diagonal(), sq_length = ray.squaredNorm(), forward = center_.dot(ray);
+    // The ball around the box of the thing: most rays pass it.
+    if (!(forward > 0.0) || center_.squaredNorm() * sq_length - forward * forward > radius * radius * sq_length)
+      return kInfinity;
+    const double length = std::sqrt(sq_length);
+    return distanceAlong(triangles_, origin_, T_model_sensor_.linear() * ray / length) * triangles_.diagonal() / length;
   }
 
 private:
   const TriangleScene& triangles_;
-  Eigen::Isometry3d T_model_camera_;
-  int low_[2], high_[2];
+  Eigen::Isometry3d T_model_sensor_;
+  Eigen::Vector3d center_, origin_;  // of the box in the frame of the sensor; of the sensor in that of the triangles
 };
 
-double depthOfTable(const DepthCamera& camera, const Eigen::Vector3d& ray, double half_side) {
-  const Eigen::Vector3d direction = camera.T_scene_camera.linear() * ray, origin = camera.T_scene_camera.translation();
+double depthOfTable(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double half_side) {
   const double depth = -origin.z() / direction.z();
   if (!(depth > 0.0)) return kInfinity;
   return (origin + depth * direction).head<2>().cwiseAbs().maxCoeff() <= half_side ? depth : kInfinity;
 }
 
-/// Adds the errors of the camera to the depths.
-void addNoise(std::vector<double>& depths, int width, const DepthNoise& noise, std::uint64_t seed) {
+/// \return the depth at which a ray enters a box.
+double depthOfBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::AlignedBox3d& box) {
+  double enters = 0.0, leaves = kInfinity;
+  for (int k = 0; k < 3; ++k) {
+    const double one = (box.min()[k] - origin[k]) / direction[k], other = (box.max()[k] - origin[k]) / direction[k];
+    enters = std::max(enters, std::min(one, other));
+    leaves = std::min(leaves, std::max(one, other));
+  }
+  return enters > 0.0 && enters <= leaves ? enters : kInfinity;
+}
+
+/// Table and bin along the rays of a sensor.
+class DepthOfPlace {
+public:
+  explicit DepthOfPlace(const TableScene& scene)
+      : sensor_(scene.sensor),
+        half_side_(kTableRim + kPlaceOfOne +
+                   kPlacePerRoot * std::sqrt(static_cast<double>(std::max<std::size_t>(1, scene.objects.size())))),
+        walls_(scene.bin ? scene.bin->walls() : std::vector<Eigen::AlignedBox3d>()) {
+    if (scene.bin) half_side_ = std::max(half_side_, scene.bin->half_side + kTableRim);
+  }
+
+  double along(const Eigen::Vector3d& ray) const {
+    const Eigen::Vector3d direction = sensor_.T_scene_sensor.linear() * ray;
+    const Eigen::Vector3d origin = sensor_.T_scene_sensor.translation();
+    double nearest = depthOfTable(origin, direction, half_side_);
+    for (const Eigen::AlignedBox3d& wall : walls_) nearest = std::min(nearest, depthOfBox(origin, direction, wall));
+    return nearest;
+  }
+
+private:
+  const SceneSensor& sensor_;
+  double half_side_;
+  std::vector<Eigen::AlignedBox3d> walls_;
+};
+
+/// The depth that a camera with structured light says: it measures disparities, the inverse of the depth, in whole
+/// steps. A step of the disparity is one of noise.step * depth^2 in depth.
+double measuredDepth(double depth, const DepthNoise& noise, RandomStream& random) {
+  const double step = noise.factor * noise.step;
+  const double disparity = 1.0 / (step * depth) + noise.deviation / noise.step * standardNormal(random);
+  return 1.0 / (step * std::max(1.0, std::round(disparity)));
+}
+
+/// Adds the errors of the sensor to the depths.
+void addNoise(std::vector<double>& depths, const SceneSensor& sensor, const DepthNoise& noise, std::uint64_t seed) {
   if (!(noise.factor > 0.0)) return;
   RandomStream random(seed, kNoise);
   const std::vector<double> truth = depths;
   for (std::size_t i = 0; i < depths.size(); ++i) {
     if (!std::isfinite(truth[i])) continue;
     double& depth = depths[i];
-    for (const std::size_t beside : {i + 1, i + static_cast<std::size_t>(width)}) {
+    if (sensor.kind == SensorKind::Lidar) {
+      depth += noise.factor * noise.range_deviation * standardNormal(random);
+      continue;
+    }
+    for (const std::size_t beside : {i + 1, i + static_cast<std::size_t>(sensor.width)}) {
       if (beside >= truth.size() || !std::isfinite(truth[beside])) continue;
       const bool at_edge = std::abs(truth[beside] - truth[i]) > noise.least_edge * truth[i];
       if (at_edge && random.uniform() < noise.factor * noise.flying_share)
         depth = between(random, truth[i], truth[beside]);
     }
-    const double square = depth * depth * noise.factor;
-    depth += noise.deviation * square * standardNormal(random);
-    const double step = noise.step * square;
-    depth = std::max(step, std::round(depth / step) * step);
+    depth = measuredDepth(depth, noise, random);
   }
 }
 
-pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const DepthCamera& camera, const std::vector<double>& depths) {
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>(camera.width, camera.height));
-  for (int row = 0; row < camera.height; ++row)
-    for (int column = 0; column < camera.width; ++column) {
-      const double depth = depths[static_cast<std::size_t>(row) * camera.width + column];
-      const Eigen::Vector3d point = camera.T_scene_camera * Eigen::Vector3d(depth * camera.rayThrough(column, row));
+/// Leaves what met nothing out of a cloud without rows.
+void dropEmpty(SceneImage& image) {
+  std::vector<int> ids;
+  auto kept = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (std::size_t i = 0; i < image.ids.size(); ++i) {
+    if (image.ids[i] == -2) continue;
+    kept->push_back((*image.cloud)[i]);
+    ids.push_back(image.ids[i]);
+  }
+  kept->sensor_origin_ = image.cloud->sensor_origin_;
+  kept->sensor_orientation_ = image.cloud->sensor_orientation_;
+  image.cloud = kept;
+  image.ids = std::move(ids);
+}
+
+pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const SceneSensor& sensor, const std::vector<double>& depths) {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>(sensor.width, sensor.height));
+  for (int row = 0; row < sensor.height; ++row)
+    for (int column = 0; column < sensor.width; ++column) {
+      const double depth = depths[static_cast<std::size_t>(row) * sensor.width + column];
+      const Eigen::Vector3d point = sensor.T_scene_sensor * Eigen::Vector3d(depth * sensor.rayThrough(column, row));
       cloud->at(column, row).getVector3fMap() =
           std::isfinite(depth) ? Eigen::Vector3f(point.cast<float>())
                                : Eigen::Vector3f(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
     }
   cloud->is_dense = false;
-  cloud->sensor_origin_ << camera.T_scene_camera.translation().cast<float>(), 0.0f;
-  cloud->sensor_orientation_ = Eigen::Quaterniond(camera.T_scene_camera.linear()).cast<float>();
+  cloud->sensor_origin_ << sensor.T_scene_sensor.translation().cast<float>(), 0.0f;
+  cloud->sensor_orientation_ = Eigen::Quaterniond(sensor.T_scene_sensor.linear()).cast<float>();
   return cloud;
 }
 
@@ -208,14 +266,59 @@ TableScene drawScene(const std::vector<SceneModel>& models, const SceneOptionsOf
       placed.push_back(*standing);
   }
   TableScene scene;
-  for (const Standing& standing : placed) scene.objects.push_back(standing.placed);
-  scene.camera.T_scene_camera = lookAtMiddle(options, azimuthOf(placed, camera), camera);
+  double reach = 0.0;
+  for (const Standing& standing : placed) {
+    scene.objects.push_back(standing.placed);
+    reach = std::max(reach, standing.center.cwiseAbs().maxCoeff() + standing.radius);
+  }
+  if (options.in_bin) scene.bin = Bin{reach + kBinGap, kBinHeight, kBinThickness};
+  scene.sensor = options.sensor;
+  scene.sensor.T_scene_sensor = lookAtMiddle(options, azimuthOf(placed, camera), camera);
   return scene;
+}
+
+SceneSensor SceneSensor::lidar(int num_rings) {
+  SceneSensor sensor;
+  sensor.kind = SensorKind::Lidar;
+  sensor.height = num_rings;
+  sensor.column_step = kColumnStep;
+  sensor.ring_step = kRingField / (num_rings - 1);
+  sensor.width = static_cast<int>(kScannedTurn / kColumnStep);
+  return sensor;
+}
+
+Eigen::Vector3d SceneSensor::rayThrough(int column, int row) const {
+  const double right = column + 0.5 - 0.5 * width, down = row + 0.5 - 0.5 * height;
+  if (kind == SensorKind::Camera) return {right / focal, down / focal, 1.0};
+  const double turn = right * column_step, fall = down * ring_step;
+  return {std::cos(fall) * std::sin(turn), std::sin(fall), std::cos(fall) * std::cos(turn)};
+}
+
+std::vector<Eigen::AlignedBox3d> Bin::walls() const {
+  const double outer = half_side + thickness;
+  std::vector<Eigen::AlignedBox3d> walls;
+  for (const double side : {-1.0, 1.0}) {
+    const double low = side < 0.0 ? -outer : half_side, high = low + thickness;
+    walls.emplace_back(Eigen::Vector3d(low, -outer, 0.0), Eigen::Vector3d(high, outer, height));
+    walls.emplace_back(Eigen::Vector3d(-outer, low, 0.0), Eigen::Vector3d(outer, high, height));
+  }
+  return walls;
+}
+
+std::vector<Eigen::Vector4d> Bin::innerFaces() const {
+  std::vector<Eigen::Vector4d> faces;
+  for (int k = 0; k < 2; ++k)
+    for (const double side : {-1.0, 1.0}) {
+      Eigen::Vector4d face = side * Eigen::Vector4d::Unit(k);
+      face[3] = half_side;
+      faces.push_back(face);
+    }
+  return faces;
 }
 
 SceneImage renderScene(const std::vector<SceneModel>& models, const TableScene& scene, const DepthNoise& noise,
                        std::uint64_t seed) {
-  const DepthCamera& camera = scene.camera;
+  const SceneSensor& sensor = scene.sensor;
   const std::size_t num_objects = scene.objects.size();
   SceneImage image{nullptr,
                    {},
@@ -223,20 +326,19 @@ SceneImage renderScene(const std::vector<SceneModel>& models, const TableScene& 
                    std::vector<int>(num_objects, 0),
                    std::vector<bool>(num_objects, false)};
   std::vector<DepthOf> things;
-  for (const PlacedModel& object : scene.objects) things.emplace_back(models[object.model], object, camera);
-  const double half_side =
-      kTableRim + kPlaceOfOne + kPlacePerRoot * std::sqrt(static_cast<double>(std::max<std::size_t>(1, num_objects)));
+  for (const PlacedModel& object : scene.objects) things.emplace_back(models[object.model], object, sensor);
+  const DepthOfPlace place(scene);
   std::vector<double> depths;
-  for (int row = 0; row < camera.height; ++row) {
-    for (int column = 0; column < camera.width; ++column) {
-      const Eigen::Vector3d ray = camera.rayThrough(column, row);
-      double nearest = depthOfTable(camera, ray, half_side);
+  for (int row = 0; row < sensor.height; ++row) {
+    for (int column = 0; column < sensor.width; ++column) {
+      const Eigen::Vector3d ray = sensor.rayThrough(column, row);
+      double nearest = place.along(ray);
       int id = std::isfinite(nearest) ? -1 : -2;
       for (std::size_t k = 0; k < num_objects; ++k) {
-        const double depth = things[k].along(column, row, ray);
+        const double depth = things[k].along(ray);
         if (!std::isfinite(depth)) continue;
         ++image.num_alone[k];
-        if (row == 0 || column == 0 || row + 1 == camera.height || column + 1 == camera.width) image.cropped[k] = true;
+        if (row == 0 || column == 0 || row + 1 == sensor.height || column + 1 == sensor.width) image.cropped[k] = true;
         if (!(depth < nearest)) continue;
         nearest = depth;
         id = static_cast<int>(k);
@@ -246,8 +348,9 @@ SceneImage renderScene(const std::vector<SceneModel>& models, const TableScene& 
       depths.push_back(nearest);
     }
   }
-  addNoise(depths, camera.width, noise, seed);
-  image.cloud = cloudOf(camera, depths);
+  addNoise(depths, sensor, noise, seed);
+  image.cloud = cloudOf(sensor, depths);
+  if (sensor.kind == SensorKind::Lidar) dropEmpty(image);
   return image;
 }
 

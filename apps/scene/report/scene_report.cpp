@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "common/files/json_values.h"
-#include "common/pictures/picture.h"
 #include "common/shape_input/exact_coordinates.h"
 #include "common/shape_output/answer_words.h"
 #include "common/shape_output/cloud_fields.h"
@@ -171,33 +170,6 @@ void markFindings(PicturePanel& panel, const SceneObject& object, const Symmetry
       panel.planes.push_back({plane.normal(), plane.offset(), middle, kPlaneReach * reach, color});
 }
 
-PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
-  const std::vector<int> numbers = objectNumbers(scene, input.points->size());
-  auto points = pcl::make_shared<SymmetryScene::Cloud>();
-  PicturePanel panel;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  const std::size_t stride = 1 + input.points->size() / kDrawnPoints;
-  double num_of_objects = 0.0;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const pcl::PointXYZ& point = (*input.points)[i];
-    if (!pcl::isXYZFinite(point) || (numbers[i] <= 0 && i % stride != 0)) continue;
-    points->push_back(point);
-    panel.segments.push_back(numbers[i] - 1);
-    if (numbers[i] <= 0) panel.segments.back() = -1;
-    if (numbers[i] > 0) middle += point.getVector3fMap().cast<double>(), ++num_of_objects;
-  }
-  if (num_of_objects > 0.0) middle /= num_of_objects;
-  for (std::size_t k = 0; k < scene.objects.size(); ++k)
-    markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
-                 segmentColor(static_cast<int>(k)));
-  panel.label = counted(scene.objects.size(), "object") + ", " + counted(scene.supports.size(), "supporting plane");
-  PictureScene picture;
-  picture.points = points;
-  picture.panels = {panel};
-  lookFromSensor(picture, scene, middle);
-  return picture;
-}
-
 PictureScene closeUp(const InputShape& input, const SceneAnalysis& scene, std::size_t k) {
   const SceneObject& object = scene.objects[k];
   auto points = pcl::make_shared<SymmetryScene::Cloud>(*input.points, object.indices);
@@ -267,6 +239,33 @@ pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis&
   }
   completed.resize(points.size(), 1.0f);
   return withFields(toFields(points, input.shift()), {"object", "completed"}, {object, completed});
+}
+
+PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
+  const std::vector<int> numbers = objectNumbers(scene, input.points->size());
+  auto points = pcl::make_shared<SymmetryScene::Cloud>();
+  PicturePanel panel;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  const std::size_t stride = 1 + input.points->size() / kDrawnPoints;
+  double num_of_objects = 0.0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const pcl::PointXYZ& point = (*input.points)[i];
+    if (!pcl::isXYZFinite(point) || (numbers[i] <= 0 && i % stride != 0)) continue;
+    points->push_back(point);
+    panel.segments.push_back(numbers[i] - 1);
+    if (numbers[i] <= 0) panel.segments.back() = -1;
+    if (numbers[i] > 0) middle += point.getVector3fMap().cast<double>(), ++num_of_objects;
+  }
+  if (num_of_objects > 0.0) middle /= num_of_objects;
+  for (std::size_t k = 0; k < scene.objects.size(); ++k)
+    markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
+                 segmentColor(static_cast<int>(k)));
+  panel.label = counted(scene.objects.size(), "object") + ", " + counted(scene.supports.size(), "supporting plane");
+  PictureScene picture;
+  picture.points = points;
+  picture.panels = {panel};
+  lookFromSensor(picture, scene, middle);
+  return picture;
 }
 
 void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/pictures/picture.h"
 #include "common/shape_input/input_shape.h"
 #include "pcl_symmetry/scene/symmetry_scene.h"
 
@@ -19,8 +20,10 @@ nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene
 /// symmetry added the point) of all finite points of the scene and the added ones.
 pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis& scene);
 
-/// The scene from where the sensor stood, each object in a colour of its own with its plane or axis; and each object
-/// with what its symmetry adds.
+/// The scene from where the sensor stood, each object in a colour of its own with its plane or axis.
+PictureScene overview(const InputShape& input, const SceneAnalysis& scene);
+
+/// The overview, and each object with what its symmetry adds.
 void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path);
 
 }  // namespace pcl_symmetry::apps

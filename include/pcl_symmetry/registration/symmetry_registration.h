@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -55,7 +56,35 @@ struct CloudRegistration : RegisteredPose {
   /// Distinct poses by falling merit, the best one first, at most PoseSearchOptions::max_poses: those that symmetry
   /// makes equal have like merits.
   std::vector<RegisteredPose> poses;
+  /// How uncertain the best pose is: the covariance of the small motion m = (w, t) of the target's frame for which
+  /// exp(m) T_target_source is the true pose, so that a point x of the aligned source belongs at x + w x x + t. Order:
+  /// rotation vector w about the axes of the target's frame through its origin, radians; translation t, input units of
+  /// the target. From the Hessian of the point-to-plane distances at the result and their scatter: it tells of noise
+  /// and sampling. A pose that symmetry makes equal, a wrong pose, and what both clouds have wrong in common are not in
+  /// it; where noise is a third of the spacing of the points, true deviations are about twice as large. Directions that
+  /// the surface leaves open have the variance of a uniform rotation and of a way by the radius. Nothing where no pose
+  /// was found.
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+};
+
+class PreparedCloud;
+
+/// A cloud that others are registered to, again and again. Its normals, its trees, and its symmetry frame where that
+/// is asked for, are made when they are first needed, and kept. Copies share them; several threads may use them.
+class RegistrationTarget {
+public:
+  /// \param points 3 x N, finite, not all equal, input units.
+  /// \param seen what the scanner saw of them; nothing = the cloud shows its object from all sides.
+  /// \param options of the preparation: frame, seed and num_threads count.
+  /// \throws std::invalid_argument for bad options or points without extent.
+  RegistrationTarget(const Points& points, const std::optional<Visibility>& seen,
+                     const CloudRegistrationOptions& options = {});
+
+private:
+  friend CloudRegistration registerClouds(const Points&, const std::optional<Visibility>&, const RegistrationTarget&,
+                                          const Eigen::Isometry3d&, const CloudRegistrationOptions&);
+  std::shared_ptr<const PreparedCloud> cloud_;
 };
 
 /// Finds the best pose of two clouds (Section 5.1): hypotheses from symmetry frames, search, refinement by ICP, and a
@@ -70,6 +99,11 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
                                  const Points& target, const std::optional<Visibility>& target_seen,
                                  const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options = {});
 
+/// The same for a target that is prepared once. Its frame is that of the options it was made with.
+CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
+                                 const RegistrationTarget& target, const Eigen::Isometry3d& guess,
+                                 const CloudRegistrationOptions& options = {});
+
 /// Registers a cloud to another one from any pose by their symmetries (Section 5.1 of the paper): a partial scan to a
 /// model of its object, two whole objects, or a whole object to a scan.
 ///
@@ -79,9 +113,25 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 /// that lie where the scanner saw that there is nothing. The best candidates are refined by PCL's point-to-plane ICP.
 ///
 /// Honours setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
-/// epsilons of the refinement. Points that are not finite are left out. Where nothing fits, or a cloud holds no answer,
-/// hasConverged() is false, the transformation is the identity, the output is the source as it was, and PCL_WARN prints
-/// getReason().
+/// epsilons of the refinement. Points that are not finite are left out. The target is prepared by the first align()
+/// after it was set, and kept: a change of the points in that cloud needs setInputTarget() again, as PCL's own classes
+/// need it.
+///
+/// "Nothing fits" is an answer: where nothing fits, or a cloud holds no answer, hasConverged() is false, the
+/// transformation is the identity, the output is the source as it was, getReason() says why, and getPoses() still lists
+/// the best poses that were found. Nothing is thrown; PCL_WARN prints the reason.
+///
+/// The contract of pcl::Registration holds with these exceptions:
+/// - align() without a guess does not start at the identity: it looks for the pose among all;
+/// - the output is not at the last pose of an iteration where align() has not converged, but the source as it was, and
+///   the transformation is the identity;
+/// - getFitnessScore() leaves out points that are not finite; called through pcl::Registration it is PCL's own;
+/// - setEuclideanFitnessEpsilon(), setRANSACIterations(), setRANSACOutlierRejectionThreshold(),
+///   setTransformationEstimation(), setCorrespondenceEstimation(), correspondence rejectors and
+///   registerVisualizationCallback() have no effect, and the trees of setSearchMethodTarget() and
+///   setSearchMethodSource() are not used by align(); getFitnessScore() uses that of the target;
+/// - setIndices() chooses points of the source, and the output holds these points, as in PCL; where something lies
+///   beside them it tells what hides them.
 ///
 /// The library holds this class for PCL's point types with x, y and z. For other point types define PCL_NO_PRECOMPILE
 /// before the first include, as with PCL's own classes.
@@ -100,8 +150,15 @@ public:
   using ConstPtr = pcl::shared_ptr<const SymmetryRegistration<PointSource, PointTarget, Scalar>>;
   using typename Base::Matrix4;
   using typename Base::PointCloudSource;
+  using typename Base::PointCloudTargetConstPtr;
 
   SymmetryRegistration();
+
+  /// The cloud that sources are brought to. It is prepared once, see above.
+  void setInputTarget(const PointCloudTargetConstPtr& cloud) override {
+    Base::setInputTarget(cloud);
+    prepared_target_.reset();
+  }
 
   using Base::getFitnessScore;
   /// Differs from the function of the base class, which in PCL 1.13 aborts at points that are not finite: here they are
@@ -112,11 +169,19 @@ public:
 
   /// Where the scanner of each cloud stood; by default the data decide, see ScanAnalysis.
   void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = viewpoint; }
-  void setTargetViewpoint(const Viewpoint& viewpoint) { target_viewpoint_ = viewpoint; }  ///< see setSourceViewpoint()
+  /// See setSourceViewpoint().
+  void setTargetViewpoint(const Viewpoint& viewpoint) {
+    target_viewpoint_ = viewpoint;
+    prepared_target_.reset();
+  }
   /// Gives what the scanners of a scene saw, made once for all its objects, in place of what the viewpoint tells.
   /// \param seen in the frame of that cloud; null (default): each align() finds out for itself.
   void setSourceSeenSpace(const SeenSpace::ConstPtr& seen) { source_seen_space_ = seen; }
-  void setTargetSeenSpace(const SeenSpace::ConstPtr& seen) { target_seen_space_ = seen; }  ///< see setSourceSeenSpace()
+  /// See setSourceSeenSpace().
+  void setTargetSeenSpace(const SeenSpace::ConstPtr& seen) {
+    target_seen_space_ = seen;
+    prepared_target_.reset();
+  }
 
   /// \param min_merit a pose of at least this getScore().merit() has converged, in [-1, 1]; default 0.4: scans of
   /// benchmark models, also scans with noise and holes, reach 0.5 at their own model and stay below 0.32 at models of
@@ -153,8 +218,13 @@ public:
   void setMaxPoints(std::size_t max_points) {
     detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 3);
     max_points_ = max_points;
+    prepared_target_.reset();
   }
-  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
+  /// \param seed of all random draws.
+  void setRandomSeed(std::uint64_t seed) {
+    options_.seed = seed;
+    prepared_target_.reset();
+  }
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);
@@ -167,6 +237,9 @@ public:
   /// \return the best poses that the last align() found, see CloudRegistration::poses; that of the transformation is the
   /// first one. Empty where a cloud held no answer.
   const std::vector<RegisteredPose>& getPoses() const { return poses_; }
+  /// \return how uncertain the transformation of the last align() is, see CloudRegistration::covariance; nothing where
+  /// it did not converge.
+  const std::optional<Eigen::Matrix<double, 6, 6>>& getCovariance() const { return covariance_; }
   /// \return why the last align() did not converge, one sentence; empty where it did.
   const std::string& getReason() const { return reason_; }
   /// \return stages of the last align() and their milliseconds, in order.
@@ -191,17 +264,21 @@ protected:
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
 private:
+  /// Prepares the target, or sets the reason why it holds no answer.
+  void prepareTarget();
   /// Sets the transformation, or the reason where nothing fits.
-  void findPose(const Points& source, const Points& target, const Matrix4& guess);
+  void findPose(const Points& source, const Matrix4& guess);
 
   Viewpoint source_viewpoint_, target_viewpoint_;
   SeenSpace::ConstPtr source_seen_space_, target_seen_space_;
   CloudRegistrationOptions options_;
+  std::optional<RegistrationTarget> prepared_target_;
   // chosen: a lower value calls models of other kinds a fit, a higher one refuses scans with noise and holes.
   double min_merit_ = 0.4;
   std::size_t max_points_ = 10'000;
   PoseScore score_;
   std::vector<RegisteredPose> poses_;
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance_;
   std::string reason_;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };

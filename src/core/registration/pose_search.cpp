@@ -66,6 +66,7 @@ void improve(std::vector<RankedPose>& poses, const PoseScorer& scorer, const Imp
       pose.T_model_scan = scorer.step(pose.T_model_scan, {how.num_points, width});
     }
     pose.score = scorer.score(pose.T_model_scan, {how.num_points, how.last_width});
+    pose.num_points = how.num_points;
   });
 }
 

@@ -12,6 +12,7 @@ namespace pcl_symmetry {
 struct RankedPose {
   Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();
   PoseScore score;
+  int num_points = 0;  ///< of the scan that the pose was fitted to; 0 = it was not fitted
 };
 
 /// The best poses, at most \p most, that differ from all better ones by the merge_angle or the merge_distance of the

@@ -137,12 +137,13 @@ TEST_F(EvaluateRegistration, TellsHowOftenEachMethodIsRight) {
 }
 
 TEST_F(EvaluateRegistration, TracksFromAGuess) {
-  ASSERT_EQ(run((folder_ / ".") + " -points 2000 -num_views 2 -methods symmetry -around 15 -quiet -json " +
+  ASSERT_EQ(run((folder_ / ".") + " -points 2000 -num_views 2 -methods symmetry,anew -around 15 -quiet -json " +
                 (folder_ / "t.json")),
             0)
       << error_;
-  const nlohmann::json symmetry = nlohmann::json::parse(contentOf(folder_ / "t.json"))["methods"]["symmetry"];
-  EXPECT_GE(symmetry["right_rate"].get<double>(), 0.99);
+  const nlohmann::json methods = nlohmann::json::parse(contentOf(folder_ / "t.json"))["methods"];
+  for (const char* name : {"symmetry", "anew"}) EXPECT_GE(methods[name]["right_rate"].get<double>(), 0.99) << name;
+  EXPECT_EQ(methods["symmetry"]["median_angle_deg"], methods["anew"]["median_angle_deg"]) << "the same poses";
   EXPECT_EQ(run((folder_ / ".") + " -around 120"), 2);
 }
 

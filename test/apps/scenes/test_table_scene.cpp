@@ -85,9 +85,9 @@ TEST(TableScene, NoiseGrowsWithTheSquareOfTheDepth) {
   const std::vector<SceneModel> models = boxes();
   TableScene scene = drawScene(models, {}, 1);
   scene.objects.clear();
-  scene.camera.T_scene_camera.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  scene.sensor.T_scene_sensor.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
   for (const double height : {0.8, 1.6}) {
-    scene.camera.T_scene_camera.translation() = height * Eigen::Vector3d::UnitZ();
+    scene.sensor.T_scene_sensor.translation() = height * Eigen::Vector3d::UnitZ();
     const SceneImage image = renderScene(models, scene, DepthNoise(), 7);
     double sum = 0.0, count = 0.0;
     for (const pcl::PointXYZ& point : *image.cloud)
@@ -96,6 +96,80 @@ TEST(TableScene, NoiseGrowsWithTheSquareOfTheDepth) {
     const DepthNoise noise;
     const double expected = std::hypot(noise.deviation, noise.step / std::sqrt(12.0)) * height * height;
     EXPECT_NEAR(std::sqrt(sum / count), expected, 0.1 * expected) << height;
+  }
+}
+
+TEST(TableScene, DepthsHaveTheStepsOfTheDisparity) {
+  const std::vector<SceneModel> models = boxes();
+  TableScene scene = drawScene(models, {}, 1);
+  const SceneImage image = renderScene(models, scene, DepthNoise(), 7);
+  const Eigen::Isometry3d T_sensor_scene = scene.sensor.T_scene_sensor.inverse();
+  std::set<int> steps;
+  for (const pcl::PointXYZ& point : *image.cloud) {
+    if (!pcl::isXYZFinite(point)) continue;
+    const double depth = (T_sensor_scene * point.getVector3fMap().cast<double>()).z();
+    const double disparity = 1.0 / (DepthNoise().step * depth);
+    ASSERT_NEAR(disparity, std::round(disparity), 0.01) << depth;
+    steps.insert(static_cast<int>(std::round(disparity)));
+  }
+  // Depths from 0.7 to 1.6 m: 1 / (0.00285 depth) goes from 500 to 220.
+  EXPECT_GT(steps.size(), 50u);
+}
+
+TEST(TableScene, ABinStandsAroundItsObjects) {
+  const std::vector<SceneModel> models = boxes();
+  SceneOptionsOfTable options;
+  options.in_bin = true;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const TableScene scene = drawScene(models, options, seed);
+    ASSERT_TRUE(scene.bin);
+    for (const PlacedModel& object : scene.objects)
+      for (const Eigen::Vector3d& vertex : models[object.model].vertices)
+        for (const Eigen::Vector4d& face : scene.bin->innerFaces())
+          ASSERT_GT(face.dot((object.T_scene_model * vertex).homogeneous()), 0.005);
+    const SceneImage image = renderScene(models, scene, exact(), seed);
+    int on_walls = 0;
+    for (std::size_t i = 0; i < image.ids.size(); ++i) {
+      if (image.ids[i] != -1) continue;
+      const Eigen::Vector3d x = (*image.cloud)[i].getVector3fMap().cast<double>();
+      if (x.z() < 1e-4) continue;
+      ++on_walls;
+      double outside = 1.0;
+      for (const Eigen::AlignedBox3d& wall : scene.bin->walls()) outside = std::min(outside, wall.exteriorDistance(x));
+      ASSERT_LT(outside, 1e-5);
+      ASSERT_LT(x.z(), scene.bin->height + 1e-5);
+    }
+    EXPECT_GT(on_walls, 1000);
+  }
+}
+
+TEST(TableScene, AScannerHasRingsAndSparseObjects) {
+  const std::vector<SceneModel> models = boxes();
+  for (const int num_rings : {16, 64}) {
+    SceneOptionsOfTable options;
+    options.most_objects = 1;
+    options.sensor = SceneSensor::lidar(num_rings);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const TableScene scene = drawScene(models, options, seed);
+      const SceneImage image = renderScene(models, scene, exact(), seed);
+      ASSERT_EQ(image.cloud->size(), image.ids.size());
+      ASSERT_EQ(scene.objects.size(), 1u);
+      EXPECT_GE(image.num_visible[0], 100);
+      EXPECT_LE(image.num_visible[0], 5000);
+      const Eigen::Isometry3d T_sensor_scene = scene.sensor.T_scene_sensor.inverse();
+      std::set<int> rings;
+      for (std::size_t i = 0; i < image.ids.size(); ++i) {
+        const Eigen::Vector3d x = (*image.cloud)[i].getVector3fMap().cast<double>(), seen = T_sensor_scene * x;
+        ASSERT_NE(image.ids[i], -2);
+        if (image.ids[i] == 0) {
+          ASSERT_LT(distanceFrom(models[scene.objects[0].model], scene.objects[0], x), 1e-5);
+        }
+        const double ring = std::asin(seen.y() / seen.norm()) / scene.sensor.ring_step + 0.5 * num_rings - 0.5;
+        ASSERT_NEAR(ring, std::round(ring), 0.01);
+        rings.insert(static_cast<int>(std::round(ring)));
+      }
+      EXPECT_LE(rings.size(), static_cast<std::size_t>(num_rings));
+    }
   }
 }
 
@@ -133,6 +207,19 @@ TEST_F(EvaluateScenes, JudgesNoisyFramesAlsoFiltered) {
   std::set<std::string> names;
   for (const nlohmann::json& row : report["rows"]) names.insert(row["seen"].get<std::string>());
   EXPECT_EQ(names, (std::set<std::string>{"alone", "scene", "table", "filtered"}));
+}
+
+TEST_F(EvaluateScenes, JudgesBinsAndScanners) {
+  folder_.write("box.off", boxOFF());
+  ASSERT_EQ(run(folder_ / "" + " -scenes 1 -objects 1 -noise 1 -place bin -sensor lidar -rings 64 -quiet -json " +
+                (folder_ / "r.json")),
+            0)
+      << error_;
+  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "r.json"));
+  EXPECT_EQ(report["place"], "bin");
+  EXPECT_EQ(report["sensor"], "lidar");
+  EXPECT_EQ(report["rows"].size(), 3u) << "a scan without rows is not filtered";
+  EXPECT_EQ(run(folder_ / "" + " -place moon"), 2);
 }
 
 TEST_F(EvaluateScenes, JudgesEachObjectAloneInItsSceneAndOnItsTable) {

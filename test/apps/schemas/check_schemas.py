@@ -79,6 +79,7 @@ def main(apps, schemas):
         check.run(["segment", at("box.off"), "-quiet", "-json", at("a.json")], "segments")
         check.run(["map", at("box.off"), *few, "-json", at("a.json")], "map")
         check.run(["scan", at("box.off"), at("scan.pcd"), "-quiet", "-json", at("a.json")], "scans")
+        check.run(["scene", at("scan.pcd"), "-quiet", "-max_points", "1000", "-json", at("a.json")], "scene")
         check.run(["align", at("box.off"), *few, "-json", at("a.json")], "frame")
         check.run(["align", at("scan.pcd"), *few, "-target", at("box.off"), "-json", at("a.json")], "pose")
         check.run(["lines", at("ellipse.xyz"), "-quiet", "-json", at("a.json")], "lines")

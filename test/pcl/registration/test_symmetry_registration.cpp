@@ -5,6 +5,7 @@
 #include <pcl/console/print.h>
 #include <pcl/registration/icp.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <set>
 
@@ -302,6 +303,71 @@ TEST_F(SymmetryRegistrationTest, SaysWhereNothingFits) {
   fails(toCloud(Points::Random(3, 19)), model);
   EXPECT_EQ(registration.getReason().rfind("source: ", 0), 0u);
   EXPECT_EQ(registration.getScore().support, 0.0) << "that of the last pair is gone";
+}
+
+TEST_F(SymmetryRegistrationTest, PreparesTheTargetOnce) {
+  const auto model = chairModel();
+  const Eigen::Isometry3d pose = randomPose(7);
+  const auto scan = chairScan(pose);
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  registration.setSearchAround(25.0 * kDegree, 0.5);
+  registration.setInputTarget(model);
+  registration.setInputSource(scan);
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  const auto align = [&] {
+    registration.align(aligned, (motion(0.1, 0.05) * pose.inverse()).matrix().cast<float>());
+    return Eigen::Matrix4f(registration.getFinalTransformation());
+  };
+  const Eigen::Matrix4f first = align();
+  ASSERT_TRUE(registration.hasConverged());
+  // What becomes of the points after the first align() does not count until the target is set again.
+  const pcl::PointCloud<pcl::PointXYZ> before = *model;
+  for (pcl::PointXYZ& point : *model) point.getVector3fMap().setConstant(1.0f);
+  EXPECT_EQ(align(), first);
+  EXPECT_TRUE(registration.hasConverged());
+  registration.setInputTarget(model);
+  align();
+  EXPECT_FALSE(registration.hasConverged());
+  EXPECT_EQ(registration.getReason().rfind("target: ", 0), 0u) << registration.getReason();
+  *model = before;
+  registration.setInputTarget(model);
+  EXPECT_EQ(align(), first);
+  // What the target is prepared with counts at once.
+  for (pcl::PointXYZ& point : *model) point.getVector3fMap().setConstant(1.0f);
+  registration.setRandomSeed(2);
+  align();
+  EXPECT_FALSE(registration.hasConverged());
+}
+
+TEST_F(SymmetryRegistrationTest, GivesACovarianceWhereItConverges) {
+  const Eigen::Isometry3d pose = randomPose(7);
+  const auto scan = chairScan(pose), model = chairModel();
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+  pcl::PointCloud<pcl::PointXYZ> aligned;
+  const auto deviations = [&](const CloudPtr<>& source, const CloudPtr<>& target) {
+    registration.setInputSource(source);
+    registration.setInputTarget(target);
+    registration.align(aligned);
+    EXPECT_TRUE(registration.hasConverged());
+    const Eigen::Matrix<double, 6, 6> covariance = registration.getCovariance().value();
+    EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(covariance).info(), Eigen::Success) << "positive definite";
+    return covariance.diagonal().cwiseSqrt().eval();
+  };
+  // The residuals of an exact scan are those of tangent planes between points: less than a spacing of 0.03.
+  for (const bool swapped : {false, true}) {
+    const auto found = swapped ? deviations(model, scan) : deviations(scan, model);
+    EXPECT_LT(found.maxCoeff(), 0.03) << swapped;
+    EXPECT_GT(found.minCoeff(), 1e-6) << swapped;
+  }
+  registration.setInputTarget(test::toCloud(sphere(4000, 1)));
+  registration.align(aligned);
+  EXPECT_FALSE(registration.hasConverged());
+  EXPECT_FALSE(registration.getCovariance());
+  EXPECT_FALSE(registration.getPoses().empty());
+  // Nothing fixes how a sphere is turned.
+  const auto open = deviations(test::toCloud(sphere(4000, 1)), test::toCloud(sphere(4000, 2)));
+  EXPECT_GT(open.head<3>().minCoeff(), 0.5);
+  EXPECT_LT(open.tail<3>().maxCoeff(), 0.03);
 }
 
 TEST_F(SymmetryRegistrationTest, DoesNotDependOnThreadsAndUnits) {

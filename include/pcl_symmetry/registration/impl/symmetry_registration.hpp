@@ -42,12 +42,14 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
                                                                                    const Matrix4& guess) {
   score_ = {};
   poses_.clear();
+  covariance_.reset();
   timing_ms_.clear();
   const detail::SelectedPoints source = detail::selectPoints(*input_, indices_.get(), max_points_, options_.seed);
-  const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
   reason_ = detail::reasonForNoAnswer(source.points, "source");
-  if (reason_.empty()) reason_ = detail::reasonForNoAnswer(target.points, "target");
-  if (reason_.empty()) detail::withBadArguments([&] { findPose(source.points, target.points, guess); });
+  detail::withBadArguments([&] {
+    if (reason_.empty()) prepareTarget();
+    if (reason_.empty()) findPose(source.points, guess);
+  });
   if (!reason_.empty()) {
     detail::warnOfNoAnswer(getClassName(), reason_);
     return;
@@ -60,8 +62,19 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Points& source, const Points& target,
-                                                                      const Matrix4& guess) {
+void SymmetryRegistration<PointSource, PointTarget, Scalar>::prepareTarget() {
+  if (prepared_target_) return;
+  const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
+  reason_ = detail::reasonForNoAnswer(target.points, "target");
+  if (!reason_.empty()) return;
+  const std::optional<Visibility> seen = target_seen_space_
+                                             ? detail::visibilityOf(*target_seen_space_)
+                                             : detail::seenSpace(*target_, target.points, target_viewpoint_);
+  prepared_target_.emplace(target.points, seen, options_);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Points& source, const Matrix4& guess) {
   CloudRegistrationOptions options = options_;
   options.max_iterations = max_iterations_;
   options.transformation_epsilon = transformation_epsilon_;
@@ -72,15 +85,13 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   const std::optional<Visibility> source_seen = source_seen_space_
                                                     ? detail::visibilityOf(*source_seen_space_)
                                                     : detail::seenSpace(*input_, source, source_viewpoint_, is_part);
-  const std::optional<Visibility> target_seen = target_seen_space_
-                                                    ? detail::visibilityOf(*target_seen_space_)
-                                                    : detail::seenSpace(*target_, target, target_viewpoint_);
-  const CloudRegistration result = registerClouds(source, source_seen, target, target_seen,
-                                                  Eigen::Isometry3d(guess.template cast<double>()), options);
+  const CloudRegistration result =
+      registerClouds(source, source_seen, *prepared_target_, Eigen::Isometry3d(guess.template cast<double>()), options);
   poses_ = result.poses;
   score_ = result.score;
   timing_ms_ = result.timing_ms;
   if (score_.merit() >= min_merit_) {
+    covariance_ = result.covariance;
     final_transformation_ = transformation_ = result.T_target_source.matrix().template cast<Scalar>();
     return;
   }

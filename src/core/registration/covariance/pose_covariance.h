@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "core/registration/posed_surface.h"
+
+namespace pcl_symmetry {
+
+/// A small motion: rotation vector w, radians, then translation t. It moves x to x + w x x + t.
+using Motion6d = Eigen::Matrix<double, 6, 1>;
+using MotionCovariance = Eigen::Matrix<double, 6, 6>;
+
+/// \return the matrix that multiplies v to x x v.
+Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x);
+
+/// How uncertain a pose is that least squares of point-to-plane distances found: the inverse of their Hessian times
+/// their mean square, with what noise of the normals adds to the Hessian taken off. A direction that the points do not
+/// fix keeps the variance of a pose that nothing is known of: a uniform rotation, a translation by a radius.
+/// \param scan,model each about its own center, in units of the model's radius.
+/// \param num_points of the scan that the pose was fitted to, >= 1.
+/// \param reach greatest distance of points that corresponded, > 0, radii.
+/// \return covariance of the motion of the model's frame that takes the pose to the true one; radians and radii.
+MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& model,
+                                const Eigen::Isometry3d& T_model_scan, int num_points, double reach);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "core/registration/posed_surface.h"
+#include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/registration/symmetry_registration.h"
+#include "registration/pose_refinement.h"
+
+namespace pcl_symmetry {
+
+/// What a search for poses needs of one cloud. Each part is made when it is first asked for, and kept while the same
+/// unit is asked for.
+class PreparedCloud {
+public:
+  /// \param name of the cloud in messages.
+  /// \param points 3 x N, finite, input units.
+  /// \param seen what the scanner saw of them, input frame.
+  /// \param options frame, seed and num_threads count.
+  /// \throws std::invalid_argument for points without extent.
+  PreparedCloud(const std::string& name, const Points& points, const std::optional<Visibility>& seen,
+                const CloudRegistrationOptions& options);
+
+  const BoundingBall& ball() const { return ball_; }
+  bool isScan() const { return seen_.has_value(); }
+
+  /// About the center of the ball, as all parts.
+  /// \param unit input units, > 0.
+  std::shared_ptr<const PosedSurface> surface(double unit) const;
+  std::shared_ptr<const SymmetryFrame> frame(double unit) const;
+  /// Of this cloud as the model that others are refined against.
+  std::shared_ptr<const RefinementTarget> refinementTarget(double unit) const;
+
+private:
+  const Points points_;
+  const std::optional<Visibility> seen_;
+  const CloudRegistrationOptions options_;
+  const BoundingBall ball_;
+  mutable std::mutex mutex_;  // of what follows
+  mutable double unit_ = 0.0;
+  mutable std::shared_ptr<const PosedSurface> surface_;
+  mutable std::shared_ptr<const SymmetryFrame> frame_;
+  mutable std::shared_ptr<const RefinementTarget> refinement_target_;
+
+  /// With the mutex locked.
+  const std::shared_ptr<const PosedSurface>& surfaceIn(double unit) const;
+};
+
+}  // namespace pcl_symmetry
