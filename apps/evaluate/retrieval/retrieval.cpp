@@ -201,7 +201,7 @@ private:
     leaveOut();
     compare("Asking a database",
             [&](const auto& progress) { return std::vector{databaseMethod(clouds, options_.retrieval, progress)}; });
-    printTable();
+    report();
   }
 
   template <typename Methods>
