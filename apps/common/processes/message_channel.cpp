@@ -21,6 +21,9 @@ constexpr int kTag = 1;  // of all messages. chosen: any
 constexpr std::chrono::seconds kOnTheWay(60);
 // Pause between two looks. chosen: an item takes tens of milliseconds; half and twice take the same time.
 constexpr std::chrono::microseconds kPause(500);
+// Time that mpirun gets to pass on what was written, before all processes end: OpenMPI drops what it has not read yet.
+// chosen: it reads within milliseconds; at half, a busy machine may still lose a sentence, twice only waits.
+constexpr std::chrono::milliseconds kForwarding(300);
 
 std::vector<char> packed(const Message& message) {
   std::vector<char> bytes(1 + 2 * sizeof(std::int64_t) + message.bytes.size());
@@ -91,6 +94,7 @@ std::optional<std::pair<int, Message>> MessageChannel::receive() {
 
 void MessageChannel::abort(int code) {
   std::fflush(nullptr);
+  std::this_thread::sleep_for(kForwarding);
   boost::mpi::environment::abort(code);
   std::_Exit(code);
 }

@@ -71,11 +71,12 @@ struct SceneObject {
 
 /// What SymmetryScene found.
 struct SceneAnalysis {
-  SeenSpace::ConstPtr seen;               ///< what the sensor saw, for further analyses
-  std::vector<SupportingPlane> supports;  ///< tables, floors and walls, as they were found
-  std::vector<SceneObject> objects;       ///< most points first
-  double plane_distance = 0.0, /**< that was used, input units */ cluster_distance = 0.0;  ///< as well
-  std::vector<std::pair<std::string, double>> timing_ms;                                   ///< stages in order
+  SeenSpace::ConstPtr seen;                               ///< what the sensor saw, for further analyses
+  std::vector<SupportingPlane> supports;                  ///< tables, floors and walls, as they were found
+  std::vector<SceneObject> objects;                       ///< most points first
+  double plane_distance = 0.0;                            ///< that was used, input units
+  double cluster_distance = 0.0;                          ///< that was used, input units
+  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
 /// Takes the errors of a depth camera out of its frame: each point becomes that of the plane through the pixels around

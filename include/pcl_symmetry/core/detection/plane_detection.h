@@ -40,8 +40,9 @@ struct SymmetryPlane : ReflectionPlane {
   /// Estimate of the share of the surface that the plane maps to within the tolerance of the surface, in [0, 1]: of the
   /// part of the surface that says something. A plane is a symmetry of the object if that share is at least 0.97.
   double share = 0.0;
-  /// Limits of that share for the whole object: it lies between them in 95 of 100 cases, in [0, 1].
-  double share_low = 0.0, share_high = 1.0;  ///< as share_low
+  /// Lower limit of that share for the whole object: it lies between the limits in 95 of 100 cases, in [0, 1].
+  double share_low = 0.0;
+  double share_high = 1.0;  ///< upper limit
   /// Distance that 97 % of the reflected points stay within from the surface, input units: the least tolerance at which
   /// the plane would be a symmetry.
   double deviation = 0.0;
@@ -84,8 +85,10 @@ struct SymmetryTurn {
 
 /// All planes through a point are symmetries: a sphere.
 struct SymmetryCenter {
-  Eigen::Vector3d point;                                                                           ///< input frame
-  double confidence = 0.0, /**< as of SymmetryAxis */ score = 0.0, /**< as well */ support = 0.0;  ///< as well
+  Eigen::Vector3d point;    ///< input frame
+  double confidence = 0.0;  ///< as that of SymmetryAxis
+  double score = 0.0;       ///< as that of SymmetryAxis
+  double support = 0.0;     ///< as that of SymmetryAxis
 };
 
 /// Options of detectPlanes(); the defaults suit any shape and unit.

@@ -36,9 +36,9 @@ public:
   int numCells() const { return num_cells_; }     ///< cells along each side of the cube
   double cellSize() const { return cell_size_; }  ///< input units
   double sigma() const { return sigma_; }         ///< input units
-  /// Center and radius of the ball that the grid covers, input units. A margin of two sigmas surrounds it.
+  /// Center of the ball that the grid covers, input frame. A margin of two sigmas surrounds it.
   const Eigen::Vector3d& center() const { return center_; }
-  double radius() const { return radius_; }  ///< half the side of the cube, input units
+  double radius() const { return radius_; }  ///< of that ball, input units
   /// \return center of cell (0, 0, 0), input frame.
   const Eigen::Vector3d& origin() const { return origin_; }
 

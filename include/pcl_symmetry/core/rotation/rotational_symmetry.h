@@ -88,8 +88,8 @@ struct ObjectSymmetries {
   double support = 1.0;
   double confidence = 1.0;  ///< probability that the whole surface, not its points alone, keeps to the limits
   double tolerance = 0.0;   ///< that was decided at, input units
-  /// Groups at half and at twice the tolerance, with ObjectSymmetryOptions::other_tolerances.
-  std::optional<GroupName> at_half_tolerance, at_twice_tolerance;  ///< as at_half_tolerance
+  std::optional<GroupName> at_half_tolerance;             ///< with ObjectSymmetryOptions::other_tolerances
+  std::optional<GroupName> at_twice_tolerance;            ///< with ObjectSymmetryOptions::other_tolerances
   std::vector<RejectedRotation> rejected;                 ///< what was tried and failed, the least failure first
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
   std::string reason;  ///< why there is no answer, set by detectObjectSymmetries() for clouds; empty where there is one

@@ -12,8 +12,9 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 struct SurfaceGraph {
   /// Two neighbouring elements and the border that they share.
   struct Edge {
-    int from, /**< element, in [0, N) */ to;  ///< element, in [0, N)
-    float length;                             ///< of the border, input units
+    int from;      ///< element, in [0, N)
+    int to;        ///< element, in [0, N)
+    float length;  ///< of the border, input units
     /// Angle between the two normals, in [-pi, pi] radians; > 0 where the surface is concave. For points 1.5 times
     /// that, because their normals are means over neighbours.
     float concavity;

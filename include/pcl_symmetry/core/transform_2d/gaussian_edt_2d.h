@@ -46,9 +46,9 @@ public:
   int numCells() const { return num_cells_; }     ///< cells along each side of the square
   double cellSize() const { return cell_size_; }  ///< input units
   double sigma() const { return sigma_; }         ///< input units
-  /// Center and radius of the disk that the grid covers, input units. A margin of two sigmas surrounds it.
+  /// Center of the disk that the grid covers, input frame. A margin of two sigmas surrounds it.
   const Eigen::Vector2d& center() const { return center_; }
-  double radius() const { return radius_; }  ///< half the side of the square, input units
+  double radius() const { return radius_; }  ///< of that disk, input units
   /// \return center of cell (0, 0), input frame.
   const Eigen::Vector2d& origin() const { return origin_; }
 

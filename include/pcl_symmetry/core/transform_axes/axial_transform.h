@@ -24,7 +24,10 @@ class AxisGrid {
 public:
   /// Indices of a cell of the grid.
   struct Bin {
-    int theta, /**< of the direction */ phi, /**< as well */ u, /**< of the offset */ v;  ///< as well
+    int theta;  ///< in [0, numTheta())
+    int phi;    ///< in [0, numPhi())
+    int u;      ///< in [0, numOffset())
+    int v;      ///< in [0, numOffset())
   };
 
   AxisGrid() = default;
