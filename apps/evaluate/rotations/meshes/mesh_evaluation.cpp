@@ -7,6 +7,7 @@
 #include "common/command_line/console.h"
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
+#include "core/detection/scan_axes/turn_confidence.h"
 #include "evaluate/calibration/reliability.h"
 #include "evaluate/rotations/meshes/mesh_rotations.h"
 #include "evaluate/rotations/meshes/scan_turns.h"
@@ -114,42 +115,21 @@ private:
 
 constexpr const char* kTurnKindNames[] = {"by any angle", "half turns", "of order 3 and more"};
 
-/// A row for each turn, from which apps/calibrate can fit.
-std::string tableOf(const std::vector<std::string>& names, const std::vector<std::vector<JudgedTurn>>& all) {
-  std::string text;
-  Row head;
-  for (const char* title : {"scan", "fold", "confidence", "support", "off", "far", "halfway", "excess"})
-    head.add(title);
-  text = head.end();
-  for (std::size_t i = 0; i < names.size(); ++i)
-    for (const JudgedTurn& one : all[i])
-      text += Row()
-                  .add(names[i])
-                  .add(static_cast<double>(one.turn.fold))
-                  .add(one.turn.confidence)
-                  .add(one.turn.support)
-                  .add(one.turn.off)
-                  .add(one.turn.far)
-                  .add(one.turn.halfway)
-                  .add(one.excess)
-                  .end();
-  return text;
-}
-
 void report(const std::vector<std::string>& names, const std::vector<std::vector<JudgedTurn>>& all,
             const EvaluateRotationsOptions& options) {
   std::vector<Forecast> forecasts[3], together;
   for (const std::vector<JudgedTurn>& some : all)
     for (const JudgedTurn& one : some) {
+      if (one.turn.confidence < kHardlyBelieved) continue;
       const Forecast forecast{one.turn.confidence, one.isRight()};
-      forecasts[one.turn.fold == 0 ? 0 : one.turn.fold == 2 ? 1 : 2].push_back(forecast);
+      forecasts[static_cast<std::size_t>(kindOf(one.turn))].push_back(forecast);
       together.push_back(forecast);
     }
   std::vector<Reliability> groups{reliabilityOf("all turns of scans", together, {})};
   for (std::size_t kind = 0; kind < 3; ++kind)
     groups.push_back(reliabilityOf(kTurnKindNames[kind], forecasts[kind], {}));
   printReliability(groups);
-  if (options.csv) writeText(*options.csv, tableOf(names, all));
+  if (options.csv) writeText(*options.csv, turnTable(names, all));
   nlohmann::json summary;
   for (const Reliability& group : groups) summary[group.label] = toJson(group);
   if (options.common.json_path)

@@ -1,12 +1,15 @@
 #include "evaluate/rotations/meshes/scan_turns.h"
 
-#include <cmath>
+#include <algorithm>
+#include <fstream>
+#include <sstream>
 
 #include "common/shape_input/shape_input.h"
 #include "core/base/constants.h"
 #include "evaluate/clouds/test_clouds.h"
 #include "evaluate/rotations/meshes/true_shares.h"
 #include "evaluate/shapes/shape_report.h"
+#include "evaluate/shared/table_text.h"
 #include "pcl_symmetry/core/rotation/rotational_symmetry.h"
 #include "recognition/packing/packed_bytes.h"
 
@@ -72,13 +75,51 @@ std::vector<JudgedTurn> judgedTurnsOfSolid(int i, bool report) {
   return judged(solid.shape.mesh, solid.scan.cloud, solid.scan.T_scan_model);
 }
 
+namespace {
+
+constexpr const char* kTurnTitles = "scan,fold,confidence,support,off,far,halfway,excess";
+
+/// The numbers of a turn in the order of the titles.
+std::vector<double*> fieldsOf(JudgedTurn& one) {
+  return {&one.turn.confidence, &one.turn.support, &one.turn.off, &one.turn.far, &one.turn.halfway, &one.excess};
+}
+
+}  // namespace
+
+std::string turnTable(const std::vector<std::string>& names, const std::vector<std::vector<JudgedTurn>>& turns) {
+  std::string text = std::string(kTurnTitles) + "\n";
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (JudgedTurn one : turns[i]) {
+      Row row;
+      row.add(names[i]).add(one.turn.fold);
+      for (const double* value : fieldsOf(one)) row.add(*value);
+      text += row.end();
+    }
+  return text;
+}
+
+std::vector<JudgedTurn> readTurnTable(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line) || line != kTurnTitles) throw InputError(path + ": line 1 must be " + kTurnTitles);
+  std::vector<JudgedTurn> turns;
+  for (int number = 2; std::getline(file, line); ++number) {
+    std::istringstream row(line.substr(std::min(line.size(), line.find(',') + 1)));
+    JudgedTurn one;
+    char comma = ',';
+    row >> one.turn.fold;
+    for (double* value : fieldsOf(one)) row >> comma >> *value;
+    if (!row) throw InputError(path + ": line " + std::to_string(number) + " must have the columns of line 1");
+    turns.push_back(one);
+  }
+  return turns;
+}
+
 std::string packed(const std::vector<JudgedTurn>& judged) {
   detail::PackedBytes bytes;
-  for (const JudgedTurn& one : judged) {
+  for (JudgedTurn one : judged) {
     bytes.put(static_cast<std::int32_t>(one.turn.fold));
-    for (const double value : {one.turn.confidence, one.turn.support, one.turn.off, one.turn.far, one.turn.halfway})
-      bytes.put(value);
-    bytes.put(one.excess);
+    for (const double* value : fieldsOf(one)) bytes.put(*value);
   }
   return bytes.bytes();
 }
@@ -89,9 +130,7 @@ std::vector<JudgedTurn> unpackedTurns(const std::string& packed) {
   while (bytes.left() > 0) {
     JudgedTurn one;
     one.turn.fold = bytes.get<std::int32_t>();
-    for (double* value :
-         {&one.turn.confidence, &one.turn.support, &one.turn.off, &one.turn.far, &one.turn.halfway, &one.excess})
-      *value = bytes.get<double>();
+    for (double* value : fieldsOf(one)) *value = bytes.get<double>();
     judged.push_back(one);
   }
   return judged;

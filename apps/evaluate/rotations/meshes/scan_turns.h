@@ -27,6 +27,13 @@ std::vector<JudgedTurn> judgedTurns(const Model& model, int num_views);
 /// \param i which solid and view.
 std::vector<JudgedTurn> judgedTurnsOfSolid(int i, bool report);
 
+/// A row for each turn, from which calibrate_turns can fit.
+/// \param names of what each list of turns is of.
+std::string turnTable(const std::vector<std::string>& names, const std::vector<std::vector<JudgedTurn>>& turns);
+
+/// \throws InputError naming the file and the line.
+std::vector<JudgedTurn> readTurnTable(const std::string& path);
+
 std::string packed(const std::vector<JudgedTurn>& judged);
 /// \throws std::invalid_argument for bytes that packed() did not make.
 std::vector<JudgedTurn> unpackedTurns(const std::string& bytes);

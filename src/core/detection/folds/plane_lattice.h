@@ -10,7 +10,7 @@ namespace pcl_symmetry {
 
 /// The planes of a regular polygon: \p fold planes through a line, at equal angles.
 struct PlaneLattice {
-  AxisLine line;
+  Line3d line;
   int fold = 0;        ///< number of planes, >= 3
   double phase = 0.0;  ///< angle of the normal of plane 0 from line.direction().unitOrthogonal(), radians
   int num_planes = 0;  ///< that were found
@@ -25,7 +25,7 @@ struct PlaneLattice {
 std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes, double tolerance);
 
 /// The lattice of the planes that contain a line.
-std::optional<PlaneLattice> latticeAbout(const AxisLine& line, const std::vector<ReflectionPlane>& planes,
+std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<ReflectionPlane>& planes,
                                          double tolerance);
 
 }  // namespace pcl_symmetry
