@@ -13,7 +13,7 @@ namespace {
 
 // Pull on the scaled coefficients, in cases. chosen: half and twice change no confidence by 0.05; without any, a kind
 // whose cases can be separated would be sure of everything.
-constexpr double kPull = 2.0;
+constexpr double kPull = 0.5;
 
 TurnFit fitKind(const std::vector<JudgedTurn>& turns, TurnKind kind) {
   TurnFit fit;

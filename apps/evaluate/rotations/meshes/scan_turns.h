@@ -12,7 +12,8 @@ namespace pcl_symmetry::apps {
 
 /// Turns that were found in a scan, and what is true of them on the whole mesh.
 struct JudgedTurn {
-  SymmetryTurn turn;    ///< point and direction in the frame of the scan
+  /// Point and direction in the frame of the scan.
+  SymmetryTurn turn{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
   double excess = 0.0;  ///< the greater of the true shares over what RotationLimits allow of each
 
   bool isRight() const { return excess <= 1.0; }

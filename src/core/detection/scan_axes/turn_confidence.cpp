@@ -12,8 +12,8 @@ namespace {
 // Share of the points by which turns halfway may throw more into empty space and still say more. chosen: half hides
 // what sets shallow folds apart from round bodies, beyond it all folds are alike.
 constexpr double kMostHalfway = 0.3;
-// Least share that a logarithm is taken of. derived: half of one of a thousand points.
-constexpr double kLeastShare = 5e-4;
+// Share of the points that counts as little. derived: two of a thousand points, what chance takes.
+constexpr double kLittleShare = 2e-3;
 
 }  // namespace
 
@@ -22,7 +22,8 @@ TurnKind kindOf(const SymmetryTurn& turn) {
 }
 
 std::vector<double> turnOddsTerms(const SymmetryTurn& turn) {
-  std::vector<double> terms{1.0, std::log(turn.off + kLeastShare), std::log(turn.far + kLeastShare), turn.support};
+  std::vector<double> terms{1.0, std::log1p(turn.off / kLittleShare), std::log1p(turn.far / kLittleShare),
+                            1.0 - turn.support};
   if (turn.fold > 0) terms.push_back(std::min(kMostHalfway, turn.halfway - turn.off));
   if (turn.fold > 2) terms.push_back(1.0 / turn.fold);
   return terms;

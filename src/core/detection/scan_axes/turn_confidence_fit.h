@@ -7,7 +7,8 @@
 namespace pcl_symmetry {
 
 // Coefficients of turnOddsTerms(), by TurnKind. fitted: none.
-inline const std::array<std::vector<double>, 3> kTurnConfidenceFit{
-    {{0.0, -1.0, -1.0, 4.0}, {-12.0, -1.0, -0.5, 4.0, 1.0}, {-10.0, -1.0, -0.5, 2.0, 6.0, 1.0}}};
+inline const std::array<std::vector<double>, 3> kTurnConfidenceFit{{{3.0, -1.0, -1.0, -4.0},
+                                                                    {1.0, -1.0, -1.0, -7.0, 1.0},
+                                                                    {2.0, -1.0, -1.0, -4.0, 5.0, 0.0}}};
 
 }  // namespace pcl_symmetry
