@@ -55,7 +55,7 @@ std::string headerText(const std::array<TurnFit, 3>& fit) {
   std::string numbers, counts;
   char text[64];
   for (std::size_t kind = 0; kind < fit.size(); ++kind) {
-    numbers += kind == 0 ? "{" : ",\n                                                                     {";
+    numbers += kind == 0 ? "{" : ",\n                                                                    {";
     for (Eigen::Index k = 0; k < fit[kind].coefficients.size(); ++k) {
       std::snprintf(text, sizeof(text), "%s%.4g", k > 0 ? ", " : "", fit[kind].coefficients[k]);
       numbers += text;
@@ -65,11 +65,9 @@ std::string headerText(const std::array<TurnFit, 3>& fit) {
                   fit[kind].num_right + fit[kind].num_wrong);
     counts += text;
   }
-  return "// Written by calibrate_turns. Do not edit.\n#pragma once\n\n#include <array>\n#include "
-         "<vector>\n\nnamespace "
-         "pcl_symmetry {\n\n// Coefficients of turnOddsTerms(), by TurnKind. fitted: symmetries among the turns of "
-         "each "
-         "kind: " +
+  return "// Written by calibrate_turns. Do not edit.\n#pragma once\n\n#include <array>\n#include <vector>\n\n"
+         "namespace pcl_symmetry {\n\n// Coefficients of turnOddsTerms(), by TurnKind.\n"
+         "// fitted: symmetries among the turns of each kind: " +
          counts + ".\ninline const std::array<std::vector<double>, 3> kTurnConfidenceFit{{" + numbers +
          "}};\n\n}  // namespace pcl_symmetry\n";
 }
