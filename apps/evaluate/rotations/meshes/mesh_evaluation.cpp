@@ -117,15 +117,16 @@ constexpr const char* kTurnKindNames[] = {"by any angle", "half turns", "of orde
 
 void report(const std::vector<std::string>& names, const std::vector<std::vector<JudgedTurn>>& all,
             const EvaluateRotationsOptions& options) {
-  std::vector<Forecast> forecasts[3], together;
+  std::vector<Forecast> forecasts[3], all_turns, believed;
   for (const std::vector<JudgedTurn>& some : all)
     for (const JudgedTurn& one : some) {
-      if (one.turn.confidence < kHardlyBelieved) continue;
       const Forecast forecast{one.turn.confidence, one.isRight()};
       forecasts[static_cast<std::size_t>(kindOf(one.turn))].push_back(forecast);
-      together.push_back(forecast);
+      all_turns.push_back(forecast);
+      if (one.turn.confidence >= kHardlyBelieved) believed.push_back(forecast);
     }
-  std::vector<Reliability> groups{reliabilityOf("all turns of scans", together, {})};
+  std::vector<Reliability> groups{reliabilityOf("all turns of scans", all_turns, {}),
+                                  reliabilityOf("0.02 and more", believed, {})};
   for (std::size_t kind = 0; kind < 3; ++kind)
     groups.push_back(reliabilityOf(kTurnKindNames[kind], forecasts[kind], {}));
   printReliability(groups);
