@@ -113,6 +113,7 @@ private:
   std::vector<JudgedGroups> meshes_;
 };
 
+// By TurnKind. derived: its names.
 constexpr const char* kTurnKindNames[] = {"by any angle", "half turns", "of order 3 and more"};
 
 void report(const std::vector<std::string>& names, const std::vector<std::vector<JudgedTurn>>& all,

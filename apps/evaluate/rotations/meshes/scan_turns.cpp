@@ -77,6 +77,7 @@ std::vector<JudgedTurn> judgedTurnsOfSolid(int i, bool report) {
 
 namespace {
 
+// derived: the fields of JudgedTurn, as fieldsOf() has them.
 constexpr const char* kTurnTitles = "scan,fold,confidence,support,off,far,halfway,excess";
 
 /// The numbers of a turn in the order of the titles.
