@@ -52,13 +52,14 @@ Points sampled(const Shape& shape, const Points& vertices, int num_points, std::
 /// Colours and the given file, in the frame of the shifted points.
 void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const ModelOptions& options,
              const std::optional<ListedSymmetries>& given) {
-  const bool use_colours = options.use_colours && hasVertexColours(shape);
-  info.has_unread_colours = hasColours(shape) && !use_colours;
+  const std::optional<SurfaceColours> colours =
+      options.use_colours ? surfaceColours(shape, info.file) : std::optional<SurfaceColours>();
+  info.has_unread_colours = hasColours(shape) && !colours;
   const std::uint64_t seed = options.symmetries.seed;
-  if (use_colours) {
+  if (colours) {
     const Points points = sampled(shape, vertices, options.mesh_points, seed);
     const std::string before = info.symmetries.name();
-    info.symmetries = keepingColours(info.symmetries, ColouredSurface(shape, points, options.colour_tolerance));
+    info.symmetries = keepingColours(info.symmetries, ColouredSurface(*colours, points, options.colour_tolerance));
     if (info.symmetries.name() != before) info.group_without_colours = before;
   }
   if (!given && !options.failures_folder) return;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bop/colour_symmetry.h"
+#include "bop/colours/colour_symmetry.h"
 #include "bop/symmetry_check.h"
 #include "common/shape_input/shape_input.h"
 #include "pcl_symmetry/object_symmetries.h"

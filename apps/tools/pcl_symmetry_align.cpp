@@ -21,6 +21,7 @@
 #include "common/shape_input/input_shape.h"
 #include "common/shape_output/cloud_fields.h"
 #include "common/shape_output/shape_output.h"
+#include "common/shape_output/turn_values.h"
 #include "pcl_symmetry/completion.h"
 #include "pcl_symmetry/registration/symmetry_registration.h"
 #include "pcl_symmetry/symmetry_alignment.h"
@@ -219,6 +220,7 @@ nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift
   json["equivalent"] = nlohmann::json::array();
   for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
     json["equivalent"].push_back(absolute(T_canonical_input));
+  json["turns"] = turnsJson(frame.turns, shift);
   return json;
 }
 
@@ -231,6 +233,8 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
                   frame.revolution_axis == k ? "  axis of revolution" : "");
     lines += text;
   }
+  for (const SymmetryTurn& turn : frame.turns)
+    if (turn.confidence >= DetectionOptions().min_confidence) lines += lineOf(turn, shift);
   return lines;
 }
 

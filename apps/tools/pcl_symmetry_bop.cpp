@@ -53,7 +53,8 @@ CommandLine commandLine(BopOptions& options) {
               "the same in the unit of the input; 0: the share decides")
       .number("min_confidence", options.models.symmetries.min_confidence, Range::closed(0, 1),
               "least confidence of rotations that are called symmetries")
-      .flag("colour", options.models.use_colours, "only rotations that keep the colours of the vertices")
+      .flag("colour", options.models.use_colours,
+            "only rotations that keep the colours of the vertices, or of the texture of a PLY file")
       .number("colour_tolerance", options.models.colour_tolerance, Range::above(0),
               "difference of colours that counts as none, in CIELAB")
       .number("sphere_angle", options.sphere_angle, Range::upTo(0, 180),
@@ -142,7 +143,8 @@ void printColourNote(const std::vector<ModelInfo>& infos, bool use_colours) {
   const auto num_coloured = std::count_if(infos.begin(), infos.end(), is_coloured);
   if (num_coloured == 0) return;
   std::printf("%td of %zu models have colours, which were not looked at: %s\n", num_coloured, infos.size(),
-              use_colours ? "only those of vertices can be read" : "-colour asks for rotations that keep them");
+              use_colours ? "only those of vertices, and textures that PLY files name, can be read"
+                          : "-colour asks for rotations that keep them");
 }
 
 /// Prints how a given file compares, and writes that as JSON.

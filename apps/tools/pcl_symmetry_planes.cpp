@@ -19,6 +19,7 @@
 #include "common/shape_output/answer_words.h"
 #include "common/shape_output/cloud_fields.h"
 #include "common/shape_output/shape_output.h"
+#include "common/shape_output/turn_values.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace {
@@ -110,10 +111,7 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
     table +=
         formatted("axis of revolution: through %s along %.6f %.6f %.6f, confidence %.3f\n", place(axis.point).c_str(),
                   axis.direction.x(), axis.direction.y(), axis.direction.z(), axis.confidence);
-  for (const SymmetryTurn& turn : findings.turns)
-    table += formatted("axis of order %d: through %s along %.6f %.6f %.6f, confidence %.3f\n", turn.fold,
-                       place(turn.point).c_str(), turn.direction.x(), turn.direction.y(), turn.direction.z(),
-                       turn.confidence);
+  for (const SymmetryTurn& turn : findings.turns) table += lineOf(turn, shift);
   const std::vector<SymmetryPlane>& planes = findings.planes;
   if (planes.empty()) return table;
   table += formatted("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence",
@@ -204,16 +202,7 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
                             {"score", axis.score},
                             {"support", axis.support}});
   }
-  if (findings.viewpoint) json["turns"] = nlohmann::json::array();
-  for (const SymmetryTurn& turn : findings.turns)
-    json["turns"].push_back({{"point", numbersOf(shiftedBack(turn.point, shift))},
-                             {"direction", numbersOf(turn.direction)},
-                             {"fold", turn.fold},
-                             {"confidence", turn.confidence},
-                             {"support", turn.support},
-                             {"off", turn.off},
-                             {"far", turn.far},
-                             {"halfway", turn.halfway}});
+  if (findings.viewpoint) json["turns"] = turnsJson(findings.turns, shift);
   for (const SymmetryCenter& center : findings.centers) {
     json["centers"].push_back({{"point", numbersOf(shiftedBack(center.point, shift))},
                                {"confidence", center.confidence},

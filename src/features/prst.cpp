@@ -33,6 +33,7 @@ std::vector<float> detail::describePRST(const Points& points, const PRSTParamete
   } else {
     FrameOptions frame;
     frame.seed = parameters.seed;
+    frame.turns = false;
     frame.num_threads = frame.edt.num_threads = parameters.num_threads;
     T_frame_input = symmetryFrame(points, frame, seen).T_canonical_input;
   }

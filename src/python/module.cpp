@@ -219,7 +219,10 @@ void addFrame(py::module_& module) {
           "(4, 4) from the input to the canonical frame")
       .def_property_readonly(
           "equivalent", [](const SymmetryFrame& f) { return stacked(f.equivalent); },
-          "(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first");
+          "(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first")
+      .def_property_readonly(
+          "turns", [](const SymmetryFrame& f) { return f.turns; },
+          "list of Turn, of scans from one side, most confident first");
   py::class_<ObjectSymmetries>(module, "Rotations", "The rotations that map a shape onto itself.")
       .def_property_readonly("name", &ObjectSymmetries::name, "after Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3")
       .def_readonly("fold", &ObjectSymmetries::fold, "order of the main axis; 0 where it is one of revolution")

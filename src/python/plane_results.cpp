@@ -100,7 +100,7 @@ void addPlaneResults(py::module_& module) {
       .def_readonly("direction", &SymmetryTurn::direction, "(3,) unit")
       .def_readonly("fold", &SymmetryTurn::fold, "order of the turns; 0: by any angle")
       .def_readonly("confidence", &SymmetryTurn::confidence,
-                    "how far within its limits this is, in [0, 1], 0.5 at them: a grade, not a probability")
+                    "probability that these turns are symmetries of the whole object")
       .def_readonly("support", &SymmetryTurn::support, "share of the points that the best turn maps onto the surface")
       .def_readonly("off", &SymmetryTurn::off, "share that the worst turn maps to where the scanner saw nothing");
   py::class_<SymmetryCenter> center(module, "Center", "All planes through a point are symmetries: a sphere.");

@@ -123,7 +123,9 @@ private:
 
   void findFrame(SceneObject& object) const {
     SymmetryAlignment<pcl::PointXYZ> alignment;
-    alignment.setOptions(options_.frame);
+    FrameOptions options = options_.frame;
+    options.turns = false;
+    alignment.setOptions(options);
     prepare(alignment, object);
     SymmetryFrame frame = alignment.compute();
     if (!frame.equivalent.empty()) object.frame = std::move(frame);

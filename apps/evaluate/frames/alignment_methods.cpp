@@ -37,6 +37,7 @@ void addSigns(FoundFrame& found) {
 FoundFrame bySymmetry(AlignmentMethod method, const Cloud::ConstPtr& cloud, std::uint64_t seed, int num_threads) {
   FrameOptions options;
   options.as_published = method == AlignmentMethod::FirstMaximum;
+  options.turns = false;
   SymmetryAlignment<pcl::PointXYZ> alignment;
   alignment.setOptions(options);
   alignment.setRandomSeed(seed);

@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -14,12 +13,11 @@
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/command_line/tool_errors.h"
-#include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
 #include "core/base/median.h"
 #include "core/base/stopwatch.h"
-#include "evaluate/calibration/reliability.h"
-#include "evaluate/rotations/mesh_rotations.h"
+#include "evaluate/rotations/meshes/mesh_evaluation.h"
+#include "evaluate/rotations/rotation_options.h"
 #include "evaluate/rotations/rotation_solids.h"
 #include "evaluate/runs/resumable_run.h"
 #include "evaluate/shared/model_flags.h"
@@ -31,22 +29,15 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-struct EvaluateRotationsOptions {
-  std::vector<double> counts{2000, 10'000, 50'000};
-  std::vector<double> noise{0.0, 0.003};
-  int num_seeds = 1;
-  ObjectSymmetryOptions symmetries;
-  std::optional<std::string> kind, csv, journal, meshes;
-  ModelSelection selection;
-  CommonOptions common;
-};
-
 CommandLine commandLine(EvaluateRotationsOptions& o) {
-  CommandLine line("pcl_symmetry_evaluate rotations",
-                   "Finds the groups of rotations of solids of known groups, in random poses: those of the kinds that "
-                   "the constants of the library were chosen on, and others. With -meshes, finds those of meshes, and "
-                   "measures by exact distances how often groups and rejected turns of a confidence are symmetries.",
-                   "pcl_symmetry_evaluate rotations -seeds 5 -csv groups.csv");
+  CommandLine line(
+      "pcl_symmetry_evaluate rotations",
+      "Finds the groups of rotations of solids of known groups, in random poses: those of the kinds that "
+      "the constants of the library were chosen on, and others. With -meshes, finds those of meshes, and "
+      "measures by exact distances how often groups and rejected turns of a confidence are symmetries, and how "
+      "often the groups are the same for all numbers of points. With -scans, measures the same of the turns "
+      "that are found in single scans.",
+      "pcl_symmetry_evaluate rotations -seeds 5 -csv groups.csv");
   line.numbers("counts", o.counts, Range::closed(100, 10'000'000), "numbers of points")
       .numbers("noise", o.noise, Range::closed(0, 0.1), "standard deviations of the coordinates, share of the diameter")
       .number("seeds", o.num_seeds, Range::closed(1, 1000), "number of samplings and poses of each")
@@ -54,8 +45,12 @@ CommandLine commandLine(EvaluateRotationsOptions& o) {
               "how far a symmetric surface may be off, share of the diameter")
       .number("feature", o.symmetries.max_feature, Range::closed(0, 1), "share of the surface that may be off by more")
       .text("kind", "NAME", o.kind, "solids of this kind alone")
-      .text("meshes", "DIR", o.meshes, "meshes in place of solids, clouds of the first of -counts")
-      .text("csv", "FILE", o.csv, "a row for each cloud; with -meshes for each group and rejected turn");
+      .text("meshes", "DIR", o.meshes,
+            "meshes in place of solids; confidences are measured on clouds of the first of -counts")
+      .number("scans", o.num_scans, Range::closed(0, 100'000),
+              "judge the turns of this number of scans: of each mesh, or of solids of `shapes turns` together")
+      .text("csv", "FILE", o.csv,
+            "a row for each cloud; with -meshes for each group and rejected turn, with -scans for each turn");
   addSelectionFlags(line, o.selection);
   ResumableRun::addFlag(line, o.journal);
   line.common(o.common, kJson | kSeed | kThreads | kQuiet);
@@ -242,69 +237,6 @@ private:
   std::vector<Trial> trials_;
 };
 
-/// Do stated probabilities of groups and rejected turns of meshes come true?
-class MeshRotationEvaluation {
-public:
-  MeshRotationEvaluation(const EvaluateRotationsOptions& options, ResumableRun& work)
-      : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()) {}
-
-  void run() {
-    const std::vector<Model> models = listModels({*options_.meshes}, options_.selection);
-    std::vector<std::string> names;
-    for (const Model& model : models) names.push_back(model.name);
-    judged_.resize(models.size());
-    Step step(console_, "Finding groups of " + std::to_string(models.size()) + " meshes");
-    work_.run(names,
-              {[&](std::size_t i) { return judge(models[i]); },
-               [&](std::size_t i, const std::string& bytes) { judged_[i] = unpackedRotations(bytes); },
-               [](std::size_t) { return std::string(); }},
-              options_.common.threads);
-    if (!work_.isFirst()) return;
-    step.done();
-    report(names);
-  }
-
-private:
-  /// Meshes that cannot be used have nothing to judge.
-  std::string judge(const Model& model) const {
-    try {
-      const Shape shape = loadShape(model.path);
-      if (!shape.mesh) throw InputError(model.path + ": has no faces");
-      ObjectSymmetryOptions options = options_.symmetries;
-      // chosen: groups that are hardly believed show whether low confidences come true; half finds no more
-      options.min_confidence = 0.02;
-      options.seed = options_.common.librarySeed();
-      options.num_threads = 1;
-      return packed(judgedRotations(*shape.mesh, options, static_cast<int>(options_.counts.front())));
-    } catch (const std::exception& error) {
-      console_.warn(std::string("left out: ") + error.what());
-      return "";
-    }
-  }
-
-  void report(const std::vector<std::string>& names) const {
-    std::vector<Forecast> groups, turns;
-    std::string text = Row().add("mesh").add("group").add("confidence").add("excess").end();
-    for (std::size_t i = 0; i < names.size(); ++i)
-      for (const JudgedRotation& rotation : judged_[i]) {
-        (rotation.group == "rejected" ? turns : groups).push_back({rotation.confidence, rotation.isRight()});
-        text += Row().add(names[i]).add(rotation.group).add(rotation.confidence).add(rotation.excess).end();
-      }
-    const std::vector<Reliability> all = {reliabilityOf("groups", groups, {}),
-                                          reliabilityOf("rejected turns", turns, {})};
-    printReliability(all);
-    if (options_.csv) writeText(*options_.csv, text);
-    if (options_.common.json_path)
-      writeText(*options_.common.json_path,
-                nlohmann::json{{"groups", toJson(all[0])}, {"rejected", toJson(all[1])}}.dump(2) + "\n");
-  }
-
-  const EvaluateRotationsOptions& options_;
-  ResumableRun& work_;
-  const Console console_;
-  std::vector<std::vector<JudgedRotation>> judged_;
-};
-
 }  // namespace
 
 int evaluateRotations(int argc, char** argv, SharedWork& processes) {
@@ -312,8 +244,10 @@ int evaluateRotations(int argc, char** argv, SharedWork& processes) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   ResumableRun work(processes, options.journal, argc, argv);
-  if (options.meshes)
-    MeshRotationEvaluation(options, work).run();
+  if (options.num_scans > 0)
+    evaluateScanTurns(options, work);
+  else if (options.meshes)
+    evaluateMeshGroups(options, work);
   else
     RotationEvaluation(options, work).run();
   return 0;

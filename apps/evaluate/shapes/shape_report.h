@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/scanner/virtual_scanner.h"
+#include "evaluate/shapes/swept_shape.h"
 #include "evaluate/shared/model_list.h"
 #include "evaluate/shared/proportion.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
@@ -72,6 +74,18 @@ ShapeAnswers detectShape(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, 
 
 /// The defaults of the library, with room for the planes of shapes of many folds.
 DetectionOptions detectionOptions(const ShapeRowOptions& options);
+
+/// A scan of a body with an axis, and what may break its symmetry.
+struct TurningScan {
+  std::string kind;  ///< round, folds or handle
+  SweptShape shape;
+  double reach = 0.0;                                    ///< of the body from the axis; a handle is beyond
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< towards the scanner, frame of the shape
+  VirtualScan scan = {};                                 ///< in a random pose
+};
+
+/// Scan \p i of kind `turns`: eight scans of each solid from random sides.
+TurningScan turningScan(int i, const ShapeRowOptions& options);
 
 // The kinds, each a table of its own.
 ShapeReport measureFolds(const ShapeRowOptions& options);

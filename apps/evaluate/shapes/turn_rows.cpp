@@ -20,15 +20,8 @@ constexpr int kFewestTurns = 3, kMostTurns = 8;                   // chosen: mor
 constexpr double kHiddenHandle = 0.002, kVisibleHandle = 0.02;
 enum TurnColumn : std::size_t { kAxisRight, kFoldRight, kConfident, kFalseRound, kWrongAxis };
 
-/// A body with an axis, and what may break its symmetry.
-struct TurningSolid {
-  std::string kind;  ///< round, folds or handle
-  SweptShape shape;
-  double reach = 0.0;  ///< of the body from the axis; a handle is beyond
-};
-
 /// A handle of a fixed look: half an ellipse in the half plane x > 0, y = 0.
-void addHandle(TurningSolid& solid) {
+void addHandle(TurningScan& solid) {
   constexpr double kReach = 0.55, kRise = 0.5, kThickness = 0.09;  // radii; chosen: the look of a mug
   double low = 0.0, high = 0.0;
   pcl::PointCloud<pcl::PointXYZ> vertices;
@@ -52,7 +45,7 @@ void addHandle(TurningSolid& solid) {
   solid.shape.mesh = both;
 }
 
-TurningSolid solidOf(int i, bool report, RandomStream& random) {
+TurningScan solidOf(int i, bool report, RandomStream& random) {
   const std::vector<std::string> round = roundBodies(report), folded = foldedBodies();
   const int kind = i % 3;
   const std::size_t which = static_cast<std::size_t>(i / 3);
@@ -60,16 +53,16 @@ TurningSolid solidOf(int i, bool report, RandomStream& random) {
     const int folds = kFewestTurns + static_cast<int>(random.below(kMostTurns - kFewestTurns + 1));
     return {"folds", foldedShape(folded[which % folded.size()], folds, report, random)};
   }
-  TurningSolid solid{kind == 0 ? "round" : "handle", roundShape(round[which % round.size()], random)};
+  TurningScan solid{kind == 0 ? "round" : "handle", roundShape(round[which % round.size()], random)};
   if (kind == 2) addHandle(solid);
   return solid;
 }
 
-double handleShare(const TurningSolid& solid, const VirtualScan& scan) {
+double handleShare(const TurningScan& solid) {
   constexpr double kBeyond = 1.03;  // reaches; chosen: the error of a float is far below, handles reach to 1.5
-  const Eigen::Isometry3d T_model_scan = scan.T_scan_model.inverse();
+  const Eigen::Isometry3d T_model_scan = solid.scan.T_scan_model.inverse();
   int num_beyond = 0, num = 0;
-  for (const pcl::PointXYZ& point : *scan.cloud) {
+  for (const pcl::PointXYZ& point : *solid.scan.cloud) {
     if (!point.getVector3fMap().allFinite()) continue;
     ++num;
     const Eigen::Vector3d x = T_model_scan * point.getVector3fMap().cast<double>();
@@ -127,17 +120,20 @@ void addEvidence(Row& row, const ShapeAnswers& answers, const SweptShape& shape,
   if (nearest) row.add(nearest->off).add(nearest->far).add(nearest->support).add(nearest->halfway);
 }
 
-VirtualScan scanOf(const SweptShape& shape, const Eigen::Vector3d& direction, const ShapeRowOptions& options,
-                   RandomStream& random) {
+}  // namespace
+
+TurningScan turningScan(int i, const ShapeRowOptions& options) {
+  RandomStream of_solid(options.caseSeed(i / kTurnViews)), of_view(options.caseSeed(1'000'000 + i));
+  TurningScan solid = solidOf(i / kTurnViews, options.report, of_solid);
+  solid.direction = randomPose(of_view(), 0.0).linear().col(0);
   VirtualScannerOptions scanning;
   scanning.num_points = options.num_points;
   scanning.random_pose = true;
-  scanning.seed = random();
+  scanning.seed = of_view();
   scanning.num_threads = options.threads;
-  return VirtualScanner(shape.mesh).scan(direction, scanning);
+  solid.scan = VirtualScanner(solid.shape.mesh).scan(solid.direction, scanning);
+  return solid;
 }
-
-}  // namespace
 
 ShapeReport measureTurns(const ShapeRowOptions& options) {
   ShapeReport report({"axis within 1 deg, 1 %", "and its order", "called a symmetry", "called round, but is not",
@@ -146,12 +142,10 @@ ShapeReport measureTurns(const ShapeRowOptions& options) {
   const int count = options.count(kTurnSolids * kTurnViews);
   for (int i = 0; i < count; ++i) {
     options.progress(static_cast<double>(i) / count);
-    RandomStream of_solid(options.caseSeed(i / kTurnViews)), of_view(options.caseSeed(1'000'000 + i));
-    const TurningSolid solid = solidOf(i / kTurnViews, options.report, of_solid);
+    const TurningScan solid = turningScan(i, options);
     const SweptShape& shape = solid.shape;
-    const Eigen::Vector3d direction = randomPose(of_view(), 0.0).linear().col(0);
-    const VirtualScan scan = scanOf(shape, direction, options, of_view);
-    const double handle = solid.kind == "handle" ? handleShare(solid, scan) : 0.0;
+    const VirtualScan& scan = solid.scan;
+    const double handle = solid.kind == "handle" ? handleShare(solid) : 0.0;
     if (handle > kHiddenHandle && handle < kVisibleHandle) continue;
     const bool in_sight = handle >= kVisibleHandle;
     const ShapeAnswers answers = detectShape(scan.cloud, detectionOptions(options));
@@ -170,7 +164,7 @@ ShapeReport measureTurns(const ShapeRowOptions& options) {
       report.at(name, kWrongAxis).add(closest.other);
     }
     Row line;
-    line.add(row).add(shape.body).add(double(shape.num_folds)).add(std::acos(std::abs(direction.z())) / kDegree);
+    line.add(row).add(shape.body).add(double(shape.num_folds)).add(std::acos(std::abs(solid.direction.z())) / kDegree);
     line.add(handle).add(closest.error).add(double(closest.order)).add(closest.confidence);
     addEvidence(line, answers, shape, scan.T_scan_model);
     report.log(line.end());

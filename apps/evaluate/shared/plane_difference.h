@@ -4,10 +4,9 @@
 #include <Eigen/Geometry>
 
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/core/transform_axes/axial_transform.h"
 
 namespace pcl_symmetry::apps {
-
-using Line3d = Eigen::ParametrizedLine<double, 3>;
 
 struct Difference {
   double angle = 0.0;   ///< radians, in [0, pi/2]

@@ -51,7 +51,7 @@ constexpr int kRefineIterations = 6;  // chosen: as many as of a candidate in it
 constexpr double kLeastSeen = 0.01;   // chosen: any small share of the points; avoids a division by 0
 
 /// Plane \p k of a sequence of planes through a line whose angles no regular polygon has.
-ReflectionPlane planeThrough(const AxisLine& line, int k) {
+ReflectionPlane planeThrough(const Line3d& line, int k) {
   const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
   const double angle = kPi * goldenFraction(k + 1);
   const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
@@ -111,8 +111,8 @@ std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const 
 }
 
 /// The family of all planes through a line, or through one nearby.
-std::optional<AxisFamily> axisAt(const AxisLine& start, double least, const FamilyTest& test) {
-  AxisLine line = start;
+std::optional<AxisFamily> axisAt(const Line3d& start, double least, const FamilyTest& test) {
+  Line3d line = start;
   const auto at = [&](int k) { return planeThrough(line, k); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
   if (meanShare(at, kScreening, least - kRoughFactor * test.allowance, test.rough_share) == 0.0) return std::nullopt;
@@ -131,16 +131,16 @@ std::optional<AxisFamily> axisAt(const AxisLine& start, double least, const Fami
 
 }  // namespace
 
-AxisLine commonLine(const std::vector<ReflectionPlane>& planes) {
+Line3d commonLine(const std::vector<ReflectionPlane>& planes) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
   const Eigen::Vector3d direction = solver.eigenvectors().col(0);
   const Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
-  return AxisLine(point - direction.dot(point) * direction, direction);
+  return Line3d(point - direction.dot(point) * direction, direction);
 }
 
-bool contains(const ReflectionPlane& plane, const AxisLine& line, double tolerance) {
+bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
   return std::abs(plane.normal().dot(line.direction())) <= std::sin(kContainedAngle) &&
          std::abs(plane.signedDistance(line.origin())) <= tolerance;
 }
@@ -163,11 +163,11 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 }
 
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
-                                 const std::vector<AxisLine>& guesses) {
+                                 const std::vector<Line3d>& guesses) {
   std::vector<AxisFamily> axes;
-  std::vector<AxisLine> tried;
-  const auto attempt = [&](const AxisLine& line, double best_share) {
-    const bool known = std::any_of(tried.begin(), tried.end(), [&](const AxisLine& other) {
+  std::vector<Line3d> tried;
+  const auto attempt = [&](const Line3d& line, double best_share) {
+    const bool known = std::any_of(tried.begin(), tried.end(), [&](const Line3d& other) {
       return std::abs(other.direction().dot(line.direction())) > std::cos(kContainedAngle) &&
              other.distance(line.origin()) < test.tolerance;
     });
@@ -179,7 +179,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
     axes.push_back(std::move(*axis));
   };
   if (!planes.empty())
-    for (const AxisLine& guess : guesses) attempt(guess, test.share(planes[0]));
+    for (const Line3d& guess : guesses) attempt(guess, test.share(planes[0]));
   const std::size_t size = std::min(planes.size(), kMostPlanes);
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -222,7 +222,7 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
 
 /// Where the normals say that families may be.
 struct FamilyGuesses {
-  std::vector<AxisLine> axes;
+  std::vector<Line3d> axes;
   std::vector<Eigen::Vector3d> centers;
 };
 
@@ -305,7 +305,7 @@ std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, co
                                            const NormalizedCloud& cloud) {
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      const AxisLine line((axis.point - cloud.center) / cloud.scale, axis.direction);
+      const Line3d line((axis.point - cloud.center) / cloud.scale, axis.direction);
       return contains(cloud.toNormalized(plane), line, kContainedOffset);
     });
   };

@@ -9,6 +9,7 @@
 #include "core/refinement/plane_fit.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/core/transform_axes/axial_transform.h"
 
 namespace pcl_symmetry {
 
@@ -28,15 +29,13 @@ struct FamilyTest {
   double tolerance;  ///< distance within which a plane passes through a point, units of the planes' frame
 };
 
-using AxisLine = Eigen::ParametrizedLine<double, 3>;
-
 /// The line closest to all planes that have one in common.
 /// \param planes at least two that are not parallel.
-AxisLine commonLine(const std::vector<ReflectionPlane>& planes);
+Line3d commonLine(const std::vector<ReflectionPlane>& planes);
 
 /// A line, all planes through which are symmetries.
 struct AxisFamily {
-  AxisLine line;
+  Line3d line;
   double share;                         ///< mean over the planes
   std::vector<ReflectionPlane> planes;  ///< that were tested
 };
@@ -57,14 +56,14 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 /// \param guesses lines that may be one, tried before those that two planes share.
 /// \return best first.
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
-                                 const std::vector<AxisLine>& guesses = {});
+                                 const std::vector<Line3d>& guesses = {});
 
 /// Radii by which a plane may miss a line, or a point, that it contains. chosen: smaller values leave planes of a
 /// family beside it as single planes, larger ones take planes that have nothing to do with it.
 constexpr double kContainedOffset = 0.03;
 
 /// Whether a plane contains a line, within 3 degrees and \p tolerance.
-bool contains(const ReflectionPlane& plane, const AxisLine& line, double tolerance);
+bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance);
 
 /// Planes, and the families that some of them belonged to.
 struct PlanesAndFamilies {

@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "core/detection/scan_axes/scan_axes.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/frame/frame_search.h"
@@ -71,6 +72,20 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   return frame;
 }
 
+/// Axes of turns of a scan; the axes of its frame are tried first.
+std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef& points, const GaussianEdt& edt,
+                                     const FrameOptions& options, const Visibility& visibility) {
+  DetectionOptions detection;
+  detection.seed = options.seed;
+  detection.num_threads = options.num_threads;
+  std::vector<SymmetryAxis> axes(3);
+  for (int k = 0; k < 3; ++k) {
+    axes[static_cast<std::size_t>(k)].point = frame.center;
+    axes[static_cast<std::size_t>(k)].direction = frame.axes.col(k);
+  }
+  return turnsOfScan(points, edt, visibility, axes, detection);
+}
+
 }  // namespace
 
 void FrameOptions::validate() const {
@@ -127,6 +142,10 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
     if (!isTurnAboutRevolution(frame, other)) equivalent.addTied(other, best.scores, options.tie, frame.center);
   frame.equivalent = equivalent.poses();
   done("equivalent");
+  if (visibility && options.turns) {
+    frame.turns = turnsAlong(frame, points, evidence.edt(), options, *visibility);
+    done("turns");
+  }
   return frame;
 }
 

@@ -26,7 +26,7 @@ std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSy
   // The center lies on the axis; the samples, whose mean is about there, tell where.
   const Eigen::Vector3d mass = centerOfMass(fit.points());
   const Eigen::Vector3d center =
-      main.line.center + main.line.direction.dot(mass - main.line.center) * main.line.direction;
+      main.line.origin() + main.line.direction().dot(mass - main.line.origin()) * main.line.direction();
   return placedGroup(fit, options, RotationGroupKind::Spherical, 0, turnsOfSphere(center));
 }
 
@@ -34,9 +34,9 @@ std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const Object
                                             const TurningAxis& main) {
   std::vector<double> offsets;
   for (int k = -kNumStepsAlong; k <= kNumStepsAlong; ++k) offsets.push_back(kStepAcross * k);
-  const AxisLineCandidate across = bestAcross(fit, main.line, kPi, 1, offsets);
-  RotationSet set = turnsAbout({main.line.direction, across.center});
-  set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction, kPi));
+  const Line3d across = bestAcross(fit, main.line, kPi, 1, offsets);
+  RotationSet set = turnsAbout({across.origin(), main.line.direction()});
+  set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction(), kPi));
   set.num_judged = 2;
   return placedGroup(fit, options, RotationGroupKind::Cylindrical, 0, set);
 }
@@ -46,10 +46,9 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
   const RotationGroup group{RotationGroupKind::Dihedral, main.fold};
   const double width = kPi / main.fold;
   const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kStepAcross)));
-  const AxisLineCandidate across =
-      bestAcross(fit, main.line, width, num_angles, {0.0, -0.04, 0.04, -0.08, 0.08, -0.12, 0.12});
-  const Eigen::Matrix3d frame = frameAlong(main.line.direction, across.direction);
-  return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.center));
+  const Line3d across = bestAcross(fit, main.line, width, num_angles, {0.0, -0.04, 0.04, -0.08, 0.08, -0.12, 0.12});
+  const Eigen::Matrix3d frame = frameAlong(main.line.direction(), across.direction());
+  return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
 }
 
 /// Two axes that are not parallel place a group, up to itself.
@@ -60,14 +59,15 @@ std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymm
                                         const RotationAxis& a, const RotationAxis& b) {
   if (a.order % first.fold != 0 || b.order % second.fold != 0) return std::nullopt;
   const double cosine = a.direction.dot(b.direction);
-  const Eigen::Vector3d direction =
-      first.line.direction.dot(second.line.direction) * cosine < 0.0 ? -second.line.direction : second.line.direction;
+  const Eigen::Vector3d direction = first.line.direction().dot(second.line.direction()) * cosine < 0.0
+                                        ? -second.line.direction()
+                                        : second.line.direction();
   const double expected = angleBetweenLines(a.direction, b.direction);
-  if (expected < kMeets || std::abs(angleBetweenLines(first.line.direction, direction) - expected) > kMeets)
+  if (expected < kMeets || std::abs(angleBetweenLines(first.line.direction(), direction) - expected) > kMeets)
     return std::nullopt;
   const Eigen::Matrix3d frame =
-      frameAlong(first.line.direction, direction) * frameAlong(a.direction, b.direction).transpose();
-  return placedGroup(fit, options, group.kind, group.fold, elementsOf(group, frame, first.line.center));
+      frameAlong(first.line.direction(), direction) * frameAlong(a.direction, b.direction).transpose();
+  return placedGroup(fit, options, group.kind, group.fold, elementsOf(group, frame, first.line.origin()));
 }
 
 std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,

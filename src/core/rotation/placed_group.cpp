@@ -101,19 +101,19 @@ RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame,
   return set;
 }
 
-RotationSet cyclicSet(const AxisLineCandidate& line, int fold) {
-  const Eigen::Matrix3d frame = frameAlong(line.direction, line.direction.unitOrthogonal());
-  return elementsOf(RotationGroup{RotationGroupKind::Cyclic, fold}, frame, line.center);
+RotationSet cyclicSet(const Line3d& line, int fold) {
+  const Eigen::Matrix3d frame = frameAlong(line.direction(), line.direction().unitOrthogonal());
+  return elementsOf(RotationGroup{RotationGroupKind::Cyclic, fold}, frame, line.origin());
 }
 
-RotationSet singleTurn(const AxisLineCandidate& line, int fold) {
-  return {{rotationAbout(line.direction, 2.0 * kPi / fold)}, line.center, 1};
+RotationSet singleTurn(const Line3d& line, int fold) {
+  return {{rotationAbout(line.direction(), 2.0 * kPi / fold)}, line.origin(), 1};
 }
 
-RotationSet turnsAbout(const AxisLineCandidate& line) {
-  RotationSet set{{}, line.center, static_cast<std::size_t>(kNumTurns)};
+RotationSet turnsAbout(const Line3d& line) {
+  RotationSet set{{}, line.origin(), static_cast<std::size_t>(kNumTurns)};
   for (int k = 1; k <= kNumTurns; ++k)
-    set.rotations.push_back(rotationAbout(line.direction, 2.0 * kPi * goldenFraction(k)));
+    set.rotations.push_back(rotationAbout(line.direction(), 2.0 * kPi * goldenFraction(k)));
   return set;
 }
 

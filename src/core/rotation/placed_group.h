@@ -46,13 +46,13 @@ Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
 RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame, const Eigen::Vector3d& center);
 
 /// The turns by multiples of 2 pi / \p fold about a line.
-RotationSet cyclicSet(const AxisLineCandidate& line, int fold);
+RotationSet cyclicSet(const Line3d& line, int fold);
 
 /// The turn by 2 pi / \p fold about a line.
-RotationSet singleTurn(const AxisLineCandidate& line, int fold);
+RotationSet singleTurn(const Line3d& line, int fold);
 
 /// Turns about a line that stand for all turns about it: their angles fit no polygon.
-RotationSet turnsAbout(const AxisLineCandidate& line);
+RotationSet turnsAbout(const Line3d& line);
 
 /// Rotations about a center that stand for all: axes in all directions, angles from a third of a turn to a half.
 RotationSet turnsOfSphere(const Eigen::Vector3d& center);

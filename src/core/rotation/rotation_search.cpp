@@ -71,20 +71,20 @@ std::vector<int> peaks(const std::vector<double>& values) {
 
 /// Overlaps of the turns by 2 pi / n about a line, at index n; 0 where half of that turn overlaps better. Turns by
 /// small angles overlap well with any shape, and better the smaller they are.
-std::vector<double> foldOverlaps(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
+std::vector<double> foldOverlaps(const RotationFit& fit, const Line3d& line, int max_fold) {
   std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
   for (int n = 2; n <= max_fold; ++n) {
-    const double own = fit.overlap(rotationAbout(line.direction, 2.0 * kPi / n), line.center);
-    const double half = fit.overlap(rotationAbout(line.direction, kPi / n), line.center);
+    const double own = fit.overlap(rotationAbout(line.direction(), 2.0 * kPi / n), line.origin());
+    const double half = fit.overlap(rotationAbout(line.direction(), kPi / n), line.origin());
     overlaps[n] = own >= half - kAllowance ? own : 0.0;
   }
   return overlaps;
 }
 
 /// Lines through one center about which a turn of prime order overlaps most.
-std::vector<AxisLineCandidate> linesThrough(const Eigen::Vector3d& center, const RotationFit& fit, int num_directions,
-                                            int max_fold, int num_threads) {
-  std::vector<AxisLineCandidate> lines;
+std::vector<Line3d> linesThrough(const Eigen::Vector3d& center, const RotationFit& fit, int num_directions,
+                                 int max_fold, int num_threads) {
+  std::vector<Line3d> lines;
   for (const int prime : kPrimes) {
     if (prime > max_fold) break;
     std::vector<double> overlaps(static_cast<std::size_t>(num_directions));
@@ -93,7 +93,7 @@ std::vector<AxisLineCandidate> linesThrough(const Eigen::Vector3d& center, const
         overlaps[k] = overlapOrLess(
             fit, rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * kPi / prime), center);
     });
-    for (const int k : peaks(overlaps)) lines.push_back({directionAt(k, num_directions), center});
+    for (const int k : peaks(overlaps)) lines.emplace_back(center, directionAt(k, num_directions));
   }
   return lines;
 }
@@ -105,19 +105,18 @@ std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit) {
   return mass.norm() > kSameLine ? std::vector<Eigen::Vector3d>{mass, Eigen::Vector3d::Zero()} : std::vector{mass};
 }
 
-std::vector<AxisLineCandidate> principalLines(const RotationFit& fit) {
+std::vector<Line3d> principalLines(const RotationFit& fit) {
   const PrincipalAxes principal = principalAxes(fit.points());
-  std::vector<AxisLineCandidate> lines;
+  std::vector<Line3d> lines;
   const std::vector<Eigen::Vector3d> centers = axisCenters(fit);
-  if (centers.size() > 1) lines.push_back({principal.center.normalized(), principal.center});
+  if (centers.size() > 1) lines.emplace_back(principal.center, principal.center.normalized());
   for (const Eigen::Vector3d& center : centers)
-    for (int k = 0; k < 3; ++k) lines.push_back({principal.axes.col(k), center});
+    for (int k = 0; k < 3; ++k) lines.emplace_back(center, principal.axes.col(k));
   return lines;
 }
 
-std::vector<AxisLineCandidate> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold,
-                                                  int num_threads) {
-  std::vector<AxisLineCandidate> lines;
+std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads) {
+  std::vector<Line3d> lines;
   for (const Eigen::Vector3d& center : axisCenters(fit)) {
     const auto found = linesThrough(center, fit, num_directions, max_fold, num_threads);
     lines.insert(lines.end(), found.begin(), found.end());
@@ -125,10 +124,10 @@ std::vector<AxisLineCandidate> axisLineCandidates(const RotationFit& fit, int nu
   return lines;
 }
 
-bool isKnown(const std::vector<AxisLineCandidate>& lines, const AxisLineCandidate& line) {
-  return std::any_of(lines.begin(), lines.end(), [&](const AxisLineCandidate& other) {
-    return angleBetweenLines(other.direction, line.direction) < kSameLine &&
-           (line.center - other.center).cross(other.direction).norm() < kSameLine;
+bool isKnown(const std::vector<Line3d>& lines, const Line3d& line) {
+  return std::any_of(lines.begin(), lines.end(), [&](const Line3d& other) {
+    return angleBetweenLines(other.direction(), line.direction()) < kSameLine &&
+           (line.origin() - other.origin()).cross(other.direction()).norm() < kSameLine;
   });
 }
 
@@ -136,7 +135,7 @@ double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
-std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& line, int max_fold) {
+std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max_fold) {
   const std::vector<double> overlaps = foldOverlaps(fit, line, max_fold);
   const auto least_near_best = [&](int last) {
     const double best = *std::max_element(overlaps.begin(), overlaps.begin() + last + 1);
@@ -148,20 +147,20 @@ std::vector<int> likelyFolds(const RotationFit& fit, const AxisLineCandidate& li
   return any == small ? std::vector{small} : std::vector{small, any};
 }
 
-AxisLineCandidate bestAcross(const RotationFit& fit, const AxisLineCandidate& line, double width, int num_angles,
-                             const std::vector<double>& offsets) {
-  const Eigen::Vector3d u = line.direction.unitOrthogonal(), v = line.direction.cross(u);
-  AxisLineCandidate best{u, line.center};
+Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int num_angles,
+                  const std::vector<double>& offsets) {
+  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
+  Line3d best(line.origin(), u);
   double best_overlap = -1.0;
   for (const double offset : offsets) {
-    const Eigen::Vector3d center = line.center + offset * line.direction;
+    const Eigen::Vector3d center = line.origin() + offset * line.direction();
     for (int k = 0; k < num_angles; ++k) {
       const double angle = width * k / num_angles;
       const Eigen::Vector3d direction = std::cos(angle) * u + std::sin(angle) * v;
       const double overlap = fit.overlap(rotationAbout(direction, kPi), center);
       if (overlap <= best_overlap) continue;
       best_overlap = overlap;
-      best = {direction, center};
+      best = Line3d(center, direction);
     }
   }
   return best;

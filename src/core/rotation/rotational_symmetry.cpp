@@ -68,16 +68,16 @@ std::vector<RejectedRotation> inInputFrame(std::vector<RejectedTurn> turns, cons
   if (turns.size() > kMostRejected) turns.resize(kMostRejected);
   std::vector<RejectedRotation> rejected;
   for (const RejectedTurn& turn : turns) {
-    const Eigen::Matrix3d rotation = rotationAbout(turn.line.direction, turn.angle);
-    const Eigen::Vector3d center = ball.center + ball.radius * turn.line.center;
+    const Eigen::Matrix3d rotation = rotationAbout(turn.line.direction(), turn.angle);
+    const Eigen::Vector3d center = ball.center + ball.radius * turn.line.origin();
     RejectedRotation entry;
     entry.turn.linear() = rotation;
     entry.turn.translation() = center - rotation * center;
-    entry.axis = turn.line.direction;
+    entry.axis = turn.line.direction();
     entry.fold = turn.fold;
     entry.off = turn.shares.off;
     entry.far = turn.shares.far;
-    entry.where = ball.center + ball.radius * fit.whereOff(rotation, turn.line.center);
+    entry.where = ball.center + ball.radius * fit.whereOff(rotation, turn.line.origin());
     rejected.push_back(entry);
   }
   return rejected;
@@ -108,7 +108,7 @@ public:
 private:
   const RotationFit& fit_;
   const ObjectSymmetryOptions& options_;
-  std::vector<AxisLineCandidate> principal_, others_;
+  std::vector<Line3d> principal_, others_;
 };
 
 }  // namespace

@@ -39,7 +39,7 @@ constexpr double kWorstTurn = 1.25;
 /// What turns about a line map off the surface, judged by some of the points. Each turn is asked once.
 class TurnProfile {
 public:
-  TurnProfile(const RotationFit& fit, const AxisLineCandidate& line) : fit_(fit), line_(line) {}
+  TurnProfile(const RotationFit& fit, const Line3d& line) : fit_(fit), line_(line) {}
 
   /// \return shares of the turn by \p part / \p whole of a full turn.
   const OffShares& shares(int part, int whole) {
@@ -47,30 +47,30 @@ public:
     part = std::min(part / divisor, (whole - part) / divisor);  // a turn and its inverse fail alike
     whole /= divisor;
     const auto [entry, is_new] = shares_.insert({{part, whole}, {}});
-    if (is_new) entry->second = fit_.offShares(turn(part, whole), line_.center, kSomeSamples);
+    if (is_new) entry->second = fit_.offShares(turn(part, whole), line_.origin(), kSomeSamples);
     return entry->second;
   }
 
   double excess(int part, int whole) { return fit_.limits().excess(shares(part, whole)); }
 
-  Eigen::Matrix3d turn(int part, int whole) const { return rotationAbout(line_.direction, 2.0 * kPi * part / whole); }
+  Eigen::Matrix3d turn(int part, int whole) const { return rotationAbout(line_.direction(), 2.0 * kPi * part / whole); }
 
 private:
   const RotationFit& fit_;
-  const AxisLineCandidate& line_;
+  const Line3d& line_;
   std::map<std::pair<int, int>, OffShares> shares_;
 };
 
 /// The line of a turn, near the place where the search for it began.
-AxisLineCandidate lineOf(const RotationSet& turn, const AxisLineCandidate& start) {
+Line3d lineOf(const RotationSet& turn, const Line3d& start) {
   const Eigen::Vector3d direction = axisOf(turn.rotations[0]);
-  return {direction, turn.center + direction.dot(start.center - turn.center) * direction};
+  return {turn.center + direction.dot(start.origin() - turn.center) * direction, direction};
 }
 
 /// The likeliest turn about a line moved to where it fits best; nothing where no turn fits, or where it ends at a line
 /// that was tried.
-std::optional<RotationSet> fittedTurn(const RotationFit& fit, const AxisLineCandidate& start, int max_fold,
-                                      const std::vector<AxisLineCandidate>& tried) {
+std::optional<RotationSet> fittedTurn(const RotationFit& fit, const Line3d& start, int max_fold,
+                                      const std::vector<Line3d>& tried) {
   RotationSet turn;
   double overlap = 0.0;
   for (const int fold : likelyFolds(fit, start, max_fold)) {
@@ -114,11 +114,11 @@ double excessBetween(TurnProfile& profile, int fold) {
 /// The n for which the turns by 2 pi / n and its multiples are symmetries, and are clearly better than those halfway
 /// between. A multiple of a true fold fails that: half its turns are no symmetries, or as good as any.
 /// \return the greatest first.
-std::vector<int> foldsOf(const RotationFit& fit, TurnProfile& profile, const AxisLineCandidate& line, int max_fold) {
+std::vector<int> foldsOf(const RotationFit& fit, TurnProfile& profile, const Line3d& line, int max_fold) {
   const double most = greatestExcess(fit.limits(), kSomeSamples);
   std::vector<int> folds;
   for (int n = max_fold; n >= 2; --n) {
-    if (fit.overlap(profile.turn(1, n), line.center) < kRoughOverlap) continue;
+    if (fit.overlap(profile.turn(1, n), line.origin()) < kRoughOverlap) continue;
     const double excess = excessOfFold(profile, n, most);
     if (excess <= most && beatsOthers(excess, excessBetween(profile, n))) folds.push_back(n);
   }
@@ -128,13 +128,13 @@ std::vector<int> foldsOf(const RotationFit& fit, TurnProfile& profile, const Axi
 /// The axis of a group that was placed about a line.
 std::optional<TurningAxis> axisFrom(std::optional<PlacedGroup> group, int fold) {
   if (!group) return std::nullopt;
-  const AxisLineCandidate fitted{group->axis, group->set.center};
+  const Line3d fitted(group->set.center, group->axis);
   return TurningAxis{fitted, fold, std::move(*group)};
 }
 
 }  // namespace
 
-std::optional<TurningAxis> AxisFinder::foldAbout(const AxisLineCandidate& line, const std::vector<int>& folds) const {
+std::optional<TurningAxis> AxisFinder::foldAbout(const Line3d& line, const std::vector<int>& folds) const {
   for (std::size_t i = 0; i < folds.size() && i < kMostFolds; ++i) {
     const RotationSet turns = cyclicSet(line, folds[i]);
     auto axis = axisFrom(placedGroup(fit_, options_, RotationGroupKind::Cyclic, folds[i], turns), folds[i]);
@@ -145,7 +145,7 @@ std::optional<TurningAxis> AxisFinder::foldAbout(const AxisLineCandidate& line, 
 
 /// The line with all turns about it that are symmetries. Three or more equal pieces around a line are a pattern: their
 /// fold comes before turns by all angles, though the pieces together be small enough for a feature.
-std::optional<TurningAxis> AxisFinder::axisAbout(const AxisLineCandidate& line) {
+std::optional<TurningAxis> AxisFinder::axisAbout(const Line3d& line) {
   TurnProfile profile(fit_, line);
   const double most = greatestExcess(fit_.limits(), kSomeSamples);
   const auto failing = failingTurn(profile, most);
@@ -165,15 +165,15 @@ std::optional<TurningAxis> AxisFinder::axisAbout(const AxisLineCandidate& line) 
   return axis;
 }
 
-void AxisFinder::judge(const std::vector<AxisLineCandidate>& lines) {
-  for (const AxisLineCandidate& start : lines) {
+void AxisFinder::judge(const std::vector<Line3d>& lines) {
+  for (const Line3d& start : lines) {
     if (isRound() || axes_.size() >= kMaxAxes) break;
     if (isKnown(tried_, start)) continue;
     const std::optional<RotationSet> turn = fittedTurn(fit_, start, options_.max_fold, tried_);
     const bool is_new = turn && !isKnown(tried_, lineOf(*turn, start));
     tried_.push_back(start);
     if (!is_new) continue;
-    const AxisLineCandidate line = lineOf(*turn, start);
+    const Line3d line = lineOf(*turn, start);
     tried_.push_back(line);
     const OffShares shares = fit_.offShares(turn->rotations[0], turn->center, kSomeSamples);
     if (fit_.limits().excess(shares) > greatestExcess(fit_.limits(), kSomeSamples)) {

@@ -40,12 +40,12 @@ Eigen::Matrix3d AxisGrid::frame(std::size_t direction) const {
   return frame;
 }
 
-TurningLine AxisGrid::axis(const Bin& bin) const {
+Line3d AxisGrid::axis(const Bin& bin) const {
   const Eigen::Matrix3d axes = frame(static_cast<std::size_t>(bin.theta) * num_phi_ + bin.phi);
   return {center_ + offset(bin.u) * axes.col(0) + offset(bin.v) * axes.col(1), axes.col(2)};
 }
 
-std::optional<AxisGrid::Bin> AxisGrid::find(const TurningLine& axis) const {
+std::optional<AxisGrid::Bin> AxisGrid::find(const Line3d& axis) const {
   Eigen::Vector3d n = axis.direction().normalized();
   if (n.z() < 0.0) n = -n;
   const double phi = std::atan2(n.y(), n.x());

@@ -29,8 +29,7 @@ constexpr int kMoreSamples = 4;
 // Steps are halved this often. chosen: down to 0.05 degrees; once less doubles the error.
 constexpr int kHalvings = 6;
 
-bool isSameAxis(const TurningLine& a, const TurningLine& b, const Eigen::Vector3d& center, double angle,
-                double distance) {
+bool isSameAxis(const Line3d& a, const Line3d& b, const Eigen::Vector3d& center, double angle, double distance) {
   const double cosine = std::abs(a.direction().dot(b.direction()));
   return cosine > std::cos(angle) && (a.projection(center) - b.projection(center)).norm() < distance;
 }
@@ -44,7 +43,7 @@ public:
         turns_(turnsOf(map.folds, options.num_turns, false)),
         samples_(centeredSamples(edt, kMoreSamples * options.num_samples, options.seed, options.num_threads)) {}
 
-  std::vector<double> valuesAt(const TurningLine& axis) const {
+  std::vector<double> valuesAt(const Line3d& axis) const {
     std::vector<double> values(map_.folds.size(), 0.0);
     for (const AxialTurn& turn : turns_) {
       const double d = symmetryAt(axis, turn.angle);
@@ -54,7 +53,7 @@ public:
   }
 
   /// The axis moved to where D of its best fold is greatest, in steps of half a bin that are halved.
-  AxisMaximum climbed(TurningLine axis) const {
+  AxisMaximum climbed(Line3d axis) const {
     const int fold = bestFold(map_.folds, valuesAt(axis));
     const std::size_t place = std::find(map_.folds.begin(), map_.folds.end(), fold) - map_.folds.begin();
     double angle = 0.25 * kPi / map_.grid.numTheta(), offset = 0.5 * map_.grid.offsetStep();
@@ -63,7 +62,7 @@ public:
       for (bool moved = true; moved;) {
         moved = false;
         for (int way = 0; way < 8; ++way) {
-          const TurningLine next = stepped(axis, way, way % 2 ? -1.0 : 1.0, angle, offset);
+          const Line3d next = stepped(axis, way, way % 2 ? -1.0 : 1.0, angle, offset);
           const double value = valueAt(next, place);
           if (value <= best) continue;
           axis = next;
@@ -78,7 +77,7 @@ public:
   }
 
 private:
-  double symmetryAt(const TurningLine& axis, double angle) const {
+  double symmetryAt(const Line3d& axis, double angle) const {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, axis.direction()).toRotationMatrix();
     const Eigen::Vector3d foot = toCells(edt_, axis.origin());
     const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1));
@@ -88,14 +87,14 @@ private:
     return edt_.sum() / edt_.sqNorm() * sum / static_cast<double>(samples_.cols());
   }
 
-  double valueAt(const TurningLine& axis, std::size_t fold) const {
+  double valueAt(const Line3d& axis, std::size_t fold) const {
     double value = 0.0;
     for (const AxialTurn& turn : turns_)
       if (turn.weights[fold] > 0.0) value += turn.weights[fold] * symmetryAt(axis, turn.angle);
     return value;
   }
 
-  TurningLine stepped(const TurningLine& axis, int way, double sign, double angle, double offset) const {
+  Line3d stepped(const Line3d& axis, int way, double sign, double angle, double offset) const {
     const Eigen::Vector3d u = axis.direction().unitOrthogonal(), v = axis.direction().cross(u);
     const Eigen::Vector3d& along = way / 2 % 2 ? v : u;
     const Eigen::Vector3d foot = axis.projection(map_.grid.center());
@@ -110,7 +109,7 @@ private:
 };
 
 /// Bins with great values, none near a stronger one.
-std::vector<TurningLine> startsOf(const AxisMap& map, std::size_t count, double least) {
+std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double least) {
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
     if (map.greatest[i] >= least) bins.push_back(i);
@@ -119,11 +118,11 @@ std::vector<TurningLine> startsOf(const AxisMap& map, std::size_t count, double 
     return std::make_pair(-map.greatest[a], a) < std::make_pair(-map.greatest[b], b);
   });
   bins.resize(kept);
-  std::vector<TurningLine> starts;
+  std::vector<Line3d> starts;
   for (const std::size_t bin : bins) {
     if (starts.size() == count) break;
-    const TurningLine axis = map.grid.axis(map.grid.bin(bin));
-    if (std::none_of(starts.begin(), starts.end(), [&](const TurningLine& other) {
+    const Line3d axis = map.grid.axis(map.grid.bin(bin));
+    if (std::none_of(starts.begin(), starts.end(), [&](const Line3d& other) {
           return isSameAxis(axis, other, map.grid.center(), kSameStart, kSameOffset * map.sigma);
         }))
       starts.push_back(axis);
@@ -139,7 +138,7 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
   check(count >= 1, "count", count, ">= 1");
   check(min_value >= 0.0 && min_value <= 1.0, "min_value", min_value, "in [0, 1]");
   if (map.empty()) return {};
-  const std::vector<TurningLine> starts =
+  const std::vector<Line3d> starts =
       startsOf(map, static_cast<std::size_t>(count) * kStartsPerMaximum, kLeastOfBin * min_value);
   const AxisClimb climb(edt, map, options);
   std::vector<AxisMaximum> climbed(starts.size());

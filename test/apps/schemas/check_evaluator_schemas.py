@@ -35,6 +35,8 @@ def main(apps, schemas):
         run("registration", two, "-points", "1000", "-num_views", "1", "-methods", "pca", "-references", at("references.json"))
         run("retrieval", models, "-cla", at("two.cla"), "-points", "1000", "-database")
         run("rotations", "-counts", "500", "-noise", "0", "-kind", "nuts")
+        run("rotations", "-meshes", models, "-counts", "500,1000")
+        run("rotations", "-scans", "1")
         run("segmentation", at("cut"), at("people"), "-methods", "one", "-categories")
         run("scenes", two, "-scenes", "1", "-objects", "2", "-noise", "0", "-references", at("references.json"))
         run("shapes", "random", "-num", "2", "-points", "200")

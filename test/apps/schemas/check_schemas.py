@@ -81,6 +81,8 @@ def main(apps, schemas):
         check.run(["scan", at("box.off"), at("scan.pcd"), "-quiet", "-json", at("a.json")], "scans")
         check.run(["scene", at("scan.pcd"), "-quiet", "-max_points", "1000", "-json", at("a.json")], "scene")
         check.run(["align", at("box.off"), *few, "-json", at("a.json")], "frame")
+        for tool, schema in (("align", "frame"), ("planes", "planes")):
+            check.run([tool, at("scan.pcd"), *few, "-json", at("a.json")], schema)
         check.run(["align", at("scan.pcd"), *few, "-target", at("box.off"), "-json", at("a.json")], "pose")
         check.run(["lines", at("ellipse.xyz"), "-quiet", "-json", at("a.json")], "lines")
         check.run(["bop", at("box.off"), at("can.off"), "-quiet", "-json", at("a.json")], "models_info")

@@ -8,6 +8,7 @@
 
 #include "apps/support/lathe_mesh.h"
 #include "apps/support/tool_run.h"
+#include "common/pictures/raster_image.h"
 #include "common/shape_input/shape_input.h"
 #include "shapes/turning_shapes.h"
 
@@ -252,6 +253,30 @@ std::string cubePLY(bool has_red_side) {
          std::to_string(num_faces) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces;
 }
 
+/// A cube of 24 vertices. Its sides show the white half of the picture, but one: that shows the whole picture if \p
+/// is_printed.
+std::string texturedCube(const std::string& texture, bool is_printed) {
+  std::string vertices, faces;
+  for (int side = 0; side < 6; ++side) {
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    normal[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
+    const Eigen::Vector3d a = Eigen::Vector3d::Unit((side / 2 + 1) % 3), b = normal.cross(a);
+    const double top = is_printed && side == 4 ? 1.0 : 0.45;
+    for (const auto& [u, v] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+      const Eigen::Vector3d x = normal + (2.0 * u - 1.0) * a + (2.0 * v - 1.0) * b;
+      vertices += std::to_string(x.x()) + " " + std::to_string(x.y()) + " " + std::to_string(x.z()) + " " +
+                  std::to_string(0.05 + 0.9 * u) + " " + std::to_string(0.05 + (top - 0.1) * v) + "\n";
+    }
+    faces += "4";
+    for (int k = 0; k < 4; ++k) faces += " " + std::to_string(4 * side + k);
+    faces += "\n";
+  }
+  return "ply\nformat ascii 1.0\ncomment TextureFile " + texture +
+         "\nelement vertex 24\nproperty float x\nproperty float y\nproperty float z\nproperty float texture_u\n"
+         "property float texture_v\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n" +
+         vertices + faces;
+}
+
 TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
   const std::string plain = folder_.write("obj_1.ply", cubePLY(false)), red = folder_.write("obj_2.ply", cubePLY(true));
   ASSERT_EQ(run(red + " -quiet -points 2000 -grid 32"), 0) << error_;
@@ -262,13 +287,32 @@ TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
   EXPECT_NE(output_.find("obj_1.ply  group O"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_2.ply  group C4"), std::string::npos) << output_;
   EXPECT_NE(output_.find("without its colours the group is O"), std::string::npos) << output_;
-  // The same red cube with its colours as coordinates in a texture.
+  // The same red cube with its colours as coordinates in a texture that it does not name.
   std::string textured = cubePLY(true);
   for (const auto& [from, to] : {std::pair("uchar red", "uchar texture_u"), std::pair("uchar green", "uchar texture_v"),
                                  std::pair("uchar blue", "uchar other")})
     textured.replace(textured.find(from), std::string(from).size(), to);
   ASSERT_EQ(run(folder_.write("obj_3.ply", textured) + " -quiet -points 1000 -grid 32 -colour"), 0) << error_;
-  EXPECT_NE(output_.find("only those of vertices can be read"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("only those of vertices, and textures that PLY files name, can be read"), std::string::npos)
+      << output_;
+}
+
+TEST_F(BopTool, ReadsTheTextureThatAModelOfTheBenchmarkNames) {
+  apps::RasterImage image(64, 64);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x) image.set(x, y, {1.0, 0.0, 0.0});
+  apps::writeImage(image, folder_ / "print.png");
+  const std::string red = texturedCube("print.png", true), white = texturedCube("print.png", false);
+  ASSERT_EQ(run(folder_.write("obj_1.ply", white) + " " + folder_.write("obj_2.ply", red) +
+                " -quiet -points 2000 -grid 32 -colour"),
+            0)
+      << error_;
+  EXPECT_EQ(output_.find("not looked at"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("obj_1.ply  group O"), std::string::npos) << output_;
+  // v runs from bottom to top: half of that side is red.
+  EXPECT_NE(output_.find("obj_2.ply  group C1"), std::string::npos) << output_;
+  EXPECT_EQ(run(folder_.write("obj_3.ply", texturedCube("missing.png", true)) + " -quiet -colour"), 1);
+  EXPECT_NE(error_.find("missing.png"), std::string::npos) << error_;
 }
 
 TEST_F(BopTool, AnswersBadInputWithOneLineAndAnExitCodeAndDoesTheRest) {

@@ -13,7 +13,7 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-const AxisLine kLine(Eigen::Vector3d(0.1, -0.05, 0.0), Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
+const Line3d kLine(Eigen::Vector3d(0.1, -0.05, 0.0), Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
 
 /// Nothing is a symmetry but what \p is_symmetry says; refinement leaves planes alone.
 FamilyTest testOf(const std::function<bool(const ReflectionPlane&)>& is_symmetry) {
@@ -21,7 +21,7 @@ FamilyTest testOf(const std::function<bool(const ReflectionPlane&)>& is_symmetry
   return {share, share, [](const ReflectionPlane& plane) { return plane; }, 0.92, 0.03, 0.03};
 }
 
-ReflectionPlane through(const AxisLine& line, double angle) {
+ReflectionPlane through(const Line3d& line, double angle) {
   const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
   const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
   return ReflectionPlane(n, n.dot(line.origin()));
@@ -101,7 +101,7 @@ TEST(FindCenter, ThreePlanesOfABoxHaveNone) {
 }
 
 TEST(Contains, IsThreeDegreesAndATolerance) {
-  const AxisLine z(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
+  const Line3d z(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
   const auto tilted = [](double degrees, double offset) {
     return ReflectionPlane({std::cos(degrees * kDegree), 0.0, std::sin(degrees * kDegree)}, offset);
   };

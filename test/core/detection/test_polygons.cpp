@@ -16,7 +16,7 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-const AxisLine kPolygonLine(Eigen::Vector3d(0.1, -0.05, 0.2), Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
+const Line3d kPolygonLine(Eigen::Vector3d(0.1, -0.05, 0.2), Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
 
 std::vector<ReflectionPlane> planesAt(const std::vector<double>& places, int fold) {
   const PlaneLattice lattice{kPolygonLine, fold, 0.37, 0};
@@ -160,7 +160,7 @@ TEST(FoldSpectrum, ToldFromARoundBody) {
     const GaussianEdt edt(points);
     const NormalizedCloud cloud(points, edt, nullptr, nullptr, 1);
     const Eigen::Vector3d middle = (Eigen::Vector3d(0.0, 0.0, 0.3) - cloud.center) / cloud.scale;
-    const auto lattice = latticeBySpectrum(cloud, AxisLine(middle, Eigen::Vector3d::UnitZ()), 1);
+    const auto lattice = latticeBySpectrum(cloud, Line3d(middle, Eigen::Vector3d::UnitZ()), 1);
     return lattice ? lattice->fold : 0;
   };
   for (const int n : {3, 7, 16}) EXPECT_EQ(foldOf(wheel(n, 0.1, 0.04, false, 6)), n);

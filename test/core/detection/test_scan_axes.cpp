@@ -73,6 +73,18 @@ TEST(ScanAxes, ACupHasAnAxisUnlessAHandleIsInSight) {
   EXPECT_TRUE(detected(cup(true), {1.0, 5.0, 1.5}).axes.empty());
 }
 
+TEST(ScanAxes, AreFoundWithoutPlanesToo) {
+  const SeenFromOneSide scan = seen(prismShape(6, 0.5), {3.0, 4.0, 5.0});
+  const GaussianEdt edt(scan.points);
+  const std::vector<SymmetryTurn> turns = turnsOfScan(scan.points, edt, *scan.seen, {}, {});
+  ASSERT_FALSE(turns.empty());
+  EXPECT_EQ(turns.front().fold, 6);
+  EXPECT_GT(turns.front().confidence, 0.5);
+  EXPECT_GT(std::abs(turns.front().direction.z()), std::cos(1.0 * kDegree));
+  const Points few = scan.points.leftCols(5);
+  EXPECT_TRUE(turnsOfScan(few, GaussianEdt(few), *scan.seen, {}, {}).empty()) << "no answer";
+}
+
 TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {
   const SeenFromOneSide scan = seen(prismShape(5, 0.4), {2.0, 3.0, 5.0});
   DetectionOptions options;

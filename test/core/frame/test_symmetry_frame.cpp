@@ -35,6 +35,14 @@ void expectSame(const SymmetryFrame& a, const SymmetryFrame& b) {
     EXPECT_EQ(a.equivalent[i].matrix(), b.equivalent[i].matrix()) << i;
 }
 
+void expectSameTurns(const SymmetryFrame& a, const SymmetryFrame& b) {
+  ASSERT_EQ(a.turns.size(), b.turns.size());
+  for (std::size_t i = 0; i < a.turns.size(); ++i) {
+    EXPECT_EQ(a.turns[i].point, b.turns[i].point);
+    EXPECT_EQ(a.turns[i].confidence, b.turns[i].confidence);
+  }
+}
+
 /// A box with a fin at the end of its back, like the body of an airplane: one plane, y = 0, one nearly, x = 0, and
 /// nothing across z. So order and signs of its axes are not left to chance.
 test::Shape finnedBox(std::uint64_t seed) {
@@ -164,6 +172,25 @@ TEST(SymmetryFrame, OfAScanIsThatOfTheWhole) {
   }
 }
 
+/// The box of blocks has half turns; from a corner one of them is confirmed by what was seen.
+TEST(SymmetryFrame, OfAScanListsTurnsUnlessToldNotTo) {
+  const test::Scan scan = test::scan(test::blockBox(), 6.0 * Eigen::Vector3d(1.0, 1.3, 0.8).normalized());
+  const Points cloud = scan.cloud();
+  const Visibility visibility = scan.visibility();
+  const SymmetryFrame frame = symmetryFrame(cloud, {}, &visibility);
+  for (std::size_t i = 0; i < frame.turns.size(); ++i) {
+    EXPECT_GE(frame.turns[i].confidence, DetectionOptions().min_possible);
+    EXPECT_LE(frame.turns[i].confidence, i == 0 ? 1.0 : frame.turns[i - 1].confidence);
+    EXPECT_NEAR(frame.turns[i].direction.norm(), 1.0, 1e-9);
+    EXPECT_EQ(frame.turns[i].fold % 2, 0) << "a box has no other turns";
+  }
+  FrameOptions options;
+  options.turns = false;
+  EXPECT_TRUE(symmetryFrame(cloud, options, &visibility).turns.empty());
+  expectSame(symmetryFrame(cloud, options, &visibility), frame);
+  EXPECT_TRUE(symmetryFrame(cloud).turns.empty()) << "whole objects have objectSymmetries()";
+}
+
 TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
   const test::Scan scan = test::scan(test::blockChair(), {3.0, -4.0, 3.5});
   const Points cloud = scan.cloud();
@@ -174,7 +201,9 @@ TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
   const SymmetryFrame expected_whole = symmetryFrame(cloud, options);
   for (const int num_threads : {2, 8}) {
     options.num_threads = options.edt.num_threads = num_threads;
-    expectSame(symmetryFrame(cloud, options, &visibility), expected);
+    const SymmetryFrame frame = symmetryFrame(cloud, options, &visibility);
+    expectSame(frame, expected);
+    expectSameTurns(frame, expected);
     expectSame(symmetryFrame(cloud, options), expected_whole);
   }
 }

@@ -32,7 +32,7 @@ double correlation(const GaussianEdt& edt, const Move& move) {
   return sum / edt.sqNorm();
 }
 
-double fullSum(const GaussianEdt& edt, const TurningLine& axis, int fold) {
+double fullSum(const GaussianEdt& edt, const Line3d& axis, int fold) {
   const int num_turns = fold > 0 ? fold - 1 : 90;  // any angle: every 4 degrees
   double sum = 0.0;
   for (int k = 1; k <= num_turns; ++k) {
@@ -53,7 +53,7 @@ TEST(AxisGrid, IndicesAndAxesGoBothWays) {
   for (std::size_t i = 0; i < grid.size(); i += 7) {
     const AxisGrid::Bin bin = grid.bin(i);
     EXPECT_EQ(grid.index(bin), i);
-    const TurningLine axis = grid.axis(bin);
+    const Line3d axis = grid.axis(bin);
     EXPECT_NEAR(axis.direction().dot(axis.origin() - grid.center()), 0.0, 1e-12);
     // The same line, by another of its points and the other direction.
     const auto found = grid.find({axis.origin() + 3.0 * axis.direction(), -2.0 * axis.direction()});
@@ -245,7 +245,7 @@ TEST(AxialTransform, FreeSpaceSpeaksAgainstAxes) {
   for (int i = 0; i < 20; ++i) {
     const std::size_t bin = random.below(grid.size());
     if (map.greatest[bin] == 0.0f) continue;
-    const TurningLine axis = grid.axis(grid.bin(bin));
+    const Line3d axis = grid.axis(grid.bin(bin));
     double f = 0.0;
     for (const double angle : {2.0 * kPi / 3.0, 4.0 * kPi / 3.0}) {
       const Eigen::AngleAxisd turn(angle, axis.direction());

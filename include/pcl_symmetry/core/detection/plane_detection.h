@@ -61,7 +61,7 @@ struct SymmetryPlane : ReflectionPlane {
 struct SymmetryAxis {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
-  /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only turns show the grade of
+  /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only turns show that of
   /// SymmetryTurn.
   double confidence = 0.0;
   double score = 0.0;    ///< mean D of these planes
@@ -74,7 +74,7 @@ struct SymmetryTurn {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
   int fold = 0;               ///< order of the turns; 0: by any angle
-  /// How far within its limits this is, in [0, 1], 0.5 at them: a grade of what was seen, not a probability.
+  /// Probability that these turns are symmetries of the whole object at the limits of ObjectSymmetryOptions.
   double confidence = 0.0;
   // Shares of the points seen, in [0, 1].
   double support = 0.0;  ///< that the best turn maps onto the surface seen; a small turn for any angle

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "pcl_symmetry/core/detection/plane_detection.h"
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
@@ -27,6 +28,8 @@ struct FrameOptions {
   /// The paper's own method: three planes picked greedily by D, through bin centers of the map and at num_phi angles
   /// within the plane across the first axis. It ignores what a scanner saw, and no scores tie.
   bool as_published = false;
+  /// Axes of turns of scans are searched too, SymmetryFrame::turns; false saves about a third of the time.
+  bool turns = true;
   std::uint64_t seed = 1;  ///< of all random draws
   int num_threads = 0;     ///< >= 0; 0 = one per core
 
@@ -50,7 +53,10 @@ struct SymmetryFrame {
   /// those that are maxima, then the angles between them in steps of 6 degrees. Turns about an axis of revolution are
   /// equally good as well and not listed.
   std::vector<Eigen::Isometry3d> equivalent;
-  std::size_t num_maxima = 0;                             ///< frames at the front of equivalent that are maxima
+  std::size_t num_maxima = 0;  ///< frames at the front of equivalent that are maxima
+  /// Of scans: axes of turns, through the center or not, most confident first. They say which poses look the same where
+  /// the planes alone do not, as of a propeller.
+  std::vector<SymmetryTurn> turns;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 

@@ -13,8 +13,8 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// A straight line that a shape is turned about: a point of it and its direction, unit, input frame.
-using TurningLine = Eigen::ParametrizedLine<double, 3>;
+/// A straight line, such as the axis of turns: a point of it and its direction, unit.
+using Line3d = Eigen::ParametrizedLine<double, 3>;
 
 /// The discrete space of axes, the counterpart of PlaneGrid: theta in [0, pi/2] and phi in [0, 2 pi) of the direction,
 /// and the point (u, v) in which the axis meets the plane across it through a center, both in [-radius, radius]. u runs
@@ -59,9 +59,9 @@ public:
   Eigen::Matrix3d frame(std::size_t direction) const;
 
   /// \return the axis at the bin center, its origin in the plane across it through center().
-  TurningLine axis(const Bin& bin) const;
+  Line3d axis(const Bin& bin) const;
   /// \return the bin that contains an axis; none if its u or v is greater than radius().
-  std::optional<Bin> find(const TurningLine& axis) const;
+  std::optional<Bin> find(const Line3d& axis) const;
 
 private:
   int num_theta_ = 0, num_phi_ = 0, num_offset_ = 0;
@@ -123,7 +123,7 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
 
 /// A local maximum of the axial transform, between bins.
 struct AxisMaximum {
-  TurningLine axis;            ///< input frame
+  Line3d axis;                 ///< input frame
   int fold = 0;                ///< as from bestFold()
   double value = 0.0;          ///< the greatest D_n
   std::vector<double> values;  ///< D_n of each fold of the map

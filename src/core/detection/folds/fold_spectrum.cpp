@@ -32,7 +32,7 @@ constexpr double kLeastLineAngle = 0.1;           // radians. chosen: at smaller
 constexpr std::array<int, 3> kDivisors{2, 3, 5};  // derived: of parts of a polygon whose planes may differ
 
 /// Fourier coefficients of the mean of f at the reflected points, by the angle of the plane over half a turn.
-std::vector<std::complex<double>> spectrumAbout(const AxisLine& line, const NormalizedCloud& cloud, int num_threads) {
+std::vector<std::complex<double>> spectrumAbout(const Line3d& line, const NormalizedCloud& cloud, int num_threads) {
   const std::vector<int> samples = drawSamples(cloud.points.cols(), kSpectrumSamples, 1);
   const PlaneLattice fan{line, kAngles, 0.0, 0};
   std::vector<double> mean(kAngles, 0.0);
@@ -106,7 +106,7 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
 
 }  // namespace
 
-std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const AxisLine& line, int num_threads) {
+std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Line3d& line, int num_threads) {
   const std::vector<std::complex<double>> spectrum = spectrumAbout(line, cloud, num_threads);
   int fold = 0;
   double most = kStandsOut;

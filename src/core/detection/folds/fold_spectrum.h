@@ -13,7 +13,7 @@ namespace pcl_symmetry {
 /// \param line normalised frame.
 /// \param num_threads 0 = one per core.
 /// \return none where no frequency stands out: nothing turns the cloud into itself, or everything does.
-std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const AxisLine& line, int num_threads);
+std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Line3d& line, int num_threads);
 
 struct PlanesAndPolygon {
   std::vector<SymmetryPlane> planes;    ///< input frame

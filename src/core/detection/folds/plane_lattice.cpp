@@ -21,14 +21,14 @@ constexpr double kMostOffAngle = 0.05;  // radians. chosen: planes of symmetries
 constexpr double kMostChance = 1e-3;    // chosen: of a hundred round bodies, with some lines each, none has a lattice
 
 /// Angle of the normal of a plane about a line, in [0, pi).
-double angleAbout(const AxisLine& line, const ReflectionPlane& plane) {
+double angleAbout(const Line3d& line, const ReflectionPlane& plane) {
   const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
   const double angle = std::atan2(plane.normal().dot(v), plane.normal().dot(u));
   return angle < 0.0 ? angle + kPi : angle;
 }
 
 /// The lattice of the planes that contain a line.
-std::optional<PlaneLattice> latticeAbout(const AxisLine& line, const std::vector<ReflectionPlane>& planes) {
+std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<ReflectionPlane>& planes) {
   std::vector<double> angles;
   for (const ReflectionPlane& plane : planes)
     if (contains(plane, line, kContainedOffset)) angles.push_back(angleAbout(line, plane));
@@ -65,7 +65,7 @@ std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& plan
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j) {
       if (planes[i].angleTo(planes[j]) < kLeastPairAngle) continue;
-      AxisLine line = commonLine({planes[i], planes[j]});
+      Line3d line = commonLine({planes[i], planes[j]});
       std::vector<ReflectionPlane> through;
       for (const ReflectionPlane& plane : planes)
         if (contains(plane, line, kContainedOffset)) through.push_back(plane);

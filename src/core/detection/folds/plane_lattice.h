@@ -10,7 +10,7 @@ namespace pcl_symmetry {
 
 /// The planes of a regular polygon: \p fold planes through a line, at equal angles.
 struct PlaneLattice {
-  AxisLine line;
+  Line3d line;
   int fold = 0;        ///< number of planes, >= 3
   double phase = 0.0;  ///< angle of the normal of plane 0 from line.direction().unitOrthogonal(), radians
   int num_planes = 0;  ///< that were found

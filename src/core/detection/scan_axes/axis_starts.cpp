@@ -15,8 +15,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-using Line = TurnEvidence::Line;
-
 constexpr int kNormalSamples = 600;  // chosen: half shifts the axis by noise, twice takes twice the time
 // Draws of normals, and normals in each. derived: six numbers fix a motion but for its size; chosen: at 60 draws one is
 // free of a handle of a fifth of the surface with probability 1 - 1e-8.
@@ -35,12 +33,12 @@ constexpr std::size_t kCoarseMaxima = 10;  // chosen: half misses axes of folds,
 constexpr double kCoarseAngle = 0.3, kCoarseDistance = 0.3;  // radians, radii; derived: one and a half bins
 constexpr double kCoarseEqual = 0.05;                        // D; chosen: coarse maxima are this far from their peaks
 
-bool isOne(const Line& a, const Line& b, double angle, double offset) {
+bool isOne(const Line3d& a, const Line3d& b, double angle, double offset) {
   return std::abs(a.direction().dot(b.direction())) > std::cos(angle) &&
          a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
 }
 
-double missAt(const Line& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
+double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d velocity = line.direction().cross(x - line.origin());
   return std::abs(velocity.dot(normal)) / std::max(kLeastLever, velocity.norm());
 }
@@ -50,15 +48,15 @@ double missAt(const Line& line, const Eigen::Vector3d& x, const Eigen::Vector3d&
 std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed) {
   const std::vector<int> samples = drawSamples(cloud.points.cols(), kNormalSamples, seed);
   const Points& normals = cloud.geometry.normals;
-  std::vector<std::pair<double, Line>> found;
-  const auto inliersOf = [&](const Line& line) {
+  std::vector<std::pair<double, Line3d>> found;
+  const auto inliersOf = [&](const Line3d& line) {
     std::vector<int> inliers;
     for (const int i : samples)
       if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) < kMeets)
         inliers.push_back(i);
     return inliers;
   };
-  const auto add = [&](const Line& line) {
+  const auto add = [&](const Line3d& line) {
     if (line.direction().allFinite() && line.origin().allFinite())
       found.emplace_back(-static_cast<double>(inliersOf(line).size()), line);
   };
@@ -75,7 +73,7 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
     if (starts.size() == kFromNormals) break;
     const std::vector<int> inliers = inliersOf(line);
     if (inliers.empty()) break;
-    const Line fitted = axisOfNormals(cloud.points, normals, inliers);
+    const Line3d fitted = axisOfNormals(cloud.points, normals, inliers);
     const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
       return isOne(other.line, fitted, kSameStartAngle, kSameStartOffset);
     });
@@ -95,7 +93,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
       const double cosine = a.dot(b), sq_sine = 1.0 - cosine * cosine;
       const double s = (planes[i].offset() - cosine * planes[j].offset()) / sq_sine,
                    t = (planes[j].offset() - cosine * planes[i].offset()) / sq_sine;
-      const Line line(s * a + t * b, a.cross(b).normalized());
+      const Line3d line(s * a + t * b, a.cross(b).normalized());
       // The least fold whose planes have this angle: two planes at k pi / n turn by 2 k pi / n.
       for (int n = 2; n <= max_fold; ++n) {
         const double step = kPi / n, off = std::abs(angle - step * std::round(angle / step));
@@ -126,7 +124,7 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   std::vector<AxisStart> starts;
   for (const std::size_t bin : order) {
     if (starts.size() == kCoarseMaxima || map.greatest[bin] <= 0.0f) break;
-    const Line line = grid.axis(grid.bin(bin));
+    const Line3d line = grid.axis(grid.bin(bin));
     const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
       return isOne(other.line, line, kCoarseAngle, kCoarseDistance);
     });

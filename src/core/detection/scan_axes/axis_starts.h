@@ -10,7 +10,7 @@ namespace pcl_symmetry {
 
 /// A line that may be an axis, and the order that it may have; 0: any angle.
 struct AxisStart {
-  TurnEvidence::Line line;
+  Line3d line;
   int fold;
 };
 

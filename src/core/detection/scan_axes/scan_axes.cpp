@@ -7,13 +7,15 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/detection/scan_axes/axis_starts.h"
+#include "core/detection/scan_axes/turn_confidence.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/point_samples.h"
+#include "core/neighbours/answerable_points.h"
+#include "core/neighbours/distinct_points.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-using Line = TurnEvidence::Line;
 
 constexpr int kMostTurnFold = 12;  // chosen: bodies of more folds are nearly round to a scan
 // Turns that stand for all, besides small ones. chosen: half overlooks handles, twice takes twice the time.
@@ -39,10 +41,8 @@ constexpr double kPlaneShare = 0.85;                            // chosen: plane
 constexpr double kSameTurnAngle = 0.12, kSameTurnOffset = 0.1;  // radians, radii; chosen: no body has two axes nearer
 // Radians, radii: fitted lines that are judged once. chosen: half judges lines twice, twice may judge the worse one.
 constexpr double kFittedAngle = 0.02, kFittedOffset = 0.02;
-constexpr std::size_t kMostTurns = 5;  // chosen: a polyhedron seen from a corner shows as many
-// Logistic of the least margin: a grade. chosen: one half where a limit is met, 0.95 where nothing contradicts and half
-// is on the surface.
-constexpr double kSteep = 3.0;
+constexpr std::size_t kMostTurns = 5;        // chosen: a polyhedron seen from a corner shows as many
+constexpr int kMostScanTurnPoints = 10'000;  // chosen: as DetectionOptions::num_refine_samples
 constexpr int kScoredPlanes = 4;  // chosen: D of a round body differs little between planes; each takes a millisecond
 
 /// The worst of several turns, and the greatest share on the surface.
@@ -75,29 +75,30 @@ TurnsTogether turnsOfFold(const Shares& shares, int fold, double first, double m
 
 /// What a line is, as far as one scan can tell.
 struct JudgedTurns {
-  Line line;
+  Line3d line;
   int fold;
   TurnsTogether own, halfway;
-  double confidence;
+  double margin;
 };
 
-/// Logistic of the least margin to a limit.
-double confidenceOf(int fold, const TurnsTogether& own, const TurnsTogether& halfway) {
+/// The least margin to a limit, >= 0 where all are kept: by it the orders of a line and the lines are compared. What is
+/// reported is turnConfidence(), which is fitted to lines that were chosen so.
+double marginOf(int fold, const TurnsTogether& own, const TurnsTogether& halfway) {
   const double least_on = fold == 0 ? kRoundOn : fold == 2 ? kHalfTurnOn : kFoldOn;
   const double most_off = fold == 0 ? kMostRoundOff : kMostOff, most_far = fold == 0 ? kMostRoundFar : kMostFar;
   double margin = std::min({1.0 - own.off / most_off, 1.0 - own.far / most_far, own.on / least_on - 1.0});
   if (fold > 0) margin = std::min(margin, (halfway.off - own.off) / kHalfwayMore - 1.0);
-  return 1.0 / (1.0 + std::exp(-kSteep * margin));
+  return margin;
 }
 
 class AxisJudge {
 public:
   explicit AxisJudge(const TurnEvidence& evidence) : evidence_(evidence) {}
 
-  Line fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
+  Line3d fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
 
   /// The best that can be said of a line.
-  std::optional<JudgedTurns> judged(const Line& line) const {
+  std::optional<JudgedTurns> judged(const Line3d& line) const {
     const auto roughly = [&](double angle) { return evidence_.roughly(line, angle, kRoughSlack); };
     constexpr double kMostRough = kRoughFactor * kMostOff;  // derived: from both
     const auto passes = [](const TurnsTogether& turns) {
@@ -105,23 +106,23 @@ public:
     };
     std::optional<JudgedTurns> best;
     const auto take = [&](JudgedTurns&& turns) {
-      if (!best || turns.confidence > best->confidence) best = turns;
+      if (!best || turns.margin > best->margin) best = turns;
     };
     if (passes(roundTurns(roughly, kMostRough))) take(exactly(line, 0));
     for (int fold = kMostTurnFold; fold >= 2; --fold) {
-      if (best && best->confidence > 0.5) break;
+      if (best && best->margin > 0.0) break;
       if (passes(turnsOfFold(roughly, fold, 0.0, kMostRough))) take(exactly(line, fold));
     }
     return best;
   }
 
-  JudgedTurns exactly(Line line, int fold) const {
+  JudgedTurns exactly(Line3d line, int fold) const {
     line = evidence_.refined(line, fitAngles(fold));
     const auto shares = [&](double angle) { return evidence_.exactly(line, angle); };
     JudgedTurns turns{line, fold, {}, {}, 0.0};
     turns.own = fold == 0 ? roundTurns(shares) : turnsOfFold(shares, fold, 0.0);
     if (fold > 0) turns.halfway = turnsOfFold(shares, fold, 0.5);
-    turns.confidence = confidenceOf(fold, turns.own, turns.halfway);
+    turns.margin = marginOf(fold, turns.own, turns.halfway);
     return turns;
   }
 
@@ -144,16 +145,16 @@ std::vector<ReflectionPlane> planesOfAxes(const std::vector<SymmetryPlane>& plan
   return found;
 }
 
-bool isNear(const Line& a, const Line& b, double angle, double offset) {
+bool isNear(const Line3d& a, const Line3d& b, double angle, double offset) {
   return std::abs(a.direction().dot(b.direction())) > std::cos(angle) &&
          a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
 }
 
-bool isNearly(const Line& a, const Line& b) {
+bool isNearly(const Line3d& a, const Line3d& b) {
   return isNear(a, b, kFittedAngle, kFittedOffset);
 }
 
-bool isSameLine(const Line& a, const Line& b) {
+bool isSameLine(const Line3d& a, const Line3d& b) {
   return isNear(a, b, kSameTurnAngle, kSameTurnOffset);
 }
 
@@ -167,40 +168,55 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
     starts.insert(starts.end(), more.begin(), more.end());
   };
   for (const SymmetryAxis& axis : axes)
-    starts.push_back({Line((axis.point - cloud.center) / cloud.scale, axis.direction), 0});
+    starts.push_back({Line3d((axis.point - cloud.center) / cloud.scale, axis.direction), 0});
   append(startsFromPlanes(planesOfAxes(planes, cloud), kMostTurnFold));
   append(startsFromTransform(cloud, options.seed, options.num_threads));
   const AxisJudge judge(evidence);
-  std::vector<Line> fitted(starts.size());
+  std::vector<Line3d> fitted(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
-  std::vector<Line> lines;
-  for (const Line& line : fitted)
+  std::vector<Line3d> lines;
+  for (const Line3d& line : fitted)
     if (line.direction().allFinite() && line.origin().allFinite() &&
-        std::none_of(lines.begin(), lines.end(), [&](const Line& other) { return isNearly(other, line); }))
+        std::none_of(lines.begin(), lines.end(), [&](const Line3d& other) { return isNearly(other, line); }))
       lines.push_back(line);
   std::vector<std::optional<JudgedTurns>> judged(lines.size());
   parallelBlocks(lines.size(), options.num_threads, [&](std::size_t i) { judged[i] = judge.judged(lines[i]); });
-  std::stable_sort(judged.begin(), judged.end(), [](const auto& a, const auto& b) {
-    return (a ? a->confidence : -1.0) > (b ? b->confidence : -1.0);
-  });
+  std::stable_sort(judged.begin(), judged.end(),
+                   [](const auto& a, const auto& b) { return a && (!b || a->margin > b->margin); });
   std::vector<JudgedTurns> found;
   for (const std::optional<JudgedTurns>& turns : judged) {
-    if (!turns || turns->confidence < options.min_possible || found.size() == kMostTurns) break;
+    if (!turns || found.size() == kMostTurns) break;
     if (std::none_of(found.begin(), found.end(), [&](const JudgedTurns& o) { return isSameLine(o.line, turns->line); }))
       found.push_back(*turns);
   }
   std::vector<SymmetryTurn> result;
-  for (const JudgedTurns& turns : found)
+  for (const JudgedTurns& turns : found) {
     result.push_back({turns.line.projection(Eigen::Vector3d::Zero()) * cloud.scale + cloud.center,
-                      turns.line.direction(), turns.fold, turns.confidence, turns.own.on, turns.own.off, turns.own.far,
+                      turns.line.direction(), turns.fold, 0.0, turns.own.on, turns.own.off, turns.own.far,
                       turns.halfway.off});
+    result.back().confidence = turnConfidence(result.back());
+    if (result.back().confidence < options.min_possible) result.pop_back();
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const SymmetryTurn& a, const SymmetryTurn& b) { return a.confidence > b.confidence; });
   return result;
+}
+
+std::vector<SymmetryTurn> turnsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
+                                      const std::vector<SymmetryAxis>& axes, const DetectionOptions& options) {
+  if (!whyUnanswerable(points).empty()) return {};
+  const Points distinct = DistinctPoints(points).points;
+  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kMostScanTurnPoints, options.seed));
+  const NormalizedCloud cloud(used, edt, nullptr, &visibility, options.num_threads);
+  return scanAxes(TurnEvidence(cloud, options.tolerance * cloud.extent, options.seed), {}, axes, options);
 }
 
 std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vector<SymmetryAxis> axes,
                                          const std::vector<SymmetryTurn>& turns, const DetectionOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
-  const auto lineOf = [&](const auto& axis) { return Line((axis.point - cloud.center) / cloud.scale, axis.direction); };
+  const auto lineOf = [&](const auto& axis) {
+    return Line3d((axis.point - cloud.center) / cloud.scale, axis.direction);
+  };
   axes.erase(std::remove_if(axes.begin(), axes.end(),
                             [&](const SymmetryAxis& axis) {
                               const TurnsTogether all =
@@ -209,7 +225,9 @@ std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vect
                             }),
              axes.end());
   for (const SymmetryTurn& turn : turns) {
-    if (turn.fold != 0 || turn.confidence < options.min_confidence) continue;
+    // However probable: a handle that was seen contradicts.
+    const bool is_contradicted = turn.off > kMostRoundOff || turn.far > kMostRoundFar;
+    if (turn.fold != 0 || is_contradicted || turn.confidence < options.min_confidence) continue;
     const auto known = std::find_if(axes.begin(), axes.end(),
                                     [&](const SymmetryAxis& axis) { return isSameLine(lineOf(axis), lineOf(turn)); });
     if (known != axes.end()) {

@@ -24,7 +24,7 @@ constexpr double kFitRidge = 1e-3;  // share of the trace. chosen: keeps free di
 constexpr double kFitStep = 1e-4;   // radians, radii; chosen: for derivatives in double precision
 constexpr double kLeastTurnF = 1e-6;  // derived: below any f that is not 0
 
-Eigen::Isometry3d turnAbout(const TurnEvidence::Line& line, double angle) {
+Eigen::Isometry3d turnAbout(const Line3d& line, double angle) {
   Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
   turn.linear() = Eigen::AngleAxisd(angle, line.direction()).toRotationMatrix();
   turn.translation() = line.origin() - turn.linear() * line.origin();
@@ -32,7 +32,7 @@ Eigen::Isometry3d turnAbout(const TurnEvidence::Line& line, double angle) {
 }
 
 /// The line moved by tilts about the two directions across it and by shifts along them.
-TurnEvidence::Line movedLine(const TurnEvidence::Line& line, const Eigen::Vector4d& by) {
+Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
   const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
   return {line.origin() + by[2] * u + by[3] * v, (line.direction() + by[0] * u + by[1] * v).normalized()};
 }
@@ -55,7 +55,7 @@ bool TurnEvidence::isSeenEmpty(const Eigen::Vector3d& x) const {
   return true;
 }
 
-TurnShares TurnEvidence::roughly(const Line& line, double angle, double slack) const {
+TurnShares TurnEvidence::roughly(const Line3d& line, double angle, double slack) const {
   const Eigen::Isometry3d turn = turnAbout(line, angle);
   TurnShares shares;
   const double one = 1.0 / static_cast<double>(few_samples_.size());
@@ -73,7 +73,7 @@ TurnShares TurnEvidence::roughly(const Line& line, double angle, double slack) c
   return shares;
 }
 
-TurnShares TurnEvidence::exactly(const Line& line, double angle) const {
+TurnShares TurnEvidence::exactly(const Line3d& line, double angle) const {
   const Eigen::Isometry3d turn = turnAbout(line, angle);
   Points turned(3, static_cast<Eigen::Index>(samples_.size()));
   for (std::size_t i = 0; i < samples_.size(); ++i)
@@ -96,9 +96,9 @@ TurnShares TurnEvidence::exactly(const Line& line, double angle) const {
   return shares;
 }
 
-TurnEvidence::Line TurnEvidence::refined(const Line& start, const std::vector<double>& angles) const {
+Line3d TurnEvidence::refined(const Line3d& start, const std::vector<double>& angles) const {
   // Tilts about the point of the line among the points, so that they and the shifts are independent.
-  Line line(start.projection(Eigen::Vector3d::Zero()), start.direction());
+  Line3d line(start.projection(Eigen::Vector3d::Zero()), start.direction());
   Points turned(3, static_cast<Eigen::Index>(few_samples_.size()));
   std::vector<int> closest;
   std::vector<float> sq_distances;

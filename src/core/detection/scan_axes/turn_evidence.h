@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/refinement/normalized_cloud.h"
+#include "pcl_symmetry/core/transform_axes/axial_transform.h"
 
 namespace pcl_symmetry {
 
@@ -18,22 +19,20 @@ struct TurnShares {
 /// Judges turns by what a scanner saw: the surface, and the space in front of it. Beyond the paper (Section 6).
 class TurnEvidence {
 public:
-  using Line = Eigen::ParametrizedLine<double, 3>;
-
   /// \param cloud of a scan; must outlive this.
   /// \param tolerance normalised frame.
   TurnEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed);
 
   /// By distances that the EDT tells, of a few points: for screening.
   /// \param slack tolerances.
-  TurnShares roughly(const Line& line, double angle, double slack) const;
+  TurnShares roughly(const Line3d& line, double angle, double slack) const;
 
   /// By distances from the surface.
-  TurnShares exactly(const Line& line, double angle) const;
+  TurnShares exactly(const Line3d& line, double angle) const;
 
   /// The line moved to where some turns about it map the points seen onto each other best: point to plane, with
   /// weights that fall with the distance. Matches at borders do not count, as the true one may not have been seen.
-  Line refined(const Line& line, const std::vector<double>& angles) const;
+  Line3d refined(const Line3d& line, const std::vector<double>& angles) const;
 
   const NormalizedCloud& cloud() const { return cloud_; }
 

@@ -1,9 +1,7 @@
-#include "bop/colour_symmetry.h"
+#include "bop/colours/colour_symmetry.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -25,27 +23,6 @@ constexpr int kNumColoursNear = 4;
 constexpr int kNumTurns = 8;
 // Greatest fold of stripes. chosen: half overlooks fine patterns, at twice that samples are as far apart as stripes.
 constexpr int kMaxFold = 24;
-
-const pcl::PCLPointField* colourField(const pcl::PCLPointCloud2& cloud) {
-  for (const pcl::PCLPointField& field : cloud.fields)
-    if (field.name == "rgb" || field.name == "rgba") return &field;
-  return nullptr;
-}
-
-/// Colours of the vertices in CIELAB.
-Eigen::Matrix3Xf vertexColours(const pcl::PCLPointCloud2& cloud) {
-  const pcl::PCLPointField& field = *colourField(cloud);
-  Eigen::Matrix3Xf colours(3, static_cast<Eigen::Index>(cloud.width) * cloud.height);
-  for (Eigen::Index i = 0; i < colours.cols(); ++i) {
-    std::uint32_t packed = 0;
-    std::memcpy(&packed, cloud.data.data() + static_cast<std::size_t>(i) * cloud.point_step + field.offset,
-                sizeof(packed));
-    const Eigen::Vector3f rgb(static_cast<float>((packed >> 16) & 255), static_cast<float>((packed >> 8) & 255),
-                              static_cast<float>(packed & 255));
-    colours.col(i) = labOf(rgb / 255.0f);
-  }
-  return colours;
-}
 
 Eigen::Isometry3d turnAbout(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& center) {
   Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
@@ -131,17 +108,6 @@ ObjectSymmetries sphereGroup(const ObjectSymmetries& found, const ColouredSurfac
 
 }  // namespace
 
-bool hasVertexColours(const Shape& shape) {
-  return colourField(shape.cloud) != nullptr;
-}
-
-bool hasColours(const Shape& shape) {
-  const auto is_texture = [](const pcl::PCLPointField& field) {
-    return field.name == "texture_u" || field.name == "s" || field.name == "u";
-  };
-  return hasVertexColours(shape) || std::any_of(shape.cloud.fields.begin(), shape.cloud.fields.end(), is_texture);
-}
-
 Eigen::Vector3f labOf(const Eigen::Vector3f& rgb) {
   // The transfer curve of sRGB (IEC 61966-2-1), its primaries, and CIELAB relative to D65.
   const auto linear = [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); };
@@ -154,20 +120,14 @@ Eigen::Vector3f labOf(const Eigen::Vector3f& rgb) {
   return {116.0f * f.y() - 16.0f, 500.0f * (f.x() - f.y()), 200.0f * (f.y() - f.z())};
 }
 
-ColouredSurface::ColouredSurface(const Shape& shape, Points points, double tolerance)
+ColouredSurface::ColouredSurface(const SurfaceColours& colours, Points points, double tolerance)
     : points_(std::move(points)), tolerance_(tolerance), search_(makeTreeSearch(points_)) {
-  const Eigen::Matrix3Xf colours = vertexColours(shape.cloud);
-  std::vector<Eigen::Index> finite;
-  for (Eigen::Index i = 0; i < colours.cols(); ++i)
-    if ((*shape.points)[static_cast<std::size_t>(i)].getVector3fMap().allFinite()) finite.push_back(i);
-  Points vertices(3, static_cast<Eigen::Index>(finite.size()));
-  for (std::size_t k = 0; k < finite.size(); ++k)
-    vertices.col(static_cast<Eigen::Index>(k)) = (*shape.points)[static_cast<std::size_t>(finite[k])].getVector3fMap();
   std::vector<int> closest;
   std::vector<float> ignored;
-  makeTreeSearch(vertices)->search(points_, 1, closest, ignored);
+  makeTreeSearch(colours.points)->search(points_, 1, closest, ignored);
   lab_.resize(3, points_.cols());
-  for (Eigen::Index i = 0; i < points_.cols(); ++i) lab_.col(i) = colours.col(finite[closest[i]]);
+  for (Eigen::Index i = 0; i < points_.cols(); ++i)
+    lab_.col(i) = labOf(colours.rgb.col(closest[static_cast<std::size_t>(i)]));
 }
 
 double ColouredSurface::changedShare(const Eigen::Isometry3d& motion) const {

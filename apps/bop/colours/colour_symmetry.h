@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "common/shape_input/shape_input.h"
+#include "bop/colours/surface_colours.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/core/rotation/rotational_symmetry.h"
 
@@ -14,22 +14,18 @@ namespace pcl_symmetry::apps {
 /// overlooks pale print. 2.3 is just noticeable side by side.
 constexpr double kColourTolerance = 12.0;
 
-/// Whether a file has colours for its vertices, or coordinates in a texture.
-bool hasColours(const Shape& shape);
-bool hasVertexColours(const Shape& shape);
-
 /// CIELAB of an sRGB colour under D65.
 /// \param rgb in [0, 1].
 /// \return L in [0, 100], a, b.
 Eigen::Vector3f labOf(const Eigen::Vector3f& rgb);
 
-/// Samples of a surface with the colours of the vertices next to them.
+/// Samples of a surface with the colours next to them.
 class ColouredSurface {
 public:
-  /// \param shape with vertex colours.
-  /// \param points 3 x N, finite, N >= 1, minus the shift of the shape.
+  /// \param colours at least one.
+  /// \param points 3 x N, finite, N >= 1, in the frame of the colours.
   /// \param tolerance difference in CIELAB.
-  ColouredSurface(const Shape& shape, Points points, double tolerance);
+  ColouredSurface(const SurfaceColours& colours, Points points, double tolerance);
 
   /// Share of the surface on which a motion changes the colour by more than the tolerance.
   double changedShare(const Eigen::Isometry3d& motion) const;

@@ -27,8 +27,17 @@ struct JudgedRotation {
 std::vector<JudgedRotation> judgedRotations(const pcl::PolygonMesh& mesh, const ObjectSymmetryOptions& options,
                                             int num_points);
 
-std::string packed(const std::vector<JudgedRotation>& judged);
+/// Name of the group that is found in a cloud of a mesh.
+std::string groupOf(const pcl::PolygonMesh& mesh, const ObjectSymmetryOptions& options, int num_points);
+
+/// What is found of one mesh.
+struct JudgedGroups {
+  std::vector<JudgedRotation> rotations;
+  std::vector<std::string> names;  ///< of the groups, one for each number of points
+};
+
+std::string packed(const JudgedGroups& groups);
 /// \throws std::invalid_argument for bytes that packed() did not make.
-std::vector<JudgedRotation> unpackedRotations(const std::string& bytes);
+JudgedGroups unpackedGroups(const std::string& bytes);
 
 }  // namespace pcl_symmetry::apps

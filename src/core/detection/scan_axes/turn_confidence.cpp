@@ -1,0 +1,40 @@
+#include "core/detection/scan_axes/turn_confidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/detection/scan_axes/turn_confidence_fit.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Share of the points by which turns halfway may throw more into empty space and still say more. chosen: half hides
+// what sets shallow folds apart from round bodies, beyond it all folds are alike.
+constexpr double kMostHalfway = 0.3;
+// Share of the points that counts as little. derived: two of a thousand points, what chance takes.
+constexpr double kLittleShare = 2e-3;
+
+}  // namespace
+
+TurnKind kindOf(const SymmetryTurn& turn) {
+  return turn.fold == 0 ? TurnKind::AnyAngle : turn.fold == 2 ? TurnKind::Half : TurnKind::Folds;
+}
+
+std::vector<double> turnOddsTerms(const SymmetryTurn& turn) {
+  std::vector<double> terms{1.0, std::log1p(turn.off / kLittleShare), std::log1p(turn.far / kLittleShare),
+                            1.0 - turn.support};
+  if (turn.fold > 0) terms.push_back(std::min(kMostHalfway, turn.halfway - turn.off));
+  if (turn.fold > 2) terms.push_back(1.0 / turn.fold);
+  return terms;
+}
+
+double turnConfidence(const SymmetryTurn& turn) {
+  const std::vector<double> terms = turnOddsTerms(turn);
+  const std::vector<double>& numbers = kTurnConfidenceFit[static_cast<std::size_t>(kindOf(turn))];
+  double log_odds = 0.0;
+  for (std::size_t k = 0; k < terms.size(); ++k) log_odds += numbers[k] * terms[k];
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+}  // namespace pcl_symmetry
