@@ -81,6 +81,13 @@ struct JudgedTurns {
   double confidence;
 };
 
+/// Share that turns may throw into empty space, and still have some confidence at most: beyond, a line is refused.
+double mostOffOf(int fold, double confidence) {
+  constexpr double kSlack = 1.001;  // derived: more than what the logistic is rounded by
+  const double margin = std::log(confidence / (1.0 - confidence)) / kSteep;
+  return kSlack * (fold == 0 ? kMostRoundOff : kMostOff) * (1.0 - margin);
+}
+
 /// Logistic of the least margin to a limit.
 double confidenceOf(int fold, const TurnsTogether& own, const TurnsTogether& halfway) {
   const double least_on = fold == 0 ? kRoundOn : fold == 2 ? kHalfTurnOn : kFoldOn;
@@ -92,7 +99,9 @@ double confidenceOf(int fold, const TurnsTogether& own, const TurnsTogether& hal
 
 class AxisJudge {
 public:
-  explicit AxisJudge(const TurnEvidence& evidence) : evidence_(evidence) {}
+  /// \param least_confidence of lines that are asked for: of others only that they have less is known.
+  AxisJudge(const TurnEvidence& evidence, double least_confidence)
+      : evidence_(evidence), least_confidence_(std::min(least_confidence, 0.5)) {}
 
   Line fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
 
@@ -119,7 +128,10 @@ public:
     line = evidence_.refined(line, fitAngles(fold));
     const auto shares = [&](double angle) { return evidence_.exactly(line, angle); };
     JudgedTurns turns{line, fold, {}, {}, 0.0};
-    turns.own = fold == 0 ? roundTurns(shares) : turnsOfFold(shares, fold, 0.0);
+    const double most_off = mostOffOf(fold, least_confidence_);
+    turns.own = fold == 0 ? roundTurns(shares, most_off) : turnsOfFold(shares, fold, 0.0, most_off);
+    // Refused, whatever the turns halfway say: they can only lower the confidence.
+    if (turns.own.off > most_off) return turns;
     if (fold > 0) turns.halfway = turnsOfFold(shares, fold, 0.5);
     turns.confidence = confidenceOf(fold, turns.own, turns.halfway);
     return turns;
@@ -133,6 +145,7 @@ private:
   }
 
   const TurnEvidence& evidence_;
+  double least_confidence_;
 };
 
 /// Planes that may be symmetries, normalised frame.
@@ -170,7 +183,7 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
     starts.push_back({Line((axis.point - cloud.center) / cloud.scale, axis.direction), 0});
   append(startsFromPlanes(planesOfAxes(planes, cloud), kMostTurnFold));
   append(startsFromTransform(cloud, options.seed, options.num_threads));
-  const AxisJudge judge(evidence);
+  const AxisJudge judge(evidence, options.min_possible);
   std::vector<Line> fitted(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
   std::vector<Line> lines;

@@ -24,6 +24,13 @@ constexpr double kFitRidge = 1e-3;  // share of the trace. chosen: keeps free di
 constexpr double kFitStep = 1e-4;   // radians, radii; chosen: for derivatives in double precision
 constexpr double kLeastTurnF = 1e-6;  // derived: below any f that is not 0
 
+constexpr double kSlackOfReach = 1.001;  // derived: more than what distances are rounded by
+
+/// Radius of the greatest disc that stands for a point.
+double greatestDisc(const LocalGeometry& geometry) {
+  return kDiscRadius * static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
+}
+
 Eigen::Isometry3d turnAbout(const TurnEvidence::Line& line, double angle) {
   Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
   turn.linear() = Eigen::AngleAxisd(angle, line.direction()).toRotationMatrix();
@@ -42,6 +49,9 @@ TurnEvidence::Line movedLine(const TurnEvidence::Line& line, const Eigen::Vector
 TurnEvidence::TurnEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
     : cloud_(cloud),
       tolerance_(tolerance),
+      viewpoint_(cloud.visibility->viewpoint()),
+      far_(kFarTurn * tolerance),
+      reach_(kSlackOfReach * (far_ + greatestDisc(cloud.geometry))),
       samples_(drawSamples(cloud.points.cols(), kSamplesOfTurn, seed)),
       few_samples_(drawSamples(cloud.points.cols(), kFewSamplesOfTurn, seed)) {}
 
@@ -49,7 +59,7 @@ bool TurnEvidence::isSeenEmpty(const Eigen::Vector3d& x) const {
   const Visibility& visibility = *cloud_.visibility;
   if (visibility.depthBehind(x) >= -tolerance_) return false;
   // The rim of what was seen is as exact as its pixels.
-  const Eigen::Vector3d ray = (x - visibility.viewpoint()).normalized(), u = ray.unitOrthogonal(), v = ray.cross(u);
+  const Eigen::Vector3d ray = (x - viewpoint_).normalized(), u = ray.unitOrthogonal(), v = ray.cross(u);
   for (const Eigen::Vector3d& aside : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)})
     if (visibility.depthBehind(x + std::max(tolerance_, cloud_.spacing) * aside) >= -tolerance_) return false;
   return true;
@@ -67,7 +77,7 @@ TurnShares TurnEvidence::roughly(const Line& line, double angle, double slack) c
       shares.on += one;
     } else if (isSeenEmpty(x)) {
       shares.off += one;
-      shares.far += distance > kFarTurn * tolerance_ ? one : 0.0;
+      shares.far += distance > far_ ? one : 0.0;
     }
   }
   return shares;
@@ -78,9 +88,10 @@ TurnShares TurnEvidence::exactly(const Line& line, double angle) const {
   Points turned(3, static_cast<Eigen::Index>(samples_.size()));
   for (std::size_t i = 0; i < samples_.size(); ++i)
     turned.col(static_cast<Eigen::Index>(i)) = (turn * cloud_.points.col(samples_[i]).cast<double>()).cast<float>();
-  std::vector<int> closest;
+  // Of points beyond the reach nothing is asked but that they are far.
+  std::vector<int> closest(samples_.size(), -1);
   std::vector<float> sq_distances;
-  cloud_.search->search(turned, 1, closest, sq_distances);
+  cloud_.search->searchWithin(turned, static_cast<float>(reach_ * reach_), closest, sq_distances);
   const std::vector<float> distances = surfaceDistances(turned, closest, cloud_.points, cloud_.geometry);
   TurnShares shares;
   const double one = 1.0 / static_cast<double>(samples_.size());
@@ -90,7 +101,7 @@ TurnShares TurnEvidence::exactly(const Line& line, double angle) const {
       shares.on += one;
     } else if (isSeenEmpty(turned.col(static_cast<Eigen::Index>(i)).cast<double>())) {
       shares.off += one;
-      shares.far += distance > kFarTurn * tolerance_ ? one : 0.0;
+      shares.far += distance > far_ ? one : 0.0;
     }
   }
   return shares;

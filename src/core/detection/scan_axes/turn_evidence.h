@@ -42,6 +42,8 @@ private:
 
   const NormalizedCloud& cloud_;
   double tolerance_;
+  Eigen::Vector3d viewpoint_;  ///< normalised frame
+  double far_, reach_;         ///< distance of what is far, and of points whose discs all are
   std::vector<int> samples_, few_samples_;
 };
 

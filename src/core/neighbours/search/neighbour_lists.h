@@ -35,6 +35,14 @@ public:
   /// \param guess index of a point.
   Answer closest(const float* query, int guess) const;
 
+  /// Has the list of a point brought from memory, for a query that follows.
+  void prefetch(int guess) const {
+    const auto i = static_cast<std::size_t>(guess);
+    __builtin_prefetch(&places_[i]);
+    __builtin_prefetch(lists_[i].x);
+    __builtin_prefetch(lists_[i].z);
+  }
+
 private:
   struct List {
     float x[kNeighbours], y[kNeighbours], z[kNeighbours];

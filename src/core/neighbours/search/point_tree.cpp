@@ -14,6 +14,7 @@ namespace pcl_symmetry {
 namespace {
 
 constexpr int kMostInLeaf = 10;  // points. derived: FLANN's default, which decides between points equally far away
+constexpr int kAhead = 4;        // queries; chosen: half is late, twice makes no difference
 constexpr int kLanes = 4;        // derived: floats in a register of every x86-64 processor
 
 /// The closest points so far, nearest first.
@@ -260,7 +261,13 @@ void PointTree::search(const PointsRef& queries, int num_neighbours, std::vector
       sq_distances[i] = match.sq_distance;
       continue;
     }
-    ClosestPoints found(&indices[i * num_neighbours], &sq_distances[i * num_neighbours], num_neighbours);
+    int* const nearest = &indices[i * num_neighbours];
+    float* const nearest_sq = &sq_distances[i * num_neighbours];
+    if (wide_ && !wide_->findNearest(ordered_, query.data(), num_neighbours, storage.wide, nearest, nearest_sq)) {
+      for (int k = 0; k < num_neighbours; ++k) nearest[k] = index_[static_cast<std::size_t>(nearest[k])];
+      continue;
+    }
+    ClosestPoints found(nearest, nearest_sq, num_neighbours);
     visit(query, storage.pending, found);
   }
 }
@@ -274,6 +281,8 @@ void PointTree::searchWithin(const PointsRef& queries, float max_sq_distance, st
   for (Eigen::Index i = 0; i < queries.cols(); ++i) {
     const Eigen::Vector3f query = queries.col(i);
     const int guess = indices[i];
+    const Eigen::Index ahead = std::min(i + kAhead, queries.cols() - 1);
+    if (lists_ && indices[ahead] >= 0) lists_->prefetch(indices[ahead]);
     Match match{-1, limit};
     if (guess >= 0) {
       const float guessed = (points_.col(guess) - query).squaredNorm();

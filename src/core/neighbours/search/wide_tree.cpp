@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -13,6 +14,58 @@ namespace {
 
 // Points. chosen: two vectors; at half, a query visits more nodes, at twice, it looks at points that are far away.
 constexpr int kMostInWideLeaf = 16;
+
+/// Several of the closest points, nearest first.
+class NearestPlaces {
+public:
+  NearestPlaces(std::int32_t* places, float* sq_distances, int most)
+      : places_(places), sq_distances_(sq_distances), most_(most) {}
+
+  float worst() const { return worst_; }
+  bool isTied() const { return is_tied_; }
+  /// \pre sq_distance <= worst()
+  void offer(float sq_distance, std::int32_t place) {
+    if (size_ == most_ && sq_distance == worst_) {
+      is_tied_ = true;
+      return;
+    }
+    if (size_ < most_) ++size_;
+    int i = size_ - 1;
+    for (; i > 0 && sq_distances_[i - 1] > sq_distance; --i) {
+      sq_distances_[i] = sq_distances_[i - 1];
+      places_[i] = places_[i - 1];
+    }
+    is_tied_ |= i > 0 && sq_distances_[i - 1] == sq_distance;
+    sq_distances_[i] = sq_distance;
+    places_[i] = place;
+    if (size_ == most_) worst_ = sq_distances_[most_ - 1];
+  }
+
+private:
+  std::int32_t* places_;
+  float* sq_distances_;
+  int most_, size_ = 0;
+  float worst_ = std::numeric_limits<float>::max();
+  bool is_tied_ = false;
+};
+
+/// The closest point.
+class ClosestPlace {
+public:
+  explicit ClosestPlace(WideTree::Closest& closest) : closest_(closest) {}
+
+  float worst() const { return closest_.sq_distance; }
+  /// \pre sq_distance <= worst()
+  void offer(float sq_distance, std::int32_t place) {
+    closest_.is_tied = sq_distance == closest_.sq_distance;
+    if (closest_.is_tied) return;
+    closest_.sq_distance = sq_distance;
+    closest_.place = place;
+  }
+
+private:
+  WideTree::Closest& closest_;
+};
 
 }  // namespace
 
@@ -78,15 +131,16 @@ std::int32_t WideTree::add(const std::vector<PointTreeNode>& nodes, const std::v
 
 #if defined(__x86_64__)
 
-__attribute__((target("avx2"))) void WideTree::findClosest(const OrderedCoordinates& points, const float* query,
-                                                           std::vector<Pending>& pending, Closest& closest) const {
+/// Shows the result the leaves that may hold points no farther than it has, near ones first.
+/// \param pending storage.
+template <typename Result>
+__attribute__((target("avx2"))) void WideTree::visit(const OrderedCoordinates& points, const float* query,
+                                                     Pending* const pending, Result& result) const {
   constexpr int kLanes = kChildren;
   const __m256 x = _mm256_set1_ps(query[0]), y = _mm256_set1_ps(query[1]), z = _mm256_set1_ps(query[2]);
   const __m256 zero = _mm256_setzero_ps();
   alignas(32) float sq_distances[kLanes];
-  float worst = closest.sq_distance;
-  Pending* const bottom = pending.data();
-  Pending* top = bottom;
+  Pending* top = pending;
   std::int32_t child = 0;
   while (true) {
     if (child >= 0) {
@@ -99,7 +153,7 @@ __attribute__((target("avx2"))) void WideTree::findClosest(const OrderedCoordina
       };
       // Rounded as the distances of points are: at most that of each point in the box.
       const __m256 sq = _mm256_add_ps(_mm256_add_ps(gap(0, x), gap(1, y)), gap(2, z));
-      int near = _mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_set1_ps(worst), _CMP_LE_OQ));
+      int near = _mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_set1_ps(result.worst()), _CMP_LE_OQ));
       if (near != 0) {
         _mm256_store_ps(sq_distances, sq);
         // The nearest child on top.
@@ -122,36 +176,45 @@ __attribute__((target("avx2"))) void WideTree::findClosest(const OrderedCoordina
                      dz = _mm256_sub_ps(z, _mm256_loadu_ps(&points.z[first]));
         const __m256 sq =
             _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
-        int near = _mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_set1_ps(worst), _CMP_LE_OQ));
+        int near = _mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_set1_ps(result.worst()), _CMP_LE_OQ));
         near &= (1 << std::min(kLanes, leaf.num_points - k)) - 1;
         if (near == 0) continue;
         _mm256_store_ps(sq_distances, sq);
         for (; near != 0; near &= near - 1) {
           const int lane = __builtin_ctz(near);
-          if (sq_distances[lane] < worst) {
-            worst = sq_distances[lane];
-            closest.place = first + lane;
-            closest.is_tied = false;
-          } else if (sq_distances[lane] == worst) {
-            closest.is_tied = true;
-          }
+          if (sq_distances[lane] <= result.worst()) result.offer(sq_distances[lane], first + lane);
         }
       }
     }
     do {
-      if (top == bottom) {
-        closest.sq_distance = worst;
-        return;
-      }
+      if (top == pending) return;
       --top;
-    } while (top->sq_distance > worst);
+    } while (top->sq_distance > result.worst());
     child = top->child;
   }
+}
+
+void WideTree::findClosest(const OrderedCoordinates& points, const float* query, std::vector<Pending>& pending,
+                           Closest& closest) const {
+  ClosestPlace result(closest);
+  visit(points, query, pending.data(), result);
+}
+
+bool WideTree::findNearest(const OrderedCoordinates& points, const float* query, int most,
+                           std::vector<Pending>& pending, std::int32_t* places, float* sq_distances) const {
+  NearestPlaces result(places, sq_distances, most);
+  visit(points, query, pending.data(), result);
+  return result.isTied();
 }
 
 #else
 
 void WideTree::findClosest(const OrderedCoordinates&, const float*, std::vector<Pending>&, Closest&) const {}
+
+bool WideTree::findNearest(const OrderedCoordinates&, const float*, int, std::vector<Pending>&, std::int32_t*,
+                           float*) const {
+  return true;
+}
 
 #endif
 

@@ -58,6 +58,12 @@ public:
   void findClosest(const OrderedCoordinates& points, const float* query, std::vector<Pending>& pending,
                    Closest& closest) const;
 
+  /// \param most how many closest points are wanted, at most as many as there are.
+  /// \param[out] places,sq_distances room for them; nearest first.
+  /// \return whether points are equally far away, so that others may be found, or in another order.
+  bool findNearest(const OrderedCoordinates& points, const float* query, int most, std::vector<Pending>& pending,
+                   std::int32_t* places, float* sq_distances) const;
+
 private:
   struct Node {
     std::array<std::array<float, kChildren>, 3> low, high;  ///< of the boxes of the children, axis by axis
@@ -67,6 +73,8 @@ private:
     std::int32_t first, num_points;
   };
 
+  template <typename Result>
+  void visit(const OrderedCoordinates& points, const float* query, Pending* pending, Result& result) const;
   std::int32_t add(const std::vector<PointTreeNode>& nodes, const std::vector<Leaf>& ranges, std::int32_t node,
                    std::size_t level);
 
