@@ -39,8 +39,7 @@ float sqDeviation(int j, const Eigen::Vector3f& point, const Eigen::Vector3f& po
   const Eigen::Vector3f difference = point - samples.col(j);
   const float reach = std::max(kLeastLength, kDiscRadius * geometry.spacing[j]);
   const float sq_length = difference.squaredNorm();
-  const float along =
-      sq_length < kSurely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
+  const float along = sq_length < kSurely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
   if (along * along >= most) return most;
   const auto normal = geometry.normals.col(j);
   const float normal_reach = std::max(kNormalReach, kRoughReach * geometry.roughness[j]);

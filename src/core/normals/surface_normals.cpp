@@ -63,8 +63,8 @@ std::array<int, kNumWitnesses> witnessesOf(int self, const int* neighbours, int 
 
 }  // namespace
 
-LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
-                            int num_threads, FoundNeighbours* neighbours) {
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours, int num_threads,
+                            FoundNeighbours* neighbours) {
   const auto size = static_cast<std::size_t>(points.cols());
   const int count = numToSearch(points.cols(), num_neighbours);
   const std::vector<float> zeros(size, 0.0f);

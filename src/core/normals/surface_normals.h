@@ -42,8 +42,8 @@ struct FoundNeighbours {
 /// \param num_threads 0 = one per core.
 /// \param[out] neighbours those that were found, with the point itself: for each point num_neighbours + 1 indices,
 /// nearest first, or as many as there are points, and the squared distance of the last one; null = not wanted.
-LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
-                            int num_threads, FoundNeighbours* neighbours = nullptr);
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours, int num_threads,
+                            FoundNeighbours* neighbours = nullptr);
 
 /// LocalGeometry::roughness at a few of the points.
 /// \param points 3 x N, finite.

@@ -31,7 +31,7 @@ struct NormalizedCloud {
   const Eigen::Vector3d center;  ///< of the edt, input units
   const double scale;            ///< radius of the edt, input units
 
-  const Points points;  ///< 3 x N
+  const Points points;                    ///< 3 x N
   const std::shared_ptr<PointTree> tree;  ///< null: the search is of the caller
   const ClosestPointSearch::Ptr search;
   const LocalGeometry geometry;

@@ -56,19 +56,26 @@ struct TurnsTogether {
   }
 };
 
-/// \param most_off where more is off the rest is left out.
+/// Shares that turns may throw into empty space, and far into it: beyond, a line is refused.
+struct TurnLimits {
+  double off = 1.0, far = 1.0;
+
+  bool allow(const TurnsTogether& turns) const { return turns.off <= off && turns.far <= far; }
+};
+
+/// \param limits where more is off the rest is left out.
 template <typename Shares>
-TurnsTogether roundTurns(const Shares& shares, double most_off = 1.0) {
+TurnsTogether roundTurns(const Shares& shares, const TurnLimits& limits = {}) {
   TurnsTogether all;
-  for (int k = 1; k <= kRoundTurns && all.off <= most_off; ++k) all.add(shares(2.0 * kPi * goldenFraction(k)));
-  all.on = 0.5 * (shares(kSmallTurn).on + shares(-kSmallTurn).on);
+  for (int k = 1; k <= kRoundTurns && limits.allow(all); ++k) all.add(shares(2.0 * kPi * goldenFraction(k)));
+  if (limits.allow(all)) all.on = 0.5 * (shares(kSmallTurn).on + shares(-kSmallTurn).on);
   return all;
 }
 
 template <typename Shares>
-TurnsTogether turnsOfFold(const Shares& shares, int fold, double first, double most_off = 1.0) {
+TurnsTogether turnsOfFold(const Shares& shares, int fold, double first, const TurnLimits& limits = {}) {
   TurnsTogether all;
-  for (int k = 0; k < fold && all.off <= most_off; ++k)
+  for (int k = 0; k < fold && limits.allow(all); ++k)
     if (k + first > 0.0) all.add(shares(2.0 * kPi * (k + first) / fold));
   return all;
 }
@@ -81,11 +88,11 @@ struct JudgedTurns {
   double confidence;
 };
 
-/// Share that turns may throw into empty space, and still have some confidence at most: beyond, a line is refused.
-double mostOffOf(int fold, double confidence) {
+/// Limits beyond which a line has less than some confidence.
+TurnLimits limitsOf(int fold, double confidence) {
   constexpr double kSlack = 1.001;  // derived: more than what the logistic is rounded by
-  const double margin = std::log(confidence / (1.0 - confidence)) / kSteep;
-  return kSlack * (fold == 0 ? kMostRoundOff : kMostOff) * (1.0 - margin);
+  const double times = kSlack * (1.0 - std::log(confidence / (1.0 - confidence)) / kSteep);
+  return {times * (fold == 0 ? kMostRoundOff : kMostOff), times * (fold == 0 ? kMostRoundFar : kMostFar)};
 }
 
 /// Logistic of the least margin to a limit.
@@ -107,19 +114,18 @@ public:
 
   /// The best that can be said of a line.
   std::optional<JudgedTurns> judged(const Line& line) const {
-    const auto roughly = [&](double angle) { return evidence_.roughly(line, angle, kRoughSlack); };
-    constexpr double kMostRough = kRoughFactor * kMostOff;  // derived: from both
-    const auto passes = [](const TurnsTogether& turns) {
-      return turns.off <= kMostRough && turns.far <= kRoughFactor * kMostFar;
+    constexpr TurnLimits kRough{kRoughFactor * kMostOff, kRoughFactor * kMostFar};  // derived: from both
+    const auto roughly = [&](double angle) {
+      return evidence_.roughly(line, angle, kRoughSlack, kRough.off, kRough.far);
     };
     std::optional<JudgedTurns> best;
     const auto take = [&](JudgedTurns&& turns) {
       if (!best || turns.confidence > best->confidence) best = turns;
     };
-    if (passes(roundTurns(roughly, kMostRough))) take(exactly(line, 0));
+    if (kRough.allow(roundTurns(roughly, kRough))) take(exactly(line, 0));
     for (int fold = kMostTurnFold; fold >= 2; --fold) {
       if (best && best->confidence > 0.5) break;
-      if (passes(turnsOfFold(roughly, fold, 0.0, kMostRough))) take(exactly(line, fold));
+      if (kRough.allow(turnsOfFold(roughly, fold, 0.0, kRough))) take(exactly(line, fold));
     }
     return best;
   }
@@ -128,10 +134,10 @@ public:
     line = evidence_.refined(line, fitAngles(fold));
     const auto shares = [&](double angle) { return evidence_.exactly(line, angle); };
     JudgedTurns turns{line, fold, {}, {}, 0.0};
-    const double most_off = mostOffOf(fold, least_confidence_);
-    turns.own = fold == 0 ? roundTurns(shares, most_off) : turnsOfFold(shares, fold, 0.0, most_off);
+    const TurnLimits limits = limitsOf(fold, least_confidence_);
+    turns.own = fold == 0 ? roundTurns(shares, limits) : turnsOfFold(shares, fold, 0.0, limits);
     // Refused, whatever the turns halfway say: they can only lower the confidence.
-    if (turns.own.off > most_off) return turns;
+    if (!limits.allow(turns.own)) return turns;
     if (fold > 0) turns.halfway = turnsOfFold(shares, fold, 0.5);
     turns.confidence = confidenceOf(fold, turns.own, turns.halfway);
     return turns;

@@ -65,11 +65,12 @@ bool TurnEvidence::isSeenEmpty(const Eigen::Vector3d& x) const {
   return true;
 }
 
-TurnShares TurnEvidence::roughly(const Line& line, double angle, double slack) const {
+TurnShares TurnEvidence::roughly(const Line& line, double angle, double slack, double most_off, double most_far) const {
   const Eigen::Isometry3d turn = turnAbout(line, angle);
   TurnShares shares;
   const double one = 1.0 / static_cast<double>(few_samples_.size());
   for (const int sample : few_samples_) {
+    if (shares.off > most_off || shares.far > most_far) break;
     const Eigen::Vector3d x = turn * cloud_.points.col(sample).cast<double>();
     const double f = std::max(kLeastTurnF, cloud_.edt(x * cloud_.scale + cloud_.center));
     const double distance = cloud_.sigma * std::sqrt(std::max(0.0, -std::log(f)));

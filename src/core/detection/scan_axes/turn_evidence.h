@@ -26,7 +26,8 @@ public:
 
   /// By distances that the EDT tells, of a few points: for screening.
   /// \param slack tolerances.
-  TurnShares roughly(const Line& line, double angle, double slack) const;
+  /// \param most_off,most_far shares beyond which the rest of the points is left out.
+  TurnShares roughly(const Line& line, double angle, double slack, double most_off, double most_far) const;
 
   /// By distances from the surface.
   TurnShares exactly(const Line& line, double angle) const;

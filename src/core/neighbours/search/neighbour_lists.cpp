@@ -52,8 +52,7 @@ __attribute__((target("avx2"))) NeighbourLists::Answer NeighbourLists::closest(c
     const List& list = lists_[static_cast<std::size_t>(answer.index)];
     const __m256 ax = _mm256_sub_ps(x, _mm256_loadu_ps(list.x)), ay = _mm256_sub_ps(y, _mm256_loadu_ps(list.y)),
                  az = _mm256_sub_ps(z, _mm256_loadu_ps(list.z));
-    const __m256 sq =
-        _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, ax), _mm256_mul_ps(ay, ay)), _mm256_mul_ps(az, az));
+    const __m256 sq = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, ax), _mm256_mul_ps(ay, ay)), _mm256_mul_ps(az, az));
     __m128 least = _mm_min_ps(_mm256_castps256_ps128(sq), _mm256_extractf128_ps(sq, 1));
     least = _mm_min_ps(least, _mm_movehl_ps(least, least));
     least = _mm_min_ss(least, _mm_movehdup_ps(least));
@@ -63,8 +62,8 @@ __attribute__((target("avx2"))) NeighbourLists::Answer NeighbourLists::closest(c
       return answer;
     }
     if (sq_least == answer.sq_distance) return answer;
-    const auto lanes = static_cast<unsigned>(
-        _mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_broadcastss_ps(least), _CMP_EQ_OQ)));
+    const auto lanes =
+        static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_broadcastss_ps(least), _CMP_EQ_OQ)));
     answer.index = list.index[__builtin_ctz(lanes)];
     answer.sq_distance = sq_least;
     if (decides || (lanes & (lanes - 1)) != 0) {

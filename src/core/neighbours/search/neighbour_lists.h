@@ -27,9 +27,9 @@ public:
   NeighbourLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach);
 
   struct Answer {
-    int index;            ///< the closest point that was seen
-    float sq_distance;    ///< of it
-    bool is_closest;      ///< no other point is as close
+    int index;          ///< the closest point that was seen
+    float sq_distance;  ///< of it
+    bool is_closest;    ///< no other point is as close
   };
   /// \param query three coordinates.
   /// \param guess index of a point.

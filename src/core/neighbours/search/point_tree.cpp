@@ -154,7 +154,8 @@ void PointTree::visitLeaf(const Node& leaf, const Eigen::Vector3f& query, Result
   const __m128 x = _mm_set1_ps(query.x()), y = _mm_set1_ps(query.y()), z = _mm_set1_ps(query.z());
   for (int k = 0; k < leaf.num_points; k += kLanes) {
     const int first = leaf.link + k;
-    const __m128 dx = _mm_sub_ps(x, _mm_loadu_ps(&ordered_.x[first])), dy = _mm_sub_ps(y, _mm_loadu_ps(&ordered_.y[first])),
+    const __m128 dx = _mm_sub_ps(x, _mm_loadu_ps(&ordered_.x[first])),
+                 dy = _mm_sub_ps(y, _mm_loadu_ps(&ordered_.y[first])),
                  dz = _mm_sub_ps(z, _mm_loadu_ps(&ordered_.z[first]));
     const __m128 sq = _mm_add_ps(_mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy)), _mm_mul_ps(dz, dz));
     int near = _mm_movemask_ps(_mm_cmplt_ps(sq, _mm_set1_ps(result.worst())));
