@@ -136,7 +136,7 @@ std::int32_t WideTree::add(const std::vector<PointTreeNode>& nodes, const std::v
 template <typename Result>
 __attribute__((target("avx2"))) void WideTree::visit(const OrderedCoordinates& points, const float* query,
                                                      Pending* const pending, Result& result) const {
-  constexpr int kLanes = kChildren;
+  constexpr int kLanes = kChildren;  // derived: floats in a register
   const __m256 x = _mm256_set1_ps(query[0]), y = _mm256_set1_ps(query[1]), z = _mm256_set1_ps(query[2]);
   const __m256 zero = _mm256_setzero_ps();
   alignas(32) float sq_distances[kLanes];
