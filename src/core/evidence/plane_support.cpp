@@ -24,6 +24,10 @@ constexpr float kRoughShare = 0.25f, kTrustWidth = 0.1f;
 // Radians between normals that agree. chosen: at half, curved surfaces with few samples lose support; at twice, the
 // faces of a blunt edge support each other.
 constexpr float kNormalAngle = 0.5f;
+// Cosine of normals that surely agree. derived: cos(kNormalAngle) = 0.87758, and more than acos is rounded by.
+constexpr float kAgreeingCosine = 0.8777f;
+// Share of a reach within which a length surely is. derived: 1, less than what a root and a division are rounded by.
+constexpr float kSurely = 0.99999f;
 // Squared deviation that counts as no support. derived: exp(-9) = 1.2e-4.
 constexpr float kMost = 9.0f;
 constexpr float kLeastLength = 1e-6f;  // radii. derived: rounding of coordinates about 1; avoids a division by 0
@@ -34,18 +38,21 @@ float sqDeviation(int j, const Eigen::Vector3f& point, const Eigen::Vector3f& po
                   const LocalGeometry& geometry, float most) {
   const Eigen::Vector3f difference = point - samples.col(j);
   const float reach = std::max(kLeastLength, kDiscRadius * geometry.spacing[j]);
-  const float along = std::max(0.0f, difference.norm() / reach - 1.0f);
+  const float sq_length = difference.squaredNorm();
+  const float along = sq_length < kSurely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
   if (along * along >= most) return most;
   const auto normal = geometry.normals.col(j);
   const float normal_reach = std::max(kNormalReach, kRoughReach * geometry.roughness[j]);
-  const float across = std::max(0.0f, std::abs(normal.dot(difference)) / normal_reach - 1.0f);
+  const float height = std::abs(normal.dot(difference));
+  const float across = height < kSurely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
   const float sq_distance = along * along + across * across;
   if (sq_distance >= most) return most;
+  const float cosine = std::min(1.0f, std::abs(normal.dot(point_normal)));
+  if (cosine > kAgreeingCosine) return sq_distance;
   // Normals count as far as they can be trusted, without a jump.
   const float rough = geometry.roughness[j] / std::max(geometry.spacing[j], kLeastLength);
   const float trust = std::clamp((kRoughShare - rough) / kTrustWidth, 0.0f, 1.0f);
   if (trust == 0.0f) return sq_distance;
-  const float cosine = std::min(1.0f, std::abs(normal.dot(point_normal)));
   const float turned = trust * std::max(0.0f, std::acos(cosine) / kNormalAngle - 1.0f);
   return sq_distance + turned * turned;
 }
@@ -70,6 +77,8 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
   for (std::size_t i = 0; i < size; ++i) {
     if (closest[i] >= 0)
       evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples, geometry);
+    // Where all is explained, nothing is in conflict, seen or not.
+    if (evidence.support[i] == 1.0f) continue;
     const bool seen = !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0;
     evidence.conflict[i] = seen ? 1.0f - evidence.support[i] : 0.0f;
   }

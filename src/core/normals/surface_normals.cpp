@@ -63,24 +63,32 @@ std::array<int, kNumWitnesses> witnessesOf(int self, const int* neighbours, int 
 
 }  // namespace
 
-LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
-                            int num_threads) {
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours, int num_threads,
+                            FoundNeighbours* neighbours) {
   const auto size = static_cast<std::size_t>(points.cols());
   const int count = numToSearch(points.cols(), num_neighbours);
   const std::vector<float> zeros(size, 0.0f);
   LocalGeometry geometry{Points(3, points.cols()), zeros, std::vector<char>(size), {}, zeros};
   geometry.nearest.resize(size);
+  if (neighbours) {
+    neighbours->indices.resize(size * static_cast<std::size_t>(count));
+    neighbours->sq_reach.resize(size);
+  }
   parallelRanges(size, kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> indices;
     std::vector<float> sq_distances;
     search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
+    if (neighbours)
+      std::copy(indices.begin(), indices.end(),
+                neighbours->indices.begin() + static_cast<std::ptrdiff_t>(begin) * count);
     for (std::size_t i = begin; i < end; ++i) {
-      const int* neighbours = indices.data() + (i - begin) * count;
-      geometry.nearest[i] = witnessesOf(static_cast<int>(i), neighbours, count);
-      const TangentPlane plane = fitTangentPlane(points, points.col(i), neighbours, count);
+      const int* nearest = indices.data() + (i - begin) * count;
+      geometry.nearest[i] = witnessesOf(static_cast<int>(i), nearest, count);
+      const TangentPlane plane = fitTangentPlane(points, points.col(i), nearest, count);
       geometry.normals.col(i) = plane.normal;
       geometry.roughness[i] = plane.roughness;
       const double sq_radius = sq_distances[(i - begin) * count + count - 1];
+      if (neighbours) neighbours->sq_reach[i] = static_cast<float>(sq_radius);
       const double offset = plane.offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
       geometry.at_border[i] = offset > kBorderOffset * std::sqrt(sq_radius) ? 1 : 0;
       geometry.spacing[i] = static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));

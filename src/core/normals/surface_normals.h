@@ -26,6 +26,12 @@ struct LocalGeometry {
 /// derived: the error of the spacing from k neighbours is 1 / (2 sqrt(k)), 18 % for 8; fewer exceed 20 %.
 constexpr int kNumSupportNeighbours = 8;
 
+/// The closest points of each sample.
+struct FoundNeighbours {
+  std::vector<int> indices;
+  std::vector<float> sq_reach;
+};
+
 /// Normals by PCA of the nearest neighbours, and the local spacing of the samples.
 ///
 /// The spacing comes from the distance r_k to the k-th neighbour: a surface of density rho has k = pi rho r_k^2
@@ -34,8 +40,10 @@ constexpr int kNumSupportNeighbours = 8;
 /// \param search over the same points.
 /// \param num_neighbours >= 3; clouds with fewer points use all of them.
 /// \param num_threads 0 = one per core.
-LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours,
-                            int num_threads);
+/// \param[out] neighbours those that were found, with the point itself: for each point num_neighbours + 1 indices,
+/// nearest first, or as many as there are points, and the squared distance of the last one; null = not wanted.
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours, int num_threads,
+                            FoundNeighbours* neighbours = nullptr);
 
 /// LocalGeometry::roughness at a few of the points.
 /// \param points 3 x N, finite.

@@ -9,6 +9,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/refinement/far_test.h"
+#include "core/refinement/surface_fit.h"
 
 namespace pcl_symmetry {
 
@@ -230,6 +231,14 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
   }
   step.plane = stepReflectionPlane(pairs.x, pairs.y, x_normals, y_normals, pairs.weights, plane);
   return std::move(step);
+}
+
+IspStep matchReflectionsOnly(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                             double sigma, const std::vector<int>* guesses) {
+  Points reflected(3, static_cast<Eigen::Index>(samples.size()));
+  for (Eigen::Index i = 0; i < reflected.cols(); ++i)
+    reflected.col(i) = plane.reflect(surface.points.col(samples[i]).cast<double>()).cast<float>();
+  return matchReflections(surface, reflected, sigma, guesses);
 }
 
 IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,

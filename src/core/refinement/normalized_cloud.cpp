@@ -8,6 +8,7 @@
 #include "core/distance_transform/edt_correlation.h"
 #include "core/evidence/plane_support.h"
 #include "core/neighbours/diameter.h"
+#include "core/neighbours/search/point_tree.h"
 
 namespace pcl_symmetry {
 
@@ -21,6 +22,19 @@ constexpr double kFinalSigmaInSpacings = 3.0;
 constexpr double kVolumeRoughness = 0.36;
 constexpr double kLeastSpacing = 1e-6;   // radii. derived: the rounding of coordinates about 1; avoids a division by 0
 constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supports of surfaces; avoids a division by 0
+
+/// The geometry of points, whose neighbours a tree uses from then on.
+/// \param search over the points.
+/// \param tree the same search, or null.
+LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, PointTree* tree, int num_threads) {
+  if (!tree || !NeighbourLists::isUseful(points.cols()))
+    return localGeometry(points, search, kNumSupportNeighbours, num_threads);
+  static_assert(kNumSupportNeighbours == NeighbourLists::kNeighbours);
+  FoundNeighbours found;
+  LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbours, num_threads, &found);
+  tree->use(NeighbourLists(points, found.indices, found.sq_reach));
+  return geometry;
+}
 
 /// Replaces estimated normals by those that the input has.
 LocalGeometry withNormals(LocalGeometry geometry, const Points* given) {
@@ -40,8 +54,9 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       center(edt.center()),
       scale(edt.radius()),
       points(normalizePoints(input, center, scale)),
-      search(input_search ? std::move(input_search) : makeTreeSearch(points)),
-      geometry(withNormals(localGeometry(points, *search, kNumSupportNeighbours, num_threads), given_normals)),
+      tree(input_search ? nullptr : std::make_shared<PointTree>(points)),
+      search(input_search ? std::move(input_search) : tree),
+      geometry(withNormals(geometryOf(points, *search, tree.get(), num_threads), given_normals)),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),
       surface{points, geometry.normals, *search, seen ? &geometry.at_border : nullptr, &far, num_threads},

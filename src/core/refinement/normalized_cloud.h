@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "core/normals/surface_normals.h"
@@ -8,6 +9,8 @@
 #include "pcl_symmetry/core/scan/visibility.h"
 
 namespace pcl_symmetry {
+
+class PointTree;
 
 /// The cloud as all stages of detection see it: in the unit ball about 0, with normals, spacing and roughness.
 ///
@@ -28,7 +31,8 @@ struct NormalizedCloud {
   const Eigen::Vector3d center;  ///< of the edt, input units
   const double scale;            ///< radius of the edt, input units
 
-  const Points points;  ///< 3 x N
+  const Points points;                    ///< 3 x N
+  const std::shared_ptr<PointTree> tree;  ///< null: the search is of the caller
   const ClosestPointSearch::Ptr search;
   const LocalGeometry geometry;
   const std::optional<Visibility> visibility;  ///< of a scan

@@ -71,14 +71,17 @@ void SurfaceFit::climb(Candidate& candidate, const std::vector<int>& samples, co
     if (parameter == 2) return ReflectionPlane(n, plane.offset() + by);
     return ReflectionPlane((n + by * (parameter == 0 ? u : n.cross(u))).normalized(), plane.offset());
   };
+  const auto matched = [&](const ReflectionPlane& at, const std::vector<int>* guesses) {
+    return matchReflectionsOnly(cloud_.surface, fewer, at, cloud_.final_sigma, guesses);
+  };
   ReflectionPlane plane = candidate.plane;
-  IspStep here = matches(plane, fewer);
+  IspStep here = matched(plane, nullptr);
   double best = merit(shares(plane, fewer, here));
   int num_climbs = 0;
   for (double step = kFirstClimb; step >= kLastClimb; step *= 0.5) {
     for (int fails = 0, k = 0; fails < 6 && num_climbs < kMostClimbs; k = (k + 1) % 6) {
       const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
-      IspStep there = matches(next, fewer, &here.closest);
+      IspStep there = matched(next, &here.closest);
       const double value = merit(shares(next, fewer, there));
       ++fails;
       if (value <= best) continue;

@@ -4,6 +4,11 @@
 
 namespace pcl_symmetry {
 
+/// What matchSymmetricPoints() finds, without weights: closest points and their distances only.
+/// \param guesses IspStep::closest of a plane nearby; null = not known.
+IspStep matchReflectionsOnly(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                             double sigma, const std::vector<int>* guesses);
+
 /// Planes of points that resolve a surface: Iterative Symmetric Points, and the share of points whose reflection lies
 /// on the surface.
 class SurfaceFit : public PlaneFit {

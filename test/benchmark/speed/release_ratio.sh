@@ -7,7 +7,8 @@ usage() {
 usage: bash test/benchmark/speed/release_ratio.sh [-h] REVISION [FOLDER]
 
 Builds a revision of the library (a tag, a branch or a commit) and this tree with the preset benchmark, runs both in turn, and
-prints for each row the processor time of both in milliseconds and their ratio: below 1, this tree is faster. Rows: the
+prints for each row the processor time of both in milliseconds and their ratio: below 1, this tree is faster; beside it the
+least and the greatest ratio of a round. Rows: the
 benchmarks of benchmark_pipeline with one thread, from cloud to planes; a fresh process of pcl_symmetry_planes. Builds and outputs
 go to FOLDER (build-benchmark/ratio). PCL_SYMMETRY_MODELS may name a folder with bull, cow, elephant, hand and camel .off; without
 it, synthetic shapes are measured. Processor time is the least of the rounds: other programs on the machine hardly change it.
@@ -61,10 +62,22 @@ for ((round = 0; round < rounds; ++round)); do
   run_once "$folder/before" "$folder/before.times"
   run_once "$folder/after" "$folder/after.times"
 done
-printf '%-52s %10s %10s %7s\n' "row, processor time in ms" "before" "after" "ratio"
+printf '%-52s %10s %10s %7s  %s\n' "row, processor time in ms" "before" "after" "ratio" "of single rounds"
 awk '
-  FILENAME ~ /before.times$/ { if (!($1 in before) || $2 < before[$1]) before[$1] = $2; if (!seen[$1]++) order[++count] = $1; next }
-  { if (!($1 in after) || $2 < after[$1]) after[$1] = $2 }
-  END { for (i = 1; i <= count; ++i) { row = order[i]
-    if (row in after) printf "%-52s %10.2f %10.2f %7.2f\n", row, before[row], after[row], after[row] / before[row] } }
+  { of_row = FILENAME ~ /before.times$/ ? "before" : "after" }
+  of_row == "before" && !seen[$1]++ { order[++count] = $1 }
+  { key = of_row " " $1; round = ++rounds[key]; time[key, round] = $2; if (round == 1 || $2 < least[key]) least[key] = $2 }
+  END {
+    for (i = 1; i <= count; ++i) {
+      row = order[i]; before = "before " row; after = "after " row
+      if (!(after in least)) continue
+      low = high = time[after, 1] / time[before, 1]
+      for (k = 2; k <= rounds[before] && k <= rounds[after]; ++k) {
+        ratio = time[after, k] / time[before, k]
+        if (ratio < low) low = ratio
+        if (ratio > high) high = ratio
+      }
+      printf "%-52s %10.2f %10.2f %7.2f  %.2f to %.2f\n", row, least[before], least[after], least[after] / least[before], low, high
+    }
+  }
 ' "$folder/before.times" "$folder/after.times"

@@ -88,4 +88,34 @@ TEST(PointTree, GivesTheAnswersOfFlannWithinALimit) {
   }
 }
 
+TEST(PointTree, GivesTheAnswersOfFlannWithTheNeighboursOfGuesses) {
+  for (const auto& [name, points] : pointSets()) {
+    if (!NeighbourLists::isUseful(points.cols())) continue;
+    PointTree tree(points);
+    std::vector<int> nearest;
+    std::vector<float> sq_nearest, sq_reach;
+    constexpr int kCount = NeighbourLists::kNeighbours + 1;
+    tree.search(points, kCount, nearest, sq_nearest);
+    for (std::size_t i = kCount - 1; i < sq_nearest.size(); i += kCount) sq_reach.push_back(sq_nearest[i]);
+    tree.use(NeighbourLists(points, nearest, sq_reach));
+    const ClosestPointSearch::Ptr flann = makeFlannSearch(points);
+    const Points queries = queriesFor(points);
+    const auto size = static_cast<std::size_t>(queries.cols());
+    // Guesses anywhere, twice, and close ones: the point that the query was made from.
+    for (const int kind : {0, 1, 2}) {
+      std::vector<int> guesses(size);
+      for (std::size_t i = 0; i < size; ++i)
+        guesses[i] = static_cast<int>((kind == 2 ? i / 4 : 7 * i + static_cast<std::size_t>(kind)) % points.cols());
+      for (const float limit : {0.0f, 1e-4f, 0.0625f, 1e6f}) {
+        std::vector<int> indices = guesses, expected = guesses;
+        std::vector<float> sq_distances, expected_sq;
+        tree.searchWithin(queries, limit, indices, sq_distances);
+        flann->searchWithin(queries, limit, expected, expected_sq);
+        EXPECT_EQ(indices, expected) << name << ", limit " << limit << ", guesses " << kind;
+        EXPECT_EQ(sq_distances, expected_sq) << name << ", limit " << limit << ", guesses " << kind;
+      }
+    }
+  }
+}
+
 }  // namespace

@@ -56,19 +56,26 @@ struct TurnsTogether {
   }
 };
 
-/// \param most_off where more is off the rest is left out.
+/// Shares that turns may throw into empty space, and far into it: beyond, a line is refused.
+struct TurnLimits {
+  double off = 1.0, far = 1.0;
+
+  bool allow(const TurnsTogether& turns) const { return turns.off <= off && turns.far <= far; }
+};
+
+/// \param limits where more is off the rest is left out.
 template <typename Shares>
-TurnsTogether roundTurns(const Shares& shares, double most_off = 1.0) {
+TurnsTogether roundTurns(const Shares& shares, const TurnLimits& limits = {}) {
   TurnsTogether all;
-  for (int k = 1; k <= kRoundTurns && all.off <= most_off; ++k) all.add(shares(2.0 * kPi * goldenFraction(k)));
-  all.on = 0.5 * (shares(kSmallTurn).on + shares(-kSmallTurn).on);
+  for (int k = 1; k <= kRoundTurns && limits.allow(all); ++k) all.add(shares(2.0 * kPi * goldenFraction(k)));
+  if (limits.allow(all)) all.on = 0.5 * (shares(kSmallTurn).on + shares(-kSmallTurn).on);
   return all;
 }
 
 template <typename Shares>
-TurnsTogether turnsOfFold(const Shares& shares, int fold, double first, double most_off = 1.0) {
+TurnsTogether turnsOfFold(const Shares& shares, int fold, double first, const TurnLimits& limits = {}) {
   TurnsTogether all;
-  for (int k = 0; k < fold && all.off <= most_off; ++k)
+  for (int k = 0; k < fold && limits.allow(all); ++k)
     if (k + first > 0.0) all.add(shares(2.0 * kPi * (k + first) / fold));
   return all;
 }
@@ -99,19 +106,18 @@ public:
 
   /// The best that can be said of a line.
   std::optional<JudgedTurns> judged(const Line3d& line) const {
-    const auto roughly = [&](double angle) { return evidence_.roughly(line, angle, kRoughSlack); };
-    constexpr double kMostRough = kRoughFactor * kMostOff;  // derived: from both
-    const auto passes = [](const TurnsTogether& turns) {
-      return turns.off <= kMostRough && turns.far <= kRoughFactor * kMostFar;
+    constexpr TurnLimits kRough{kRoughFactor * kMostOff, kRoughFactor * kMostFar};  // derived: from both
+    const auto roughly = [&](double angle) {
+      return evidence_.roughly(line, angle, kRoughSlack, kRough.off, kRough.far);
     };
     std::optional<JudgedTurns> best;
     const auto take = [&](JudgedTurns&& turns) {
       if (!best || turns.margin > best->margin) best = turns;
     };
-    if (passes(roundTurns(roughly, kMostRough))) take(exactly(line, 0));
+    if (kRough.allow(roundTurns(roughly, kRough))) take(exactly(line, 0));
     for (int fold = kMostTurnFold; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
-      if (passes(turnsOfFold(roughly, fold, 0.0, kMostRough))) take(exactly(line, fold));
+      if (kRough.allow(turnsOfFold(roughly, fold, 0.0, kRough))) take(exactly(line, fold));
     }
     return best;
   }

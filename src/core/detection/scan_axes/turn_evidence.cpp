@@ -24,6 +24,13 @@ constexpr double kFitRidge = 1e-3;  // share of the trace. chosen: keeps free di
 constexpr double kFitStep = 1e-4;   // radians, radii; chosen: for derivatives in double precision
 constexpr double kLeastTurnF = 1e-6;  // derived: below any f that is not 0
 
+constexpr double kSlackOfReach = 1.001;  // derived: more than what distances are rounded by
+
+/// Radius of the greatest disc that stands for a point.
+double greatestDisc(const LocalGeometry& geometry) {
+  return kDiscRadius * static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
+}
+
 Eigen::Isometry3d turnAbout(const Line3d& line, double angle) {
   Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
   turn.linear() = Eigen::AngleAxisd(angle, line.direction()).toRotationMatrix();
@@ -42,6 +49,9 @@ Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
 TurnEvidence::TurnEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
     : cloud_(cloud),
       tolerance_(tolerance),
+      viewpoint_(cloud.visibility->viewpoint()),
+      far_(kFarTurn * tolerance),
+      reach_(kSlackOfReach * (far_ + greatestDisc(cloud.geometry))),
       samples_(drawSamples(cloud.points.cols(), kSamplesOfTurn, seed)),
       few_samples_(drawSamples(cloud.points.cols(), kFewSamplesOfTurn, seed)) {}
 
@@ -49,17 +59,19 @@ bool TurnEvidence::isSeenEmpty(const Eigen::Vector3d& x) const {
   const Visibility& visibility = *cloud_.visibility;
   if (visibility.depthBehind(x) >= -tolerance_) return false;
   // The rim of what was seen is as exact as its pixels.
-  const Eigen::Vector3d ray = (x - visibility.viewpoint()).normalized(), u = ray.unitOrthogonal(), v = ray.cross(u);
+  const Eigen::Vector3d ray = (x - viewpoint_).normalized(), u = ray.unitOrthogonal(), v = ray.cross(u);
   for (const Eigen::Vector3d& aside : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)})
     if (visibility.depthBehind(x + std::max(tolerance_, cloud_.spacing) * aside) >= -tolerance_) return false;
   return true;
 }
 
-TurnShares TurnEvidence::roughly(const Line3d& line, double angle, double slack) const {
+TurnShares TurnEvidence::roughly(const Line3d& line, double angle, double slack, double most_off,
+                                 double most_far) const {
   const Eigen::Isometry3d turn = turnAbout(line, angle);
   TurnShares shares;
   const double one = 1.0 / static_cast<double>(few_samples_.size());
   for (const int sample : few_samples_) {
+    if (shares.off > most_off || shares.far > most_far) break;
     const Eigen::Vector3d x = turn * cloud_.points.col(sample).cast<double>();
     const double f = std::max(kLeastTurnF, cloud_.edt(x * cloud_.scale + cloud_.center));
     const double distance = cloud_.sigma * std::sqrt(std::max(0.0, -std::log(f)));
@@ -67,7 +79,7 @@ TurnShares TurnEvidence::roughly(const Line3d& line, double angle, double slack)
       shares.on += one;
     } else if (isSeenEmpty(x)) {
       shares.off += one;
-      shares.far += distance > kFarTurn * tolerance_ ? one : 0.0;
+      shares.far += distance > far_ ? one : 0.0;
     }
   }
   return shares;
@@ -78,9 +90,10 @@ TurnShares TurnEvidence::exactly(const Line3d& line, double angle) const {
   Points turned(3, static_cast<Eigen::Index>(samples_.size()));
   for (std::size_t i = 0; i < samples_.size(); ++i)
     turned.col(static_cast<Eigen::Index>(i)) = (turn * cloud_.points.col(samples_[i]).cast<double>()).cast<float>();
-  std::vector<int> closest;
+  // Of points beyond the reach nothing is asked but that they are far.
+  std::vector<int> closest(samples_.size(), -1);
   std::vector<float> sq_distances;
-  cloud_.search->search(turned, 1, closest, sq_distances);
+  cloud_.search->searchWithin(turned, static_cast<float>(reach_ * reach_), closest, sq_distances);
   const std::vector<float> distances = surfaceDistances(turned, closest, cloud_.points, cloud_.geometry);
   TurnShares shares;
   const double one = 1.0 / static_cast<double>(samples_.size());
@@ -90,7 +103,7 @@ TurnShares TurnEvidence::exactly(const Line3d& line, double angle) const {
       shares.on += one;
     } else if (isSeenEmpty(turned.col(static_cast<Eigen::Index>(i)).cast<double>())) {
       shares.off += one;
-      shares.far += distance > kFarTurn * tolerance_ ? one : 0.0;
+      shares.far += distance > far_ ? one : 0.0;
     }
   }
   return shares;

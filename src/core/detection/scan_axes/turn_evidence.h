@@ -25,7 +25,8 @@ public:
 
   /// By distances that the EDT tells, of a few points: for screening.
   /// \param slack tolerances.
-  TurnShares roughly(const Line3d& line, double angle, double slack) const;
+  /// \param most_off,most_far shares beyond which the rest of the points is left out.
+  TurnShares roughly(const Line3d& line, double angle, double slack, double most_off, double most_far) const;
 
   /// By distances from the surface.
   TurnShares exactly(const Line3d& line, double angle) const;
@@ -41,6 +42,8 @@ private:
 
   const NormalizedCloud& cloud_;
   double tolerance_;
+  Eigen::Vector3d viewpoint_;  ///< normalised frame
+  double far_, reach_;         ///< distance of what is far, and of points whose discs all are
   std::vector<int> samples_, few_samples_;
 };
 

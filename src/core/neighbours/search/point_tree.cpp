@@ -14,6 +14,7 @@ namespace pcl_symmetry {
 namespace {
 
 constexpr int kMostInLeaf = 10;  // points. derived: FLANN's default, which decides between points equally far away
+constexpr int kAhead = 4;        // queries; chosen: half is late, twice makes no difference
 constexpr int kLanes = 4;        // derived: floats in a register of every x86-64 processor
 
 /// The closest points so far, nearest first.
@@ -103,14 +104,16 @@ PointTree::PointTree(const PointsRef& points) : points_(points) {
   nodes_.reserve(size / 2 + 1);
   divide(entries, 0, static_cast<int>(size),
          {points_.rowwise().minCoeff().array(), points_.rowwise().maxCoeff().array()}, 1);
-  for (auto* coordinates : {&x_, &y_, &z_}) coordinates->assign(size + kLanes, 0.0f);
+  for (auto* coordinates : {&ordered_.x, &ordered_.y, &ordered_.z})
+    coordinates->assign(size + WideTree::kChildren, 0.0f);
   index_.resize(size);
   for (std::size_t i = 0; i < size; ++i) {
-    x_[i] = entries[i].point.x();
-    y_[i] = entries[i].point.y();
-    z_[i] = entries[i].point.z();
+    ordered_.x[i] = entries[i].point.x();
+    ordered_.y[i] = entries[i].point.y();
+    ordered_.z[i] = entries[i].point.z();
     index_[i] = entries[i].index;
   }
+  if (WideTree::isSupported()) wide_.emplace(nodes_);
 }
 
 /// Adds the node of some points and those below it.
@@ -151,8 +154,9 @@ void PointTree::visitLeaf(const Node& leaf, const Eigen::Vector3f& query, Result
   const __m128 x = _mm_set1_ps(query.x()), y = _mm_set1_ps(query.y()), z = _mm_set1_ps(query.z());
   for (int k = 0; k < leaf.num_points; k += kLanes) {
     const int first = leaf.link + k;
-    const __m128 dx = _mm_sub_ps(x, _mm_loadu_ps(&x_[first])), dy = _mm_sub_ps(y, _mm_loadu_ps(&y_[first])),
-                 dz = _mm_sub_ps(z, _mm_loadu_ps(&z_[first]));
+    const __m128 dx = _mm_sub_ps(x, _mm_loadu_ps(&ordered_.x[first])),
+                 dy = _mm_sub_ps(y, _mm_loadu_ps(&ordered_.y[first])),
+                 dz = _mm_sub_ps(z, _mm_loadu_ps(&ordered_.z[first]));
     const __m128 sq = _mm_add_ps(_mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy)), _mm_mul_ps(dz, dz));
     int near = _mm_movemask_ps(_mm_cmplt_ps(sq, _mm_set1_ps(result.worst())));
     near &= (1 << std::min(kLanes, leaf.num_points - k)) - 1;
@@ -164,7 +168,7 @@ void PointTree::visitLeaf(const Node& leaf, const Eigen::Vector3f& query, Result
   }
 #else
   for (int i = leaf.link; i < leaf.link + leaf.num_points; ++i) {
-    const float dx = query.x() - x_[i], dy = query.y() - y_[i], dz = query.z() - z_[i];
+    const float dx = query.x() - ordered_.x[i], dy = query.y() - ordered_.y[i], dz = query.z() - ordered_.z[i];
     result.offer(dx * dx + dy * dy + dz * dz, index_[i]);
   }
 #endif
@@ -215,15 +219,57 @@ void PointTree::visit(const Eigen::Vector3f& query, std::vector<Pending>& pendin
   }
 }
 
+/// \param start a point, which is the answer unless another one is strictly closer; or -1 and a limit.
+PointTree::Match PointTree::closest(const Eigen::Vector3f& query, Match start, Storage& storage) const {
+  if (wide_) {
+    WideTree::Closest found{start.sq_distance};
+    wide_->findClosest(ordered_, query.data(), storage.wide, found);
+    if (found.place < 0) return start;
+    if (!found.is_tied) return {index_[static_cast<std::size_t>(found.place)], found.sq_distance};
+  }
+  // Of several points equally far away, the one that the tree with two children comes to first.
+  ClosestPoint result(start.index, start.sq_distance);
+  visit(query, storage.pending, result);
+  return {result.index(), result.worst()};
+}
+
+/// \param guess a point that is likely to be close.
+PointTree::Match PointTree::closestByLists(const Eigen::Vector3f& query, int guess, Match start,
+                                           Storage& storage) const {
+  const NeighbourLists::Answer seen = lists_->closest(query.data(), guess);
+  if (seen.is_closest) return seen.sq_distance < start.sq_distance ? Match{seen.index, seen.sq_distance} : start;
+  // A limit just beyond the point that was seen: the tree decides which one it finds of several at that distance.
+  const float limit = std::nextafter(seen.sq_distance, std::numeric_limits<float>::infinity());
+  return closest(query, limit < start.sq_distance ? Match{-1, limit} : start, storage);
+}
+
+PointTree::Storage PointTree::storage() const {
+  return {std::vector<Pending>(static_cast<std::size_t>(depth_)),
+          wide_ ? wide_->storage() : std::vector<WideTree::Pending>()};
+}
+
 void PointTree::search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
                        std::vector<float>& sq_distances) const {
   const auto num_queries = static_cast<std::size_t>(queries.cols());
   indices.resize(num_queries * num_neighbours);
   sq_distances.resize(num_queries * num_neighbours);
-  std::vector<Pending> pending(static_cast<std::size_t>(depth_));
+  Storage storage = this->storage();
   for (std::size_t i = 0; i < num_queries; ++i) {
-    ClosestPoints closest(&indices[i * num_neighbours], &sq_distances[i * num_neighbours], num_neighbours);
-    visit(queries.col(static_cast<Eigen::Index>(i)), pending, closest);
+    const Eigen::Vector3f query = queries.col(static_cast<Eigen::Index>(i));
+    if (num_neighbours == 1) {
+      const Match match = closest(query, {-1, std::numeric_limits<float>::max()}, storage);
+      indices[i] = match.index;
+      sq_distances[i] = match.sq_distance;
+      continue;
+    }
+    int* const nearest = &indices[i * num_neighbours];
+    float* const nearest_sq = &sq_distances[i * num_neighbours];
+    if (wide_ && !wide_->findNearest(ordered_, query.data(), num_neighbours, storage.wide, nearest, nearest_sq)) {
+      for (int k = 0; k < num_neighbours; ++k) nearest[k] = index_[static_cast<std::size_t>(nearest[k])];
+      continue;
+    }
+    ClosestPoints found(nearest, nearest_sq, num_neighbours);
+    visit(query, storage.pending, found);
   }
 }
 
@@ -232,13 +278,20 @@ void PointTree::searchWithin(const PointsRef& queries, float max_sq_distance, st
   // Points strictly closer than the limit are accepted.
   const float limit = std::nextafter(max_sq_distance, std::numeric_limits<float>::infinity());
   sq_distances.resize(indices.size());
-  std::vector<Pending> pending(static_cast<std::size_t>(depth_));
+  Storage storage = this->storage();
   for (Eigen::Index i = 0; i < queries.cols(); ++i) {
-    const float guessed = indices[i] < 0 ? limit : (points_.col(indices[i]) - queries.col(i)).squaredNorm();
-    ClosestPoint closest(guessed < limit ? indices[i] : -1, std::min(guessed, limit));
-    visit(queries.col(i), pending, closest);
-    indices[i] = closest.index();
-    sq_distances[i] = indices[i] < 0 ? std::numeric_limits<float>::infinity() : closest.worst();
+    const Eigen::Vector3f query = queries.col(i);
+    const int guess = indices[i];
+    const Eigen::Index ahead = std::min(i + kAhead, queries.cols() - 1);
+    if (lists_ && indices[ahead] >= 0) lists_->prefetch(indices[ahead]);
+    Match match{-1, limit};
+    if (guess >= 0) {
+      const float guessed = (points_.col(guess) - query).squaredNorm();
+      if (guessed < limit) match = {guess, guessed};
+    }
+    match = guess >= 0 && lists_ ? closestByLists(query, guess, match, storage) : closest(query, match, storage);
+    indices[i] = match.index;
+    sq_distances[i] = match.index < 0 ? std::numeric_limits<float>::infinity() : match.sq_distance;
   }
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "core/neighbours/search/neighbour_lists.h"
+#include "core/neighbours/search/wide_tree.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 
 namespace pcl_symmetry {
@@ -24,16 +27,12 @@ public:
   void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
                     std::vector<float>& sq_distances) const override;
 
+  /// From now on, searchWithin() uses these lists where it has a guess. The answers stay the same.
+  /// \param lists of the same points.
+  void use(NeighbourLists lists) { lists_ = std::move(lists); }
+
 private:
-  /// An inner node or a leaf. The first child of an inner node follows it.
-  struct Node {
-    /// Corners of the bounding box of its points. The fourth place holds where an inner node is divided: the greatest
-    /// coordinate of its first child along the axis, and the least one of its second child.
-    std::array<float, 4> low, high;
-    std::int32_t link;        ///< inner node: its second child; leaf: its first point
-    std::int32_t axis;        ///< of the division
-    std::int32_t num_points;  ///< of a leaf; 0: an inner node
-  };
+  using Node = PointTreeNode;
   /// A node that a query has put off, and the squared distance of its box.
   struct Pending {
     std::int32_t node;
@@ -47,18 +46,33 @@ private:
     int index;
   };
 
+  /// The closest point to a query, or a point or none that it has to be closer than.
+  struct Match {
+    int index;
+    float sq_distance;
+  };
+  struct Storage {
+    std::vector<Pending> pending;
+    std::vector<WideTree::Pending> wide;
+  };
+
   Box divide(std::vector<Entry>& entries, int begin, int end, Box box, int depth);
   static float sqDistance(const Node& node, const Eigen::Vector3f& query);
   template <typename Result>
   void visit(const Eigen::Vector3f& query, std::vector<Pending>& pending, Result& result) const;
+  Storage storage() const;
+  Match closest(const Eigen::Vector3f& query, Match start, Storage& storage) const;
+  Match closestByLists(const Eigen::Vector3f& query, int guess, Match start, Storage& storage) const;
   template <typename Result>
   void visitLeaf(const Node& leaf, const Eigen::Vector3f& query, Result& result) const;
 
   Points points_;                    ///< in the order of the caller
   std::vector<Node> nodes_;          ///< the root first
-  std::vector<float> x_, y_, z_;     ///< of the points in the order of the leaves, with room for a whole last vector
+  std::optional<WideTree> wide_;     ///< where the processor has wide registers
+  OrderedCoordinates ordered_;       ///< of the points
   std::vector<std::int32_t> index_;  ///< of these points in the order of the caller
   int depth_ = 0;
+  std::optional<NeighbourLists> lists_;
 };
 
 }  // namespace pcl_symmetry
