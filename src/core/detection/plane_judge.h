@@ -7,7 +7,6 @@
 #include "core/evidence/share/cut_planes.h"
 #include "core/evidence/share/split_surface.h"
 #include "core/neighbours/thin_shape.h"
-#include "core/refinement/part_search.h"
 #include "core/refinement/plane_fit.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
 
@@ -74,7 +73,7 @@ public:
 
   /// Symmetries of parts of the surface.
   /// \param known planes that have been found, input frame.
-  /// \return local planes, input frame, unlike those known.
+  /// \return local planes, input frame, unlike the symmetries and possible symmetries among those known.
   std::vector<SymmetryPlane> findParts(const std::vector<SymmetryPlane>& known) const;
 
 private:
