@@ -40,6 +40,9 @@ constexpr double kStillShare = 0.5;
 // Tolerances within which points that resolve no surface are a sheet or a line. chosen: noise of 1 % of the length of a
 // line holds 97 % of the points within 2.7; at half, such lines have axes, at twice, thick noisy plates lose a plane.
 constexpr double kNoisyThinness = 3.0;
+// Spacings within which points of a line say nothing of its cross-section. derived: a tube of that radius has 2 pi 2 =
+// 12 samples around.
+constexpr double kRoundSpacings = 2.0;
 constexpr double kLeastTelling = 1e-3;  // chosen: any small share; avoids a division by 0
 constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
 
@@ -51,7 +54,7 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       options_(options),
       tolerance_(options.absolute_tolerance > 0.0 ? options.absolute_tolerance / cloud.scale
                                                   : options.tolerance * cloud.extent),
-      thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_)),
+      thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_, lineTolerance())),
       halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
                                : std::nullopt),
       own_share_(std::max(kLeastOwnShare, shareWithin(halves_ ? halves_->ownDistances()
@@ -60,6 +63,11 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
                                              options.num_threads)
                          : 1.0) {}
+
+double PlaneJudge::lineTolerance() const {
+  const double noisy = kNoisyThinness * tolerance_;
+  return cloud_.isVolume() ? noisy : std::clamp(kRoundSpacings * cloud_.spacing, tolerance_, noisy);
+}
 
 std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {
   std::vector<SymmetryPlane> planes;

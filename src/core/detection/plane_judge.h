@@ -35,6 +35,9 @@ public:
   /// What symmetric means here: how far a symmetric surface may be off, normalised frame.
   double tolerance() const { return tolerance_; }
 
+  /// Whether nothing but a line is left of the cloud at the tolerance.
+  bool isLine() const { return thinness_ == Thinness::Line; }
+
   /// \param candidates after the last stage of refinement.
   /// \return one plane each, input frame, in the same order.
   std::vector<SymmetryPlane> judge(const std::vector<Candidate>& candidates) const;
@@ -89,6 +92,8 @@ private:
     double deviation;  ///< distance that 97 % of those that say something stay within
   };
 
+  /// How near to a line points are one: where there are few, noise of the line is wider than what they resolve.
+  double lineTolerance() const;
   double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
   Points matchedNormals(const IspStep& step) const;
