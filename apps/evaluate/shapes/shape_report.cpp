@@ -1,8 +1,10 @@
 #include "evaluate/shapes/shape_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include "core/base/constants.h"
 #include "core/base/random.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
@@ -10,7 +12,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr int kMostFolds = 64;  // planes; chosen: above the 25 of the shapes with most folds
+constexpr double kLineAngle = 3.0 * kDegree;  // radians; derived: the limit of `planes`
+constexpr int kMostFolds = 64;                // planes; chosen: above the 25 of the shapes with most folds
 
 }  // namespace
 
@@ -66,6 +69,13 @@ std::vector<SymmetryPlane> ShapeAnswers::symmetries() const {
   std::copy_if(planes.begin(), planes.end(), std::back_inserter(found),
                [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; });
   return found;
+}
+
+bool ShapeAnswers::callLine(const Eigen::Vector3d& direction) const {
+  const bool is_along = std::all_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
+    return std::abs(axis.direction.dot(direction)) >= std::cos(kLineAngle);
+  });
+  return !axes.empty() && is_along && symmetries().empty() && centers.empty();
 }
 
 ShapeAnswers detectShape(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const DetectionOptions& options) {

@@ -67,6 +67,8 @@ struct ShapeAnswers {
   std::vector<SymmetryPlane> symmetries() const;
   /// Whether anything is called a symmetry.
   bool callSymmetric() const { return !symmetries().empty() || !axes.empty() || !centers.empty(); }
+  /// Whether an axis along a direction is called a symmetry, and nothing else.
+  bool callLine(const Eigen::Vector3d& direction) const;
 };
 
 /// Runs SymmetryMaximaRefinement, as a user would: the viewpoint of the cloud counts.

@@ -10,6 +10,7 @@
 #include "core/detection/folds/fold_spectrum.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/principal_axes.h"
 #include "core/normals/revolution_of_normals.h"
 #include "core/refinement/plane_tolerance.h"
 
@@ -248,6 +249,13 @@ std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& plan
   return distinct;
 }
 
+/// The longest principal axis of points.
+AxisLine lineThrough(const Points& points) {
+  const PrincipalAxes axes = principalAxes(points);
+  const Eigen::Vector3d direction = axes.axes.col(0);
+  return AxisLine(axes.center - direction.dot(axes.center) * direction, direction);
+}
+
 }  // namespace
 
 PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const PlaneFit& fit,
@@ -256,9 +264,19 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   found.planes = std::move(planes);
   const std::vector<ReflectionPlane> symmetries =
       symmetriesOf(found.planes, cloud, {options.merge_angle, options.merge_offset});
-  if (symmetries.empty()) return found;
+  if (symmetries.empty() && !judge.isLine()) return found;
   const std::vector<int> samples =
       drawSamples(cloud.points.cols(), cloud.isVolume() ? kVolumeFamilySamples : kFamilySamples, options.seed);
+  if (judge.isLine()) {
+    const AxisLine line = lineThrough(cloud.points);
+    std::vector<ReflectionPlane> through;
+    for (int k = 0; k < kTested; ++k) through.push_back(planeThrough(line, k));
+    const JudgedFamily judged = judge.judgeFamily(through, samples);
+    if (judged.confidence >= options.min_confidence)
+      found.axes.push_back({line.origin() * cloud.scale + cloud.center, line.direction(), judged.confidence,
+                            judged.score, judged.support});
+    return found;
+  }
   const FamilyTest test = familyTest(cloud, fit, samples, options.seed);
   const FamilyGuesses guesses = guessFamilies(cloud, samples);
   const auto drop = [&](const auto& belongs) {

@@ -72,7 +72,7 @@ struct PlanesAndFamilies {
   std::vector<SymmetryCenter> centers;
 };
 
-/// Finds the families that symmetries belong to, and takes their planes away.
+/// Finds the families that symmetries belong to, and takes their planes away. A line has its axis.
 /// \param planes input frame.
 PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const PlaneFit& fit,
                                   const PlaneJudge& judge, const DetectionOptions& options);

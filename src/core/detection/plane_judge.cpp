@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
+#include "core/detection/parts/part_search.h"
 #include "core/evidence/plane_support.h"
 #include "core/evidence/share/missing_surface.h"
 #include "core/evidence/share/surface_distance.h"
@@ -18,8 +19,6 @@ namespace {
 // A scan yields many candidates and few planes: each is judged by one sample in this many. chosen: fewer samples make
 // the confidence noisy, more cost time.
 constexpr int kScanShare = 4;
-// Iterations of a plane of a part. chosen: as many as of a candidate in its second stage.
-constexpr int kPartIterations = 6;
 // Share of the surface that a symmetry maps to within the tolerance. derived: the definition (evidence/README.md).
 constexpr double kSymmetricShare = 0.97;
 // Share within the tolerance from which nothing needs to be missing. chosen: above the 0.97 of a symmetry by the error
@@ -41,6 +40,9 @@ constexpr double kStillShare = 0.5;
 // Tolerances within which points that resolve no surface are a sheet or a line. chosen: noise of 1 % of the length of a
 // line holds 97 % of the points within 2.7; at half, such lines have axes, at twice, thick noisy plates lose a plane.
 constexpr double kNoisyThinness = 3.0;
+// Spacings within which points of a line say nothing of its cross-section. derived: a tube of that radius has 2 pi 2 =
+// 12 samples around.
+constexpr double kRoundSpacings = 2.0;
 constexpr double kLeastTelling = 1e-3;  // chosen: any small share; avoids a division by 0
 constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
 
@@ -52,7 +54,7 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       options_(options),
       tolerance_(options.absolute_tolerance > 0.0 ? options.absolute_tolerance / cloud.scale
                                                   : options.tolerance * cloud.extent),
-      thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_)),
+      thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_, lineTolerance())),
       halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
                                : std::nullopt),
       own_share_(std::max(kLeastOwnShare, shareWithin(halves_ ? halves_->ownDistances()
@@ -61,6 +63,11 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
                                              options.num_threads)
                          : 1.0) {}
+
+double PlaneJudge::lineTolerance() const {
+  const double noisy = kNoisyThinness * tolerance_;
+  return cloud_.isVolume() ? noisy : std::clamp(kRoundSpacings * cloud_.spacing, tolerance_, noisy);
+}
 
 std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {
   std::vector<SymmetryPlane> planes;
@@ -268,19 +275,16 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
 }
 
 std::vector<SymmetryPlane> PlaneJudge::findParts(const std::vector<SymmetryPlane>& known) const {
-  IspOptions isp;
-  isp.update = options_.update;
-  isp.sigma = cloud_.sigma;
-  isp.final_sigma = cloud_.final_sigma;
-  isp.max_iterations = kPartIterations;
-  const auto support = [this](const ReflectionPlane& plane, const std::vector<int>& samples) {
-    return std::min(1.0, fit_.shares(plane, samples).support / cloud_.baseline);
-  };
+  std::vector<SymmetryPlane> decided;
+  std::copy_if(known.begin(), known.end(), std::back_inserter(decided), [](const SymmetryPlane& plane) {
+    return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
+  });
   const std::vector<int> all = allOf(cloud_.points.cols());
   std::vector<SymmetryPlane> planes;
-  for (const SymmetricPart& part : findSymmetricParts(cloud_.surface, isp, support)) {
+  for (const SymmetricPart& part :
+       findSymmetricParts(cloud_, fit_, {options_.update, options_.seed, options_.num_threads})) {
     const auto normalized = [this](const SymmetryPlane& plane) { return cloud_.toNormalized(plane); };
-    if (basinTolerance().anySame(known, part.plane, normalized)) continue;
+    if (basinTolerance().anySame(decided, part.plane, normalized)) continue;
     const IspStep step = fit_.matches(part.plane, all);
     SymmetryPlane plane = judged(part.plane, fit_.shares(part.plane, all, step), step, all).plane;
     if (plane.kind == PlaneKind::Symmetry) continue;  // one of a family, which is known as its axis or center

@@ -7,7 +7,6 @@
 #include "core/evidence/share/cut_planes.h"
 #include "core/evidence/share/split_surface.h"
 #include "core/neighbours/thin_shape.h"
-#include "core/refinement/part_search.h"
 #include "core/refinement/plane_fit.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
 
@@ -35,6 +34,9 @@ public:
 
   /// What symmetric means here: how far a symmetric surface may be off, normalised frame.
   double tolerance() const { return tolerance_; }
+
+  /// Whether nothing but a line is left of the cloud at the tolerance.
+  bool isLine() const { return thinness_ == Thinness::Line; }
 
   /// \param candidates after the last stage of refinement.
   /// \return one plane each, input frame, in the same order.
@@ -74,7 +76,7 @@ public:
 
   /// Symmetries of parts of the surface.
   /// \param known planes that have been found, input frame.
-  /// \return local planes, input frame, unlike those known.
+  /// \return local planes, input frame, unlike the symmetries and possible symmetries among those known.
   std::vector<SymmetryPlane> findParts(const std::vector<SymmetryPlane>& known) const;
 
 private:
@@ -90,6 +92,8 @@ private:
     double deviation;  ///< distance that 97 % of those that say something stay within
   };
 
+  /// How near to a line points are one: where there are few, noise of the line is wider than what they resolve.
+  double lineTolerance() const;
   double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
   Points matchedNormals(const IspStep& step) const;

@@ -58,12 +58,26 @@ void completeSupport(SymmetryPlane& plane, const NormalizedCloud& cloud, const P
   plane.point_support = fit.shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).point_support;
 }
 
+/// An approximate plane that is a symmetry of a part is reported as that.
+std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
+                                                const PlaneTolerance& tolerance) {
+  std::vector<ReflectionPlane> local;
+  for (const SymmetryPlane& plane : planes)
+    if (plane.kind == PlaneKind::Local) local.push_back(cloud.toNormalized(plane));
+  const auto is_of_part = [&](const SymmetryPlane& plane) {
+    return plane.kind == PlaneKind::Approximate && tolerance.anySame(local, cloud.toNormalized(plane));
+  };
+  planes.erase(std::remove_if(planes.begin(), planes.end(), is_of_part), planes.end());
+  return planes;
+}
+
 }  // namespace
 
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options) {
   const PlaneTolerance tolerance{options.merge_angle, options.merge_offset};
+  planes = withoutPlanesOfParts(std::move(planes), cloud, tolerance);
   std::stable_sort(planes.begin(), planes.end(), isBefore);
   std::vector<SymmetryPlane> ranked;
   for (SymmetryPlane& plane : planes) {
@@ -73,6 +87,8 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
     const bool of_polygon = isOf(polygon, plane, cloud);
     const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
       if (tolerance.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
+      // D is of the whole shape: planes of a part need not be maxima of it.
+      if (plane.kind == PlaneKind::Local) return false;
       return !(of_polygon && isOf(polygon, other, cloud)) && isOnSlopeOf(other, plane, cloud);
     });
     if (!is_known) ranked.push_back(std::move(plane));

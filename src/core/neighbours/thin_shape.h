@@ -7,12 +7,17 @@ namespace pcl_symmetry {
 /// What is left of a shape at a tolerance: reflections along its thin directions move nothing and say nothing.
 enum class Thinness {
   Solid,
-  Sheet,  ///< 97 % of the points lie within the tolerance of one plane
-  Line    ///< 97 % of the points lie within the tolerance of one line
+  Sheet,  ///< 97 % of the points lie within the tolerance of planes of one plane
+  Line    ///< 97 % of the points lie within the tolerance of lines of one line
 };
 
 /// \param points 3 x N, finite, N >= 1.
-/// \param tolerance units of the points, > 0.
-Thinness thinnessOf(const PointsRef& points, double tolerance);
+/// \param plane_tolerance,line_tolerance how far points may lie from a plane and from a line, units of the points, > 0.
+Thinness thinnessOf(const PointsRef& points, double plane_tolerance, double line_tolerance);
+
+/// The same with one tolerance for both.
+inline Thinness thinnessOf(const PointsRef& points, double tolerance) {
+  return thinnessOf(points, tolerance, tolerance);
+}
 
 }  // namespace pcl_symmetry

@@ -24,6 +24,12 @@ TEST(Thinness, IsThatOfTheSizesBeyondTheTolerance) {
   EXPECT_EQ(thinnessOf(boxOf({2.0f, 1.0f, 0.03f}), 0.005), Thinness::Solid) << "another tolerance";
 }
 
+TEST(Thinness, ALineHasAToleranceOfItsOwn) {
+  const Points rod = boxOf({2.0f, 0.03f, 0.03f});
+  EXPECT_EQ(thinnessOf(rod, 0.005, 0.03), Thinness::Line);
+  EXPECT_EQ(thinnessOf(rod, 0.005, 0.005), Thinness::Solid);
+}
+
 TEST(Thinness, AFewPointsBesideDoNotCount) {
   Points points = boxOf({2.0f, 1.0f, 0.0f});
   points(2, 500) = 0.5f;

@@ -1,0 +1,235 @@
+#include "core/detection/parts/part_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
+#include "core/detection/parts/matched_region.h"
+#include "core/geometry/directions.h"
+#include "core/geometry/point_samples.h"
+#include "core/geometry/principal_axes.h"
+#include "core/refinement/plane_tolerance.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Balls of each radius. chosen: balls of half a radius then cover the unit sphere one and a half times; fewer miss
+// small parts, more take longer and find the same parts again.
+constexpr int kNumSeeds = 24;
+// Starting directions beside the principal axes of a ball. chosen: fewer leave planes out of reach of refinement, more
+// take longer and end at the same planes.
+constexpr int kNumDirections = 8;
+// Radii of the balls, radii of the points. chosen: limbs to halves of a shape; smaller balls hold too few samples.
+constexpr double kRadii[] = {0.25, 0.35, 0.5};
+// Share of the points of a ball. chosen: less is too few to refine a plane, more is nearly the whole shape.
+constexpr double kLeastBall = 0.04, kLargestBall = 0.6;
+// Share of the points of a ball that match. chosen: higher values lose planes of parts that share their balls with
+// others, lower ones measure more regions in vain.
+constexpr double kLeastSupport = 0.7;
+// Radii of the ball, from its middle. chosen: beyond half a radius most of the ball lies on one side of the plane.
+constexpr double kFarthestPlane = 0.5;
+// Planes that are one: radians, and radii of the points. chosen: at half, regions are measured twice, at twice, planes
+// of prisms of many sides are lost.
+constexpr PlaneTolerance kSamePlane{0.07, 0.04};
+// Share of the points. chosen: a part of less is a detail. derived: a plane that maps 90 % is an approximate symmetry
+// of the whole (evidence/README.md).
+constexpr double kLeastPart = 0.04, kLargestPart = 0.9;
+// Greatest edge of a part, edges of a disc: that of a small part, and by how much more a part of the whole cloud may
+// have, as chance matches little of a surface. measured: `pcl_symmetry_evaluate shapes composites`, 40 clouds of the
+// tuning half: 262 of 288 planes and 0.10 wrong ones a cloud; with 0.45 for a small part 269 and 0.22.
+constexpr double kLeastEdge = 0.4, kEdgePerShare = 0.5;
+// How much planes of one part have in common of their regions, and how many of them there are at most: those of a cube.
+// chosen: parts of more are round or a clutter that every plane maps onto itself, and one plane stands for them; half
+// of the region, as regions of planes of one part differ by what matches by chance.
+constexpr double kSamePart = 0.5;
+constexpr std::size_t kMostPlanesOfPart = 9;
+// Iterations of a plane of a part. chosen: as many as of a candidate in its second stage.
+constexpr int kIterations = 6;
+// Points that refinement reflects, of a ball and of a region. measured: with 400 of a ball as many planes of composites
+// are found, in half as much time again; chosen: half of a region makes its planes noisy.
+constexpr std::size_t kBallSamples = 200, kRegionSamples = 400;
+
+/// Farthest-point sampling: each seed is the point farthest from those before.
+std::vector<Eigen::Vector3f> spreadSeeds(const Points& points) {
+  std::vector<Eigen::Vector3f> seeds;
+  Eigen::VectorXf sq_distances = Eigen::VectorXf::Constant(points.cols(), std::numeric_limits<float>::infinity());
+  for (int next = 0, k = 0; k < kNumSeeds; ++k) {
+    seeds.push_back(points.col(next));
+    sq_distances = sq_distances.cwiseMin((points.colwise() - seeds.back()).colwise().squaredNorm().transpose());
+    sq_distances.maxCoeff(&next);
+  }
+  return seeds;
+}
+
+/// Indices of the points in a ball.
+std::vector<int> within(const Points& points, const Eigen::Vector3f& center, double radius) {
+  std::vector<int> inside;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if ((points.col(i) - center).squaredNorm() <= radius * radius) inside.push_back(static_cast<int>(i));
+  return inside;
+}
+
+bool isBall(std::size_t count, const Points& points) {
+  const auto part = static_cast<double>(count), whole = static_cast<double>(points.cols());
+  return part >= kLeastBall * whole && part <= kLargestBall * whole;
+}
+
+/// Evenly chosen samples, at most \p most and at least half as many where there are enough.
+std::vector<int> thinned(const std::vector<int>& samples, std::size_t most) {
+  std::vector<int> some;
+  const std::size_t stride = 1 + samples.size() / most;
+  for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
+  return some;
+}
+
+/// Planes through the middle of a ball: across the principal axes of its points, and in directions all around.
+std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vector3d& middle) {
+  std::vector<ReflectionPlane> planes = principalPlanes(principalAxes(ball));
+  for (int k = 0; k < kNumDirections; ++k) {
+    const Eigen::Vector3d n = spiralDirection(k, kNumDirections, 2.0 * kPi * kGoldenSection * k);
+    planes.emplace_back(n, n.dot(middle));
+  }
+  return planes;
+}
+
+/// The search in one ball, the same for all.
+struct BallSearch {
+  const NormalizedCloud& cloud;
+  const PlaneFit& fit;
+  IspOptions isp;
+
+  BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit, IspUpdate update)
+      : cloud(the_cloud), fit(the_fit) {
+    isp.update = update;
+    isp.sigma = cloud.sigma;
+    isp.final_sigma = cloud.final_sigma;
+    isp.max_iterations = kIterations;
+  }
+
+  /// Refines a plane on the points of a ball, moves the ball to the plane, and refines the plane again.
+  /// \return nothing where the ball has too few or too many points, the plane leaves the ball, or little matches.
+  std::optional<SymmetricPart> refined(const ReflectionPlane& start, const std::vector<int>& ball,
+                                       const Eigen::Vector3d& middle, double radius) const {
+    IspResult result = refineSymmetricPoints(cloud.surface, thinned(ball, kBallSamples), start, isp);
+    // A ball about a point of the plane is cut into equal halves.
+    const Eigen::Vector3d center = middle - result.plane.signedDistance(middle) * result.plane.normal();
+    const std::vector<int> moved = within(cloud.points, center.cast<float>(), radius);
+    if (!isBall(moved.size(), cloud.points)) return std::nullopt;
+    const std::vector<int> samples = thinned(moved, kBallSamples);
+    IspOptions fine = isp;
+    fine.sigma = fine.final_sigma;
+    const int num_before = result.iterations;
+    result = refineSymmetricPoints(cloud.surface, samples, result.plane, fine);
+    if (std::abs(result.plane.signedDistance(middle)) > kFarthestPlane * radius) return std::nullopt;
+    SymmetricPart part{result.plane, {}, 0.0, 0.0, num_before + result.iterations};
+    part.support = fit.relativeSupport(fit.shares(part.plane, samples));
+    part.share = static_cast<double>(moved.size()) / static_cast<double>(cloud.points.cols());
+    if (part.support < kLeastSupport) return std::nullopt;
+    return part;
+  }
+
+  /// Planes of the ball about a seed.
+  std::vector<SymmetricPart> planes(const Eigen::Vector3f& seed, double radius) const {
+    const Points& points = cloud.points;
+    const Eigen::Vector3d middle = centerOfMass(pointsAt(points, within(points, seed, radius)));
+    const std::vector<int> ball = within(points, middle.cast<float>(), radius);
+    std::vector<SymmetricPart> found;
+    if (!isBall(ball.size(), points)) return found;
+    for (const ReflectionPlane& start : startingPlanes(pointsAt(points, ball), middle))
+      if (std::optional<SymmetricPart> part = refined(start, ball, middle, radius)) found.push_back(std::move(*part));
+    return found;
+  }
+};
+
+/// The planes that differ from better ones, best first.
+std::vector<SymmetricPart> distinct(std::vector<SymmetricPart> parts) {
+  std::stable_sort(parts.begin(), parts.end(), [](const SymmetricPart& a, const SymmetricPart& b) {
+    return a.support * a.share > b.support * b.share;
+  });
+  std::vector<SymmetricPart> kept;
+  for (SymmetricPart& part : parts)
+    if (!kSamePlane.anySame(kept, part.plane, [](const SymmetricPart& other) { return other.plane; }))
+      kept.push_back(std::move(part));
+  return kept;
+}
+
+/// The plane on the region that it maps onto itself. The first round moves it by wide weights, as planes of balls lie
+/// some degrees off, the second one by narrow weights.
+/// \return nothing where that is no part.
+std::optional<SymmetricPart> onItsRegion(SymmetricPart part, const BallSearch& search, const MatchedRegions& regions) {
+  MatchedRegion region = regions.largest(part.plane);
+  for (const double sigma : {search.isp.sigma, search.isp.final_sigma}) {
+    if (region.share < kLeastPart) return std::nullopt;
+    IspOptions isp = search.isp;
+    isp.sigma = sigma;
+    const IspResult result =
+        refineSymmetricPoints(search.cloud.surface, thinned(region.points, kRegionSamples), part.plane, isp);
+    part.plane = result.plane;
+    part.iterations += result.iterations;
+    region = regions.largest(part.plane);
+  }
+  if (region.share < kLeastPart || region.share > kLargestPart) return std::nullopt;
+  if (region.edge > kLeastEdge + kEdgePerShare * region.share) return std::nullopt;
+  part.points = std::move(region.points);
+  part.share = region.share;
+  part.support = region.support;
+  return part;
+}
+
+/// \pre ascending points.
+bool isSamePart(const SymmetricPart& a, const SymmetricPart& b) {
+  std::vector<int> both;
+  std::set_intersection(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both));
+  const auto either = static_cast<double>(a.points.size() + b.points.size() - both.size());
+  return static_cast<double>(both.size()) > kSamePart * either;
+}
+
+/// Leaves one plane of each part that has more planes than a part without axis has.
+std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
+  std::vector<std::vector<SymmetricPart>> groups;
+  for (SymmetricPart& part : parts) {
+    const auto same =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return isSamePart(group.front(), part); });
+    if (same == groups.end())
+      groups.push_back({std::move(part)});
+    else
+      same->push_back(std::move(part));
+  }
+  std::vector<SymmetricPart> kept;
+  for (std::vector<SymmetricPart>& group : groups) {
+    if (group.size() > kMostPlanesOfPart) group.resize(1);
+    std::move(group.begin(), group.end(), std::back_inserter(kept));
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, const PlaneFit& fit,
+                                              const PartSearchOptions& options) {
+  const BallSearch search(cloud, fit, options.update);
+  const std::vector<Eigen::Vector3f> seeds = spreadSeeds(cloud.points);
+  std::vector<std::vector<SymmetricPart>> of_balls(seeds.size() * std::size(kRadii));
+  parallelBlocks(of_balls.size(), options.num_threads, [&](std::size_t i) {
+    of_balls[i] = search.planes(seeds[i / std::size(kRadii)], kRadii[i % std::size(kRadii)]);
+  });
+  std::vector<SymmetricPart> planes;
+  for (std::vector<SymmetricPart>& found : of_balls) std::move(found.begin(), found.end(), std::back_inserter(planes));
+  planes = distinct(std::move(planes));
+
+  const MatchedRegions regions(cloud, fit, options.seed, options.num_threads);
+  std::vector<std::optional<SymmetricPart>> on_regions(planes.size());
+  parallelBlocks(planes.size(), options.num_threads,
+                 [&](std::size_t i) { on_regions[i] = onItsRegion(planes[i], search, regions); });
+  std::vector<SymmetricPart> parts;
+  for (std::optional<SymmetricPart>& part : on_regions)
+    if (part) parts.push_back(std::move(*part));
+  return withoutFamilies(distinct(std::move(parts)));
+}
+
+}  // namespace pcl_symmetry
