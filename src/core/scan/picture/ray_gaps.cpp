@@ -13,6 +13,7 @@ namespace pcl_symmetry {
 
 namespace {
 
+// pixels; derived: longer than any gap, where a line holds no other filled pixel.
 constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 /// A step from pixel to pixel along a line of the picture.
