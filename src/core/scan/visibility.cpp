@@ -20,9 +20,6 @@ namespace {
 
 // derived: the empty pixels around a picture leave none of fewer.
 constexpr std::size_t kLeastPixels = 16;
-// pixels; chosen: a gap between samples of one surface. A scene holds many objects: a share of the picture, as for
-// one object, would close the space between them. Half leaves holes in sparse surfaces, twice closes handles.
-constexpr std::size_t kLargestSceneHole = 25;
 // length of the mean of unit vectors; chosen: rays all around have no direction in common. Any tiny value will do.
 constexpr double kLeastMean = 1e-6;
 
@@ -68,8 +65,7 @@ std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector
                                     Eigen::Index least_seen) {
   const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, field);
   if (seen.places.empty() || static_cast<Eigen::Index>(seen.places.size()) < least_seen) return std::nullopt;
-  RangeImage image = rangeImage(seen, max_pixels, kLargestSceneHole);
-  forgetOutside(image);
+  RangeImage image = sceneRangeImage(seen, max_pixels);
   return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
                     std::move(image.depths), Visibility::kNoRay);
 }
@@ -90,7 +86,7 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   const Eigen::Matrix3d R_camera_input = viewingFrame(forward);
   const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, FieldOfView::Cone);
   if (static_cast<Eigen::Index>(seen.places.size()) < points.cols()) return std::nullopt;
-  RangeImage image = rangeImage(seen, kMaxPixels, std::numeric_limits<std::size_t>::max());
+  RangeImage image = rangeImage(seen, kMaxPixels);
   // Rays beside the object met nothing either: their space is free, as far as the picture reached.
   Visibility visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width,
                         image.grid.height, std::move(image.depths), kBackground);

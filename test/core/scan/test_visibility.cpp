@@ -285,4 +285,70 @@ TEST(Visibility, NoObjectReachesIntoItsTable) {
   EXPECT_EQ(on_table.depthBehind(at_foot), seen.depthBehind(at_foot));
 }
 
+/// What a scanner with rings sees of a round disc before a wall: it stands at the origin and looks along z.
+struct RingScan {
+  static constexpr double kColumn = 0.1 * M_PI / 180.0;  // radians between the rays of a ring
+  static constexpr double kRadius = 0.4, kDisc = 2.0, kWall = 3.0;
+  double ring;  // radians between rings
+  Eigen::Matrix3d turned;
+  Points points;
+
+  /// \param roll of the rings about the direction of view, radians.
+  RingScan(double ring_step, double roll)
+      : ring(ring_step), turned(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ())), points(3, 200'000) {
+    constexpr double kAcross = 0.35, kUp = 0.23;
+    Eigen::Index size = 0;
+    for (double up = -kUp; up <= kUp; up += ring)
+      for (double across = -kAcross; across <= kAcross; across += kColumn) {
+        const Eigen::Vector3d ray(std::tan(across), std::tan(up) / std::cos(across), 1.0);
+        points.col(size++) = (turned * (onDisc(ray) ? kDisc : kWall) * ray).cast<float>();
+      }
+    points.conservativeResize(3, size);
+  }
+
+  static bool onDisc(const Eigen::Vector3d& ray) { return kDisc * ray.head<2>().norm() < kRadius; }
+};
+
+TEST(Visibility, RingsLeaveNoHolesBetweenThem) {
+  for (const double ring_step : {0.4, 1.8}) {  // degrees: 64 and 16 rings on a car
+    for (const double roll : {0.0, 0.4}) {
+      const RingScan rings(ring_step * M_PI / 180.0, roll);
+      const auto seen = Visibility::ofScene(rings.points, Eigen::Vector3d::Zero());
+      ASSERT_TRUE(seen);
+      RandomStream random(6);
+      for (int i = 0; i < 5000; ++i) {
+        // Rings cover 0.23 up and down, and 0.15 (cos 0.4 + sin 0.4) = 0.197.
+        const Eigen::Vector3d ray(0.15 * symmetric(random), 0.15 * symmetric(random), 1.0);
+        EXPECT_GT(seen->depthBehind(1.01 * RingScan::kWall * ray), 0.0) << "behind the wall";
+        EXPECT_LT(seen->depthBehind(0.99 * RingScan::kDisc * ray), 0.0) << "in front of both";
+        const double off = RingScan::kDisc * ray.head<2>().norm() - RingScan::kRadius;
+        if (off < -2.0 * rings.ring * RingScan::kDisc) {
+          EXPECT_GT(seen->depthBehind(2.5 * ray), 0.0) << "behind the disc";
+        }
+        if (off > 2.0 * rings.ring * RingScan::kDisc) {
+          EXPECT_LT(seen->depthBehind(2.5 * ray), 0.0) << "beside the disc";
+        }
+      }
+    }
+  }
+}
+
+TEST(Visibility, SilhouettesAreAsSharpAsTheRaysOfARingAreDense) {
+  for (const double ring_step : {0.4, 1.8}) {
+    const RingScan rings(ring_step * M_PI / 180.0, 0.0);
+    const auto seen = Visibility::ofScene(rings.points, Eigen::Vector3d::Zero());
+    ASSERT_TRUE(seen);
+    constexpr double kHalf = RingScan::kRadius / RingScan::kDisc;
+    for (double up = -0.7 * kHalf; up <= 0.7 * kHalf; up += 0.001) {
+      // Both rings beside this height may show more of the disc.
+      const double widest = std::max(0.0, std::abs(up) - 1.1 * rings.ring);
+      // A ring is a curve in the picture, and a pixel is 1.3 columns wide: the rim is off by less than three columns.
+      const double beside = std::sqrt(kHalf * kHalf - widest * widest) + 3.0 * RingScan::kColumn;
+      for (const double side : {-1.0, 1.0})
+        EXPECT_LT(seen->depthBehind(RingScan::kDisc * Eigen::Vector3d(side * beside, up, 1.0)), 0.0)
+            << up << " at rings of " << ring_step << " degrees";
+    }
+  }
+}
+
 }  // namespace

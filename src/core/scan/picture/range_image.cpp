@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/constants.h"
+#include "core/scan/picture/ray_gaps.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 
 namespace pcl_symmetry {
@@ -17,6 +18,15 @@ const double kLeastCosine = std::cos(75.0 * kPi / 180.0);
 // chosen: a surface that faces the viewer has half the average density, which leaves exp(-2), one pixel in seven, empty
 // and can be closed. Half as many leave holes in surfaces, twice as many blur the silhouette.
 constexpr double kPointsPerPixel = 4.0;
+// The same where the rays of a scene lie in rings. measured: scenes of a LiDAR scanner with 64 rings, tuning fold: at
+// 4, silhouettes are as wide as the rings are apart, and asymmetric objects pass for symmetric ones.
+constexpr double kPointsPerRingPixel = 1.3;
+// Typical gap in pixels of that size from which on the rays lie in rings. derived: it is 2 for points at random and 1
+// for the rows of a depth camera; 64 rings of 26.8 degrees have 3, 16 rings 14.
+constexpr double kGapOfRings = 3.0;
+// Typical gaps that are bridged. chosen: at half, a ring that misses a dark spot leaves a hole in the surface, twice
+// closes openings between objects.
+constexpr double kLongestBridge = 3.0;
 // pixels of a side that surround the filled ones. derived: one on each side, and one for rounding on each.
 constexpr double kRim = 4.0;
 // share of the squared longest side; chosen: points along a line get pixels with an area. Any tiny value will do.
@@ -32,12 +42,15 @@ constexpr int kClosingPasses = 3;
 // share of the filled pixels; chosen: less leaves gaps between sparse points, more closes true openings such as handles
 constexpr double kSmallHole = 0.01;
 
+// points; chosen: a gap between samples of one surface. A scene holds many objects: a share of the picture, as for
+// one object, would close the space between them. Half leaves holes in sparse surfaces, twice closes handles.
+constexpr double kLargestSceneHole = 100.0;
 // Directions of four in which a pixel of the picture has filled ones. chosen: with 2, corners that no ray passed count
 // as seen, with 4, the sky between two objects does not.
 constexpr int kInsideSides = 3;
 
-/// Pixels of such a size that the filled ones have kPointsPerPixel points on average.
-PixelGrid fitPixels(const std::vector<Eigen::Array2d>& places, std::size_t max_pixels) {
+/// Pixels of such a size that the filled ones have \p points_per_pixel points on average.
+PixelGrid fitPixels(const std::vector<Eigen::Array2d>& places, std::size_t max_pixels, double points_per_pixel) {
   const double largest_side = std::floor(std::sqrt(static_cast<double>(max_pixels)));
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Eigen::Array2d& place : places) {
@@ -55,7 +68,7 @@ PixelGrid fitPixels(const std::vector<Eigen::Array2d>& places, std::size_t max_p
     std::vector<char> filled(grid.numPixels(), 0);
     for (const Eigen::Array2d& place : places) filled[grid.at(place)] = 1;
     const auto num_filled = std::count(filled.begin(), filled.end(), 1);
-    const double wanted = std::sqrt(kPointsPerPixel * static_cast<double>(num_filled) / num_points);
+    const double wanted = std::sqrt(points_per_pixel * static_cast<double>(num_filled) / num_points);
     const bool settled = wanted > 1.0 - kPixelSizeAccuracy && wanted < 1.0 + kPixelSizeAccuracy;
     if (round == kPixelSizeRounds || settled) return grid;
     grid.size *= wanted;
@@ -119,36 +132,24 @@ void closeGaps(std::vector<float>& depths, int width, int height, std::size_t la
   }
 }
 
-}  // namespace
-
-SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input,
-                      FieldOfView field) {
-  SeenPlaces seen;
-  seen.places.reserve(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d ray = R_camera_input * (points.col(i).cast<double>() - viewpoint);
-    const bool inside = field == FieldOfView::Cone ? ray.z() > kLeastCosine * ray.norm()
-                                                   : ray.z() > 0.0 && ray.head<2>().cwiseAbs().maxCoeff() <= ray.z();
-    if (!inside) continue;
-    seen.places.push_back(ray.head<2>().array() / ray.z());
-    seen.depths.push_back(static_cast<float>(ray.z()));
-  }
-  return seen;
-}
-
-RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels, std::size_t largest_hole) {
-  RangeImage image{fitPixels(seen.places, max_pixels), {}};
-  const PixelGrid& grid = image.grid;
-  image.depths.assign(grid.numPixels(), Visibility::kBackground);
+RangeImage nearestInPixels(const SeenPlaces& seen, std::size_t max_pixels, double points_per_pixel) {
+  RangeImage image{fitPixels(seen.places, max_pixels, points_per_pixel), {}};
+  image.depths.assign(image.grid.numPixels(), Visibility::kBackground);
   for (std::size_t i = 0; i < seen.places.size(); ++i) {
-    float& depth = image.depths[grid.at(seen.places[i])];
+    float& depth = image.depths[image.grid.at(seen.places[i])];
     depth = std::min(depth, seen.depths[i]);
   }
-  for (int pass = 0; pass < kClosingPasses; ++pass) closeHoles(image.depths, grid.width, grid.height);
-  closeGaps(image.depths, grid.width, grid.height, largest_hole);
   return image;
 }
 
+/// Closes what is empty between the points of one surface.
+void closeSurfaces(RangeImage& image, std::size_t largest_hole) {
+  for (int pass = 0; pass < kClosingPasses; ++pass) closeHoles(image.depths, image.grid.width, image.grid.height);
+  closeGaps(image.depths, image.grid.width, image.grid.height, largest_hole);
+}
+
+/// Turns empty pixels beyond the measured part of the picture to Visibility::kNoRay: those that have filled pixels in
+/// fewer than kInsideSides of the four directions along rows and columns.
 void forgetOutside(RangeImage& image) {
   const int width = image.grid.width, height = image.grid.height;
   // Of each pixel, the number of the four directions in which a filled pixel lies.
@@ -172,6 +173,45 @@ void forgetOutside(RangeImage& image) {
   }
   for (std::size_t i = 0; i < image.depths.size(); ++i)
     if (num_sides[i] < kInsideSides) image.depths[i] = Visibility::kNoRay;
+}
+
+}  // namespace
+
+SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input,
+                      FieldOfView field) {
+  SeenPlaces seen;
+  seen.places.reserve(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d ray = R_camera_input * (points.col(i).cast<double>() - viewpoint);
+    const bool inside = field == FieldOfView::Cone ? ray.z() > kLeastCosine * ray.norm()
+                                                   : ray.z() > 0.0 && ray.head<2>().cwiseAbs().maxCoeff() <= ray.z();
+    if (!inside) continue;
+    seen.places.push_back(ray.head<2>().array() / ray.z());
+    seen.depths.push_back(static_cast<float>(ray.z()));
+  }
+  return seen;
+}
+
+RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels) {
+  RangeImage image = nearestInPixels(seen, max_pixels, kPointsPerPixel);
+  closeSurfaces(image, std::numeric_limits<std::size_t>::max());
+  return image;
+}
+
+RangeImage sceneRangeImage(const SeenPlaces& seen, std::size_t max_pixels) {
+  RangeImage image = nearestInPixels(seen, max_pixels, kPointsPerRingPixel);
+  const PartialImage partial{image.grid.width, image.grid.height, image.depths};
+  const double gap = typicalGap(partial);
+  if (gap < kGapOfRings) {
+    image = nearestInPixels(seen, max_pixels, kPointsPerPixel);
+    closeSurfaces(image, static_cast<std::size_t>(kLargestSceneHole / kPointsPerPixel));
+  } else {
+    bridgeGaps(partial, kLongestBridge * gap);
+    closeGaps(image.depths, partial.width, partial.height,
+              static_cast<std::size_t>(kLargestSceneHole / kPointsPerRingPixel));
+  }
+  forgetOutside(image);
+  return image;
 }
 
 }  // namespace pcl_symmetry

@@ -54,15 +54,18 @@ struct RangeImage {
 SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input,
                       FieldOfView field);
 
-/// A range image of points without order. The size of the pixels follows the distance between the points in the
-/// picture; small gaps between the points are closed.
+/// A range image of the points of one object, without order. The size of the pixels follows the distance between the
+/// points in the picture; gaps between the points are closed. Empty pixels are background.
 /// \param seen at least one place.
 /// \param max_pixels least number of pixels that make them larger, >= 16.
-/// \param largest_hole pixels: larger regions without a point stay background.
-RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels, std::size_t largest_hole);
+RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels);
 
-/// Turns empty pixels beyond the measured part of the picture to Visibility::kNoRay: those that have filled pixels in
-/// fewer than three of the four directions along rows and columns.
-void forgetOutside(RangeImage& image);
+/// The same for a scene. Where its rays are denser in one direction than across, as in the rings of a LiDAR scanner,
+/// pixels are as small as the denser distance, and the gaps between the rings are bridged. Empty pixels beyond the
+/// measured part of the picture are Visibility::kNoRay: those with filled pixels in fewer than three of the four
+/// directions along rows and columns.
+/// \param seen at least one place.
+/// \param max_pixels least number of pixels that make them larger, >= 16.
+RangeImage sceneRangeImage(const SeenPlaces& seen, std::size_t max_pixels);
 
 }  // namespace pcl_symmetry
