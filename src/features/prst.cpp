@@ -32,6 +32,7 @@ std::vector<float> detail::describePRST(const Points& points, const PRSTParamete
     T_frame_input.translation() = -centerOfMass(points);
   } else {
     FrameOptions frame;
+    frame.probabilities = false;
     frame.seed = parameters.seed;
     frame.num_threads = frame.edt.num_threads = parameters.num_threads;
     T_frame_input = symmetryFrame(points, frame, seen).T_canonical_input;

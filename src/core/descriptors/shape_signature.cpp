@@ -178,6 +178,7 @@ FrameOptions signatureFrameOptions() {
   options.num_theta = 16;
   options.num_phi = 64;
   options.num_radius = 32;
+  options.probabilities = false;
   return options;
 }
 

@@ -27,11 +27,23 @@ struct FrameOptions {
   /// The paper's own method: three planes picked greedily by D, through bin centers of the map and at num_phi angles
   /// within the plane across the first axis. It ignores what a scanner saw, and no scores tie.
   bool as_published = false;
-  std::uint64_t seed = 1;  ///< of all random draws
-  int num_threads = 0;     ///< >= 0; 0 = one per core
+  bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes an eighth of the time
+  std::uint64_t seed = 1;     ///< of all random draws
+  int num_threads = 0;        ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
+};
+
+/// A frame that may be the shape's own: that in which people would put it.
+struct ProbableFrame {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< center of symmetry, input frame
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: as of SymmetryFrame
+  int revolution_axis = -1;                            ///< as of SymmetryFrame
+  /// That the axes, in any order and sign, are within 5 degrees of the own axes of the shape, in [0, 1]; a frame with
+  /// an axis of revolution may be turned about it. fitted: to models whose files tell the own axes
+  /// (`calibrate_frames`).
+  double probability = 0.0;
 };
 
 /// The canonical frame of a shape: center of symmetry (COS) and principal symmetry axes (PSA, Section 5.1).
@@ -50,7 +62,12 @@ struct SymmetryFrame {
   /// those that are maxima, then the angles between them in steps of 6 degrees. Turns about an axis of revolution are
   /// equally good as well and not listed.
   std::vector<Eigen::Isometry3d> equivalent;
-  std::size_t num_maxima = 0;                             ///< frames at the front of equivalent that are maxima
+  std::size_t num_maxima = 0;  ///< frames at the front of equivalent that are maxima
+  /// Frames that may be the shape's own, each once up to order, signs and turns about an axis of revolution: this frame
+  /// first, the others by falling probability. Besides maxima of symmetry they are levelled ones, which stand on an
+  /// edge of the outline, fit the smallest box or follow faces. The probabilities add up to less than 1: the rest is
+  /// that of none of them. Empty for FrameOptions::as_published and without FrameOptions::probabilities.
+  std::vector<ProbableFrame> probable;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
