@@ -219,6 +219,15 @@ nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift
   json["equivalent"] = nlohmann::json::array();
   for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
     json["equivalent"].push_back(absolute(T_canonical_input));
+  json["probable"] = nlohmann::json::array();
+  for (const ProbableFrame& other : frame.probable) {
+    nlohmann::json axes = nlohmann::json::array();
+    for (int k = 0; k < 3; ++k) axes.push_back(numbersOf(other.axes.col(k)));
+    json["probable"].push_back({{"center", numbersOf(shiftedBack(other.center, shift))},
+                                {"axes", axes},
+                                {"revolution_axis", other.revolution_axis},
+                                {"probability", other.probability}});
+  }
   return json;
 }
 
@@ -229,6 +238,14 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
     std::snprintf(text, sizeof(text), "axis %d %9.6f %9.6f %9.6f  score %.3f%s\n", k + 1, frame.axes(0, k),
                   frame.axes(1, k), frame.axes(2, k), frame.scores[k],
                   frame.revolution_axis == k ? "  axis of revolution" : "");
+    lines += text;
+  }
+  double others = 0.0;
+  for (std::size_t i = 1; i < frame.probable.size(); ++i) others += frame.probable[i].probability;
+  char text[96];
+  if (!frame.probable.empty()) {
+    std::snprintf(text, sizeof(text), "probability of these axes %.2f, of %zu others %.2f\n",
+                  frame.probable.front().probability, frame.probable.size() - 1, others);
     lines += text;
   }
   return lines;

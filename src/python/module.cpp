@@ -207,6 +207,13 @@ std::vector<RankedView> viewpoints(const std::vector<SymmetryPlane>& planes) {
 }
 
 void addFrame(py::module_& module) {
+  py::class_<ProbableFrame>(module, "ProbableFrame", "A frame that may be the shape's own.")
+      .def_readonly("center", &ProbableFrame::center, "(3,) center of symmetry, frame and units of the input")
+      .def_readonly("axes", &ProbableFrame::axes, "(3, 3) axes in columns, orthonormal, right-handed")
+      .def_readonly("revolution_axis", &ProbableFrame::revolution_axis, "as of `Frame`")
+      .def_readonly(
+          "probability", &ProbableFrame::probability,
+          "that the axes are the shape's own, in any order and sign, at any angle about an axis of revolution");
   py::class_<SymmetryFrame>(module, "Frame",
                             "Canonical frame of a shape (Section 5.1): center and principal symmetry axes.")
       .def_readonly("center", &SymmetryFrame::center, "(3,) center of symmetry, frame and units of the input")
@@ -219,7 +226,9 @@ void addFrame(py::module_& module) {
           "(4, 4) from the input to the canonical frame")
       .def_property_readonly(
           "equivalent", [](const SymmetryFrame& f) { return stacked(f.equivalent); },
-          "(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first");
+          "(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first")
+      .def_readonly("probable", &SymmetryFrame::probable,
+                    "list of `ProbableFrame`: this frame, then others by falling probability");
   py::class_<ObjectSymmetries>(module, "Rotations", "The rotations that map a shape onto itself.")
       .def_property_readonly("name", &ObjectSymmetries::name, "after Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3")
       .def_readonly("fold", &ObjectSymmetries::fold, "order of the main axis; 0 where it is one of revolution")

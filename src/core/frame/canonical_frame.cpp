@@ -22,7 +22,10 @@ constexpr double kOffsetWidth = 0.07;
 // scans of 178 models of fold 0, 0.15 to 0.3 leave centers 3.93 times nearer than the center of mass (3.92 without), on
 // 276 of fold 1 3.44, 3.43 and 3.39 times at 0.15, 0.2 and 0.3 (3.24).
 constexpr double kDoubtfulOffset = 0.2;
-// Weight exp(kCenterSharpness v) of the center of a frame of value v.
+// Weight exp(kCenterSharpness v) of the center of a scan's frame whose value is v below that of the first. measured:
+// without the push of FrameEvidence, centers of 356 scans of fold 0 are 3.53 times nearer than the center of mass with
+// 30, 3.26 times with 15 and 3.46 times with the first frame alone; 98.6, 95.8 and 97.8 % of them are nearer. The same
+// for wholes takes 3.53 to 3.46.
 constexpr double kCenterSharpness = 30.0;
 // Angles at which a revolution is tested, in the half-turn. chosen: half takes square prisms for round ones, twice
 // takes twice the time.
@@ -85,7 +88,7 @@ Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const st
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double sum = 0.0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const double weight = std::exp(kCenterSharpness * (frames[i].value - frames.front().value));
+    const double weight = std::exp(kCenterSharpness * std::min(frames[i].value - frames.front().value, 0.0));
     mean += weight * (centers[i] - centers.front());
     sum += weight;
   }

@@ -22,9 +22,8 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 /// \return input frame.
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame);
 
-/// The center where several frames are nearly as good: the mean of their centers, weighted by their values. Frames of a
-/// symmetric shape have one center, but where a shape has no symmetry chance decides which frame is best, and scan and
-/// whole may differ in it.
+/// The center of a scan where several frames are nearly as good: the mean of their centers, weighted by their values.
+/// Frames of a symmetric shape have one center, but where a shape has no symmetry what was seen decides which is best.
 /// \param centers of the frames, input frame.
 /// \param frames best first, at least one.
 Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const std::vector<FrameCandidate>& frames);

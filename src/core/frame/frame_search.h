@@ -44,9 +44,9 @@ std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std
 /// \param turned result of framesAbout() for at least one first plane.
 std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& turned);
 
-/// The frame of given axes, each plane at its best offset.
+/// The frame of given axes, each plane at its best offset, in the order of refinedFrames().
 /// \param axes orthonormal columns, the first that of the first plane.
-FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes);
+FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes, double tie);
 
 /// Moves each frame to the nearest maximum of its value, all three planes together. Then orders the second and third
 /// axis by score, or where scores tie by the spread of the points.
@@ -59,7 +59,7 @@ std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::ve
 /// All frames of a search.
 struct FoundFrames {
   std::vector<FrameCandidate> turned;   ///< result of framesAbout()
-  std::vector<FrameCandidate> refined;  ///< their maxima, best first
+  std::vector<FrameCandidate> refined;  ///< their maxima, best first, or before them the best one when it is leveled
 };
 
 /// The steps above, one after the other.

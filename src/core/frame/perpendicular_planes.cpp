@@ -135,9 +135,11 @@ FrameCandidate ordered(const FrameEvidence& evidence, FrameCandidate frame, doub
 
 }  // namespace
 
-FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes) {
+FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes, double tie) {
   const CellPlane first{axes.col(0), evidence.bestOffset(axes.col(0)).offset};
-  return frameOf(evidence, first, planeOf(evidence, first, axes.col(1)), planeOf(evidence, first, axes.col(2)));
+  return ordered(evidence,
+                 frameOf(evidence, first, planeOf(evidence, first, axes.col(1)), planeOf(evidence, first, axes.col(2))),
+                 tie);
 }
 
 std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std::vector<CellPlane>& first_planes,

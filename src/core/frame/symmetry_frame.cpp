@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
@@ -10,6 +11,7 @@
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/frame/frame_search.h"
+#include "core/frame/probable/leveled_frames.h"
 #include "core/frame/probable/probable_frames.h"
 
 namespace pcl_symmetry {
@@ -119,6 +121,7 @@ FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& option
   FoundFrames found;
   found.turned = framesAbout(evidence, bestFirstPlanes(evidence, candidates), options.num_threads);
   found.refined = refinedFrames(evidence, frameMaxima(found.turned), options.tie, options.num_threads);
+  found.refined = leveledFirst(evidence, std::move(found.refined), options.tie);
   done("frames");
   return found;
 }
@@ -139,7 +142,7 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   frame.axes = principalSymmetryAxes(points, best.axes);
   std::vector<Eigen::Vector3d> centers;
   for (const FrameCandidate& other : frames) centers.push_back(centerOfSymmetry(evidence, other));
-  frame.center = meanCenter(centers, frames);
+  frame.center = evidence.scanned() ? meanCenter(centers, frames) : centers.front();
   frame.scores = best.scores.cast<double>().cwiseMin(1.0);
   frame.revolution_axis = revolutionAxis(evidence, best, options.tie);
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);

@@ -10,7 +10,8 @@ struct FrameFit {
   std::array<double, 6> whole, scan;
 };
 
-// fitted: by hand, to be replaced.
-constexpr FrameFit kFrameFit{{-3.61, 3.68, 3.9, 1.69, -1.82, 1.69}, {-3.44, 4.92, 2.69, 1.53, -1.29, 2.98}};
+// fitted: 238 clouds of 119 models.
+constexpr FrameFit kFrameFit{{-1.615, 3.703, 1.411, 1.535, -0.8428, 1.604},
+                             {-1.506, 3.541, -0.1721, 1.824, -0.7254, 2.493}};
 
 }  // namespace pcl_symmetry

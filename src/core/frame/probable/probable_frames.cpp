@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/probable/frame_fit.h"
+#include "core/frame/probable/leveled_frames.h"
 #include "core/frame/probable/outline.h"
 #include "core/geometry/axis_rotations.h"
 
@@ -23,9 +24,6 @@ constexpr double kOneOutline = 10.0 * kDegree;
 // First axes whose outline is tried. measured: on 150 models of fold 0 the two best lead to the own axes of 86 % of the
 // wholes; more were not tried.
 constexpr std::size_t kMaxOutlines = 2;
-// Radians, steps of the angle about the first axis, within a quarter turn. chosen: half takes twice the time, twice
-// leaves frames 1 degree beside the edge that they stand on.
-constexpr double kOutlineStep = 1.0 * kDegree;
 // Radians, angle to the principal axes at which the term ends. chosen: half ends it where slender shapes still differ,
 // twice lets square shapes count.
 constexpr double kFarFromPrincipal = 20.0 * kDegree;
@@ -51,47 +49,6 @@ bool isKnown(const std::vector<FrameChoice>& known, const FrameCandidate& frame)
   });
 }
 
-/// The angles about an axis at which people may have put a shape.
-std::vector<double> anglesOf(const FrameEvidence& evidence, const Outline& outline) {
-  double least_area = std::numeric_limits<double>::infinity(), contact = -1.0, agreement = -1.0;
-  double smallest = 0.0, longest = 0.0, most_faces = 0.0;
-  const int num_steps = static_cast<int>(std::lround(0.5 * kPi / kOutlineStep));
-  for (int i = 0; i < num_steps; ++i) {
-    const double angle = i * kOutlineStep;
-    const Outline::Box box = outline.boxAt(angle);
-    const double faces =
-        evidence.agreement(outline.direction(angle)) + evidence.agreement(outline.direction(angle + 0.5 * kPi));
-    if (box.area < least_area) {
-      least_area = box.area;
-      smallest = angle;
-    }
-    if (box.contact > contact) {
-      contact = box.contact;
-      longest = angle;
-    }
-    if (faces > agreement) {
-      agreement = faces;
-      most_faces = angle;
-    }
-  }
-  // The principal axes of the outline: half the angle of the second moments.
-  const auto spread = [&](double angle) { return evidence.spreadAlong(outline.direction(angle)); };
-  const double principal = 0.5 * std::atan2(spread(0.25 * kPi) - spread(0.75 * kPi), spread(0.0) - spread(0.5 * kPi));
-  return {smallest, longest, most_faces, principal};
-}
-
-/// The frame with its first axis at each of the angles.
-std::vector<FrameCandidate> framesOnOutline(const FrameEvidence& evidence, const Eigen::Vector3f& first) {
-  const Outline outline(evidence.points(), first);
-  std::vector<FrameCandidate> frames;
-  for (const double angle : anglesOf(evidence, outline)) {
-    Eigen::Matrix3f axes;
-    axes << first, outline.direction(angle), first.cross(outline.direction(angle));
-    frames.push_back(frameOfAxes(evidence, axes));
-  }
-  return frames;
-}
-
 std::vector<Eigen::Vector3f> firstAxes(const std::vector<FrameCandidate>& frames) {
   std::vector<Eigen::Vector3f> axes;
   for (const FrameCandidate& frame : frames) {
@@ -112,7 +69,7 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
   std::vector<FrameCandidate> tried = frames;
   const std::vector<Eigen::Vector3f> axes = firstAxes(frames);
   std::vector<std::vector<FrameCandidate>> turned(axes.size());
-  parallelBlocks(axes.size(), num_threads, [&](std::size_t i) { turned[i] = framesOnOutline(evidence, axes[i]); });
+  parallelBlocks(axes.size(), num_threads, [&](std::size_t i) { turned[i] = leveledFrames(evidence, axes[i], tie); });
   for (const std::vector<FrameCandidate>& some : turned) tried.insert(tried.end(), some.begin(), some.end());
 
   std::vector<FrameChoice> choices;
