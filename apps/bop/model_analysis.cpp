@@ -21,15 +21,6 @@ namespace {
 // takes twice the time.
 constexpr int kEvidencePoints = 20'000;
 
-Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {
-  Points points(3, static_cast<Eigen::Index>(cloud.size()));
-  Eigen::Index size = 0;
-  for (const pcl::PointXYZ& point : cloud)
-    if (point.getVector3fMap().allFinite()) points.col(size++) = point.getVector3fMap();
-  points.conservativeResize(3, size);
-  return points;
-}
-
 /// PCL's readers are told to be silent by a switch for the whole program.
 Shape loadOneAtATime(const std::string& path) {
   static std::mutex mutex;

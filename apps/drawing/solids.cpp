@@ -80,6 +80,33 @@ Solid joined(const std::vector<Solid>& parts, double fillet) {
   };
 }
 
+namespace {
+
+/// Distances at the corners of cells, x first. A block of corners with no surface in or beside it gets that of its
+/// middle.
+void fillValues(const Solid& solid, const Vector3d& origin, double step, const Eigen::Vector3i& size, float* values) {
+  // Corners. measured (make_shapes): 0.72 s; blocks of 2, 4 and 8 take 0.84, 0.81 and 1.35 s.
+  constexpr int kBlock = 3;
+  // Distances may grow faster than one goes, where solids are pressed. chosen: half more than the shapes of make_shapes
+  // need, which are the same bytes with 1.
+  constexpr double kSlope = 1.5;
+  const double reach = kSlope * step * std::sqrt(3.0) * (0.5 * (kBlock - 1) + 1.0);
+  Eigen::Vector3i first;
+  for (first.z() = 0; first.z() < size.z(); first.z() += kBlock)
+    for (first.y() = 0; first.y() < size.y(); first.y() += kBlock)
+      for (first.x() = 0; first.x() < size.x(); first.x() += kBlock) {
+        const double middle = solid(origin + step * (first.cast<double>().array() + 0.5 * (kBlock - 1)).matrix());
+        const Eigen::Vector3i last = (first.array() + kBlock).min(size.array());
+        for (int k = first.z(); k < last.z(); ++k)
+          for (int j = first.y(); j < last.y(); ++j)
+            for (int i = first.x(); i < last.x(); ++i)
+              values[(static_cast<std::ptrdiff_t>(k) * size.y() + j) * size.x() + i] =
+                  static_cast<float>(std::abs(middle) > reach ? middle : solid(origin + step * Vector3d(i, j, k)));
+      }
+}
+
+}  // namespace
+
 pcl::PolygonMesh surfaceOf(const Solid& solid, const Eigen::AlignedBox3d& bounds, int num_cells) {
   const double step = bounds.sizes().maxCoeff() / num_cells;
   const Eigen::Vector3i size = (bounds.sizes() / step).array().ceil().cast<int>() + 1;
@@ -88,10 +115,7 @@ pcl::PolygonMesh surfaceOf(const Solid& solid, const Eigen::AlignedBox3d& bounds
   image->SetSpacing(step, step, step);
   image->SetDimensions(size.data());
   image->AllocateScalars(VTK_FLOAT, 1);
-  float* value = static_cast<float*>(image->GetScalarPointer());
-  for (int k = 0; k < size.z(); ++k)
-    for (int j = 0; j < size.y(); ++j)
-      for (int i = 0; i < size.x(); ++i) *value++ = static_cast<float>(solid(bounds.min() + step * Vector3d(i, j, k)));
+  fillValues(solid, bounds.min(), step, size, static_cast<float*>(image->GetScalarPointer()));
   vtkNew<vtkFlyingEdges3D> edges;
   edges->SetInputData(image);
   edges->SetValue(0, 0.0);

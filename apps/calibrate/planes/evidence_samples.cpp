@@ -51,13 +51,9 @@ CloudRecipe recipe(const std::string& name, int num_points, double noise, double
   return result;
 }
 
-Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {
-  Points points(3, static_cast<Eigen::Index>(cloud.size()));
-  Eigen::Index size = 0;
-  for (const pcl::PointXYZ& point : cloud)
-    if (point.getVector3fMap().allFinite()) points.col(size++) = point.getVector3fMap();
-  points.conservativeResize(3, size);
-  return DistinctPoints(points).points;
+/// As the detector sees them.
+Points distinctPoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {
+  return DistinctPoints(finitePoints(cloud)).points;
 }
 
 /// Candidates of the whole, after all stages of refinement, as detectPlanes() judges them, best merit first and merged
@@ -147,7 +143,7 @@ private:
 
 /// Candidates of a cloud, of which the data say what the scanner saw, as for a user.
 std::vector<JudgedPlane> judgedCandidates(const TestCloud& cloud, const DetectionOptions& options) {
-  const Points points = finitePoints(*cloud.cloud);
+  const Points points = distinctPoints(*cloud.cloud);
   if (!whyUnanswerable(points).empty()) return {};
   const std::optional<Visibility> seen = detail::seenSpace(*cloud.cloud, points, Viewpoint());
   return judgedCandidates(points, seen ? &*seen : nullptr, options);
@@ -176,7 +172,7 @@ std::vector<EvidenceSample> sampleFoldedEvidence(int i, double tolerance) {
   const FoldedCloud folded = foldedCloud(i, seeds.caseSeed(i), seeds.report, kFoldedPoints[i / kFoldedCases % 3]);
   const TriangleScene scene(folded.shape.mesh);
   PlaneTruths truths(scene, tolerance);
-  truths.add(judgedCandidates(finitePoints(*folded.cloud), nullptr, optionsOf(tolerance)),
+  truths.add(judgedCandidates(distinctPoints(*folded.cloud), nullptr, optionsOf(tolerance)),
              folded.body + " " + std::to_string(i), "folds noise " + std::to_string(folded.noise), false, folded.pose);
   return truths.samples();
 }

@@ -225,4 +225,13 @@ Shape loadShape(const std::string& path) {
   }
 }
 
+Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {
+  Points points(3, static_cast<Eigen::Index>(cloud.size()));
+  Eigen::Index size = 0;
+  for (const pcl::PointXYZ& point : cloud)
+    if (point.getVector3fMap().allFinite()) points.col(size++) = point.getVector3fMap();
+  points.conservativeResize(3, size);
+  return points;
+}
+
 }  // namespace pcl_symmetry::apps

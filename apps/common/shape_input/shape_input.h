@@ -12,6 +12,7 @@
 
 #include "common/command_line/tool_errors.h"
 #include "common/files/shape_file_kinds.h"
+#include "pcl_symmetry/core/geometry/point_set.h"
 
 namespace pcl_symmetry::apps {
 
@@ -32,5 +33,8 @@ Shape loadShape(const std::string& path);
 
 /// \return a shape made of a mesh, as if it had been loaded.
 Shape shapeFromMesh(const pcl::PolygonMesh& mesh);
+
+/// \return 3 x N, the finite points of a cloud, same order.
+Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud);
 
 }  // namespace pcl_symmetry::apps

@@ -13,8 +13,6 @@ constexpr PlaneTolerance kBasin{0.1, 0.06};
 // Symmetries whose group is completed. chosen: the full group of a cube has 9, that of an icosahedron 15; more belong
 // to a family of planes, whose group never closes. measured: at twice, a sphere takes ten times as long.
 constexpr std::size_t kMaxClosed = 16;
-// Radii by which a plane may miss the line of a polygon. chosen: as planes of a family may (plane_families.cpp).
-constexpr double kLatticeOffset = 0.03;
 
 }  // namespace
 
@@ -52,7 +50,7 @@ std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& plan
     found.push_back({plane, false});
   };
   // The planes of a regular polygon, from those of them that are known.
-  if (const std::optional<PlaneLattice> lattice = findLattice(symmetries, kLatticeOffset))
+  if (const std::optional<PlaneLattice> lattice = findLattice(symmetries))
     for (int k = 0; k < lattice->fold; ++k) add(lattice->plane(k));
   if (symmetries.size() > kMaxClosed) return found;
   for (const ReflectionPlane& plane : symmetries) {

@@ -38,9 +38,6 @@ constexpr double kLeastSpread = 0.02;
 // Share of the surface seen. chosen: lower values let prisms with many sides pass for round, higher ones break up
 // families with a handle, a spout or a base. Half a shape fits almost any plane, so that scans need more.
 constexpr double kFamilyShare = 0.92, kSeenFamilyShare = 0.98;
-// Radii. chosen: smaller values leave planes of a family beside it as single planes, larger ones take planes that have
-// nothing to do with it.
-constexpr double kFamilyTolerance = 0.03;
 // Points that judge a family. chosen: 1500 have a standard error of 0.5 % at a share of 0.96; more cost time.
 constexpr int kFamilySamples = 1500;
 // The same where points resolve no surface. chosen: a look-up in the density costs a tenth of a search; with a tenth of
@@ -219,7 +216,7 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   };
   test.min_share = cloud.isScan() ? kSeenFamilyShare : kFamilyShare;
   test.allowance = fit.familyAllowance();
-  test.tolerance = kFamilyTolerance;
+  test.tolerance = kContainedOffset;
   return test;
 }
 
@@ -309,7 +306,7 @@ std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, co
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
       const AxisLine line((axis.point - cloud.center) / cloud.scale, axis.direction);
-      return contains(cloud.toNormalized(plane), line, kFamilyTolerance);
+      return contains(cloud.toNormalized(plane), line, kContainedOffset);
     });
   };
   planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());

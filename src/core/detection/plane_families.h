@@ -59,6 +59,10 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<AxisLine>& guesses = {});
 
+/// Radii by which a plane may miss a line, or a point, that it contains. chosen: smaller values leave planes of a
+/// family beside it as single planes, larger ones take planes that have nothing to do with it.
+constexpr double kContainedOffset = 0.03;
+
 /// Whether a plane contains a line, within 3 degrees and \p tolerance.
 bool contains(const ReflectionPlane& plane, const AxisLine& line, double tolerance);
 

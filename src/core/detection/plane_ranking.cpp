@@ -17,7 +17,6 @@ constexpr PlaneTolerance kSlope{0.2, 0.15};
 // Difference of D. chosen: what rounding and cells make of a level slope; larger values drop shallow maxima of their
 // own.
 constexpr double kSlopeDip = 0.005;
-constexpr double kPolygonOffset = 0.03;  // radii. chosen: as planes of a family (plane_families.cpp)
 
 int rankOf(const SymmetryPlane& plane) {
   switch (plane.kind) {
@@ -50,7 +49,7 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
 
 /// Whether a plane is of a polygon, between whose planes noise may leave no dip.
 bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
-  return polygon && contains(cloud.toNormalized(plane), polygon->line, kPolygonOffset);
+  return polygon && contains(cloud.toNormalized(plane), polygon->line, kContainedOffset);
 }
 
 /// Judges every point, where the plane was judged by some of them.

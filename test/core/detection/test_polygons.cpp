@@ -67,7 +67,7 @@ DetectionOptions manyPlanes() {
 
 TEST(PlaneLattice, AFewPlanesOfAPolygonTellTheOthers) {
   const auto planes = planesAt({0, 3, 7, 8, 13, 14}, 17);
-  const auto lattice = findLattice(planes, 0.03);
+  const auto lattice = findLattice(planes);
   ASSERT_TRUE(lattice);
   EXPECT_EQ(lattice->fold, 17);
   EXPECT_EQ(lattice->num_planes, 6);
@@ -78,7 +78,7 @@ TEST(PlaneLattice, AFewPlanesOfAPolygonTellTheOthers) {
 TEST(PlaneLattice, APlaneAcrossTheLineDoesNotMatter) {
   auto planes = planesAt({0, 1, 2, 4, 6}, 7);
   planes.insert(planes.begin(), ReflectionPlane(kPolygonLine.direction(), 0.4));
-  const auto lattice = findLattice(planes, 0.03);
+  const auto lattice = findLattice(planes);
   ASSERT_TRUE(lattice);
   EXPECT_EQ(lattice->fold, 7);
 }
@@ -89,14 +89,14 @@ TEST(PlaneLattice, PlanesAtRandomAnglesHaveNone) {
   for (int i = 0; i < 200; ++i) {
     std::vector<double> places;
     for (int k = 0; k < 8; ++k) places.push_back(random.uniform());
-    num_found += findLattice(planesAt(places, 1), 0.03) ? 1 : 0;
+    num_found += findLattice(planesAt(places, 1)) ? 1 : 0;
   }
   EXPECT_LE(num_found, 1);
 }
 
 TEST(PlaneLattice, FewPlanesSayNothing) {
-  EXPECT_FALSE(findLattice({}, 0.03));
-  EXPECT_FALSE(findLattice(planesAt({0, 1, 2}, 5), 0.03));
+  EXPECT_FALSE(findLattice({}));
+  EXPECT_FALSE(findLattice(planesAt({0, 1, 2}, 5)));
 }
 
 TEST(Polygons, AllPlanesOfManyFoldsAreFound) {

@@ -25,11 +25,10 @@ constexpr int kSpectrumSamples = 5000;
 constexpr int kBeside = 12;
 constexpr double kLeastPower = 1e-30;  // derived: below the rounding of sums of 5000 values; avoids a division by 0
 // Times the power beside it. chosen: noise alone reaches it in one of a million frequencies; cones of 15 folds with
-// noise of two spacings have 30. At half, round bodies have folds.
+// noise of two spacings have 30. At half, noise reaches it in one of a thousand, and has 58 to try.
 constexpr double kStandsOut = 20.0;
 constexpr std::size_t kMostLinePairs = 4;         // planes whose common lines are tried. chosen: 6 lines of 10 ms
 constexpr double kLeastLineAngle = 0.1;           // radians. chosen: at smaller angles errors move the line too far
-constexpr double kLineOffset = 0.03;              // radii. chosen: as planes of a family (plane_families.cpp)
 constexpr std::array<int, 3> kDivisors{2, 3, 5};  // derived: of parts of a polygon whose planes may differ
 
 /// Fourier coefficients of the mean of f at the reflected points, by the angle of the plane over half a turn.
@@ -143,7 +142,7 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
   // All planes tell where the polygon lies: those that noise moved away from their place make way.
   planes.erase(std::remove_if(planes.begin(), planes.end(),
                               [&](const SymmetryPlane& plane) {
-                                return contains(cloud.toNormalized(plane), lattice->line, kLineOffset);
+                                return contains(cloud.toNormalized(plane), lattice->line, kContainedOffset);
                               }),
                planes.end());
   for (JudgedPlane& one : judged) {

@@ -27,20 +27,11 @@ double angleAbout(const AxisLine& line, const ReflectionPlane& plane) {
   return angle < 0.0 ? angle + kPi : angle;
 }
 
-}  // namespace
-
-ReflectionPlane PlaneLattice::plane(double k) const {
-  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
-  const double angle = phase + k * kPi / fold;
-  const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
-  return ReflectionPlane(n, n.dot(line.origin()));
-}
-
-std::optional<PlaneLattice> latticeAbout(const AxisLine& line, const std::vector<ReflectionPlane>& planes,
-                                         double tolerance) {
+/// The lattice of the planes that contain a line.
+std::optional<PlaneLattice> latticeAbout(const AxisLine& line, const std::vector<ReflectionPlane>& planes) {
   std::vector<double> angles;
   for (const ReflectionPlane& plane : planes)
-    if (contains(plane, line, tolerance)) angles.push_back(angleAbout(line, plane));
+    if (contains(plane, line, kContainedOffset)) angles.push_back(angleAbout(line, plane));
   if (angles.size() < kLeastPlanes) return std::nullopt;
   for (int fold = 3; fold <= kMostFold; ++fold) {
     std::complex<double> sum = 0.0;
@@ -59,7 +50,16 @@ std::optional<PlaneLattice> latticeAbout(const AxisLine& line, const std::vector
   return std::nullopt;
 }
 
-std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes, double tolerance) {
+}  // namespace
+
+ReflectionPlane PlaneLattice::plane(double k) const {
+  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
+  const double angle = phase + k * kPi / fold;
+  const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
+  return ReflectionPlane(n, n.dot(line.origin()));
+}
+
+std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes) {
   std::optional<PlaneLattice> best;
   const std::size_t size = std::min(planes.size(), kMostPairs);
   for (std::size_t i = 0; i < size; ++i)
@@ -68,10 +68,10 @@ std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& plan
       AxisLine line = commonLine({planes[i], planes[j]});
       std::vector<ReflectionPlane> through;
       for (const ReflectionPlane& plane : planes)
-        if (contains(plane, line, tolerance)) through.push_back(plane);
+        if (contains(plane, line, kContainedOffset)) through.push_back(plane);
       if (through.size() < kLeastPlanes) continue;
       line = commonLine(through);
-      const std::optional<PlaneLattice> lattice = latticeAbout(line, planes, tolerance);
+      const std::optional<PlaneLattice> lattice = latticeAbout(line, planes);
       if (lattice && (!best || lattice->num_planes > best->num_planes)) best = lattice;
     }
   return best;

@@ -20,12 +20,8 @@ struct PlaneLattice {
 };
 
 /// The lattice that most planes through one line fit.
-/// \param planes in one frame, most certain first.
+/// \param planes normalised frame, most certain first.
 /// \return none where planes fit none better than chance would have it.
-std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes, double tolerance);
-
-/// The lattice of the planes that contain a line.
-std::optional<PlaneLattice> latticeAbout(const AxisLine& line, const std::vector<ReflectionPlane>& planes,
-                                         double tolerance);
+std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes);
 
 }  // namespace pcl_symmetry
