@@ -27,7 +27,7 @@ struct FrameOptions {
   /// The paper's own method: three planes picked greedily by D, through bin centers of the map and at num_phi angles
   /// within the plane across the first axis. It ignores what a scanner saw, and no scores tie.
   bool as_published = false;
-  bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes a seventh of the time
+  bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes an eighth of the time
   std::uint64_t seed = 1;     ///< of all random draws
   int num_threads = 0;        ///< >= 0; 0 = one per core
 
