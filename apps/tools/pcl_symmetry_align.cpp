@@ -221,6 +221,15 @@ nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift
   for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
     json["equivalent"].push_back(absolute(T_canonical_input));
   json["turns"] = turnsJson(frame.turns, shift);
+  json["probable"] = nlohmann::json::array();
+  for (const ProbableFrame& other : frame.probable) {
+    nlohmann::json axes = nlohmann::json::array();
+    for (int k = 0; k < 3; ++k) axes.push_back(numbersOf(other.axes.col(k)));
+    json["probable"].push_back({{"center", numbersOf(shiftedBack(other.center, shift))},
+                                {"axes", axes},
+                                {"revolution_axis", other.revolution_axis},
+                                {"probability", other.probability}});
+  }
   return json;
 }
 
@@ -235,6 +244,14 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   }
   for (const SymmetryTurn& turn : frame.turns)
     if (turn.confidence >= DetectionOptions().min_confidence) lines += lineOf(turn, shift);
+  double others = 0.0;
+  for (std::size_t i = 1; i < frame.probable.size(); ++i) others += frame.probable[i].probability;
+  char text[96];
+  if (!frame.probable.empty()) {
+    std::snprintf(text, sizeof(text), "probability of these axes %.2f, of %zu others %.2f\n",
+                  frame.probable.front().probability, frame.probable.size() - 1, others);
+    lines += text;
+  }
   return lines;
 }
 

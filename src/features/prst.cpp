@@ -32,6 +32,7 @@ std::vector<float> detail::describePRST(const Points& points, const PRSTParamete
     T_frame_input.translation() = -centerOfMass(points);
   } else {
     FrameOptions frame;
+    frame.probabilities = false;
     frame.seed = parameters.seed;
     frame.turns = false;
     frame.num_threads = frame.edt.num_threads = parameters.num_threads;

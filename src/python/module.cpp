@@ -207,6 +207,13 @@ std::vector<RankedView> viewpoints(const std::vector<SymmetryPlane>& planes) {
 }
 
 void addFrame(py::module_& module) {
+  py::class_<ProbableFrame>(module, "ProbableFrame", "A frame that may be the shape's own.")
+      .def_readonly("center", &ProbableFrame::center, "(3,) center of symmetry, frame and units of the input")
+      .def_readonly("axes", &ProbableFrame::axes, "(3, 3) axes in columns, orthonormal, right-handed")
+      .def_readonly("revolution_axis", &ProbableFrame::revolution_axis, "as of `Frame`")
+      .def_readonly(
+          "probability", &ProbableFrame::probability,
+          "that the axes are the shape's own, in any order and sign, at any angle about an axis of revolution");
   py::class_<SymmetryFrame>(module, "Frame",
                             "Canonical frame of a shape (Section 5.1): center and principal symmetry axes.")
       .def_readonly("center", &SymmetryFrame::center, "(3,) center of symmetry, frame and units of the input")
@@ -223,6 +230,8 @@ void addFrame(py::module_& module) {
       .def_property_readonly(
           "turns", [](const SymmetryFrame& f) { return f.turns; },
           "list of Turn, of scans from one side, most confident first");
+  .def_readonly("probable", &SymmetryFrame::probable,
+                "list of `ProbableFrame`: this frame, then others by falling probability");
   py::class_<ObjectSymmetries>(module, "Rotations", "The rotations that map a shape onto itself.")
       .def_property_readonly("name", &ObjectSymmetries::name, "after Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3")
       .def_readonly("fold", &ObjectSymmetries::fold, "order of the main axis; 0 where it is one of revolution")

@@ -179,6 +179,7 @@ FrameOptions signatureFrameOptions() {
   options.num_phi = 64;
   options.num_radius = 32;
   options.turns = false;
+  options.probabilities = false;
   return options;
 }
 

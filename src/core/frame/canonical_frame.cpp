@@ -18,6 +18,15 @@ constexpr double kSharpness = 15.0;
 // Radii, standard deviation of the offsets of second and third planes about the middle of the extent. chosen: half
 // follows the extent alone, twice lets flat profiles drift.
 constexpr double kOffsetWidth = 0.07;
+// Radii, from the middle of a scan to its first plane, half-way between which the center then lies. measured: on 356
+// scans of 178 models of fold 0, 0.15 to 0.3 leave centers 3.93 times nearer than the center of mass (3.92 without), on
+// 276 of fold 1 3.44, 3.43 and 3.39 times at 0.15, 0.2 and 0.3 (3.24).
+constexpr double kDoubtfulOffset = 0.2;
+// Weight exp(kCenterSharpness v) of the center of a scan's frame whose value is v below that of the first. measured:
+// without the push of FrameEvidence, centers of 356 scans of fold 0 are 3.53 times nearer than the center of mass with
+// 30, 3.26 times with 15 and 3.46 times with the first frame alone; 98.6, 95.8 and 97.8 % of them are nearer. The same
+// for wholes takes 3.53 to 3.46.
+constexpr double kCenterSharpness = 30.0;
 // Angles at which a revolution is tested, in the half-turn. chosen: half takes square prisms for round ones, twice
 // takes twice the time.
 constexpr int kNumRevolutionAngles = 8;
@@ -29,6 +38,15 @@ Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
   result.col(1) = (result.col(1) - result.col(0).dot(result.col(1)) * result.col(0)).normalized();
   result.col(2) = result.col(0).cross(result.col(1));
   return result;
+}
+
+/// The offset of the first plane; of a scan, where it may be a false one, the nearer to the middle the further it is
+/// from it.
+float firstOffset(const FrameEvidence& evidence, const CellPlane& first) {
+  if (!evidence.scanned()) return first.offset;
+  const double away = evidence.middleAlong(first.normal) - first.offset;
+  const double doubtful = kDoubtfulOffset * evidence.reach();
+  return first.offset + static_cast<float>(away * away * away / (away * away + doubtful * doubtful));
 }
 
 }  // namespace
@@ -47,7 +65,7 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame) {
   const CellPlane first{frame.axes.col(0), frame.offsets[0]};
-  Eigen::Vector3f center = first.offset * first.normal;
+  Eigen::Vector3f center = firstOffset(evidence, first) * first.normal;
   for (int k = 1; k < 3; ++k) {
     const Eigen::Vector3f axis = frame.axes.col(k);
     const std::vector<float> s = evidence.profile(axis, evidence.completedAcross(first));
@@ -64,6 +82,17 @@ Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandi
     center += static_cast<float>(sum > 0.0 ? moment / sum : middle) * axis;
   }
   return evidence.toInput(center);
+}
+
+Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const std::vector<FrameCandidate>& frames) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double weight = std::exp(kCenterSharpness * std::min(frames[i].value - frames.front().value, 0.0));
+    mean += weight * (centers[i] - centers.front());
+    sum += weight;
+  }
+  return centers.front() + mean / sum;
 }
 
 int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, double tie) {

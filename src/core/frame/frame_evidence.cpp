@@ -24,6 +24,10 @@ constexpr double kSigmaInSpacings = 1.5;
 constexpr double kCubeSide = 2.2;
 // Share of the points beyond either end of their extent. chosen: half follows outliers, twice cuts off thin parts.
 constexpr double kTail = 0.005;
+// Radii, from the middle of the extent of a scan away from the scanner. measured: centers of 572 scans of 143 models of
+// fold 0 are 3.4 times nearer than the center of mass without it, 3.8, 4.1, 4.1, 4.1 and 3.9 times at 0.02, 0.04, 0.05,
+// 0.06 and 0.08.
+constexpr float kPush = 0.05f;
 
 }  // namespace
 
@@ -47,7 +51,13 @@ FrameEvidence::FrameEvidence(const PointsRef& points, const FrameOptions& option
       middle_(edt_.origin() + Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1) * edt_.cellSize())),
       reach_(static_cast<float>(edt_.radius() / edt_.cellSize())),
       principal_axes_(pcl_symmetry::principalAxes(points)),
-      center_of_mass_(toCells(principal_axes_.center)) {}
+      center_of_mass_(toCells(principal_axes_.center)),
+      push_(push(visibility)) {}
+
+Eigen::Vector3f FrameEvidence::push(const Visibility* visibility) const {
+  if (!visibility) return Eigen::Vector3f::Zero();
+  return kPush * reach_ * (principal_axes_.center - visibility->viewpoint()).normalized().cast<float>();
+}
 
 FrameEvidence::Weights FrameEvidence::weightsOf(bool scanned) {
   // chosen: at 0 the first plane alone decides and ties are left to chance; at twice frames of three fair planes win
@@ -105,7 +115,7 @@ double FrameEvidence::middleAlong(const Eigen::Vector3f& axis) const {
   std::nth_element(t.begin(), t.begin() + tail, t.end());
   const float low = t[static_cast<std::size_t>(tail)];
   std::nth_element(t.begin(), t.end() - 1 - tail, t.end());
-  return 0.5 * (low + *(t.end() - 1 - tail));
+  return 0.5 * (low + *(t.end() - 1 - tail)) + axis.dot(push_);
 }
 
 }  // namespace pcl_symmetry

@@ -75,8 +75,9 @@ public:
 
   /// Variance of the points along an axis, input units squared.
   double spreadAlong(const Eigen::Vector3f& axis) const;
-  /// Middle of the extent of the points along an axis. For a scan it lies near that of the whole object, because
-  /// silhouettes and rims are seen where surfaces behind them are not; the center of mass does not.
+  /// Middle of the extent of the points along an axis, cells. For a scan it lies near that of the whole object, because
+  /// silhouettes and rims are seen where surfaces behind them are not; the center of mass does not. It is pushed away
+  /// from the scanner, because the extent ends where the back begins.
   double middleAlong(const Eigen::Vector3f& axis) const;
 
 private:
@@ -86,6 +87,8 @@ private:
     double others, agreement;
   };
   static Weights weightsOf(bool scanned);
+  /// What the middle of a scan's extent is pushed by, cells; 0 for whole clouds.
+  Eigen::Vector3f push(const Visibility* visibility) const;
   static GaussianEdtOptions edtOptions(const PointsRef& points, GaussianEdtOptions options, bool scanned);
 
   const PointsRef& points_;
@@ -99,6 +102,7 @@ private:
   const float reach_;
   const PrincipalAxes principal_axes_;
   const Eigen::Vector3f center_of_mass_;
+  const Eigen::Vector3f push_;
 };
 
 }  // namespace pcl_symmetry

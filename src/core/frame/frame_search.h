@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "core/frame/frame_evidence.h"
@@ -43,6 +44,10 @@ std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std
 /// \param turned result of framesAbout() for at least one first plane.
 std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& turned);
 
+/// The frame of given axes, each plane at its best offset, in the order of refinedFrames().
+/// \param axes orthonormal columns, the first that of the first plane.
+FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes, double tie);
+
 /// Moves each frame to the nearest maximum of its value, all three planes together. Then orders the second and third
 /// axis by score, or where scores tie by the spread of the points.
 /// \param tie scores that differ by no more than this
@@ -50,5 +55,16 @@ std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& turne
 /// \return the frames, best first.
 std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames, double tie,
                                           int num_threads);
+
+/// All frames of a search.
+struct FoundFrames {
+  std::vector<FrameCandidate> turned;   ///< result of framesAbout()
+  std::vector<FrameCandidate> refined;  ///< their maxima, best first, or before them the best one when it is leveled
+};
+
+/// The steps above, one after the other.
+/// \param done called with the name of each stage when it ends.
+FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& options,
+                       const std::function<void(const char*)>& done);
 
 }  // namespace pcl_symmetry

@@ -40,15 +40,19 @@ struct PerpendicularPlane {
   ScoredOffset half_way;  // offset of the plane half-way between it and the first; scans only
 };
 
-PerpendicularPlane planeAt(const FrameEvidence& evidence, const CellPlane& first, std::size_t angle_index) {
-  const float angle = static_cast<float>(kPi * static_cast<double>(angle_index) / kNumHalfTurnAngles);
-  const Eigen::Vector3f u = first.normal.unitOrthogonal(), v = first.normal.cross(u);
+PerpendicularPlane planeOf(const FrameEvidence& evidence, const CellPlane& first, const Eigen::Vector3f& normal) {
   PerpendicularPlane plane;
-  plane.normal = std::cos(angle) * u + std::sin(angle) * v;
+  plane.normal = normal;
   plane.best = evidence.bestOffset(plane.normal, evidence.completedAcross(first));
   plane.agreement = evidence.agreement(plane.normal);
   if (evidence.scanned()) plane.half_way = evidence.bestOffset(halfWay(first.normal, plane.normal));
   return plane;
+}
+
+PerpendicularPlane planeAt(const FrameEvidence& evidence, const CellPlane& first, std::size_t angle_index) {
+  const float angle = static_cast<float>(kPi * static_cast<double>(angle_index) / kNumHalfTurnAngles);
+  const Eigen::Vector3f u = first.normal.unitOrthogonal(), v = first.normal.cross(u);
+  return planeOf(evidence, first, std::cos(angle) * u + std::sin(angle) * v);
 }
 
 FrameCandidate frameOf(const FrameEvidence& evidence, const CellPlane& first, const PerpendicularPlane& second,
@@ -130,6 +134,13 @@ FrameCandidate ordered(const FrameEvidence& evidence, FrameCandidate frame, doub
 }
 
 }  // namespace
+
+FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes, double tie) {
+  const CellPlane first{axes.col(0), evidence.bestOffset(axes.col(0)).offset};
+  return ordered(evidence,
+                 frameOf(evidence, first, planeOf(evidence, first, axes.col(1)), planeOf(evidence, first, axes.col(2))),
+                 tie);
+}
 
 std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std::vector<CellPlane>& first_planes,
                                         int num_threads) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
@@ -11,6 +12,8 @@
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/frame/frame_search.h"
+#include "core/frame/probable/leveled_frames.h"
+#include "core/frame/probable/probable_frames.h"
 
 namespace pcl_symmetry {
 
@@ -86,6 +89,26 @@ std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef
   return turnsOfScan(points, edt, visibility, axes, detection);
 }
 
+/// The frame itself, then the others by falling probability.
+std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const SymmetryFrame& frame,
+                                          const std::vector<FrameChoice>& choices) {
+  const std::vector<double> probabilities = frameProbabilities(choices, frameWeights(evidence.scanned()));
+  std::vector<ProbableFrame> probable;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const FrameChoice& choice = choices[i];
+    if (i == 0)
+      probable.push_back({frame.center, frame.axes, frame.revolution_axis, probabilities[i]});
+    else
+      probable.push_back({centerOfSymmetry(evidence, choice.frame),
+                          principalSymmetryAxes(evidence.points(), choice.frame.axes), choice.revolution_axis,
+                          probabilities[i]});
+  }
+  if (!probable.empty())
+    std::stable_sort(probable.begin() + 1, probable.end(),
+                     [](const ProbableFrame& a, const ProbableFrame& b) { return a.probability > b.probability; });
+  return probable;
+}
+
 }  // namespace
 
 void FrameOptions::validate() const {
@@ -98,6 +121,26 @@ void FrameOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
+FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& options,
+                       const std::function<void(const char*)>& done) {
+  SymmetryMap map = coarseMap(evidence.edt(), evidence.freeSpace(), options);
+  map.center_of_mass = centerOfMass(evidence.points());
+  done("transform");
+
+  // First plane: several candidates, as the best one depends on the frame that it leads to.
+  const std::vector<CellPlane> candidates = firstPlaneCandidates(evidence, map, options.num_threads);
+  done("candidates");
+
+  // Second and third plane: perpendicular to the first, at all angles, on the completed cloud of a scan. The best
+  // frames are refined as a whole.
+  FoundFrames found;
+  found.turned = framesAbout(evidence, bestFirstPlanes(evidence, candidates), options.num_threads);
+  found.refined = refinedFrames(evidence, frameMaxima(found.turned), options.tie, options.num_threads);
+  found.refined = leveledFirst(evidence, std::move(found.refined), options.tie);
+  done("frames");
+  return found;
+}
+
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options, const Visibility* visibility) {
   options.validate();
   if (options.as_published) return publishedFrame(points, options);
@@ -107,26 +150,14 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
 
   const FrameEvidence evidence(points, options, visibility);
   done("surface");
-  SymmetryMap map = coarseMap(evidence.edt(), evidence.freeSpace(), options);
-  map.center_of_mass = centerOfMass(points);
-  done("transform");
-
-  // First plane: several candidates, as the best one depends on the frame that it leads to.
-  const std::vector<CellPlane> candidates = firstPlaneCandidates(evidence, map, options.num_threads);
-  done("candidates");
-
-  // Second and third plane: perpendicular to the first, at all angles, on the completed cloud of a scan. The best
-  // frames are refined as a whole.
-  const std::vector<FrameCandidate> turned =
-      framesAbout(evidence, bestFirstPlanes(evidence, candidates), options.num_threads);
-  const std::vector<FrameCandidate> frames =
-      refinedFrames(evidence, frameMaxima(turned), options.tie, options.num_threads);
-  done("frames");
+  const auto [turned, frames] = findFrames(evidence, options, done);
 
   // Principal symmetry axes, center of symmetry and axis of revolution of the best frame.
   const FrameCandidate& best = frames.front();
   frame.axes = principalSymmetryAxes(points, best.axes);
-  frame.center = centerOfSymmetry(evidence, best);
+  std::vector<Eigen::Vector3d> centers;
+  for (const FrameCandidate& other : frames) centers.push_back(centerOfSymmetry(evidence, other));
+  frame.center = evidence.scanned() ? meanCenter(centers, frames) : centers.front();
   frame.scores = best.scores.cast<double>().cwiseMin(1.0);
   frame.revolution_axis = revolutionAxis(evidence, best, options.tie);
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
@@ -134,9 +165,8 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   // Equally good frames: first the maxima, then the angles between them where the second plane hardly matters.
   EquivalentFrames equivalent;
   equivalent.addWithSigns(frame.axes, frame.center);
-  for (const FrameCandidate& other : frames)
-    equivalent.addTied(other, best.scores, options.tie,
-                       &other == &best ? frame.center : centerOfSymmetry(evidence, other));
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    equivalent.addTied(frames[i], best.scores, options.tie, i == 0 ? frame.center : centers[i]);
   frame.num_maxima = equivalent.poses().size();
   for (const FrameCandidate& other : turned)
     if (!isTurnAboutRevolution(frame, other)) equivalent.addTied(other, best.scores, options.tie, frame.center);
@@ -145,6 +175,10 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   if (visibility && options.turns) {
     frame.turns = turnsAlong(frame, points, evidence.edt(), options, *visibility);
     done("turns");
+  }
+  if (options.probabilities) {
+    frame.probable = probableFrames(evidence, frame, frameChoices(evidence, frames, options.tie, options.num_threads));
+    done("probabilities");
   }
   return frame;
 }

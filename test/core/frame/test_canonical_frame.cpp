@@ -40,6 +40,15 @@ TEST(PrincipalSymmetryAxes, AreOrthonormalAndPointToTheLongerTail) {
   EXPECT_LT(axes(2, 2), -0.9) << "the tail of z is at -4";
 }
 
+TEST(MeanCenter, LiesBetweenFramesThatAreNearlyAsGood) {
+  std::vector<FrameCandidate> frames(3, candidate(Eigen::Matrix3d::Identity(), Eigen::Vector3f::Ones()));
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].value = 2.0 - (i == 2 ? 1.0 : 0.0);
+  const std::vector<Eigen::Vector3d> centers{Eigen::Vector3d::Zero(), Eigen::Vector3d(2, 4, 6),
+                                             Eigen::Vector3d(100, 0, 0)};
+  EXPECT_LT((meanCenter(centers, frames) - Eigen::Vector3d(1, 2, 3)).norm(), 1e-6) << "the third is far worse";
+  EXPECT_EQ(meanCenter({centers[1]}, {frames[1]}), centers[1]);
+}
+
 TEST(EquivalentFrames, HaveEverySignThatIsARotation) {
   EquivalentFrames frames;
   const Eigen::Isometry3d pose = randomPose(2);

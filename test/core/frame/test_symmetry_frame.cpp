@@ -30,6 +30,8 @@ void expectSame(const SymmetryFrame& a, const SymmetryFrame& b) {
   EXPECT_EQ(a.axes, b.axes);
   EXPECT_EQ(a.scores, b.scores);
   EXPECT_EQ(a.revolution_axis, b.revolution_axis);
+  ASSERT_EQ(a.probable.size(), b.probable.size());
+  for (std::size_t i = 0; i < a.probable.size(); ++i) EXPECT_EQ(a.probable[i].probability, b.probable[i].probability);
   ASSERT_EQ(a.equivalent.size(), b.equivalent.size());
   for (std::size_t i = 0; i < a.equivalent.size(); ++i)
     EXPECT_EQ(a.equivalent[i].matrix(), b.equivalent[i].matrix()) << i;
@@ -142,6 +144,31 @@ TEST(SymmetryFrame, ListsTheFramesThatSymmetryLeavesEquallyGood) {
     });
     EXPECT_TRUE(listed) << axis;
   }
+}
+
+TEST(SymmetryFrame, ListsFramesThatMayBeTheShapesOwnWithTheirProbabilities) {
+  const Eigen::Isometry3d pose = test::randomPose(4);
+  const SymmetryFrame frame = symmetryFrame(test::moved(finnedBox(5), pose).cloud());
+  ASSERT_GE(frame.probable.size(), 2u);
+  EXPECT_EQ(frame.probable[0].axes, frame.axes) << "the frame itself is the first";
+  EXPECT_EQ(frame.probable[0].center, frame.center);
+  EXPECT_GT(frame.probable[0].probability, 0.5);
+  double sum = 0.0;
+  for (const ProbableFrame& other : frame.probable) {
+    EXPECT_LT((other.axes.transpose() * other.axes - Eigen::Matrix3d::Identity()).norm(), 1e-5);
+    EXPECT_GT(other.axes.determinant(), 0.9);
+    EXPECT_GE(other.probability, 0.0);
+    sum += other.probability;
+  }
+  EXPECT_LT(sum, 1.0) << "none of them may be right";
+  for (std::size_t i = 2; i < frame.probable.size(); ++i)
+    EXPECT_LE(frame.probable[i].probability, frame.probable[i - 1].probability);
+
+  FrameOptions options;
+  options.probabilities = false;
+  const SymmetryFrame without = symmetryFrame(test::moved(finnedBox(5), pose).cloud(), options);
+  EXPECT_TRUE(without.probable.empty());
+  EXPECT_EQ(without.T_canonical_input.matrix(), frame.T_canonical_input.matrix());
 }
 
 TEST(SymmetryFrame, FindsAxesOfRevolutionAndSpheres) {

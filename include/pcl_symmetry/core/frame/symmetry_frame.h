@@ -30,11 +30,23 @@ struct FrameOptions {
   bool as_published = false;
   /// Axes of turns of scans are searched too, SymmetryFrame::turns; false saves about a third of the time.
   bool turns = true;
-  std::uint64_t seed = 1;  ///< of all random draws
-  int num_threads = 0;     ///< >= 0; 0 = one per core
+  bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes an eighth of the time
+  std::uint64_t seed = 1;     ///< of all random draws
+  int num_threads = 0;        ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
+};
+
+/// A frame that may be the shape's own: that in which people would put it.
+struct ProbableFrame {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< center of symmetry, input frame
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: as of SymmetryFrame
+  int revolution_axis = -1;                            ///< as of SymmetryFrame
+  /// That the axes, in any order and sign, are within 5 degrees of the own axes of the shape, in [0, 1]; a frame with
+  /// an axis of revolution may be turned about it. fitted: to models whose files tell the own axes
+  /// (`calibrate_frames`).
+  double probability = 0.0;
 };
 
 /// The canonical frame of a shape: center of symmetry (COS) and principal symmetry axes (PSA, Section 5.1).
@@ -54,6 +66,11 @@ struct SymmetryFrame {
   /// equally good as well and not listed.
   std::vector<Eigen::Isometry3d> equivalent;
   std::size_t num_maxima = 0;  ///< frames at the front of equivalent that are maxima
+  /// Frames that may be the shape's own, each once up to order, signs and turns about an axis of revolution: this frame
+  /// first, the others by falling probability. Besides maxima of symmetry they are levelled ones, which stand on an
+  /// edge of the outline, fit the smallest box or follow faces. The probabilities add up to less than 1: the rest is
+  /// that of none of them. Empty for FrameOptions::as_published and without FrameOptions::probabilities.
+  std::vector<ProbableFrame> probable;
   /// Of scans: axes of turns, through the center or not, most confident first. They say which poses look the same where
   /// the planes alone do not, as of a propeller.
   std::vector<SymmetryTurn> turns;
@@ -64,9 +81,10 @@ struct SymmetryFrame {
 /// plane perpendicular to both (Section 5.1). The center of symmetry is where the three meet.
 ///
 /// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. The
-/// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points. A scan is
-/// completed by its reflection across the first plane before the other two are searched, and free space speaks against
-/// planes.
+/// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points. Where
+/// faces about the first axis make the shape stand level at little loss of symmetry, the other two axes follow them. A
+/// scan is completed by its reflection across the first plane before the other two are searched, free space speaks
+/// against planes, and its center is a mean over frames that are nearly as good.
 ///
 /// Order: the first plane is that of the frame that is best as a whole. The second scores more than the third or, where
 /// the two tie, the points spread more along it.

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/frame/frame_search.h"
+
+namespace pcl_symmetry {
+
+/// Which of several frames is the shape's own: each with a probability. Not in the paper, which gives one frame.
+///
+/// A frame is right if its axes, in any order and with any sign, are within 5 degrees of those that people gave the
+/// shape; a frame with an axis of revolution may be turned about it by any angle. The probability of a frame is
+/// exp(w.x) / (1 + the sum of exp(w.x) over all frames of the shape), a conditional logit whose 1 stands for "none of
+/// them" (McFadden 1974). `calibrate_frames` fits the weights w.
+
+/// What speaks for a frame: x above.
+///   0  1
+///   1  value less that of the best frame of the shape, <= 0
+///   2  score of the first plane
+///   3  Outline::Box::contact, seen along the first axis
+///   4  angle to the principal axes of the points, in any order and sign, as a share of 20 degrees, at most 1
+///   5  1 for the frame that the search put first
+constexpr int kNumFrameTerms = 6;  // derived: the list above
+using FrameTerms = Eigen::Matrix<double, kNumFrameTerms, 1>;
+
+/// A frame that may be the shape's own.
+struct FrameChoice {
+  FrameCandidate frame;
+  int revolution_axis = -1;  ///< as of SymmetryFrame
+  FrameTerms terms = FrameTerms::Zero();
+};
+
+/// The frames of a search, each once up to order, signs and turns about an axis of revolution, and frames turned about
+/// their first axes: to the smallest box around the outline, to its longest contact, to the faces, and to the principal
+/// axes of the outline.
+/// \param frames from refinedFrames(), best first.
+/// \param tie scores that differ by no more than this are equal.
+/// \return the best frame first; all that was found by the search before all others.
+std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::vector<FrameCandidate>& frames,
+                                      double tie, int num_threads);
+
+/// \param choices of one shape.
+/// \return one probability each; their sum is less than 1.
+std::vector<double> frameProbabilities(const std::vector<FrameChoice>& choices, const FrameTerms& weights);
+
+/// The weights that were fitted.
+FrameTerms frameWeights(bool scanned);
+
+}  // namespace pcl_symmetry
