@@ -250,10 +250,10 @@ std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& plan
 }
 
 /// The longest principal axis of points.
-AxisLine lineThrough(const Points& points) {
+Line3d lineThrough(const Points& points) {
   const PrincipalAxes axes = principalAxes(points);
   const Eigen::Vector3d direction = axes.axes.col(0);
-  return AxisLine(axes.center - direction.dot(axes.center) * direction, direction);
+  return Line3d(axes.center - direction.dot(axes.center) * direction, direction);
 }
 
 }  // namespace
@@ -268,7 +268,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   const std::vector<int> samples =
       drawSamples(cloud.points.cols(), cloud.isVolume() ? kVolumeFamilySamples : kFamilySamples, options.seed);
   if (judge.isLine()) {
-    const AxisLine line = lineThrough(cloud.points);
+    const Line3d line = lineThrough(cloud.points);
     std::vector<ReflectionPlane> through;
     for (int k = 0; k < kTested; ++k) through.push_back(planeThrough(line, k));
     const JudgedFamily judged = judge.judgeFamily(through, samples);
