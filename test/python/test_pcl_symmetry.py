@@ -84,6 +84,9 @@ class Planes(unittest.TestCase):
         self.assertGreaterEqual(turn.confidence, 0.5)
         self.assertLessEqual(turn.off, 1.0)
         self.assertEqual(pcl_symmetry.planes(points).turns, [], "whole clouds have rotations()")
+        frame = pcl_symmetry.frame(seen, viewpoint=viewpoint)
+        self.assertEqual(frame.turns[0].fold, 4)
+        self.assertEqual(pcl_symmetry.frame(points).turns, [])
 
     def test_data_without_an_answer_give_a_reason(self):
         for points in (np.zeros((0, 3), np.float32), np.zeros((100, 3), np.float32), box(num_points=12)):
