@@ -9,11 +9,12 @@ namespace pcl_symmetry {
 
 /// A part of a surface, and a plane of symmetry of that part.
 struct SymmetricPart {
-  ReflectionPlane plane;    ///< normalised frame
-  std::vector<int> points;  ///< some points of the part, spread over it, as ascending indices
-  double share = 0.0;       ///< of the cloud, in [0, 1]
-  double support = 0.0;     ///< mean support of these points, in [0, 1]
-  int iterations = 0;       ///< of Iterative Symmetric Points
+  ReflectionPlane plane;     ///< normalised frame
+  std::vector<int> points;   ///< some points of the part, spread over it, as ascending indices
+  double share = 0.0;        ///< of the cloud, in [0, 1]
+  double support = 0.0;      ///< mean support of these points, in [0, 1]
+  int iterations = 0;        ///< of Iterative Symmetric Points
+  double longer_edge = 0.0;  ///< of its region than a part of its size has, edges of a disc
 };
 
 struct PartSearchOptions {
