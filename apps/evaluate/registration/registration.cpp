@@ -254,8 +254,8 @@ private:
   }
 
   void report() const {
-    std::printf("%-10s %6s %8s %10s %8s %10s %8s %9s %9s %9s\n", "method", "scans", "right %", "converged", "of these",
-                "impostors", "deg", "diagonal", "median ms", "95 % ms", "processor");
+    std::printf("%-10s %6s %8s %10s %8s %10s %8s %9s %9s %9s %9s\n", "method", "scans", "right %", "converged",
+                "of these", "impostors", "deg", "diagonal", "median ms", "95 % ms", "processor");
     nlohmann::json methods = nlohmann::json::object();
     for (std::size_t k = 0; k < methods_.size(); ++k) {
       const Summary s = summarize(trials_, k);
