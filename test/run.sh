@@ -85,7 +85,8 @@ build_and_test() {
   step cmake --build "$folder" --parallel "$jobs"
   say "Testing $folder"
   rm -f "$folder/tests.xml"
-  ctest --preset "$preset" --parallel "$jobs" --tests-regex "$filter" --output-junit tests.xml "$@" </dev/null
+  # One more than there are cores: tests of programs that die wait for them.
+  ctest --preset "$preset" --parallel "$((jobs + 1))" --tests-regex "$filter" --output-junit tests.xml "$@" </dev/null
   local status=$? failed_before=$failed
   if [[ ! -s $folder/tests.xml ]] || ! count "$folder/tests.xml" || { ((status != 0)) && ((failed == failed_before)); }; then
     echo "run.sh: ctest ended with status $status" >&2
