@@ -30,7 +30,7 @@ struct FrameOptions {
   bool as_published = false;
   /// Axes of turns of scans are searched too, SymmetryFrame::turns; false saves about a third of the time.
   bool turns = true;
-  bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes an eighth of the time
+  bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes about a seventh of the time
   std::uint64_t seed = 1;     ///< of all random draws
   int num_threads = 0;        ///< >= 0; 0 = one per core
 
