@@ -13,14 +13,14 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Samples of a cloud. chosen: a part of 4 % has 160; at half, chance makes edges of small parts uncertain, at twice,
-// the search takes half as long again.
+// Samples of a cloud. chosen: a part of 4 % has 160. measured (as kLeastEdge of part_search.cpp, 20 clouds): with 2500
+// as many planes are found, but 0.50 wrong ones a cloud in place of 0.25.
 constexpr int kNumRegionSamples = 4000;
-// Neighbours of a sample that smooth what matches. chosen: at half, scattered matches join regions, at twice, the
+// Neighbours of a sample that smooth what matches. measured: twice as many find 49 of 71 planes in place of 61, as the
 // edge of narrow parts is smoothed away.
 constexpr int kNumSmoothing = 11;
-// The nearest of these, which connect a region. chosen: at half, sampling breaks regions up, at twice, they leap over
-// gaps.
+// The nearest of these, which connect a region. chosen: those around a point of an even surface; nothing else was
+// tried.
 constexpr int kNumConnecting = 6;
 // Mean support of a neighbourhood that matches. chosen: chance matches of a surface that crosses another one have about
 // half. measured: with 0.7, 88 % of the planes of parts at 0.25 wrong ones a cloud, with 0.8, 93 % at 0.15.

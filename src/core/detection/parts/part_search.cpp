@@ -33,8 +33,8 @@ constexpr double kLeastBall = 0.04, kLargestBall = 0.6;
 constexpr double kLeastSupport = 0.7;
 // Radii of the ball, from its middle. chosen: beyond half a radius most of the ball lies on one side of the plane.
 constexpr double kFarthestPlane = 0.5;
-// Planes that are one: radians, and radii of the points. chosen: at half, regions are measured twice, at twice, planes
-// of prisms of many sides are lost.
+// Planes that are one: radians, and radii of the points. chosen: half of what is between the planes of a prism of 24
+// sides.
 constexpr PlaneTolerance kSamePlane{0.07, 0.04};
 // Share of the points. chosen: a part of less is a detail. derived: a plane that maps 90 % is an approximate symmetry
 // of the whole (evidence/README.md).
