@@ -229,7 +229,7 @@ void addFrame(py::module_& module) {
           "(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first")
       .def_property_readonly(
           "turns", [](const SymmetryFrame& f) { return f.turns; },
-          "list of Turn, of scans from one side, most confident first");
+          "list of Turn, of scans from one side, most confident first")
   .def_readonly("probable", &SymmetryFrame::probable,
                 "list of `ProbableFrame`: this frame, then others by falling probability");
   py::class_<ObjectSymmetries>(module, "Rotations", "The rotations that map a shape onto itself.")
