@@ -230,8 +230,8 @@ void addFrame(py::module_& module) {
       .def_property_readonly(
           "turns", [](const SymmetryFrame& f) { return f.turns; },
           "list of Turn, of scans from one side, most confident first")
-  .def_readonly("probable", &SymmetryFrame::probable,
-                "list of `ProbableFrame`: this frame, then others by falling probability");
+      .def_readonly("probable", &SymmetryFrame::probable,
+                    "list of `ProbableFrame`: this frame, then others by falling probability");
   py::class_<ObjectSymmetries>(module, "Rotations", "The rotations that map a shape onto itself.")
       .def_property_readonly("name", &ObjectSymmetries::name, "after Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3")
       .def_readonly("fold", &ObjectSymmetries::fold, "order of the main axis; 0 where it is one of revolution")
