@@ -8,6 +8,7 @@
 #include "common/command_line/command_line.h"
 #include "common/command_line/run_tool.h"
 #include "common/command_line/tool_errors.h"
+#include "common/shape_output/shape_output.h"
 #include "core/base/constants.h"
 #include "drawing/mug_mesh.h"
 #include "drawing/parametric_mesh.h"
@@ -162,7 +163,7 @@ pcl::PolygonMesh bottle() {
 int run(int argc, char** argv) {
   if (argc != 2 || argv[1][0] == '-') throw UsageError("usage: make_shapes FOLDER");
   const boost::filesystem::path folder(argv[1]);
-  boost::filesystem::create_directories(folder);
+  makeFolder(folder.string());
   const std::pair<const char*, pcl::PolygonMesh> shapes[] = {
       {"teapot", teapot()},     {"octopus", octopus()}, {"mug", mug(0.9, 0.9)}, {"car", car()},
       {"airplane", airplane()}, {"chair", chair()},     {"carton", carton()},   {"propeller", propeller()},

@@ -172,9 +172,7 @@ private:
     const fs::path folder = options_.arguments.front();
     std::vector<std::string> names(options_.arguments.begin() + 1, options_.arguments.end());
     if (names.empty()) names = database.names();
-    boost::system::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw InputError(folder.string() + ": " + error.message());
+    makeFolder(folder.string());
     Step step(console_, "Writing " + std::to_string(names.size()) + " clouds");
     std::vector<std::string> failures;
     for (const std::string& name : names) {

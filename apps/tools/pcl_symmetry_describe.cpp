@@ -115,9 +115,7 @@ std::vector<std::string> outputPaths(const DescribeOptions& options) {
     const auto [known, added] = input_of_outputs.emplace(paths.back(), input);
     if (!added) throw InputError(input + ": has the name of " + known->second + ", names must differ");
   }
-  boost::system::error_code error;
-  fs::create_directories(options.output, error);
-  if (!fs::is_directory(options.output)) throw InputError(options.output + ": cannot be made, must be a folder");
+  makeFolder(options.output);
   return paths;
 }
 

@@ -115,6 +115,12 @@ void writeAtomically(const std::string& path, const std::function<void(const std
   if (std::rename(temporary.c_str(), final_name.c_str()) != 0) failToWrite(path, std::strerror(errno));
 }
 
+void makeFolder(const std::string& path) {
+  boost::system::error_code error;  // Boost 1.74 has one for ".", which is there
+  fs::create_directories(path, error);
+  if (!fs::is_directory(path)) throw InputError(path + ": cannot be made, must be a folder");
+}
+
 void writeText(const std::string& path, const std::string& text) {
   if (isStandardStream(path)) return writeStandardOutput(text);
   writeAtomically(path, [&](const std::string& temporary) {

@@ -18,6 +18,10 @@ namespace pcl_symmetry::apps {
 /// \throws InputError if the folder is missing or not writable, or the writer made no file; whatever the writer throws.
 void writeAtomically(const std::string& path, const std::function<void(const std::string& temporary_path)>& writer);
 
+/// Makes a folder for outputs and those that hold it, unless they are there.
+/// \throws InputError if it cannot be made.
+void makeFolder(const std::string& path);
+
 /// Writes text, e.g. JSON, as it is.
 void writeText(const std::string& path, const std::string& text);
 

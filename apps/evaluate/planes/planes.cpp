@@ -151,7 +151,7 @@ public:
 
   void run() {
     const std::vector<Model> models = listModels(options_.folders, options_.selection);
-    if (options_.export_folder) boost::filesystem::create_directories(*options_.export_folder);
+    if (options_.export_folder) makeFolder(*options_.export_folder);
     evaluate(models);
     if (!work_.isFirst()) return;
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);

@@ -103,7 +103,7 @@ public:
   void run() {
     load();
     if (options_.leave_out > 0) build();
-    if (options_.export_folder) boost::filesystem::create_directories(*options_.export_folder);
+    if (options_.export_folder) makeFolder(*options_.export_folder);
     Step step(console_, "Looking at " + std::to_string(options_.num_scenes) + " scenes");
     for (int i = 0; i < options_.num_scenes; ++i) {
       step.progress(static_cast<double>(i) / options_.num_scenes);

@@ -22,6 +22,17 @@ TEST(WriteAtomically, LeavesTheWholeFileAndNothingElse) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.json"});
 }
 
+TEST(MakeFolder, MakesWhatIsMissingAndRefusesAFile) {
+  const TemporaryFolder folder;
+  makeFolder(folder / "a/b/");
+  makeFolder(folder / "a/.");
+  makeFolder(".");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a"});
+  folder.write("file", "");
+  EXPECT_THROW(makeFolder(folder / "file"), InputError);
+  EXPECT_THROW(makeFolder(folder / "file/below"), InputError);
+}
+
 TEST(WriteAtomically, KeepsTheOldFileWhenTheWriterFails) {
   const TemporaryFolder folder;
   folder.write("a.txt", "old");
