@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -116,6 +117,25 @@ TEST(PointTree, GivesTheAnswersOfFlannWithTheNeighboursOfGuesses) {
       }
     }
   }
+}
+
+TEST(PointTree, QueriesThatAreNoNumbersEndWithoutHarm) {
+  const Points points = Points::Random(3, 500);
+  PointTree tree(points);
+  constexpr int kCount = NeighbourLists::kNeighbours + 1;
+  std::vector<int> indices;
+  std::vector<float> sq_distances, sq_reach;
+  tree.search(points, kCount, indices, sq_distances);
+  for (std::size_t i = kCount - 1; i < sq_distances.size(); i += kCount) sq_reach.push_back(sq_distances[i]);
+  if (NeighbourLists::isUseful(points.cols())) tree.use(NeighbourLists(points, indices, sq_reach));
+  const Points queries = Points::Constant(3, 4, std::numeric_limits<float>::quiet_NaN());
+  for (const int count : {1, kCount}) {
+    tree.search(queries, count, indices, sq_distances);
+    for (const int i : indices) EXPECT_TRUE(i >= 0 && i < points.cols()) << i;
+  }
+  std::vector<int> guesses{0, 1, 2, -1};
+  tree.searchWithin(queries, 1.0f, guesses, sq_distances);
+  EXPECT_EQ(guesses, std::vector<int>(4, -1));
 }
 
 }  // namespace

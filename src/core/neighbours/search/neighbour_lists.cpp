@@ -61,7 +61,7 @@ __attribute__((target("avx2"))) NeighbourLists::Answer NeighbourLists::closest(c
       answer.is_closest = decides;
       return answer;
     }
-    if (sq_least == answer.sq_distance) return answer;
+    if (!(sq_least < answer.sq_distance)) return answer;  // as far away, or no number
     const auto lanes =
         static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_broadcastss_ps(least), _CMP_EQ_OQ)));
     answer.index = list.index[__builtin_ctz(lanes)];

@@ -257,7 +257,7 @@ void PointTree::search(const PointsRef& queries, int num_neighbours, std::vector
   for (std::size_t i = 0; i < num_queries; ++i) {
     const Eigen::Vector3f query = queries.col(static_cast<Eigen::Index>(i));
     if (num_neighbours == 1) {
-      const Match match = closest(query, {-1, std::numeric_limits<float>::max()}, storage);
+      const Match match = closest(query, {0, std::numeric_limits<float>::max()}, storage);
       indices[i] = match.index;
       sq_distances[i] = match.sq_distance;
       continue;

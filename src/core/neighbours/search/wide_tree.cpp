@@ -23,6 +23,7 @@ public:
 
   float worst() const { return worst_; }
   bool isTied() const { return is_tied_; }
+  bool isFull() const { return size_ == most_; }
   /// \pre sq_distance <= worst()
   void offer(float sq_distance, std::int32_t place) {
     if (size_ == most_ && sq_distance == worst_) {
@@ -204,7 +205,7 @@ bool WideTree::findNearest(const OrderedCoordinates& points, const float* query,
                            std::vector<Pending>& pending, std::int32_t* places, float* sq_distances) const {
   NearestPlaces result(places, sq_distances, most);
   visit(points, query, pending.data(), result);
-  return result.isTied();
+  return result.isTied() || !result.isFull();
 }
 
 #else

@@ -60,7 +60,8 @@ public:
 
   /// \param most how many closest points are wanted, at most as many as there are.
   /// \param[out] places,sq_distances room for them; nearest first.
-  /// \return whether points are equally far away, so that others may be found, or in another order.
+  /// \return whether the tree with two children has to answer: points are equally far away, so that others may be found,
+  /// or in another order; or distances are no numbers.
   bool findNearest(const OrderedCoordinates& points, const float* query, int most, std::vector<Pending>& pending,
                    std::int32_t* places, float* sq_distances) const;
 
