@@ -51,9 +51,8 @@ CommandLine commandLine(CalibrationOptions& options) {
 void printReliabilities(const std::vector<EvidenceSample>& samples, const DecisionFit& fit) {
   std::array<std::vector<Forecast>, 3> forecasts;
   for (const EvidenceSample& sample : samples)
-    if (counts(sample))
-      forecasts[static_cast<std::size_t>(kindOf(sample.evidence))].push_back(
-          {1.0 / (1.0 + std::exp(-logOdds(sample.evidence, fit))), isSymmetry(sample)});
+    forecasts[static_cast<std::size_t>(kindOf(sample.evidence))].push_back(
+        {1.0 / (1.0 + std::exp(-logOdds(sample.evidence, fit))), isSymmetry(sample)});
   std::vector<Reliability> groups;
   for (std::size_t kind = 0; kind < forecasts.size(); ++kind)
     groups.push_back(reliabilityOf(kKindNames[kind], forecasts[kind], {}));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "calibrate/logistic_regression.h"
 #include "common/command_line/run_tool.h"
@@ -14,6 +15,17 @@ constexpr double kLowShare = 0.025, kHighShare = 0.975;  // derived: 95 % of the
 // chosen: from the third pass on, two fits alternate whose numbers differ by 5 % at most and which decide alike.
 constexpr int kFurtherPasses = 10;
 
+// Of planes of meshes, where those of shapes made by code count once. chosen: shapes have many folds, and so many more
+// planes than what users have.
+constexpr double kMeshWeight = 2.0;
+// Of nearly symmetric planes. chosen: they are none by the definition; with less weight more of them are believed.
+constexpr double kNearWeight = 1.0;
+
+double weightOf(const EvidenceSample& sample) {
+  const bool is_near = sample.near_share >= kAsymmetric && sample.near_share < kSymmetric;
+  return (sample.is_made ? 1.0 : kMeshWeight) * (is_near ? kNearWeight : 1.0);
+}
+
 double quantileOf(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
@@ -22,25 +34,30 @@ double quantileOf(std::vector<double> values, double share) {
 
 KindFit fitKind(const std::vector<EvidenceSample>& samples, EvidenceKind kind, const EvidenceUnits& units) {
   std::vector<std::vector<double>> rows;
-  std::vector<double> outcomes, errors;
+  std::vector<double> outcomes, weights, errors;
   KindFit fit;
   for (const EvidenceSample& sample : samples) {
     if (kindOf(sample.evidence) != kind) continue;
     // Intervals are read where a plane may be a symmetry.
     if (sample.evidence.share > kAsymmetric)
       errors.push_back((sample.share - sample.evidence.share) / shareUnit(sample.evidence));
-    if (!counts(sample)) continue;
     rows.push_back(logOddsTerms(sample.evidence, units));
     outcomes.push_back(isSymmetry(sample) ? 1.0 : 0.0);
+    weights.push_back(weightOf(sample));
     ++(isSymmetry(sample) ? fit.num_symmetric : fit.num_asymmetric);
   }
   if (fit.num_symmetric == 0 || fit.num_asymmetric == 0)
     throw InputError(std::string("the models give no symmetric or no asymmetric planes of kind ") +
                      kKindNames[static_cast<std::size_t>(kind)]);
-  Eigen::MatrixXd terms(rows.size(), rows.front().size());
+  const auto num_rows = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd terms(num_rows, rows.front().size());
   for (std::size_t i = 0; i < rows.size(); ++i)
     terms.row(static_cast<Eigen::Index>(i)) = Eigen::Map<Eigen::RowVectorXd>(rows[i].data(), terms.cols());
-  fit.coefficients = fitLogistic(terms, Eigen::Map<Eigen::VectorXd>(outcomes.data(), terms.rows()));
+  const LogisticCases cases{std::move(terms),
+                            Eigen::Map<Eigen::VectorXd>(outcomes.data(), num_rows),
+                            Eigen::Map<Eigen::VectorXd>(weights.data(), num_rows),
+                            {}};
+  fit.coefficients = fitWeightedLogistic(cases, 0.0, Eigen::VectorXd::Zero(cases.terms.cols()));
   fit.share_errors = {std::min(0.0, quantileOf(errors, kLowShare)), std::max(0.0, quantileOf(errors, kHighShare))};
   return fit;
 }
@@ -66,11 +83,6 @@ void markFurther(std::vector<EvidenceSample>& samples, const Worth& worth) {
 
 bool isSymmetry(const EvidenceSample& sample) {
   return (kindOf(sample.evidence) == EvidenceKind::Volume ? sample.share : sample.near_share) >= kSymmetric;
-}
-
-bool counts(const EvidenceSample& sample) {
-  const bool is_near = sample.near_share >= kAsymmetric && sample.near_share < kSymmetric;
-  return !is_near || (kindOf(sample.evidence) != EvidenceKind::Scan && !sample.is_cut);
 }
 
 DecisionFit fitDecision(std::vector<EvidenceSample>& samples, const EvidenceUnits& units) {
@@ -113,9 +125,11 @@ std::string headerText(const DecisionFit& fit, std::size_t num_models, double to
          "<array>\n#include <vector>\n\n#include \"core/evidence/plane_confidence.h\"\n\nnamespace pcl_symmetry "
          "{\n\n/// The fitted numbers of the decision, by EvidenceKind.\nstruct ConfidenceFit {\n  "
          "std::array<std::vector<double>, 3> log_odds;  ///< coefficients of logOddsTerms()\n  "
-         "std::array<ShareInterval, 3> share_errors;    ///< of the share, units of shareUnit()\n};\n\n// fitted: " +
+         "std::array<ShareInterval, 3> share_errors;    ///< of the share, units of shareUnit()\n};\n\n// clang-format "
+         "off\n// fitted: " +
          std::string(text) + ".\ninline const ConfidenceFit kConfidenceFit{{{" + odds +
-         "}},\n                                          {{" + errors + "}}};\n\n}  // namespace pcl_symmetry\n";
+         "}},\n                                          {{" + errors +
+         "}}};\n// clang-format on\n\n}  // namespace pcl_symmetry\n";
 }
 
 }  // namespace pcl_symmetry::apps

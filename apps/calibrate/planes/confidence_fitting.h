@@ -31,10 +31,6 @@ using DecisionFit = std::array<KindFit, 3>;
 /// called symmetric.
 bool isSymmetry(const EvidenceSample& sample);
 
-/// Whether the plane has a part in the fit. Scans and clouds that were cut do not show what tells nearly symmetric
-/// planes from symmetries: there these are neither.
-bool counts(const EvidenceSample& sample);
-
 /// \param samples those of one cloud side by side; PlaneEvidence::further is set as the fit has it.
 /// \throws InputError where a kind has no symmetries or nothing else.
 DecisionFit fitDecision(std::vector<EvidenceSample>& samples, const EvidenceUnits& units = {});

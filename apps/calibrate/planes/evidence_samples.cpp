@@ -36,6 +36,8 @@ constexpr double kSurelyNone = 0.8;
 // Scans of each model with their viewpoint, and as many moved without it. chosen: two views say more than one; more
 // views of one model say little new.
 constexpr int kNumViews = 2;
+constexpr int kRingPoints = 3500;  // of a scan in rings. chosen: near the mean of an object a few metres from a LiDAR
+constexpr double kDepthNoise = 0.002;  // diagonals. chosen: a depth camera has 1 to 3 mm at one metre
 // Points of shapes with folds, in turn, each for as many shapes as there are bodies, noises and thinnings. chosen: as
 // of the clouds of models.
 constexpr std::array<int, 3> kFoldedPoints{10'000, 3000, 30'000};
@@ -108,13 +110,13 @@ public:
       : scene_(scene), truth_(scene, kTruthSamples, 1), tolerance_(tolerance * diameter(truth_.samples())) {}
 
   /// \param row of the cloud that the planes are of.
-  void add(const std::vector<JudgedPlane>& planes, const std::string& model, const std::string& row, bool is_cut,
+  void add(const std::vector<JudgedPlane>& planes, const std::string& model, const std::string& row, bool is_made,
            const Eigen::Isometry3d& T_cloud_model) {
     for (std::size_t i = 0; i < planes.size(); ++i) {
       const ReflectionPlane plane = toScene(planes[i].plane, T_cloud_model, scene_);
       double share = truth_.share(plane, tolerance_, kScreenStride);
       if (share >= kSurelyNone) share = truth_.share(plane, tolerance_);
-      samples_.push_back({model, row, planes[i].evidence, share, share, static_cast<int>(i), is_cut});
+      samples_.push_back({model, row, planes[i].evidence, share, share, static_cast<int>(i), is_made});
       planes_.push_back(plane);
     }
   }
@@ -164,6 +166,13 @@ std::vector<CloudRecipe> calibrationRecipes() {
       recipes.back().moved = moved;
     }
   }
+  for (const int num_points : {1000, 2500})
+    recipes.push_back(recipe("scan of " + std::to_string(num_points), num_points, 0.0, 0.0, 0));
+  for (const int distance : {4, 8}) {
+    recipes.push_back(recipe("scan in rings " + std::to_string(distance), distance * kRingPoints, 0.0, 0.0, 1));
+    recipes.back().ring_distance = distance;
+  }
+  recipes.push_back(recipe("scan with noise", 10'000, kDepthNoise, 0.0, 1));
   return recipes;
 }
 
@@ -173,7 +182,7 @@ std::vector<EvidenceSample> sampleFoldedEvidence(int i, double tolerance) {
   const TriangleScene scene(folded.shape.mesh);
   PlaneTruths truths(scene, tolerance);
   truths.add(judgedCandidates(distinctPoints(*folded.cloud), nullptr, optionsOf(tolerance)),
-             folded.body + " " + std::to_string(i), "folds noise " + std::to_string(folded.noise), false, folded.pose);
+             folded.body + " " + std::to_string(i), "folds noise " + std::to_string(folded.noise), true, folded.pose);
   return truths.samples();
 }
 
@@ -187,8 +196,7 @@ std::vector<EvidenceSample> sampleEvidence(const Model& model, double tolerance)
   PlaneTruths truths(scene, tolerance);
   for (const CloudRecipe& recipe : calibrationRecipes()) {
     const TestCloud cloud = maker.make(recipe);
-    truths.add(judgedCandidates(cloud, optionsOf(tolerance)), model.name, recipe.name, recipe.missing > 0.0,
-               cloud.T_cloud_model);
+    truths.add(judgedCandidates(cloud, optionsOf(tolerance)), model.name, recipe.name, false, cloud.T_cloud_model);
   }
   return truths.samples();
 }

@@ -13,15 +13,15 @@ namespace {
 
 // derived: the members of EvidenceSample and PlaneEvidence.
 constexpr const char* kHeading =
-    "model,row,rank,cut,partial,volume,share_on_mesh,near_share,share,unknown,support,conflict,baseline,score,own_"
+    "model,row,rank,made,partial,volume,share_on_mesh,near_share,share,unknown,support,conflict,baseline,score,own_"
     "score,"
-    "spacing,tolerance,roughness\n";
-constexpr std::size_t kNumValues = 16;  // derived: the columns of kHeading after the names
+    "spacing,tolerance,roughness,half_share,double_share,hold\n";
+constexpr std::size_t kNumValues = 19;  // derived: the columns of kHeading after the names
 
 std::array<double, kNumValues> valuesOf(const EvidenceSample& sample) {
   const PlaneEvidence& e = sample.evidence;
   return {static_cast<double>(sample.rank),
-          static_cast<double>(sample.is_cut),
+          static_cast<double>(sample.is_made),
           static_cast<double>(e.partial),
           static_cast<double>(e.volume),
           sample.share,
@@ -35,7 +35,10 @@ std::array<double, kNumValues> valuesOf(const EvidenceSample& sample) {
           e.own_score,
           e.spacing,
           e.tolerance,
-          e.roughness};
+          e.roughness,
+          e.half_share,
+          e.double_share,
+          e.hold};
 }
 
 EvidenceSample sampleFrom(const std::string& model, const std::string& row, const std::array<double, kNumValues>& v) {
@@ -53,6 +56,9 @@ EvidenceSample sampleFrom(const std::string& model, const std::string& row, cons
   e.spacing = v[13];
   e.tolerance = v[14];
   e.roughness = v[15];
+  e.half_share = v[16];
+  e.double_share = v[17];
+  e.hold = v[18];
   return sample;
 }
 

@@ -67,6 +67,18 @@ void moveAndForgetViewpoint(TestCloud& scan, Eigen::Isometry3d motion, const Eig
   scan.view->T_cloud_sensor = motion * scan.view->T_cloud_sensor;
 }
 
+/// Keeps one row of the picture in \p distance, as a scanner with few lasers has them.
+void keepRings(pcl::PointCloud<pcl::PointXYZ>& cloud, int distance) {
+  pcl::PointCloud<pcl::PointXYZ> kept(cloud.width, (cloud.height + distance - 1) / distance);
+  for (std::uint32_t row = 0; row < kept.height; ++row)
+    for (std::uint32_t column = 0; column < kept.width; ++column)
+      kept(column, row) = cloud(column, row * static_cast<std::uint32_t>(distance));
+  kept.is_dense = cloud.is_dense;
+  kept.sensor_origin_ = cloud.sensor_origin_;
+  kept.sensor_orientation_ = cloud.sensor_orientation_;
+  cloud = kept;
+}
+
 /// Collects recipes; what is not said keeps its default.
 class RecipeList {
 public:
@@ -213,6 +225,7 @@ TestCloud TestCloudMaker::makeScan(const CloudRecipe& recipe) const {
   TestCloud result{
       scan.cloud, scan.T_scan_model,
       View{scan.T_scan_model.linear() * direction, scan.T_scan_sensor, std::tan(options.field_of_view / 2)}};
+  if (recipe.ring_distance > 1) keepRings(*result.cloud, recipe.ring_distance);
   if (recipe.moved) {
     const std::uint64_t seed = seedOf(seed_, kMove, static_cast<std::uint64_t>(recipe.view) + 1);
     moveAndForgetViewpoint(result, randomPose(seed, scanner_.diagonal()), scan.T_scan_model * scanner_.center());

@@ -54,6 +54,7 @@ struct CloudRecipe {
   double missing = 0.0;
   int view = -1;                                    ///< of a scan; -1 for a whole cloud
   bool moved = false;                               ///< the scan's viewpoint is lost
+  int ring_distance = 1;                            ///< of a scan, one row of its picture in this many is kept
   SamplingPattern pattern = SamplingPattern::Even;  ///< of a whole cloud
 };
 

@@ -9,6 +9,7 @@
 #include "core/detection/parts/part_search.h"
 #include "core/evidence/plane_support.h"
 #include "core/evidence/share/missing_surface.h"
+#include "core/evidence/share/plane_stiffness.h"
 #include "core/evidence/share/surface_distance.h"
 #include "core/geometry/point_samples.h"
 
@@ -45,6 +46,15 @@ constexpr double kNoisyThinness = 3.0;
 constexpr double kRoundSpacings = 2.0;
 constexpr double kLeastTelling = 1e-3;  // chosen: any small share; avoids a division by 0
 constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
+// Tolerances at which the share is measured. derived: half, one and two, see PlaneEvidence.
+constexpr std::array<double, 3> kTolerances{0.5, 1.0, 2.0};
+
+std::array<double, 3> sharesWithin(const std::vector<float>& distances, double tolerance) {
+  std::array<double, 3> shares{};
+  for (std::size_t k = 0; k < shares.size(); ++k)
+    shares[k] = std::max(kLeastOwnShare, shareWithin(distances, kTolerances[k] * tolerance));
+  return shares;
+}
 
 }  // namespace
 
@@ -57,9 +67,8 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_, lineTolerance())),
       halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
                                : std::nullopt),
-      own_share_(std::max(kLeastOwnShare, shareWithin(halves_ ? halves_->ownDistances()
-                                                              : ownSurfaceDistances(cloud.points, cloud.geometry),
-                                                      tolerance_))),
+      own_shares_(sharesWithin(halves_ ? halves_->ownDistances() : ownSurfaceDistances(cloud.points, cloud.geometry),
+                               tolerance_)),
       own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
                                              options.num_threads)
                          : 1.0) {}
@@ -121,35 +130,55 @@ bool PlaneJudge::isSeenEmpty(const Eigen::Vector3d& x, double rim) const {
   return true;
 }
 
-PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const Reflected& reflected,
-                                            const IspStep& step, double rim) const {
-  const std::size_t size = reflected.distances.size();
-  std::vector<char> matched(size);
-  for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
-  const double within =
-      shareWithin(halves_ ? halves_->reflectedDistances(plane) : reflected.distances, tolerance_) / own_share_;
+std::vector<float> PlaneJudge::unknownMatches(const Reflected& reflected, const IspStep& step,
+                                              const std::vector<char>& matched, double offset_stiffness,
+                                              double rim) const {
+  const std::size_t size = matched.size();
   std::vector<float> unknown(size, 0.0f);
   if (cloud_.isScan()) {
     for (std::size_t i = 0; i < size; ++i)
       if (!matched[i]) unknown[i] = isSeenEmpty(reflected.points.col(i).cast<double>(), rim) ? 0.0f : 1.0f;
-  } else if (!cloud_.isVolume() && within < kSurelyWhole && static_cast<Eigen::Index>(size) == cloud_.points.cols()) {
-    const double held = offsetStiffness(reflected.points, matchedNormals(step), matched, plane);
-    const auto trust = static_cast<float>(std::clamp(held / kHeld - 1.0, 0.0, 1.0));
-    if (trust > 0.0f) {
-      unknown = missingCounterparts(matched, step.closest, cloud_.geometry, borders());
-      for (std::size_t i = 0; i < size; ++i)
-        if (!matched[i] && isCutOff(reflected.points.col(static_cast<Eigen::Index>(i)))) unknown[i] = 1.0f;
-    }
-    for (float& value : unknown) value *= trust;
+    return unknown;
   }
-  std::vector<float> telling;  // distances of the samples that say something
+  const auto trust = static_cast<float>(std::clamp(offset_stiffness / kHeld - 1.0, 0.0, 1.0));
+  if (trust <= 0.0f || cloud_.isVolume() || static_cast<Eigen::Index>(size) != cloud_.points.cols()) return unknown;
+  unknown = missingCounterparts(matched, step.closest, cloud_.geometry, borders());
   for (std::size_t i = 0; i < size; ++i)
+    if (!matched[i] && isCutOff(reflected.points.col(static_cast<Eigen::Index>(i)))) unknown[i] = 1.0f;
+  for (float& value : unknown) value *= trust;
+  return unknown;
+}
+
+PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const Reflected& reflected,
+                                            const IspStep& step, double rim) const {
+  const std::size_t size = reflected.distances.size();
+  const std::vector<float> measured = halves_ ? halves_->reflectedDistances(plane) : reflected.distances;
+  std::array<double, 3> within{};
+  for (std::size_t k = 0; k < within.size(); ++k)
+    within[k] = std::min(1.0, shareWithin(measured, kTolerances[k] * tolerance_) / own_shares_[k]);
+  std::vector<char> matched(size);
+  for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
+  const Eigen::Matrix3d stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
+  const std::vector<float> unknown = cloud_.isScan() || within[1] < kSurelyWhole
+                                         ? unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim)
+                                         : std::vector<float>(size, 0.0f);
+  std::vector<float> telling;  // distances of the samples that say something
+  double missing_at_twice = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
     if (unknown[i] < 0.5f) telling.push_back(reflected.distances[i]);
-  const double missing = meanSupport(unknown), good = std::min(1.0, within);
-  const double bad = std::max(0.0, 1.0 - good - missing);
-  Agreement result{good + bad > 0.0 ? good / (good + bad) : 0.0, missing, 0.0};
-  result.deviation = deviationOf(std::move(telling));
-  return result;
+    if (reflected.distances[i] > 2.0 * tolerance_) missing_at_twice += unknown[i] / static_cast<double>(size);
+  }
+  const auto share = [](double good, double missing) {
+    const double bad = std::max(0.0, 1.0 - good - missing);
+    return good + bad > 0.0 ? good / (good + bad) : 0.0;
+  };
+  const double missing = meanSupport(unknown);
+  return {share(within[1], missing),
+          share(within[0], missing),
+          share(within[2], missing_at_twice),
+          secondStiffness(stiffness),
+          missing,
+          deviationOf(std::move(telling))};
 }
 
 double PlaneJudge::deviationOf(std::vector<float> distances) const {
@@ -173,6 +202,9 @@ double PlaneJudge::deviation(const ReflectionPlane& plane) const {
 PlaneEvidence PlaneJudge::evidence(const PlaneShares& shares, const Agreement& agreement, double score) const {
   PlaneEvidence evidence = fit_.evidence(shares.support, shares.conflict, score);
   evidence.share = agreement.share;
+  evidence.half_share = agreement.half_share;
+  evidence.double_share = agreement.double_share;
+  evidence.hold = agreement.hold;
   evidence.tolerance = tolerance_;
   evidence.unknown = agreement.unknown;
   evidence.own_score = own_score_;
@@ -250,7 +282,8 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
                                      const std::vector<int>& samples) const {
   const double count = static_cast<double>(planes.size());
   JudgedFamily family;
-  double support = 0.0, conflict = 0.0, share = 0.0, telling = 0.0, best_score = 0.0;
+  Agreement together{};
+  double support = 0.0, conflict = 0.0, telling = 0.0, best_score = 0.0;
   for (const ReflectionPlane& plane : planes) {
     const IspStep step = fit_.matches(plane, samples);
     const PlaneShares shares = fit_.shares(plane, samples, step);
@@ -259,15 +292,21 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
     const double score = cloud_.score(cloud_.toInput(plane));
     support += shares.support / count;
     conflict += shares.conflict / count;
-    share += agreed.share * (1.0 - agreed.unknown) / count;
-    telling += (1.0 - agreed.unknown) / count;
+    const double told = (1.0 - agreed.unknown) / count;
+    telling += told;
+    together.share += told * agreed.share;
+    together.half_share += told * agreed.half_share;
+    together.double_share += told * agreed.double_share;
+    together.hold += agreed.hold / count;
     best_score = std::max(best_score, score);
     family.score += score / count;
     family.least_confidence = std::min(family.least_confidence, planeConfidence(evidence(shares, agreed, score)));
   }
   // Planes of a family say as much as the scan shows of them, and D falls with what it does not show: the plane that
   // is shown best stands for it.
-  const Agreement together{share / std::max(kLeastTelling, telling), 1.0 - telling, 0.0};
+  for (double* share : {&together.share, &together.half_share, &together.double_share})
+    *share /= std::max(kLeastTelling, telling);
+  together.unknown = 1.0 - telling;
   const PlaneEvidence all = evidence({support, conflict, {}}, together, cloud_.isScan() ? best_score : family.score);
   family.confidence = planeConfidence(all);
   family.support = seenSupport(all);

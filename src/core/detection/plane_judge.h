@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -87,9 +88,12 @@ private:
   };
   /// What the reflections say at the tolerance.
   struct Agreement {
-    double share;      ///< within the tolerance, of those that say something
-    double unknown;    ///< say nothing
-    double deviation;  ///< distance that 97 % of those that say something stay within
+    double share;         ///< within the tolerance, of those that say something
+    double half_share;    ///< the same within half the tolerance
+    double double_share;  ///< the same within twice the tolerance
+    double hold;          ///< how firmly those within the tolerance hold the plane
+    double unknown;       ///< say nothing
+    double deviation;     ///< distance that 97 % of those that say something stay within
   };
 
   /// How near to a line points are one: where there are few, noise of the line is wider than what they resolve.
@@ -100,7 +104,10 @@ private:
   /// Whether the scanner saw that nothing is at a point, nor within \p rim beside it: the rim of what was seen is as
   /// exact as its pixels.
   bool isSeenEmpty(const Eigen::Vector3d& x, double rim) const;
+  /// Of each sample without a match, whether nothing is known of its counterpart, in [0, 1].
   /// \param rim of isSeenEmpty().
+  std::vector<float> unknownMatches(const Reflected& reflected, const IspStep& step, const std::vector<char>& matched,
+                                    double offset_stiffness, double rim) const;
   Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step, double rim) const;
   PlaneEvidence evidence(const PlaneShares& shares, const Agreement& agreement, double score) const;
   JudgedPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
@@ -117,7 +124,8 @@ private:
   double tolerance_;
   Thinness thinness_;
   std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
-  double own_share_;  ///< within the tolerance, of the points themselves and the surface of the others
+  /// Within half, one and two tolerances, of the points themselves and the surface of the others.
+  std::array<double, 3> own_shares_;
   double own_score_;  ///< PlaneEvidence::own_score
   mutable std::once_flag borders_found_;
   mutable std::vector<char> borders_;   ///< of the cloud; found where they are first asked for

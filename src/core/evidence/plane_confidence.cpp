@@ -50,6 +50,26 @@ double byLostSupport(const PlaneEvidence& evidence, const EvidenceUnits& units) 
                   (kOffAtEvenOdds + units.lost_support));
 }
 
+/// \return log odds by the share of the surface that is off at half the tolerance.
+double byHalfShare(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  return std::log((1.0 - evidence.half_share + units.half_off) / (kOffAtEvenOdds + units.half_off));
+}
+
+/// \return the same at twice the tolerance.
+double byDoubleShare(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  return std::log((1.0 - evidence.double_share + units.double_off) / (kOffAtEvenOdds + units.double_off));
+}
+
+/// \return log odds by how easily a plane of a surface slips along it, >= 0.
+double bySlipping(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  return std::max(0.0, std::log(units.slipping / (evidence.hold + units.least_slipping)));
+}
+
+/// \return what D of a scan loses beyond what the hidden part explains.
+double byUnexplainedLoss(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  return std::max(0.0, 1.0 - evidence.score - units.hidden_loss * evidence.unknown);
+}
+
 /// \return log odds by what D loses beyond what noise explains.
 double byExcess(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   return std::log(std::max(0.0, evidence.own_score - evidence.score) / units.excess + 1.0);
@@ -85,7 +105,11 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
   const double further = evidence.further ? byFurther(kindOf(evidence), evidence.unknown) : 0.0;
   switch (kindOf(evidence)) {
     case EvidenceKind::Scan:
-      return {1.0, byShare(evidence, units.scan_off), std::pow(std::max(0.0, 1.0 - evidence.score), units.loss_power),
+      return {1.0,
+              byShare(evidence, units.scan_off) / std::max(1.0, coarseness(evidence)),
+              byDoubleShare(evidence, units),
+              byUnexplainedLoss(evidence, units),
+              -std::log(evidence.hold + units.loose_hold),
               further};
     case EvidenceKind::Volume:
       return {1.0, byShare(evidence, units.volume_off), byExcess(evidence, units), byLostOverlap(evidence, units),
@@ -97,6 +121,8 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
               std::sqrt(evidence.unknown),
               byLostSupport(evidence, units),
               coarseness(evidence),
+              byHalfShare(evidence, units),
+              bySlipping(evidence, units),
               further};
   }
 }

@@ -17,9 +17,12 @@ struct PlaneEvidence {
   bool volume = false;     ///< the points resolve no surface; support is the overlap of their density
   /// Share of the surface mapped to within the tolerance of the surface, of that which says something, in [0, 1].
   double share = 1.0;
-  double tolerance = 0.02;  ///< of that share, divided by the radius of the points, > 0
-  double unknown = 0.0;     ///< share of the surface that says nothing: its reflection was not seen or was cut off
-  bool further = false;     ///< another plane of the same cloud has better evidence
+  double half_share = 1.0;    ///< the same within half the tolerance
+  double double_share = 1.0;  ///< the same within twice the tolerance
+  double hold = 1.0;          ///< how firmly what is matched holds the plane, see secondStiffness(), >= 0
+  double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
+  double unknown = 0.0;       ///< share of the surface that says nothing: its reflection was not seen or was cut off
+  bool further = false;       ///< another plane of the same cloud has better evidence
 };
 
 /// Share of the surface seen that the plane maps onto the surface, relative to what sampling allows.
@@ -43,13 +46,19 @@ struct EvidenceUnits {
   /// 000, 3000 and 1000 points, 95 % of which had an error of at most 0.006, 0.007, 0.02 and 0.027; half lets sampling
   /// decide, twice blurs 3 %.
   double off = 0.005, off_per_spacing = 0.002, scan_off = 0.01;
+  /// The same within half and within twice the tolerance. chosen: at half a tolerance a symmetry may be off by more, as
+  /// sampling and refinement are; at twice by less.
+  double half_off = 0.03, double_off = 0.005;
   /// How exactly the share is known: twice the above, less where much says nothing; and from where on it does not
   /// matter. chosen: with half of them nearly symmetric planes are possible ones, with twice of them symmetries are
   /// doubted.
   double precision = 0.01, precision_per_spacing = 0.004, precision_per_unknown = 0.2, most_off = 0.1;
-  /// Power of the part of D that a scan loses. chosen: D falls with what the scan hides, by 0.2 to 0.3 for most
-  /// symmetries; the best of 1 to 4 on fold 0, by little: 0.160, 0.160, 0.158 and 0.159 nats a plane.
-  double loss_power = 3.0;
+  /// Part of D that a scan loses per share that says nothing. measured: the slope of 1 - D of symmetries by that share,
+  /// on fold 0, is 0.5 to 0.7; no loss of that size speaks against a plane.
+  double hidden_loss = 0.6;
+  /// How firmly a plane has to be held, by scans and by surfaces. chosen: balls have 0, cylinders 0.001, cups 0.02,
+  /// boxes 0.1 and more; a surface is held from the third number on.
+  double loose_hold = 0.003, slipping = 0.01, least_slipping = 0.001;
   /// Of the support. chosen: what sampling leaves of it; at half, single points count, at twice, small asymmetries do
   /// not.
   double lost_support = 0.01;

@@ -59,21 +59,17 @@ double prominence(const std::vector<std::complex<double>>& spectrum, int m) {
 /// What several planes say together.
 double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
-  double count = 0.0, share = 0.0, support = 0.0, conflict = 0.0, score = 0.0, unknown = 0.0;
-  for (std::size_t k = first; k < judged.size(); k += step) {
-    const PlaneEvidence& one = judged[k].evidence;
-    count += 1.0;
-    share += one.share;
-    support += one.support;
-    conflict += one.conflict;
-    score += one.score;
-    unknown += one.unknown;
+  constexpr std::array kMeans{&PlaneEvidence::share, &PlaneEvidence::half_share, &PlaneEvidence::double_share,
+                              &PlaneEvidence::hold,  &PlaneEvidence::support,    &PlaneEvidence::conflict,
+                              &PlaneEvidence::score, &PlaneEvidence::unknown};
+  for (double PlaneEvidence::*member : kMeans) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t k = first; k < judged.size(); k += step) {
+      sum += judged[k].evidence.*member;
+      count += 1.0;
+    }
+    mean.*member = sum / count;
   }
-  mean.share = share / count;
-  mean.support = support / count;
-  mean.conflict = conflict / count;
-  mean.score = score / count;
-  mean.unknown = unknown / count;
   return planeConfidence(mean);
 }
 

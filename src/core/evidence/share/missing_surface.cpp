@@ -1,6 +1,5 @@
 #include "core/evidence/share/missing_surface.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,8 +27,6 @@ constexpr int kMostOffPlane = 2;
 // Explained share of a region's edge from which its samples begin to count as missing, and from which they count in
 // full. chosen: lower bounds excuse what is asymmetric; higher bounds lose cuts with ragged borders.
 constexpr float kLeastExplained = 0.5f, kExplained = 0.9f;
-
-constexpr double kTiltRidge = 1e-4;  // chosen: any value far below the stiffness of tilts that are held
 
 /// Regions of samples that are joined as neighbours.
 class Regions {
@@ -114,33 +111,6 @@ std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& s
       borders[i] = isAtBorder(static_cast<int>(i), indices.data() + (i - begin) * count, count, samples, normals);
   });
   return borders;
-}
-
-double offsetStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
-                       const ReflectionPlane& plane) {
-  const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  double count = 0.0;
-  for (std::size_t i = 0; i < matched.size(); ++i) {
-    if (!matched[i]) continue;
-    const auto column = static_cast<Eigen::Index>(i);
-    const Eigen::Vector3d x = points.col(column).cast<double>(), normal = normals.col(column).cast<double>();
-    // x is a reflection: x = y - 2 (n.y - r) n. Its derivatives along the normal of the match, by tilt and by offset.
-    const double distance = -plane.signedDistance(x);
-    const Eigen::Vector3d y = x + 2.0 * distance * n;
-    const auto by_tilt = [&](const Eigen::Vector3d& axis) {
-      return -2.0 * (axis.dot(y) * normal.dot(n) + distance * normal.dot(axis));
-    };
-    const Eigen::Vector3d gradient(by_tilt(u), by_tilt(v), 2.0 * normal.dot(n));
-    information += gradient * gradient.transpose();
-    count += 1.0;
-  }
-  if (count == 0.0) return 0.0;
-  information /= count;
-  Eigen::Matrix2d tilts = information.topLeftCorner<2, 2>();
-  tilts.diagonal().array() += kTiltRidge;
-  const Eigen::Vector2d coupling = information.topRightCorner<2, 1>();
-  return std::max(0.0, information(2, 2) - coupling.dot(tilts.ldlt().solve(coupling)));
 }
 
 std::vector<float> missingCounterparts(const std::vector<char>& matched, const std::vector<int>& closest,

@@ -4,7 +4,6 @@
 
 #include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/geometry/reflection_plane.h"
 
 namespace pcl_symmetry {
 
@@ -22,16 +21,6 @@ namespace pcl_symmetry {
 /// \return N values, 1 at a border.
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
                               int num_threads);
-
-/// How firmly the matched samples hold a plane along its normal: a sheet that is mirrored in itself, or a tube mirrored
-/// across, matches under many planes, and only its ends say which is right.
-/// \param points 3 x N, in the unit ball, the reflections of the samples.
-/// \param normals 3 x N, unit, of the surface at their matches.
-/// \param matched N values.
-/// \param plane in the frame of the points.
-/// \return mean square of the change of a match's distance per change of the offset, after the best tilt, in [0, 4].
-double offsetStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
-                       const ReflectionPlane& plane);
 
 /// How well an open border explains that a sample has no counterpart under a plane.
 ///
