@@ -75,6 +75,7 @@ struct Findings {
   ViewpointSource viewpoint_source = ViewpointSource::None;
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
   std::optional<SymmetryPlane> best;         ///< where nothing else was found
+  std::optional<ReflectionPlane> flat;       ///< that all points lie near
   double tolerance = 0.0;                    ///< that was decided at, input units
   std::size_t num_points = 0;                ///< that were used
   std::vector<std::pair<std::string, double>> timing_ms;
@@ -98,13 +99,21 @@ std::string lineOfBest(const SymmetryPlane& best, double tolerance, const Eigen:
                    c[0], c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
 }
 
+/// What a sheet leaves open.
+std::string lineOfFlat(const ReflectionPlane& flat, const Eigen::Vector3d& shift, int digits) {
+  const Eigen::Vector4d c = shiftedBack(flat, shift).coefficients();
+  return formatted("flat: the points lie on the plane %.6f %.6f %.6f %.*g; to be mirrored in it says nothing\n", c[0],
+                   c[1], c[2], digits, c[3]);
+}
+
 std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   const int digits = lengthDigits(shift);
+  std::string table;
+  if (findings.flat) table += lineOfFlat(*findings.flat, shift, digits);
   if (findings.empty())
-    return "no symmetry plane\n" +
+    return table + "no symmetry plane\n" +
            (findings.best ? lineOfBest(*findings.best, findings.tolerance, shift, digits) : std::string());
   const auto place = [&](const Eigen::Vector3d& point) { return spelled(shiftedBack(point, shift), digits); };
-  std::string table;
   for (const SymmetryCenter& center : findings.centers)
     table += formatted("center of all planes: %s, confidence %.3f\n", place(center.point).c_str(), center.confidence);
   for (const SymmetryAxis& axis : findings.axes)
@@ -195,6 +204,7 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
   if (findings.viewpoint) json["viewpoint"]["position"] = numbersOf(shiftedBack(*findings.viewpoint, shift));
   for (const SymmetryPlane& plane : findings.planes) json["planes"].push_back(describe(plane, shift));
   if (findings.best) json["best"] = describe(*findings.best, shift);
+  if (findings.flat) json["flat"] = {{"coefficients", numbersOf(shiftedBack(*findings.flat, shift).coefficients())}};
   for (const SymmetryAxis& axis : findings.axes) {
     json["axes"].push_back({{"point", numbersOf(shiftedBack(axis.point, shift))},
                             {"direction", numbersOf(axis.direction)},
@@ -285,6 +295,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     if (turn.fold > 0 && turn.confidence >= options.detection.min_confidence) findings.turns.push_back(turn);
   findings.centers = refinement.getCenters();
   findings.best = refinement.getBestPlane();
+  findings.flat = refinement.getFlatPlane();
   findings.tolerance = refinement.getUsedTolerance();
   findings.viewpoint_source = refinement.getViewpointSource();
   findings.viewpoint = refinement.getUsedViewpoint();

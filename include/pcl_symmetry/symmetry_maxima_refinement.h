@@ -120,6 +120,9 @@ public:
   /// \return where the last compute() found neither a symmetry nor a possible one, the plane that maps the greatest share
   /// of the surface to within the tolerance; empty otherwise, and where the input holds no answer.
   const std::optional<SymmetryPlane>& getBestPlane() const { return found_.best; }
+  /// \return where the input of the last compute() is flat, as a sheet or a disc is, the plane that 97 % of its points lie
+  /// within the tolerance of; empty otherwise.
+  const std::optional<ReflectionPlane>& getFlatPlane() const { return found_.flat; }
   /// \return the tolerance that the last compute() decided at, input units.
   double getUsedTolerance() const { return found_.tolerance; }
   /// \return the map that was given, or else the map that the last compute() made.

@@ -123,6 +123,13 @@ void addPlaneResults(py::module_& module) {
           "best", [](const PlaneSearch& s) { return s.found.best; },
           "where there is no symmetry and no possible one: the plane that comes closest; else None")
       .def_property_readonly(
+          "flat",
+          [](const PlaneSearch& s) -> std::optional<Eigen::Vector4d> {
+            if (!s.found.flat) return std::nullopt;
+            return s.found.flat->coefficients();
+          },
+          "(4,) plane that all points of a sheet or a disc lie near; None: the cloud is not flat")
+      .def_property_readonly(
           "tolerance", [](const PlaneSearch& s) { return s.found.tolerance; }, "that was decided at, input units")
       .def_property_readonly(
           "reason", [](const PlaneSearch& s) { return s.found.reason; },

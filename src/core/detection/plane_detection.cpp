@@ -173,6 +173,7 @@ Detection planesOf(const NormalizedCloud& cloud, const SymmetryMap& map, const D
   const bool answered = !detection.axes.empty() || !detection.centers.empty();
   if (!answered) detection.best = bestApproximate(planes, cloud, *fit);
   if (detection.best) detection.best->deviation = judge.deviation(*detection.best);
+  if (const std::optional<ReflectionPlane> flat = judge.flatPlane()) detection.flat = cloud.toInput(*flat);
   detection.tolerance = judge.tolerance() * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
   timed("report");

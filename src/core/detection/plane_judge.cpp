@@ -12,6 +12,7 @@
 #include "core/evidence/share/plane_stiffness.h"
 #include "core/evidence/share/surface_distance.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/principal_axes.h"
 
 namespace pcl_symmetry {
 
@@ -76,6 +77,12 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
 double PlaneJudge::lineTolerance() const {
   const double noisy = kNoisyThinness * tolerance_;
   return cloud_.isVolume() ? noisy : std::clamp(kRoundSpacings * cloud_.spacing, tolerance_, noisy);
+}
+
+std::optional<ReflectionPlane> PlaneJudge::flatPlane() const {
+  if (thinness_ != Thinness::Sheet) return std::nullopt;
+  const PrincipalAxes axes = principalAxes(cloud_.points);
+  return ReflectionPlane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
 }
 
 std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {

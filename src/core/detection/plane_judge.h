@@ -39,6 +39,9 @@ public:
   /// Whether nothing but a line is left of the cloud at the tolerance.
   bool isLine() const { return thinness_ == Thinness::Line; }
 
+  /// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, normalised frame; else empty.
+  std::optional<ReflectionPlane> flatPlane() const;
+
   /// \param candidates after the last stage of refinement.
   /// \return one plane each, input frame, in the same order.
   std::vector<SymmetryPlane> judge(const std::vector<Candidate>& candidates) const;

@@ -61,18 +61,29 @@ TEST(ConfidenceFitting, FurtherPlanesOfAScanAreLessProbable) {
   EXPECT_EQ(num_further, 900);
 }
 
-TEST(ConfidenceFitting, NearlySymmetricPlanesCountWhereTheyCanBeToldApart) {
-  EvidenceSample sample = madeUpSamples().front();
-  sample.near_share = 0.95;
-  sample.evidence.partial = sample.evidence.volume = false;
-  EXPECT_TRUE(counts(sample));
-  sample.is_cut = true;
-  EXPECT_FALSE(counts(sample));
-  sample.is_cut = false;
-  sample.evidence.partial = true;
-  EXPECT_FALSE(counts(sample));
-  sample.near_share = 0.99;
-  EXPECT_TRUE(counts(sample));
+/// Log odds of the first plane of scans, of those that the fit learned from.
+double oddsOfFirst(std::vector<EvidenceSample> samples) {
+  const PlaneEvidence first = samples.front().evidence;
+  const DecisionFit fit = fitDecision(samples);
+  return logOdds(first, fit);
+}
+
+TEST(ConfidenceFitting, NearlySymmetricPlanesAreNone) {
+  std::vector<EvidenceSample> samples = madeUpSamples();
+  const double before = oddsOfFirst(samples);
+  for (std::size_t i = 0; i < samples.size(); i += 2)
+    if (samples[i].near_share >= 0.97) samples[i].near_share = 0.95;
+  EXPECT_LT(oddsOfFirst(samples), before - 0.5);
+}
+
+TEST(ConfidenceFitting, PlanesOfMeshesCountMoreThanThoseOfShapesMadeByCode) {
+  // Of every second cloud the planes that are symmetries are none; those clouds weigh twice or half as much.
+  std::vector<EvidenceSample> meshes = madeUpSamples();
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    if (i / 4 % 2 == 0) meshes[i].share = meshes[i].near_share = 0.5;
+  std::vector<EvidenceSample> shapes = meshes;
+  for (std::size_t i = 0; i < meshes.size(); ++i) (i / 4 % 2 == 0 ? shapes : meshes)[i].is_made = true;
+  EXPECT_LT(oddsOfFirst(meshes), oddsOfFirst(shapes) - 0.5);
 }
 
 TEST(EvidenceTable, NamesTheLineThatCannotBeRead) {

@@ -421,6 +421,17 @@ TEST(DetectPlanes, AFlatRectangleHasThree) {
   EXPECT_EQ(comparison.num_matched, 3u);
   EXPECT_LT(comparison.worst_angle, 0.001 * kDegree);
   EXPECT_LT(comparison.worst_offset, 1e-5);
+  ASSERT_TRUE(detection.flat) << "its own plane is named";
+  double farthest = 0.0;
+  for (Eigen::Index i = 0; i < cloud.cols(); ++i)
+    farthest = std::max(farthest, std::abs(detection.flat->signedDistance(cloud.col(i).cast<double>())));
+  EXPECT_LT(farthest, 1e-4);
+}
+
+TEST(DetectPlanes, ADiscIsNamedFlatAndABoxIsNot) {
+  const Shape disc = moved(prism(24, 4000, Sampling::Random, 22, 0.002), randomPose(22));
+  EXPECT_TRUE(detectPlanes(disc.cloud()).flat);
+  EXPECT_FALSE(detectPlanes(moved(box(3000, Sampling::Random, 23), randomPose(23)).cloud()).flat);
 }
 
 }  // namespace

@@ -54,7 +54,14 @@ void expectFalls(const std::string& what, const std::function<void(PlaneEvidence
 
 TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("share", [](PlaneEvidence& e, double t) { e.share = 1.0 - t; });
-  expectFalls("unknown", [](PlaneEvidence& e, double t) { e.unknown = t; });
+  expectFalls("share within half the tolerance", [](PlaneEvidence& e, double t) { e.half_share = 1.0 - t; });
+  expectFalls("share within twice the tolerance", [](PlaneEvidence& e, double t) { e.double_share = 1.0 - t; });
+  expectFalls("hold", [](PlaneEvidence& e, double t) { e.hold = 0.1 * (1.0 - t); });
+  expectFalls("unknown", [](PlaneEvidence& e, double t) {
+    e.unknown = t;
+    // What a scan hides has its part in D: where D is the same although more is hidden, what is seen agrees better.
+    if (e.partial) e.score -= EvidenceUnits().hidden_loss * t;
+  });
   expectFalls("score", [](PlaneEvidence& e, double t) { e.score = 1.0 - t; });
   expectFalls("support", [](PlaneEvidence& e, double t) { e.support = 1.0 - t; });
   expectFalls("further", [](PlaneEvidence& e, double t) { e.further = t > 0.5; });

@@ -141,6 +141,10 @@ struct Detection {
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
   /// Where there is no symmetry and no possible one: the plane that maps the greatest share of the surface; else empty.
   std::optional<SymmetryPlane> best;
+  /// Where 97 % of the points lie within the tolerance of one plane (three tolerances where noise hides the surface),
+  /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and say
+  /// nothing.
+  std::optional<ReflectionPlane> flat;
   double tolerance = 0.0;               ///< that was decided at, input units
   std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;  ///< of spheres
