@@ -15,8 +15,8 @@ namespace {
 constexpr const char* kHeading =
     "model,row,rank,made,partial,volume,share_on_mesh,near_share,share,unknown,support,conflict,baseline,score,own_"
     "score,"
-    "spacing,tolerance,roughness,half_share,double_share,hold\n";
-constexpr std::size_t kNumValues = 19;  // derived: the columns of kHeading after the names
+    "spacing,tolerance,roughness,double_share,hold\n";
+constexpr std::size_t kNumValues = 18;  // derived: the columns of kHeading after the names
 
 std::array<double, kNumValues> valuesOf(const EvidenceSample& sample) {
   const PlaneEvidence& e = sample.evidence;
@@ -36,7 +36,6 @@ std::array<double, kNumValues> valuesOf(const EvidenceSample& sample) {
           e.spacing,
           e.tolerance,
           e.roughness,
-          e.half_share,
           e.double_share,
           e.hold};
 }
@@ -56,9 +55,8 @@ EvidenceSample sampleFrom(const std::string& model, const std::string& row, cons
   e.spacing = v[13];
   e.tolerance = v[14];
   e.roughness = v[15];
-  e.half_share = v[16];
-  e.double_share = v[17];
-  e.hold = v[18];
+  e.double_share = v[16];
+  e.hold = v[17];
   return sample;
 }
 

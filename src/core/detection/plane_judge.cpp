@@ -47,11 +47,11 @@ constexpr double kNoisyThinness = 3.0;
 constexpr double kRoundSpacings = 2.0;
 constexpr double kLeastTelling = 1e-3;  // chosen: any small share; avoids a division by 0
 constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
-// Tolerances at which the share is measured. derived: half, one and two, see PlaneEvidence.
-constexpr std::array<double, 3> kTolerances{0.5, 1.0, 2.0};
+// Tolerances at which the share is measured. derived: see PlaneEvidence.
+constexpr std::array<double, 2> kTolerances{1.0, 2.0};
 
-std::array<double, 3> sharesWithin(const std::vector<float>& distances, double tolerance) {
-  std::array<double, 3> shares{};
+std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
+  std::array<double, 2> shares{};
   for (std::size_t k = 0; k < shares.size(); ++k)
     shares[k] = std::max(kLeastOwnShare, shareWithin(distances, kTolerances[k] * tolerance));
   return shares;
@@ -159,14 +159,15 @@ std::vector<float> PlaneJudge::unknownMatches(const Reflected& reflected, const 
 PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const Reflected& reflected,
                                             const IspStep& step, double rim) const {
   const std::size_t size = reflected.distances.size();
-  const std::vector<float> measured = halves_ ? halves_->reflectedDistances(plane) : reflected.distances;
-  std::array<double, 3> within{};
+  const std::vector<float> of_halves = halves_ ? halves_->reflectedDistances(plane) : std::vector<float>();
+  const std::vector<float>& measured = halves_ ? of_halves : reflected.distances;
+  std::array<double, 2> within{};
   for (std::size_t k = 0; k < within.size(); ++k)
     within[k] = std::min(1.0, shareWithin(measured, kTolerances[k] * tolerance_) / own_shares_[k]);
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
   const Eigen::Matrix3d stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
-  const std::vector<float> unknown = cloud_.isScan() || within[1] < kSurelyWhole
+  const std::vector<float> unknown = cloud_.isScan() || within[0] < kSurelyWhole
                                          ? unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim)
                                          : std::vector<float>(size, 0.0f);
   std::vector<float> telling;  // distances of the samples that say something
@@ -180,11 +181,7 @@ PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const 
     return good + bad > 0.0 ? good / (good + bad) : 0.0;
   };
   const double missing = meanSupport(unknown);
-  return {share(within[1], missing),
-          share(within[0], missing),
-          share(within[2], missing_at_twice),
-          secondStiffness(stiffness),
-          missing,
+  return {share(within[0], missing), share(within[1], missing_at_twice), secondStiffness(stiffness), missing,
           deviationOf(std::move(telling))};
 }
 
@@ -209,7 +206,6 @@ double PlaneJudge::deviation(const ReflectionPlane& plane) const {
 PlaneEvidence PlaneJudge::evidence(const PlaneShares& shares, const Agreement& agreement, double score) const {
   PlaneEvidence evidence = fit_.evidence(shares.support, shares.conflict, score);
   evidence.share = agreement.share;
-  evidence.half_share = agreement.half_share;
   evidence.double_share = agreement.double_share;
   evidence.hold = agreement.hold;
   evidence.tolerance = tolerance_;
@@ -302,7 +298,6 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
     const double told = (1.0 - agreed.unknown) / count;
     telling += told;
     together.share += told * agreed.share;
-    together.half_share += told * agreed.half_share;
     together.double_share += told * agreed.double_share;
     together.hold += agreed.hold / count;
     best_score = std::max(best_score, score);
@@ -311,8 +306,7 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
   }
   // Planes of a family say as much as the scan shows of them, and D falls with what it does not show: the plane that
   // is shown best stands for it.
-  for (double* share : {&together.share, &together.half_share, &together.double_share})
-    *share /= std::max(kLeastTelling, telling);
+  for (double* share : {&together.share, &together.double_share}) *share /= std::max(kLeastTelling, telling);
   together.unknown = 1.0 - telling;
   const PlaneEvidence all = evidence({support, conflict, {}}, together, cloud_.isScan() ? best_score : family.score);
   family.confidence = planeConfidence(all);

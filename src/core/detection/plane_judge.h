@@ -92,7 +92,6 @@ private:
   /// What the reflections say at the tolerance.
   struct Agreement {
     double share;         ///< within the tolerance, of those that say something
-    double half_share;    ///< the same within half the tolerance
     double double_share;  ///< the same within twice the tolerance
     double hold;          ///< how firmly those within the tolerance hold the plane
     double unknown;       ///< say nothing
@@ -127,8 +126,8 @@ private:
   double tolerance_;
   Thinness thinness_;
   std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
-  /// Within half, one and two tolerances, of the points themselves and the surface of the others.
-  std::array<double, 3> own_shares_;
+  /// Within one and two tolerances, of the points themselves and the surface of the others.
+  std::array<double, 2> own_shares_;
   double own_score_;  ///< PlaneEvidence::own_score
   mutable std::once_flag borders_found_;
   mutable std::vector<char> borders_;   ///< of the cloud; found where they are first asked for

@@ -15,11 +15,11 @@ struct ConfidenceFit {
 };
 
 // clang-format off
-// fitted: 322 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.507, -0.7481, -0.4761, -3.597, -0.6053, -0.5547, -0.9002, -1.968, -3.915},
-                                            {0.5174, -1.285, -0.5448, -10.07, -0.2585, -1.017},
-                                            {5.259, -0.8867, -1.5, -1.086, -14.49}}},
-                                          {{{-5.01, 0.796}, {-18.2, 0.228}, {-20.3, 0.8}}}};
+// fitted: 500 models and shapes, tolerance 0.01 of the diameter.
+inline const ConfidenceFit kConfidenceFit{{{{2.444, -0.4327, -0.4458, -5.522, -0.4478, -1.025, -0.9976, -1.474, -3.647},
+                                            {0.2074, -0.8723, -0.9159, -11.41, -0.6846, -1.03},
+                                            {5.49, -0.8667, -1.439, -1.077, -15}}},
+                                          {{{-5.95, 1.04}, {-18.4, 0.342}, {-21.5, 0.733}}}};
 // clang-format on
 
 }  // namespace pcl_symmetry

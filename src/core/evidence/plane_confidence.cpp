@@ -50,17 +50,12 @@ double byLostSupport(const PlaneEvidence& evidence, const EvidenceUnits& units) 
                   (kOffAtEvenOdds + units.lost_support));
 }
 
-/// \return log odds by the share of the surface that is off at half the tolerance.
-double byHalfShare(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  return std::log((1.0 - evidence.half_share + units.half_off) / (kOffAtEvenOdds + units.half_off));
-}
-
-/// \return the same at twice the tolerance.
+/// \return log odds by the share of the surface that is off at twice the tolerance.
 double byDoubleShare(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   return std::log((1.0 - evidence.double_share + units.double_off) / (kOffAtEvenOdds + units.double_off));
 }
 
-/// \return log odds by how easily a plane of a surface slips along it, >= 0.
+/// \return log odds by how easily the plane slips along what it matches, >= 0.
 double bySlipping(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   return std::max(0.0, std::log(units.slipping / (evidence.hold + units.least_slipping)));
 }
@@ -106,10 +101,10 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
   switch (kindOf(evidence)) {
     case EvidenceKind::Scan:
       return {1.0,
-              byShare(evidence, units.scan_off) / std::max(1.0, coarseness(evidence)),
+              byShare(evidence, units.scan_off),
               byDoubleShare(evidence, units),
               byUnexplainedLoss(evidence, units),
-              -std::log(evidence.hold + units.loose_hold),
+              bySlipping(evidence, units),
               further};
     case EvidenceKind::Volume:
       return {1.0, byShare(evidence, units.volume_off), byExcess(evidence, units), byLostOverlap(evidence, units),
@@ -121,7 +116,7 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
               std::sqrt(evidence.unknown),
               byLostSupport(evidence, units),
               coarseness(evidence),
-              byHalfShare(evidence, units),
+              byDoubleShare(evidence, units),
               bySlipping(evidence, units),
               further};
   }

@@ -54,7 +54,6 @@ void expectFalls(const std::string& what, const std::function<void(PlaneEvidence
 
 TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("share", [](PlaneEvidence& e, double t) { e.share = 1.0 - t; });
-  expectFalls("share within half the tolerance", [](PlaneEvidence& e, double t) { e.half_share = 1.0 - t; });
   expectFalls("share within twice the tolerance", [](PlaneEvidence& e, double t) { e.double_share = 1.0 - t; });
   expectFalls("hold", [](PlaneEvidence& e, double t) { e.hold = 0.1 * (1.0 - t); });
   expectFalls("unknown", [](PlaneEvidence& e, double t) {
