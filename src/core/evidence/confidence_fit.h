@@ -16,9 +16,9 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.444, -0.4327, -0.4458, -5.522, -0.4478, -1.025, -0.9976, -1.474, -3.647},
+inline const ConfidenceFit kConfidenceFit{{{{2.074, -0.2482, -0.4639, -5.121, -0.5734, -1.062, -1.148, -1.418, -3.216},
                                             {0.2074, -0.8723, -0.9159, -11.41, -0.6846, -1.03},
-                                            {5.49, -0.8667, -1.439, -1.077, -15}}},
+                                            {5.257, -0.8864, -1.497, -1.086, -14.5}}},
                                           {{{-5.95, 1.04}, {-18.4, 0.342}, {-21.5, 0.733}}}};
 // clang-format on
 
