@@ -15,10 +15,7 @@ constexpr double kLowShare = 0.025, kHighShare = 0.975;  // derived: 95 % of the
 // chosen: from the third pass on, two fits alternate whose numbers differ by 5 % at most and which decide alike.
 constexpr int kFurtherPasses = 10;
 
-// Of planes of meshes, where those of shapes made by code count once. chosen: shapes have many folds, and so many more
-// planes than what users have.
-constexpr double kMeshWeight = 2.0;
-// The same of nearly symmetric planes of scans and of clouds that were cut, which seldom show what tells them from
+// Weight of nearly symmetric planes of scans and of clouds that were cut, which seldom show what tells them from
 // symmetries; elsewhere they are none like others. chosen: by cross-validation over the models of fold 0, see
 // evidence/README.md. With 1, one in a hundred symmetries less is found, with 0 stated probabilities are too high.
 constexpr double kHiddenNearWeight = 0.5;
@@ -26,7 +23,7 @@ constexpr double kHiddenNearWeight = 0.5;
 double weightOf(const EvidenceSample& sample) {
   const bool is_near = sample.near_share >= kAsymmetric && sample.near_share < kSymmetric;
   const bool hides = kindOf(sample.evidence) == EvidenceKind::Scan || sample.row.rfind("cut off", 0) == 0;
-  return (sample.is_made ? 1.0 : kMeshWeight) * (is_near && hides ? kHiddenNearWeight : 1.0);
+  return is_near && hides ? kHiddenNearWeight : 1.0;
 }
 
 double quantileOf(std::vector<double> values, double share) {

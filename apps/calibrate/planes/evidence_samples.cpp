@@ -110,13 +110,13 @@ public:
       : scene_(scene), truth_(scene, kTruthSamples, 1), tolerance_(tolerance * diameter(truth_.samples())) {}
 
   /// \param row of the cloud that the planes are of.
-  void add(const std::vector<JudgedPlane>& planes, const std::string& model, const std::string& row, bool is_made,
+  void add(const std::vector<JudgedPlane>& planes, const std::string& model, const std::string& row,
            const Eigen::Isometry3d& T_cloud_model) {
     for (std::size_t i = 0; i < planes.size(); ++i) {
       const ReflectionPlane plane = toScene(planes[i].plane, T_cloud_model, scene_);
       double share = truth_.share(plane, tolerance_, kScreenStride);
       if (share >= kSurelyNone) share = truth_.share(plane, tolerance_);
-      samples_.push_back({model, row, planes[i].evidence, share, share, static_cast<int>(i), is_made});
+      samples_.push_back({model, row, planes[i].evidence, share, share, static_cast<int>(i)});
       planes_.push_back(plane);
     }
   }
@@ -182,7 +182,7 @@ std::vector<EvidenceSample> sampleFoldedEvidence(int i, double tolerance) {
   const TriangleScene scene(folded.shape.mesh);
   PlaneTruths truths(scene, tolerance);
   truths.add(judgedCandidates(distinctPoints(*folded.cloud), nullptr, optionsOf(tolerance)),
-             folded.body + " " + std::to_string(i), "folds noise " + std::to_string(folded.noise), true, folded.pose);
+             folded.body + " " + std::to_string(i), "folds noise " + std::to_string(folded.noise), folded.pose);
   return truths.samples();
 }
 
@@ -196,7 +196,7 @@ std::vector<EvidenceSample> sampleEvidence(const Model& model, double tolerance)
   PlaneTruths truths(scene, tolerance);
   for (const CloudRecipe& recipe : calibrationRecipes()) {
     const TestCloud cloud = maker.make(recipe);
-    truths.add(judgedCandidates(cloud, optionsOf(tolerance)), model.name, recipe.name, false, cloud.T_cloud_model);
+    truths.add(judgedCandidates(cloud, optionsOf(tolerance)), model.name, recipe.name, cloud.T_cloud_model);
   }
   return truths.samples();
 }

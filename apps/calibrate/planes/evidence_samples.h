@@ -17,7 +17,6 @@ struct EvidenceSample {
   double share;       ///< of the area of the mesh that the plane maps to within the tolerance of the mesh
   double near_share;  ///< the greatest share of the planes that could not be told from this one
   int rank;           ///< by merit among the planes of its cloud, from 0
-  bool is_made;       ///< of a shape made by code, not of a model
 };
 
 /// The clouds that the decision is fitted to.

@@ -13,15 +13,14 @@ namespace {
 
 // derived: the members of EvidenceSample and PlaneEvidence.
 constexpr const char* kHeading =
-    "model,row,rank,made,partial,volume,share_on_mesh,near_share,share,unknown,support,conflict,baseline,score,own_"
+    "model,row,rank,partial,volume,share_on_mesh,near_share,share,unknown,support,conflict,baseline,score,own_"
     "score,"
     "spacing,tolerance,roughness,double_share,hold\n";
-constexpr std::size_t kNumValues = 18;  // derived: the columns of kHeading after the names
+constexpr std::size_t kNumValues = 17;  // derived: the columns of kHeading after the names
 
 std::array<double, kNumValues> valuesOf(const EvidenceSample& sample) {
   const PlaneEvidence& e = sample.evidence;
   return {static_cast<double>(sample.rank),
-          static_cast<double>(sample.is_made),
           static_cast<double>(e.partial),
           static_cast<double>(e.volume),
           sample.share,
@@ -41,22 +40,22 @@ std::array<double, kNumValues> valuesOf(const EvidenceSample& sample) {
 }
 
 EvidenceSample sampleFrom(const std::string& model, const std::string& row, const std::array<double, kNumValues>& v) {
-  EvidenceSample sample{model, row, {}, v[4], v[5], static_cast<int>(v[0]), v[1] > 0.0};
+  EvidenceSample sample{model, row, {}, v[3], v[4], static_cast<int>(v[0])};
   PlaneEvidence& e = sample.evidence;
-  e.partial = v[2] > 0.0;
-  e.volume = v[3] > 0.0;
-  e.share = v[6];
-  e.unknown = v[7];
-  e.support = v[8];
-  e.conflict = v[9];
-  e.baseline = v[10];
-  e.score = v[11];
-  e.own_score = v[12];
-  e.spacing = v[13];
-  e.tolerance = v[14];
-  e.roughness = v[15];
-  e.double_share = v[16];
-  e.hold = v[17];
+  e.partial = v[1] > 0.0;
+  e.volume = v[2] > 0.0;
+  e.share = v[5];
+  e.unknown = v[6];
+  e.support = v[7];
+  e.conflict = v[8];
+  e.baseline = v[9];
+  e.score = v[10];
+  e.own_score = v[11];
+  e.spacing = v[12];
+  e.tolerance = v[13];
+  e.roughness = v[14];
+  e.double_share = v[15];
+  e.hold = v[16];
   return sample;
 }
 

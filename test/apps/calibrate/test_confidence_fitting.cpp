@@ -19,7 +19,7 @@ std::vector<EvidenceSample> madeUpSamples() {
   RandomStream random(1);
   for (int cloud = 0; cloud < 300; ++cloud) {
     for (int rank = 0; rank < 4; ++rank) {
-      EvidenceSample sample{"model " + std::to_string(cloud), "scan 1", {}, 0.5, 0.5, rank, false};
+      EvidenceSample sample{"model " + std::to_string(cloud), "scan 1", {}, 0.5, 0.5, rank};
       const bool is_symmetry = random.uniform() < (rank == 0 ? 0.9 : 0.2);
       if (is_symmetry) sample.share = sample.near_share = 0.99;
       sample.evidence.partial = cloud % 3 == 0;
@@ -74,16 +74,6 @@ TEST(ConfidenceFitting, NearlySymmetricPlanesAreNone) {
   for (std::size_t i = 0; i < samples.size(); i += 2)
     if (samples[i].near_share >= 0.97) samples[i].near_share = 0.95;
   EXPECT_LT(oddsOfFirst(samples), before - 0.5);
-}
-
-TEST(ConfidenceFitting, PlanesOfMeshesCountMoreThanThoseOfShapesMadeByCode) {
-  // Of every second cloud the planes that are symmetries are none; those clouds weigh twice or half as much.
-  std::vector<EvidenceSample> meshes = madeUpSamples();
-  for (std::size_t i = 0; i < meshes.size(); ++i)
-    if (i / 4 % 2 == 0) meshes[i].share = meshes[i].near_share = 0.5;
-  std::vector<EvidenceSample> shapes = meshes;
-  for (std::size_t i = 0; i < meshes.size(); ++i) (i / 4 % 2 == 0 ? shapes : meshes)[i].is_made = true;
-  EXPECT_LT(oddsOfFirst(meshes), oddsOfFirst(shapes) - 0.5);
 }
 
 TEST(EvidenceTable, NamesTheLineThatCannotBeRead) {
