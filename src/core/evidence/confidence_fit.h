@@ -16,8 +16,8 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.11, -0.2452, -0.4715, -5.287, -0.5773, -1.064, -1.17, -1.438, -3.174},
-                                            {0.2072, -0.8723, -0.9159, -11.41, -0.6845, -1.03},
+inline const ConfidenceFit kConfidenceFit{{{{1.895, -0.2631, -0.4674, -4.93, -0.535, -0.9974, -1.179, -3.181},
+                                            {0.1733, -0.8384, -0.9274, -10.46, -3.156, -1.104},
                                             {5.404, -0.8448, -1.639, -0.9785, -12.68}}},
                                           {{{-5.95, 1.04}, {-18.4, 0.342}, {-21.5, 0.733}}}};
 // clang-format on

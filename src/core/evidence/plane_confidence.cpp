@@ -55,9 +55,10 @@ double byDoubleShare(const PlaneEvidence& evidence, const EvidenceUnits& units) 
   return std::log((1.0 - evidence.double_share + units.double_off) / (kOffAtEvenOdds + units.double_off));
 }
 
-/// \return log odds by how easily the plane slips along what it matches, >= 0.
+/// \return log odds by how easily the plane slips along what it matches, where something is hidden, >= 0.
 double bySlipping(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  return std::max(0.0, std::log(units.slipping / (evidence.hold + units.least_slipping)));
+  const double slips = std::max(0.0, std::log(units.slipping / (evidence.hold + units.least_slipping)));
+  return std::sqrt(evidence.unknown) * slips;
 }
 
 /// \return what D of a scan loses beyond what the hidden part explains.
@@ -117,7 +118,6 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
               byLostSupport(evidence, units),
               coarseness(evidence),
               byDoubleShare(evidence, units),
-              bySlipping(evidence, units),
               further};
   }
 }

@@ -93,7 +93,7 @@ TEST(PlaneConfidence, IsHighForSymmetriesAndLowForOthers) {
     EXPECT_GT(planeConfidence(good), 0.5) << name;
     PlaneEvidence half = good;
     half.share = 0.5;
-    half.support = half.score = 0.6;
+    half.double_share = half.support = half.score = 0.6;
     EXPECT_LT(planeConfidence(half), 0.05) << name;
   }
 }
@@ -102,15 +102,17 @@ TEST(PlaneConfidence, OfAWholeCloudFollowsTheDefinition) {
   // 97 % of the surface make a symmetry; below 90 % a plane is none.
   PlaneEvidence evidence = regimes().front().good;
   evidence.share = 0.985;
+  evidence.double_share = 0.99;
   EXPECT_GT(planeConfidence(evidence), 0.5);
   evidence.share = 0.90;
+  evidence.double_share = 0.94;
   EXPECT_LT(planeConfidence(evidence), 0.5);
 }
 
 TEST(PlaneConfidence, APlaneThatNothingSpeaksForIsNoSymmetry) {
   for (const auto& [name, good] : regimes()) {
     PlaneEvidence evidence = good;
-    evidence.share = evidence.score = evidence.support = 0.0;
+    evidence.share = evidence.double_share = evidence.score = evidence.support = evidence.hold = 0.0;
     EXPECT_EQ(seenSupport(evidence), 0.0) << name;
     EXPECT_LT(planeConfidence(evidence), 0.02) << name;
   }

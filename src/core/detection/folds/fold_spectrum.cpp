@@ -59,9 +59,10 @@ double prominence(const std::vector<std::complex<double>>& spectrum, int m) {
 /// What several planes say together.
 double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
-  constexpr std::array kMeans{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
-                              &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
-                              &PlaneEvidence::unknown};
+  // derived: what differs from plane to plane of a cloud
+  static constexpr std::array kMeans{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
+                                     &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
+                                     &PlaneEvidence::unknown};
   for (double PlaneEvidence::*member : kMeans) {
     double sum = 0.0, count = 0.0;
     for (std::size_t k = first; k < judged.size(); k += step) {
