@@ -180,8 +180,9 @@ PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const 
     const double bad = std::max(0.0, 1.0 - good - missing);
     return good + bad > 0.0 ? good / (good + bad) : 0.0;
   };
-  const double missing = meanSupport(unknown);
-  return {share(within[0], missing), share(within[1], missing_at_twice), secondStiffness(stiffness), missing,
+  const double missing = meanSupport(unknown), at_twice = share(within[1], missing_at_twice);
+  // Within the tolerance is within twice of it; few points, whose own share is small, make more of the former.
+  return {std::min(share(within[0], missing), at_twice), at_twice, secondStiffness(stiffness), missing,
           deviationOf(std::move(telling))};
 }
 

@@ -16,10 +16,10 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{1.895, -0.2631, -0.4674, -4.93, -0.535, -0.9974, -1.179, -3.181},
-                                            {0.1733, -0.8384, -0.9274, -10.46, -3.156, -1.104},
-                                            {5.404, -0.8448, -1.639, -0.9785, -12.68}}},
-                                          {{{-5.95, 1.04}, {-18.4, 0.342}, {-21.5, 0.733}}}};
+inline const ConfidenceFit kConfidenceFit{{{{2.416, -1.725, -0.4921, -4.772, -0.1358, -0.8869, -3.553},
+                                            {0.2694, -0.9311, -0.8381, -10.54, -3.208, -1.119},
+                                            {4.929, -1.002, -1.505, -0.9331, -11.81}}},
+                                          {{{-5.93, 1.04}, {-18.4, 0.342}, {-21.5, 0.766}}}};
 // clang-format on
 
 }  // namespace pcl_symmetry

@@ -117,7 +117,6 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
               std::sqrt(evidence.unknown),
               byLostSupport(evidence, units),
               coarseness(evidence),
-              byDoubleShare(evidence, units),
               further};
   }
 }

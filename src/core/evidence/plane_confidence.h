@@ -17,7 +17,7 @@ struct PlaneEvidence {
   bool volume = false;     ///< the points resolve no surface; support is the overlap of their density
   /// Share of the surface mapped to within the tolerance of the surface, of that which says something, in [0, 1].
   double share = 1.0;
-  double double_share = 1.0;  ///< the same within twice the tolerance
+  double double_share = 1.0;  ///< the same within twice the tolerance, >= share
   double hold = 1.0;          ///< how firmly what is matched holds the plane, see secondStiffness(), >= 0
   double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
   double unknown = 0.0;       ///< share of the surface that says nothing: its reflection was not seen or was cut off
@@ -45,19 +45,19 @@ struct EvidenceUnits {
   /// 000, 3000 and 1000 points, 95 % of which had an error of at most 0.006, 0.007, 0.02 and 0.027; half lets sampling
   /// decide, twice blurs 3 %.
   double off = 0.005, off_per_spacing = 0.002, scan_off = 0.01;
-  /// The same of the share within twice the tolerance. chosen: as off; 0.01 in its place gives 0.157 in place of 0.154
-  /// nats a plane of surfaces, by cross-validation over the models of fold 0.
+  /// The same of the share of scans within twice the tolerance. chosen: among 0.0025, 0.005 and 0.01 by
+  /// cross-validation over the models of fold 0: 0.193, 0.192 and 0.192 nats a plane.
   double double_off = 0.005;
   /// How exactly the share is known: twice the above, less where much says nothing; and from where on it does not
   /// matter. chosen: with half of them nearly symmetric planes are possible ones, with twice of them symmetries are
   /// doubted.
   double precision = 0.01, precision_per_spacing = 0.004, precision_per_unknown = 0.2, most_off = 0.1;
   /// Part of D that a scan loses per share that says nothing. chosen: among 0.4, 0.6 and 0.8 by cross-validation over
-  /// the models of fold 0: 0.194, 0.193 and 0.196 nats a plane; 0.200 with (1 - D)^3, 0.213 without.
+  /// the models of fold 0: 0.194, 0.192 and 0.196 nats a plane; 0.200 with (1 - D)^3, 0.213 without.
   double hidden_loss = 0.6;
   /// How firmly a scan has to hold a plane, and what is as good as free. chosen: symmetries of meshes have 0.05 to 0.6;
-  /// the first among 0.01, 0.03 and 0.1 by cross-validation over the models of fold 0: 0.192 to 0.193 nats a plane with
-  /// each, 0.196 without.
+  /// the first among 0.01, 0.03 and 0.1 by cross-validation over the models of fold 0: 0.192 nats a plane with each,
+  /// 0.195 without.
   double slipping = 0.03, least_slipping = 0.001;
   /// Of the support. chosen: what sampling leaves of it; at half, single points count, at twice, small asymmetries do
   /// not.
