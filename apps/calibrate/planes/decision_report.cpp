@@ -78,7 +78,6 @@ const std::vector<std::pair<const char*, double EvidenceUnits::*>>& unitNames() 
       {"hidden_loss", &EvidenceUnits::hidden_loss},
       {"slipping", &EvidenceUnits::slipping},
       {"least_slipping", &EvidenceUnits::least_slipping},
-      {"lost_support", &EvidenceUnits::lost_support},
       {"volume_off", &EvidenceUnits::volume_off},
       {"excess", &EvidenceUnits::excess},
       {"lost_overlap", &EvidenceUnits::lost_overlap}};

@@ -16,7 +16,7 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.416, -1.725, -0.4921, -4.772, -0.1358, -0.8869, -3.553},
+inline const ConfidenceFit kConfidenceFit{{{{1.763, -1.758, -0.4092, -3.675, -0.2786, -7.099, -3.427},
                                             {0.2694, -0.9311, -0.8381, -10.54, -3.208, -1.119},
                                             {4.929, -1.002, -1.505, -0.9331, -11.81}}},
                                           {{{-5.93, 1.04}, {-18.4, 0.342}, {-21.5, 0.766}}}};

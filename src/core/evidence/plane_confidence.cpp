@@ -12,8 +12,6 @@ namespace {
 
 // Share of the surface that is off, at which the log odds by the share are 0. derived: the definition of a symmetry.
 constexpr double kOffAtEvenOdds = 0.03;
-constexpr double kLeastTelling =
-    0.05;  // chosen: any value far below that of planes that are judged; avoids a division by 0
 constexpr double kLeastTolerance = 1e-6;  // radii. derived: rounding of coordinates about 1; avoids a division by 0
 // Spacing, tolerances, beyond which points do not resolve the tolerance, and log odds lost per tolerance beyond.
 // chosen: 1000 points of a typical shape have 3, 500 have 4.5, 300 have 5.8. At half of the first, clouds of 5000
@@ -43,13 +41,6 @@ double byPrecision(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   return std::min(1.0 - evidence.share, units.most_off) / unit;
 }
 
-/// \return log odds by the support that is lost where the surface says something, 0 where that is as likely as not.
-double byLostSupport(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  const double telling = std::max(kLeastTelling, 1.0 - evidence.unknown);
-  return std::log((std::max(0.0, 1.0 - evidence.support / telling) + units.lost_support) /
-                  (kOffAtEvenOdds + units.lost_support));
-}
-
 /// \return log odds by the share of the surface that is off at twice the tolerance.
 double byDoubleShare(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   return std::log((1.0 - evidence.double_share + units.double_off) / (kOffAtEvenOdds + units.double_off));
@@ -61,7 +52,7 @@ double bySlipping(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   return std::sqrt(evidence.unknown) * slips;
 }
 
-/// \return what D of a scan loses beyond what the hidden part explains.
+/// \return what D loses beyond what the hidden or missing part explains.
 double byUnexplainedLoss(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   return std::max(0.0, 1.0 - evidence.score - units.hidden_loss * evidence.unknown);
 }
@@ -115,8 +106,8 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
               byShare(evidence, units.off + units.off_per_spacing * coarseness(evidence)),
               byPrecision(evidence, units),
               std::sqrt(evidence.unknown),
-              byLostSupport(evidence, units),
               coarseness(evidence),
+              coarseness(evidence) * byUnexplainedLoss(evidence, units),
               further};
   }
 }

@@ -52,17 +52,14 @@ struct EvidenceUnits {
   /// matter. chosen: with half of them nearly symmetric planes are possible ones, with twice of them symmetries are
   /// doubted.
   double precision = 0.01, precision_per_spacing = 0.004, precision_per_unknown = 0.2, most_off = 0.1;
-  /// Part of D that a scan loses per share that says nothing. chosen: among 0.4, 0.6 and 0.8 by cross-validation over
+  /// Part of D that is lost per share that says nothing. chosen: among 0.4, 0.6 and 0.8 by cross-validation over
   /// the models of fold 0: 0.194, 0.192 and 0.196 nats a plane; 0.200 with (1 - D)^3, 0.213 without.
   double hidden_loss = 0.6;
   /// How firmly a scan has to hold a plane, and what is as good as free. chosen: nine of ten symmetries that
   /// scans of fold 0 show have more than 0.06; the first among 0.01, 0.03 and 0.1 by cross-validation over the models
   /// of fold 0: 0.192 nats a plane with each, 0.195 without.
   double slipping = 0.03, least_slipping = 0.001;
-  /// Of the support. chosen: what sampling leaves of it; at half, single points count, at twice, small asymmetries do
-  /// not.
-  double lost_support = 0.01;
-  /// The same where points resolve no surface: of the share, of D and of the overlap. chosen: among 0.003 and 0.01,
+  /// Where points resolve no surface: of the share, of D and of the overlap. chosen: among 0.003 and 0.01,
   /// 0.001 to 0.005, and 0.01, by cross-validation over models of what calibrate_planes -csv writes: 0.247 nats a
   /// plane, 0.250 to 0.285 with others.
   double volume_off = 0.003, excess = 0.002, lost_overlap = 0.01;
