@@ -53,7 +53,8 @@ struct EvidenceUnits {
   /// doubted.
   double precision = 0.01, precision_per_spacing = 0.004, precision_per_unknown = 0.2, most_off = 0.1;
   /// Part of D that is lost per share that says nothing. chosen: among 0.4, 0.6 and 0.8 by cross-validation over
-  /// the models of fold 0: 0.194, 0.192 and 0.196 nats a plane; 0.200 with (1 - D)^3, 0.213 without.
+  /// the models of fold 0: 0.194, 0.192 and 0.196 nats a plane of scans, 0.145 each of surfaces; 0.213 and 0.148
+  /// without.
   double hidden_loss = 0.6;
   /// How firmly a scan has to hold a plane, and what is as good as free. chosen: nine of ten symmetries that
   /// scans of fold 0 show have more than 0.06; the first among 0.01, 0.03 and 0.1 by cross-validation over the models
