@@ -29,12 +29,12 @@ struct SubCommand {
 // derived: all rooms of the folder that are a sub-command.
 constexpr SubCommand kSubCommands[] = {
     {"planes", "how well symmetry planes are found", nullptr, evaluatePlanes},
-    {"alignment", "how well the frames of scans agree with those of whole models", evaluateAlignment},
+    {"alignment", "how well the frames of scans agree with those of whole models", nullptr, evaluateAlignment},
     {"recognition", "how well a scan tells which model of a database it shows", evaluateRecognition},
     {"registration", "how well scans are brought to models of their objects", evaluateRegistration},
     {"retrieval", "how well shapes find others of their class", nullptr, evaluateRetrieval},
     {"rotations", "how well groups of rotations of solids are found", nullptr, evaluateRotations},
-    {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation},
+    {"segmentation", "how close segmentations come to those that people made", nullptr, evaluateSegmentation},
     {"scenes", "planes and models of objects among others, seen by a depth camera", evaluateScenes},
     {"shapes", "decisions on shapes made by code: folds, views, random clouds, composites", evaluateShapes}};
 

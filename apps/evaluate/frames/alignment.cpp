@@ -15,6 +15,8 @@
 #include "evaluate/frames/frame_difference.h"
 #include "evaluate/frames/mesh_ties.h"
 #include "evaluate/references/reference_symmetries.h"
+#include "evaluate/runs/packed_rows.h"
+#include "evaluate/runs/resumable_run.h"
 #include "evaluate/segmentation/patches.h"
 #include "evaluate/shared/class_file.h"
 #include "evaluate/shared/model_flags.h"
@@ -37,7 +39,7 @@ struct EvaluateAlignmentOptions {
   double noise = 0.0, missing = 0.0;
   bool ties = false;
   std::optional<std::string> methods;
-  std::optional<std::string> cloud_csv, histogram_csv, png;
+  std::optional<std::string> cloud_csv, histogram_csv, png, journal;
   CommonOptions common;
 };
 
@@ -63,13 +65,14 @@ CommandLine commandLine(EvaluateAlignmentOptions& o) {
       .text("histogram_csv", "FILE", o.histogram_csv, "histograms of misalignment (Figure 12)")
       .picture("png", o.png, "their charts: NAME_translation.png, NAME_rotation.png")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  ResumableRun::addFlag(line, o.journal);
   return line;
 }
 
 class AlignmentEvaluation {
 public:
-  explicit AlignmentEvaluation(const EvaluateAlignmentOptions& options)
-      : options_(options), console_(options.common.quiet) {
+  AlignmentEvaluation(const EvaluateAlignmentOptions& options, ResumableRun& work)
+      : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()) {
     clouds_.num_points = options.num_points;
     clouds_.noise = clouds_.scan_noise = {options.noise};
     clouds_.num_views = options.num_views;
@@ -87,9 +90,22 @@ public:
                    models.end());
     }
     Step step(console_, "Evaluating " + std::to_string(models.size()) + " models");
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
-      evaluate(models[i]);
+    std::vector<std::string> names;
+    for (const Model& model : models) names.push_back(model.key);
+    std::vector<ItemRows<FrameErrors>> all(models.size());
+    double num_done = 0.0;
+    work_.run(names, {[&](std::size_t i) { return packed(evaluate(models[i])); },
+                      [&](std::size_t i, const std::string& bytes) {
+                        all[i] = unpackedRows<FrameErrors>(bytes);
+                        step.progress(++num_done / static_cast<double>(models.size()));
+                      },
+                      [&](std::size_t i) {
+                        return packed(ItemRows<FrameErrors>{{}, models[i].path + ": the process that did it died"});
+                      }});
+    if (!work_.isFirst()) return;
+    for (const ItemRows<FrameErrors>& item : all) {
+      errors_.insert(errors_.end(), item.rows.begin(), item.rows.end());
+      if (!item.left_out.empty()) left_out_.push_back(item.left_out);
     }
     step.done(std::to_string(errors_.size() / methods_.size()) + " clouds");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
@@ -98,7 +114,7 @@ public:
   }
 
 private:
-  void evaluate(const Model& model) {
+  ItemRows<FrameErrors> evaluate(const Model& model) {
     try {
       const Shape shape = loadShape(model.path);
       if (!shape.mesh) throw InputError(model.path + ": has no faces");
@@ -111,11 +127,11 @@ private:
       for (const CloudRecipe& recipe : recipesFor(clouds_))
         evaluate(model, maker, recipe, diagonal, wholes, errors, axes);
       markAsGood(wholes, axes, errors);
-      errors_.insert(errors_.end(), errors.begin(), errors.end());
+      return {std::move(errors), ""};
     } catch (const InputError& error) {
-      left_out_.push_back(error.what());
+      return {{}, error.what()};
     } catch (const std::exception& error) {
-      left_out_.push_back(model.path + ": " + error.what());
+      return {{}, model.path + ": " + error.what()};
     }
   }
 
@@ -221,6 +237,7 @@ private:
   }
 
   const EvaluateAlignmentOptions& options_;
+  ResumableRun& work_;
   const Console console_;
   TestCloudOptions clouds_;
   std::vector<AlignmentMethod> methods_;
@@ -231,11 +248,13 @@ private:
 
 }  // namespace
 
-int evaluateAlignment(int argc, char** argv) {
+int evaluateAlignment(int argc, char** argv, SharedWork& processes) {
   EvaluateAlignmentOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  AlignmentEvaluation(options).run();
+  ResumableRun work(processes, options.journal, argc, argv);
+  options.common.threads = work.threadsOfItem(options.common.threads);
+  AlignmentEvaluation(options, work).run();
   return 0;
 }
 

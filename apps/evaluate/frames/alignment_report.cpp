@@ -10,11 +10,17 @@
 #include "common/pictures/chart.h"
 #include "core/base/random.h"
 #include "evaluate/planes/plane_statistics.h"
+#include "evaluate/runs/packed_rows.h"
 #include "evaluate/shared/table_text.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
+
+// derived: all numbers of FrameErrors.
+constexpr double FrameErrors::*kNumbers[] = {
+    &FrameErrors::own_angle,   &FrameErrors::own_turned_angle, &FrameErrors::center,      &FrameErrors::axes_angle,
+    &FrameErrors::frame_angle, &FrameErrors::equal_axes_angle, &FrameErrors::milliseconds};
 
 constexpr double kReportedRightAngle = 5.0;  // degrees; chosen: as in alignment.cpp
 // Bins of Figure 12. chosen: half is noisy for 100 models, twice hides the peak at zero. derived: 25 bins of 2.5
@@ -150,6 +156,24 @@ void draw(const std::vector<Histogram>& histograms, const std::string& title, co
 }
 
 }  // namespace
+
+void put(detail::PackedBytes& bytes, const FrameErrors& errors) {
+  bytes.putText(errors.model);
+  bytes.put(errors.view);
+  bytes.put(errors.method);
+  for (double FrameErrors::*number : kNumbers) bytes.put(errors.*number);
+  putOptional(bytes, errors.tied_angle);
+  bytes.put(errors.as_good);
+}
+
+void get(detail::UnpackedBytes& bytes, FrameErrors& errors) {
+  errors.model = textOf(bytes);
+  errors.view = bytes.get<int>();
+  errors.method = bytes.get<AlignmentMethod>();
+  for (double FrameErrors::*number : kNumbers) errors.*number = bytes.get<double>();
+  getOptional(bytes, errors.tied_angle);
+  errors.as_good = bytes.get<bool>();
+}
 
 std::vector<AlignmentStatistics> summarize(const std::vector<FrameErrors>& errors) {
   const Errors by_mass = select(errors, AlignmentMethod::CenterOfMass, true);

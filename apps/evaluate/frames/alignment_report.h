@@ -8,6 +8,7 @@
 
 #include "evaluate/frames/alignment_methods.h"
 #include "evaluate/shared/proportion.h"
+#include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
 
@@ -29,6 +30,10 @@ struct FrameErrors {
                          ///< whole as those of its own frame
   double milliseconds = 0.0;
 };
+
+/// To and from the bytes that processes pass on.
+void put(detail::PackedBytes& bytes, const FrameErrors& errors);
+void get(detail::UnpackedBytes& bytes, FrameErrors& errors);
 
 /// Shares in [0, 1]; NaN where there is nothing to count.
 struct AlignmentStatistics {

@@ -13,6 +13,8 @@
 #include "common/shape_output/shape_output.h"
 #include "evaluate/people/segment_files.h"
 #include "evaluate/references/reference_symmetries.h"
+#include "evaluate/runs/packed_rows.h"
+#include "evaluate/runs/resumable_run.h"
 #include "evaluate/segmentation/mirror_agreement.h"
 #include "evaluate/segmentation/segmentation_methods.h"
 #include "evaluate/segmentation/segmentation_report.h"
@@ -35,7 +37,7 @@ struct EvaluateSegmentationOptions {
   ModelSelection selection;
   std::vector<double> remainders;
   int modulus = 4;
-  std::optional<std::string> methods, segments_folder, csv;
+  std::optional<std::string> methods, segments_folder, csv, journal;
   bool categories = false, mirrored = false;
   CommonOptions common;
 };
@@ -59,6 +61,7 @@ CommandLine commandLine(EvaluateSegmentationOptions& o) {
       .flag("mirrored", o.mirrored, "also share of the area that agrees with its mirror image, seconds a model")
       .text("csv", "FILE", o.csv, "a row for each method and model")
       .common(o.common, kJson | kThreads | kQuiet);
+  ResumableRun::addFlag(line, o.journal);
   addSelectionFlags(line, o.selection);
   return line;
 }
@@ -109,8 +112,8 @@ double smallestShare(const PreparedSegmentation& segmentation) {
 
 class SegmentationEvaluation {
 public:
-  explicit SegmentationEvaluation(const EvaluateSegmentationOptions& options)
-      : options_(options), console_(options.common.quiet) {
+  SegmentationEvaluation(const EvaluateSegmentationOptions& options, ResumableRun& work)
+      : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()) {
     std::vector<std::string> names = {"human", "one", "k-means", "all"};
     if (options.methods) boost::split(names, *options.methods, boost::is_any_of(","));
     const auto human = std::find(names.begin(), names.end(), "human");
@@ -129,41 +132,56 @@ public:
       if (models.empty()) throw InputError(options_.meshes + ": no mesh is selected by -remainders");
     }
     Step step(console_, "Evaluating " + std::to_string(models.size()) + " models");
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
-      evaluate(models[i]);
-    }
+    std::vector<std::string> names;
+    for (const Model& model : models) names.push_back(model.key);
+    std::vector<ItemRows<SegmentationResult>> all(models.size());
+    double num_done = 0.0;
+    work_.run(names,
+              {[&](std::size_t i) { return packed(evaluate(models[i])); },
+               [&](std::size_t i, const std::string& bytes) {
+                 all[i] = unpackedRows<SegmentationResult>(bytes);
+                 step.progress(++num_done / static_cast<double>(models.size()));
+               },
+               [&](std::size_t i) {
+                 return packed(ItemRows<SegmentationResult>{{}, models[i].path + ": the process that did it died"});
+               }});
+    if (!work_.isFirst()) return;
     step.done();
+    for (const ItemRows<SegmentationResult>& item : all) {
+      results_.insert(results_.end(), item.rows.begin(), item.rows.end());
+      if (!item.left_out.empty()) console_.warn("left out: " + item.left_out);
+    }
     std::stable_sort(results_.begin(), results_.end(),
                      [&](const auto& a, const auto& b) { return rank(a.method) < rank(b.method); });
     report();
   }
 
 private:
-  void evaluate(const Model& model) {
+  ItemRows<SegmentationResult> evaluate(const Model& model) const {
     const Shape shape = loadShape(model.path);
     if (!shape.mesh) throw InputError(model.path + ": has no faces");
     const SegmentationComparison comparison(*shape.mesh);
     std::vector<PreparedSegmentation> references;
     for (const std::string& path : segmentFilesOf(options_.references, model.name))
       references.push_back(prepare(comparison, path, readFaceLabels(path)));
-    if (references.empty()) {
-      console_.warn("left out: " + model.path + ": no .seg file in " + options_.references);
-      return;
-    }
+    if (references.empty()) return {{}, model.path + ": no .seg file in " + options_.references};
+    std::vector<SegmentationResult> rows;
     const std::optional<Mirror> mirror = options_.mirrored ? mirrorOf(*shape.mesh) : std::nullopt;
-    if (people_ && references.size() > 1) addPeople(model, comparison, references, mirror);
+    if (people_ && references.size() > 1) rows.push_back(ofPeople(model, comparison, references, mirror));
     for (const NamedSegmentation& method : methods_) {
       Stopwatch watch;
       const Segmentation segmentation = method.segment(*shape.mesh);
       const double ms = watch.lap();
-      add(method.name, model, comparison, references, prepare(comparison, method.name, segmentation.labels), ms);
-      results_.back().mirror_agreement = agreementAcross(mirror, segmentation.labels);
+      rows.push_back(resultOf(method.name, model, comparison, references,
+                              prepare(comparison, method.name, segmentation.labels), ms));
+      rows.back().mirror_agreement = agreementAcross(mirror, segmentation.labels);
     }
     if (options_.segments_folder) {
       const std::string path = (fs::path(*options_.segments_folder) / (model.name + ".seg")).string();
-      add("-segments", model, comparison, references, prepare(comparison, path, readFaceLabels(path)), 0.0);
+      rows.push_back(
+          resultOf("-segments", model, comparison, references, prepare(comparison, path, readFaceLabels(path)), 0.0));
     }
+    return {std::move(rows), ""};
   }
 
   /// A mesh and the plane that maps it onto itself, from the search of references.
@@ -194,8 +212,9 @@ private:
     }
   }
 
-  void addPeople(const Model& model, const SegmentationComparison& comparison,
-                 const std::vector<PreparedSegmentation>& people, const std::optional<Mirror>& mirror) {
+  static SegmentationResult ofPeople(const Model& model, const SegmentationComparison& comparison,
+                                     const std::vector<PreparedSegmentation>& people,
+                                     const std::optional<Mirror>& mirror) {
     MeanDistance mean;
     double num_segments = 0.0, smallest = 0.0, agreement = 0.0;
     for (std::size_t i = 0; i < people.size(); ++i) {
@@ -206,16 +225,30 @@ private:
       agreement += agreementAcross(mirror, people[i].labels);
     }
     const auto count = static_cast<double>(people.size());
-    results_.push_back({"human", model.name, benchmarkCategory(model.name), mean.mean(), num_segments / count,
-                        smallest / count, agreement / count, kUndefined});
+    return {"human",
+            model.name,
+            benchmarkCategory(model.name),
+            mean.mean(),
+            num_segments / count,
+            smallest / count,
+            agreement / count,
+            kUndefined};
   }
 
-  void add(const std::string& method, const Model& model, const SegmentationComparison& comparison,
-           const std::vector<PreparedSegmentation>& references, const PreparedSegmentation& segmentation, double ms) {
+  static SegmentationResult resultOf(const std::string& method, const Model& model,
+                                     const SegmentationComparison& comparison,
+                                     const std::vector<PreparedSegmentation>& references,
+                                     const PreparedSegmentation& segmentation, double ms) {
     MeanDistance mean;
     for (const PreparedSegmentation& reference : references) mean.add(comparison.compare(reference, segmentation));
-    results_.push_back({method, model.name, benchmarkCategory(model.name), mean.mean(),
-                        static_cast<double>(segmentation.num_segments), smallestShare(segmentation), kUndefined, ms});
+    return {method,
+            model.name,
+            benchmarkCategory(model.name),
+            mean.mean(),
+            static_cast<double>(segmentation.num_segments),
+            smallestShare(segmentation),
+            kUndefined,
+            ms};
   }
 
   std::size_t rank(const std::string& method) const {
@@ -233,6 +266,7 @@ private:
   }
 
   const EvaluateSegmentationOptions& options_;
+  ResumableRun& work_;
   const Console console_;
   bool people_ = false;
   std::vector<NamedSegmentation> methods_;
@@ -241,11 +275,13 @@ private:
 
 }  // namespace
 
-int evaluateSegmentation(int argc, char** argv) {
+int evaluateSegmentation(int argc, char** argv, SharedWork& processes) {
   EvaluateSegmentationOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  SegmentationEvaluation(options).run();
+  ResumableRun work(processes, options.journal, argc, argv);
+  options.common.threads = work.threadsOfItem(options.common.threads);
+  SegmentationEvaluation(options, work).run();
   return 0;
 }
 

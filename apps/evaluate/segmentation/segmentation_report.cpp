@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "common/files/file_text.h"
+#include "evaluate/runs/packed_rows.h"
 
 namespace pcl_symmetry::apps {
 
@@ -154,6 +155,20 @@ void printCategories(const std::vector<SegmentationResult>& results) {
 }
 
 }  // namespace
+
+void put(detail::PackedBytes& bytes, const SegmentationResult& result) {
+  for (const std::string* text : {&result.method, &result.model, &result.category}) bytes.putText(*text);
+  bytes.put(result.distance);
+  for (const double number : {result.num_segments, result.smallest_share, result.mirror_agreement, result.milliseconds})
+    bytes.put(number);
+}
+
+void get(detail::UnpackedBytes& bytes, SegmentationResult& result) {
+  for (std::string* text : {&result.method, &result.model, &result.category}) *text = textOf(bytes);
+  result.distance = bytes.get<SegmentationDistance>();
+  for (double* number : {&result.num_segments, &result.smallest_share, &result.mirror_agreement, &result.milliseconds})
+    *number = bytes.get<double>();
+}
 
 void printTable(const std::vector<SegmentationResult>& results, bool categories) {
   std::printf("%-22s %6s", "", "models");

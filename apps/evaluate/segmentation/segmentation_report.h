@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evaluate/segmentation/segmentation_distance.h"
+#include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
 
@@ -18,6 +19,10 @@ struct SegmentationResult {
   double mirror_agreement = 0.0;  ///< mirrorAgreement() across the reference plane; NaN where none was looked for
   double milliseconds = 0.0;
 };
+
+/// To and from the bytes that processes pass on.
+void put(detail::PackedBytes& bytes, const SegmentationResult& result);
+void get(detail::UnpackedBytes& bytes, SegmentationResult& result);
 
 /// A line for each method, means over models, and the Rand distance by category where \p categories.
 void printTable(const std::vector<SegmentationResult>& results, bool categories);

@@ -82,8 +82,9 @@ TEST_F(SharedEvaluation, OfPlanesIsThatOfOneProcess) {
     ASSERT_EQ(evaluate(processes, arguments("many")), 0) << error_;
     for (const char* file :
          {"/references.json", "/reliability.csv", "/clouds/ground_truth.json", "/clouds/m1_scan_0.pcd"})
-      if (boost::filesystem::exists(folder_ / "one" + file))
+      if (boost::filesystem::exists(folder_ / "one" + file)) {
         EXPECT_EQ(contentOf(folder_ / "many" + file), contentOf(folder_ / "one" + file)) << file;
+      }
     EXPECT_EQ(withoutTimes(contentOf(folder_ / "many/clouds.csv")),
               withoutTimes(contentOf(folder_ / "one/clouds.csv")));
     json one = json::parse(contentOf(folder_ / "one/all.json")),
@@ -92,6 +93,45 @@ TEST_F(SharedEvaluation, OfPlanesIsThatOfOneProcess) {
       for (json& group : (*summary)["groups"]) group.erase("timing_ms");
     EXPECT_EQ(many, one);
   }
+}
+
+TEST_F(SharedEvaluation, OfAlignmentIsThatOfOneProcess) {
+  const auto arguments = [&](const std::string& to) {
+    return "alignment " + meshes_ + " -max 4 -num_views 1 -points 1000 -csv " + (folder_ / to) +
+           ".csv -histogram_csv " + (folder_ / to) + "_histogram.csv -json " + (folder_ / to) + ".json";
+  };
+  ASSERT_EQ(evaluate(0, arguments("one")), 0) << error_;
+  EXPECT_EQ(json::parse(contentOf(folder_ / "one.json"))["left_out"].size(), 1u);
+  for (const int processes : {2, 4}) {
+    ASSERT_EQ(evaluate(processes, arguments("many")), 0) << error_;
+    EXPECT_EQ(withoutTimes(contentOf(folder_ / "many.csv")), withoutTimes(contentOf(folder_ / "one.csv")));
+    EXPECT_EQ(contentOf(folder_ / "many_histogram.csv"), contentOf(folder_ / "one_histogram.csv"));
+  }
+}
+
+TEST_F(SharedEvaluation, OfSegmentationIsThatOfOneProcess) {
+  boost::filesystem::create_directories(folder_ / "people");
+  std::string halves;
+  const int num_faces = 96;  // of a vase of the folder
+  for (int i = 0; i < num_faces; ++i) halves += i < num_faces / 2 ? "0\n" : "1\n";
+  for (const char* model : {"m1", "m3"})
+    for (const char* person : {"_0.seg", "_1.seg"}) folder_.write("people/" + std::string(model) + person, halves);
+  const auto arguments = [&](const std::string& to) {
+    return "segmentation " + meshes_ + " " + (folder_ / "people") +
+           " -first 1 -max 4 -methods human,one,k-means -csv " + (folder_ / to) + ".csv -resume " + (folder_ / to) +
+           ".journal";
+  };
+  ASSERT_EQ(evaluate(0, arguments("one")), 0) << error_;
+  const std::string one = withoutTimes(contentOf(folder_ / "one.csv"));
+  EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 1 + 2 * 3) << one;
+  for (const int processes : {2, 4}) {
+    boost::filesystem::remove(folder_ / "many.journal");
+    ASSERT_EQ(evaluate(processes, arguments("many")), 0) << error_;
+    EXPECT_EQ(withoutTimes(contentOf(folder_ / "many.csv")), one);
+  }
+  // What is in the journal is taken from there.
+  ASSERT_EQ(evaluate(0, arguments("many")), 0) << error_;
+  EXPECT_EQ(withoutTimes(contentOf(folder_ / "many.csv")), one);
 }
 
 TEST_F(SharedEvaluation, OfRetrievalIsThatOfOneProcess) {

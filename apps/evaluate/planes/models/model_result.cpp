@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "evaluate/references/reference_cache.h"
-#include "recognition/packing/packed_bytes.h"
+#include "evaluate/runs/packed_rows.h"
 
 namespace pcl_symmetry::apps {
 
@@ -12,22 +12,6 @@ namespace {
 
 using detail::PackedBytes;
 using detail::UnpackedBytes;
-
-std::string textOf(UnpackedBytes& bytes) {
-  const auto size = bytes.get<std::uint32_t>();
-  return {bytes.take(size), size};
-}
-
-template <typename Value>
-void putOptional(PackedBytes& bytes, const std::optional<Value>& value) {
-  bytes.put(value.has_value());
-  if (value) bytes.put(*value);
-}
-
-template <typename Value>
-void getOptional(UnpackedBytes& bytes, std::optional<Value>& value) {
-  if (bytes.get<bool>()) value = bytes.get<Value>();
-}
 
 void put(PackedBytes& bytes, const MatchResult& match) {
   bytes.put(static_cast<std::uint32_t>(match.judgements.size()));
