@@ -144,7 +144,8 @@ TEST(InputFiles, AreFilesFoldersPatternsAndLists) {
   for (const char* name : {"b.pcd", "a.PLY", "c.txt", "d.glb"}) folder.write(name, "x");
   const auto paths = [&](const std::vector<std::string>& arguments) {
     std::vector<std::string> names;
-    for (const InputFile& file : inputFiles(arguments)) names.push_back(file.path);
+    const InputFiles files = inputFiles(arguments);
+    for (std::size_t i = 0; i < files.size(); ++i) names.push_back(files.path(i));
     return names;
   };
   EXPECT_EQ(paths({folder / "."}),
