@@ -151,6 +151,9 @@ TEST(InputFiles, AreFilesFoldersPatternsAndLists) {
   EXPECT_EQ(paths({folder / "."}),
             (std::vector<std::string>{folder / "./a.PLY", folder / "./b.pcd", folder / "./d.glb"}));
   EXPECT_EQ(paths({folder / "*.txt"}), std::vector<std::string>{folder / "c.txt"});
+  const InputFiles files = inputFiles({folder / "c.txt", folder / ".", folder / "c.txt"});
+  ASSERT_EQ(files.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(files[i].folder, i % 4 == 0 ? "" : folder / ".");
   const std::string list = folder.write("list", "# comment\n" + (folder / "c.txt") + "\n\n  missing.pcd \n");
   EXPECT_EQ(paths({"@" + list, "-"}), (std::vector<std::string>{folder / "c.txt", "missing.pcd", "-"}));
   EXPECT_THROW(paths({folder / "*.stl"}), InputError);
