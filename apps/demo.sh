@@ -7,8 +7,8 @@ usage() {
 usage: bash apps/demo.sh [-h] [FILE]
 
 Without a file: fetches the mesh of a cow, scans it from one side and finds its plane of symmetry in the scan; then finds the
-planes of the bull of the paper's Figure 8 and of its parts. With a file (.pcd, .ply, .obj, .stl or .off): finds the planes
-of that file.
+planes of the bull of the paper's Figure 8 and of its parts. With a file (.pcd, .ply, .obj, .stl, .off, .xyz or .glb): finds the
+planes of that file.
 
 Prints the planes; writes pictures (PNG) and reports (JSON) to build/demo. Installs missing packages and builds the tools; a
 second run skips both.

@@ -32,7 +32,9 @@ std::string nameOf(const fs::path& path, const fs::path& folder, bool by_path) {
 
 std::vector<ModelFile> modelFiles(const std::vector<std::string>& arguments, bool by_path) {
   std::vector<ModelFile> files;
-  for (const auto& [path, folder] : inputFiles(arguments)) files.push_back({path, nameOf(path, folder, by_path)});
+  const InputFiles inputs = inputFiles(arguments);
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    files.push_back({inputs.path(i), nameOf(inputs[i].path, inputs[i].folder, by_path)});
   return files;
 }
 

@@ -123,7 +123,7 @@ draw_figures_7_8_and_10() {
   draw_view figure_8_1 bull v
   draw_view figure_8_2 bull n
   draw_view figure_8_4 bull n,n,n
-  draw_view figure_8_7 bull n,n,n,n,n,n
+  draw_view figure_8_6 bull n,n,n,n,n
   draw_view figure_10_cow cow g,s,a
   draw_view figure_10_elephant elephant g,s,a
 }

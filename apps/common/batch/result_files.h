@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -32,10 +33,14 @@ private:
   /// A file that grows, or standard output.
   class Sink {
   public:
-    void open(const std::string& path, const std::string& content);
+    using LineFilter = std::function<bool(const std::string& line)>;
+    /// \param resume keep those lines of the file that \p keeps says; none otherwise.
+    void open(const std::string& path, const std::string& header, const LineFilter& keeps, bool resume);
     void add(const std::string& text);
 
   private:
+    [[noreturn]] void fail() const;
+
     std::string path_;
     std::ofstream file_;
   };

@@ -1,5 +1,9 @@
 #include "common/batch/run_on_files.h"
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem/path.hpp>
@@ -28,6 +32,18 @@ constexpr std::size_t kWaitingPerThread = 64;
 /// Failures that are kept to be named at the end. chosen: half hides more of them, twice scrolls everything else away;
 /// all of them have a line in the results.
 constexpr std::size_t kMaxFailures = 1000;
+/// Bytes from which memory goes back to the system when it is freed. measured: 300 clouds of 200 points take 22.0 MB in
+/// place of 23.6, in the same time. Else the C library raises it to the largest block that was freed, and the gaps in
+/// the heaps of the threads grow with the number of files.
+[[maybe_unused]] constexpr int kLargeBlock = 128 * 1024;
+
+/// What the list of the inputs left is given back now, and large blocks from now on when they are freed.
+void giveMemoryBack() {
+#if defined(__GLIBC__)
+  ::mallopt(M_MMAP_THRESHOLD, kLargeBlock);
+  ::malloc_trim(0);
+#endif
+}
 
 std::string stemOf(const std::string& path) {
   return isStandardStream(path) ? "stdin" : boost::filesystem::path(path).stem().string();
@@ -82,7 +98,7 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
 }
 
 /// \throws UsageError or InputError where two inputs would write one file.
-void checkOutputs(const BatchOptions& batch, const std::vector<InputFile>& files) {
+void checkOutputs(const BatchOptions& batch, const InputFiles& files) {
   std::string pattern;
   for (const std::optional<std::string>* output : batch.outputs) {
     if (!*output) continue;
@@ -92,17 +108,18 @@ void checkOutputs(const BatchOptions& batch, const std::vector<InputFile>& files
       throw UsageError(pattern + ": with several inputs the name must hold {}, which stands for the name of the input");
   }
   if (pattern.empty()) return;
-  std::map<std::string, std::string> input_of_name;
-  for (const InputFile& file : files) {
-    const auto [known, added] = input_of_name.emplace(stemOf(file.path), file.path);
-    if (!added) throw InputError(file.path + ": has the name of " + known->second + ", names must differ");
+  std::map<std::string, std::size_t> input_of_name;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto [known, added] = input_of_name.emplace(stemOf(files.path(i)), i);
+    if (!added)
+      throw InputError(files.path(i) + ": has the name of " + files.path(known->second) + ", names must differ");
   }
 }
 
 /// Hands the inputs out, and their results on in the order of the inputs.
 class Batch {
 public:
-  Batch(const std::vector<InputFile>& files, const BatchOptions& batch, const CommonOptions& common,
+  Batch(const InputFiles& files, const BatchOptions& batch, const CommonOptions& common,
         const std::vector<std::string>& columns)
       : files_(files),
         results_(batch, common, columns),
@@ -112,7 +129,7 @@ public:
 
   int run(const std::function<void(FileJob&)>& analyse) {
     parallelBlocks(std::min(num_threads_, files_.size()), static_cast<int>(num_threads_), [&](std::size_t) {
-      for (std::size_t i = 0; takeNext(i);) finish(i, resultOf(files_[i].path, analyse));
+      for (std::size_t i = 0; takeNext(i);) finish(i, resultOf(files_.path(i), analyse));
     });
     if (failure_) std::rethrow_exception(failure_);
     std::string summary = std::to_string(files_.size() - num_failed_) + " done";
@@ -133,8 +150,10 @@ private:
   /// \return false where none is left. Waits while too many results wait for an earlier one.
   bool takeNext(std::size_t& i) {
     std::unique_lock<std::mutex> lock(mutex_);
-    while (next_ < files_.size() && results_.holds(files_[next_].path)) waiting_[next_++] = {};
-    writeWaiting();
+    while (next_ < files_.size() && results_.holds(files_.path(next_))) {
+      waiting_[next_++] = {};
+      writeWaiting();
+    }
     if (failure_ || next_ >= files_.size()) return false;
     i = next_++;
     const std::size_t most = kWaitingPerThread * num_threads_;
@@ -181,7 +200,7 @@ private:
     written_.notify_all();
   }
 
-  const std::vector<InputFile>& files_;
+  const InputFiles& files_;
   ResultFiles results_;
   std::size_t num_threads_;
   Console console_;
@@ -204,9 +223,10 @@ int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std
                const std::function<void(FileJob&)>& analyse) {
   if (batch.inputs.size() == 1 && !standsForSeveral(batch.inputs.front()))
     return runOnOne(batch.inputs.front(), batch, common, columns, analyse);
-  const std::vector<InputFile> files = inputFiles(batch.inputs);
+  const InputFiles files = inputFiles(batch.inputs);
   numToStandardOutput(batch, common);
   checkOutputs(batch, files);
+  giveMemoryBack();
   return Batch(files, batch, common, columns).run(analyse);
 }
 
