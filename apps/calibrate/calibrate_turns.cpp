@@ -46,7 +46,7 @@ std::string sampledTurns(const CalibrationOptions& options) {
   const std::vector<Model> models = listModels(options.folders, options.selection);
   std::vector<std::string> names;
   for (const Model& model : models) names.push_back(model.name);
-  for (int i = 0; i < options.num_solids; ++i) names.push_back("solid " + std::to_string(i));
+  for (int i = 0; i < options.num_solids; ++i) names.push_back(solidName(i));
   std::vector<std::vector<JudgedTurn>> turns(names.size());
   std::vector<std::string> left_out(names.size());
   Step step(console, "Scanning " + std::to_string(models.size()) + " models and " + std::to_string(options.num_solids) +
@@ -69,7 +69,7 @@ std::string sampledTurns(const CalibrationOptions& options) {
 void printReliabilities(const std::vector<JudgedTurn>& turns, const std::array<TurnFit, 3>& fit) {
   std::array<std::vector<Forecast>, 3> forecasts;
   for (const JudgedTurn& one : turns)
-    forecasts[static_cast<std::size_t>(kindOf(one.turn))].push_back({confidenceOf(one.turn, fit), one.isRight()});
+    forecasts[static_cast<std::size_t>(kindOf(one.turn))].push_back({confidenceOf(one, fit), one.isRight()});
   std::vector<Reliability> groups;
   for (std::size_t kind = 0; kind < forecasts.size(); ++kind)
     groups.push_back(reliabilityOf(kTurnKinds[kind], forecasts[kind], {}));

@@ -20,8 +20,9 @@ TurnFit fitKind(const std::vector<JudgedTurn>& turns, TurnKind kind) {
   std::vector<std::vector<double>> rows;
   std::vector<double> outcomes;
   for (const JudgedTurn& one : turns) {
-    if (kindOf(one.turn) != kind) continue;
-    rows.push_back(turnOddsTerms(one.turn));
+    // Solids made by code have half turns more often than objects have: prisms have as many as faces.
+    if (kindOf(one.turn) != kind || (kind == TurnKind::Half && one.of_solid)) continue;
+    rows.push_back(turnOddsTerms(one.turn, one.signs));
     outcomes.push_back(one.isRight() ? 1.0 : 0.0);
     ++(one.isRight() ? fit.num_right : fit.num_wrong);
   }
@@ -44,9 +45,9 @@ std::array<TurnFit, 3> fitTurns(const std::vector<JudgedTurn>& turns) {
   return {fitKind(turns, TurnKind::AnyAngle), fitKind(turns, TurnKind::Half), fitKind(turns, TurnKind::Folds)};
 }
 
-double confidenceOf(const SymmetryTurn& turn, const std::array<TurnFit, 3>& fit) {
-  const std::vector<double> terms = turnOddsTerms(turn);
-  const Eigen::VectorXd& coefficients = fit[static_cast<std::size_t>(kindOf(turn))].coefficients;
+double confidenceOf(const JudgedTurn& one, const std::array<TurnFit, 3>& fit) {
+  const std::vector<double> terms = turnOddsTerms(one.turn, one.signs);
+  const Eigen::VectorXd& coefficients = fit[static_cast<std::size_t>(kindOf(one.turn))].coefficients;
   return 1.0 /
          (1.0 + std::exp(-Eigen::Map<const Eigen::VectorXd>(terms.data(), coefficients.size()).dot(coefficients)));
 }
@@ -55,7 +56,7 @@ std::string headerText(const std::array<TurnFit, 3>& fit) {
   std::string numbers, counts;
   char text[64];
   for (std::size_t kind = 0; kind < fit.size(); ++kind) {
-    numbers += kind == 0 ? "{" : ",\n                                                                    {";
+    numbers += kind == 0 ? "{" : ",\n     {";
     for (Eigen::Index k = 0; k < fit[kind].coefficients.size(); ++k) {
       std::snprintf(text, sizeof(text), "%s%.4g", k > 0 ? ", " : "", fit[kind].coefficients[k]);
       numbers += text;
@@ -68,7 +69,7 @@ std::string headerText(const std::array<TurnFit, 3>& fit) {
   return "// Written by calibrate_turns. Do not edit.\n#pragma once\n\n#include <array>\n#include <vector>\n\n"
          "namespace pcl_symmetry {\n\n// Coefficients of turnOddsTerms(), by TurnKind.\n"
          "// fitted: symmetries among the turns of each kind: " +
-         counts + ".\ninline const std::array<std::vector<double>, 3> kTurnConfidenceFit{{" + numbers +
+         counts + ".\ninline const std::array<std::vector<double>, 3> kTurnConfidenceFit{\n    {" + numbers +
          "}};\n\n}  // namespace pcl_symmetry\n";
 }
 

@@ -19,11 +19,11 @@ struct TurnFit {
   int num_right = 0, num_wrong = 0;
 };
 
-/// By TurnKind.
+/// By TurnKind. Half turns are fitted to meshes alone.
 /// \throws InputError where a kind has no turns that are symmetries, or nothing else.
 std::array<TurnFit, 3> fitTurns(const std::vector<JudgedTurn>& turns);
 
-double confidenceOf(const SymmetryTurn& turn, const std::array<TurnFit, 3>& fit);
+double confidenceOf(const JudgedTurn& one, const std::array<TurnFit, 3>& fit);
 
 /// The text of src/core/detection/scan_axes/turn_confidence_fit.h.
 std::string headerText(const std::array<TurnFit, 3>& fit);

@@ -25,6 +25,10 @@ std::vector<JudgedTurn> madeUpTurns() {
     one.turn.far = 0.1 * random.uniform();
     one.turn.support = random.uniform();
     one.turn.halfway = one.turn.off + 0.3 * random.uniform();
+    one.signs.grown = 1.0 + 0.5 * random.uniform();
+    one.signs.hold = 0.1 * random.uniform();
+    one.signs.planes_off = 0.2 * random.uniform();
+    one.signs.beside = i % 2;
     const double probability = 1.0 / (1.0 + std::exp(20.0 * one.turn.off - 4.0));
     one.excess = random.uniform() < probability ? 0.5 : 3.0;
     turns.push_back(one);
@@ -38,7 +42,7 @@ TEST(TurnFitting, StatedProbabilitiesComeTrue) {
   double stated = 0.0;
   int num_likely = 0, num_right = 0, num_sure = 0, num_sure_right = 0;
   for (const JudgedTurn& one : turns) {
-    const double confidence = confidenceOf(one.turn, fit);
+    const double confidence = confidenceOf(one, fit);
     stated += confidence;
     num_right += one.isRight();
     num_likely += confidence > 0.5;
@@ -60,7 +64,10 @@ TEST(TurnFitting, ATableGivesTheSameFit) {
   const std::vector<JudgedTurn> read = readTurnTable(folder.write("turns.csv", turnTable({"made up"}, {turns})));
   ASSERT_EQ(read.size(), turns.size());
   // Tables have six digits.
-  for (std::size_t i = 0; i < turns.size(); ++i) EXPECT_NEAR(read[i].turn.off, turns[i].turn.off, 1e-6);
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    EXPECT_NEAR(read[i].turn.off, turns[i].turn.off, 1e-6);
+    EXPECT_NEAR(read[i].signs.hold, turns[i].signs.hold, 1e-6);
+  }
   const std::array<TurnFit, 3> fit = fitTurns(turns), again = fitTurns(read);
   for (std::size_t kind = 0; kind < fit.size(); ++kind)
     EXPECT_LT((fit[kind].coefficients - again[kind].coefficients).cwiseAbs().maxCoeff(), 0.01) << kTurnKinds[kind];
@@ -84,6 +91,7 @@ TEST(TurnFitting, ScansOfSolidsHaveTurnsThatAreSymmetries) {
   const std::vector<JudgedTurn> unpacked = unpackedTurns(packed(turns));
   ASSERT_EQ(unpacked.size(), turns.size());
   EXPECT_EQ(unpacked.front().excess, turns.front().excess);
+  EXPECT_EQ(unpacked.back().signs.grown, turns.back().signs.grown);
 }
 
 }  // namespace

@@ -5,38 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/base/constants.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
-#include "shapes/turning_shapes.h"
+#include "shapes/one_side.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-struct SeenFromOneSide {
-  Points points;
-  std::optional<Visibility> seen;
-};
-
-/// The points of a shape that no other hides, as seen from a place.
-SeenFromOneSide seen(const TurningShape& shape, const Eigen::Vector3d& viewpoint, std::uint64_t seed = 1) {
-  const Points all = shape.sampled(14000, seed).cloud();
-  const std::optional<Visibility> whole = Visibility::fromPoints(all, viewpoint);
-  EXPECT_TRUE(whole.has_value());
-  Points kept(3, all.cols());
-  Eigen::Index size = 0;
-  for (Eigen::Index i = 0; i < all.cols(); ++i)
-    // radii of the shapes; chosen: above the depth of a slanted pixel, below the thickness of the shapes
-    if (whole->depthBehind(all.col(i).cast<double>()) < 0.08) kept.col(size++) = all.col(i);
-  kept.conservativeResize(3, size);
-  return {kept, Visibility::fromPoints(kept, viewpoint)};
-}
-
 Detection detected(const TurningShape& shape, const Eigen::Vector3d& viewpoint) {
-  const SeenFromOneSide scan = seen(shape, viewpoint);
+  const SeenFromOneSide scan = seenFrom(shape, viewpoint);
   return detectPlanes(scan.points, {}, nullptr, &*scan.seen);
 }
 
@@ -74,7 +54,7 @@ TEST(ScanAxes, ACupHasAnAxisUnlessAHandleIsInSight) {
 }
 
 TEST(ScanAxes, AreFoundWithoutPlanesToo) {
-  const SeenFromOneSide scan = seen(prismShape(6, 0.5), {3.0, 4.0, 5.0});
+  const SeenFromOneSide scan = seenFrom(prismShape(6, 0.5), {3.0, 4.0, 5.0});
   const GaussianEdt edt(scan.points);
   const std::vector<SymmetryTurn> turns = turnsOfScan(scan.points, edt, *scan.seen, {}, {});
   ASSERT_FALSE(turns.empty());
@@ -86,7 +66,7 @@ TEST(ScanAxes, AreFoundWithoutPlanesToo) {
 }
 
 TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {
-  const SeenFromOneSide scan = seen(prismShape(5, 0.4), {2.0, 3.0, 5.0});
+  const SeenFromOneSide scan = seenFrom(prismShape(5, 0.4), {2.0, 3.0, 5.0});
   DetectionOptions options;
   options.num_threads = 1;
   const Detection one = detectPlanes(scan.points, options, nullptr, &*scan.seen);

@@ -152,7 +152,7 @@ void evaluateScanTurns(const EvaluateRotationsOptions& options, ResumableRun& wo
     models = listModels({*options.meshes}, options.selection);
     for (const Model& model : models) names.push_back(model.name);
   } else {
-    for (int i = 0; i < options.num_scans; ++i) names.push_back("solid " + std::to_string(i));
+    for (int i = 0; i < options.num_scans; ++i) names.push_back(solidName(i));
   }
   std::vector<std::vector<JudgedTurn>> all(names.size());
   Step step(console,

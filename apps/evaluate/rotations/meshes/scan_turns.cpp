@@ -6,11 +6,13 @@
 
 #include "common/shape_input/shape_input.h"
 #include "core/base/constants.h"
+#include "core/neighbours/distinct_points.h"
 #include "evaluate/clouds/test_clouds.h"
 #include "evaluate/rotations/meshes/true_shares.h"
 #include "evaluate/shapes/shape_report.h"
 #include "evaluate/shared/table_text.h"
 #include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
@@ -26,6 +28,16 @@ std::vector<Eigen::Isometry3d> motionsOf(const SymmetryTurn& turn) {
   return motions;
 }
 
+/// What else the scan says of its turns, as the library sees it.
+std::vector<TurnSigns> signsOf(const std::vector<SymmetryTurn>& turns, const pcl::PointCloud<pcl::PointXYZ>& scan,
+                               const DetectionOptions& options) {
+  const Points points = DistinctPoints(finitePoints(scan)).points;
+  const std::optional<Visibility> seen = detail::seenSpace(scan, points, Viewpoint());
+  const GaussianEdt edt(points, options.edt);
+  const NormalizedCloud cloud(points, edt, nullptr, &seen.value(), options.num_threads);
+  return turnSigns(TurnEvidence(cloud, options.tolerance * cloud.extent, options.seed), turns);
+}
+
 std::vector<JudgedTurn> judged(const pcl::PolygonMesh& mesh, const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& scan,
                                const Eigen::Isometry3d& T_scan_model) {
   DetectionOptions options;
@@ -37,12 +49,14 @@ std::vector<JudgedTurn> judged(const pcl::PolygonMesh& mesh, const pcl::PointClo
   const TrueShares shares(mesh, tolerance);
   const RotationLimits limits{tolerance, ObjectSymmetryOptions().max_feature};
   const Eigen::Isometry3d T_model_scan = T_scan_model.inverse();
+  const std::vector<TurnSigns> signs = signsOf(answers.turns, *scan, options);
   std::vector<JudgedTurn> all;
-  for (const SymmetryTurn& turn : answers.turns) {
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    const SymmetryTurn& turn = answers.turns[i];
     SymmetryTurn of_model = turn;
     of_model.point = T_model_scan * turn.point;
     of_model.direction = T_model_scan.linear() * turn.direction;
-    all.push_back({turn, limits.excess(shares.worstOf(motionsOf(of_model)))});
+    all.push_back({turn, signs[i], false, limits.excess(shares.worstOf(motionsOf(of_model)))});
   }
   return all;
 }
@@ -72,17 +86,21 @@ std::vector<JudgedTurn> judgedTurnsOfSolid(int i, bool report) {
   options.report = report;
   options.threads = 1;
   const TurningScan solid = turningScan(i, options);
-  return judged(solid.shape.mesh, solid.scan.cloud, solid.scan.T_scan_model);
+  std::vector<JudgedTurn> all = judged(solid.shape.mesh, solid.scan.cloud, solid.scan.T_scan_model);
+  for (JudgedTurn& one : all) one.of_solid = true;
+  return all;
 }
 
 namespace {
 
+constexpr const char* kSolidName = "solid ";  // derived: meshes have names of files
 // derived: the fields of JudgedTurn, as fieldsOf() has them.
-constexpr const char* kTurnTitles = "scan,fold,confidence,support,off,far,halfway,excess";
+constexpr const char* kTurnTitles = "scan,fold,confidence,support,off,far,halfway,grown,hold,planes_off,beside,excess";
 
 /// The numbers of a turn in the order of the titles.
 std::vector<double*> fieldsOf(JudgedTurn& one) {
-  return {&one.turn.confidence, &one.turn.support, &one.turn.off, &one.turn.far, &one.turn.halfway, &one.excess};
+  return {&one.turn.confidence, &one.turn.support, &one.turn.off,         &one.turn.far,     &one.turn.halfway,
+          &one.signs.grown,     &one.signs.hold,   &one.signs.planes_off, &one.signs.beside, &one.excess};
 }
 
 }  // namespace
@@ -107,6 +125,7 @@ std::vector<JudgedTurn> readTurnTable(const std::string& path) {
   for (int number = 2; std::getline(file, line); ++number) {
     std::istringstream row(line.substr(std::min(line.size(), line.find(',') + 1)));
     JudgedTurn one;
+    one.of_solid = line.rfind(kSolidName, 0) == 0;
     char comma = ',';
     row >> one.turn.fold;
     for (double* value : fieldsOf(one)) row >> comma >> *value;
@@ -114,6 +133,10 @@ std::vector<JudgedTurn> readTurnTable(const std::string& path) {
     turns.push_back(one);
   }
   return turns;
+}
+
+std::string solidName(int i) {
+  return kSolidName + std::to_string(i);
 }
 
 std::string packed(const std::vector<JudgedTurn>& judged) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/detection/scan_axes/turn_signs.h"
 #include "evaluate/shared/model_list.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
 
@@ -14,7 +15,9 @@ namespace pcl_symmetry::apps {
 struct JudgedTurn {
   /// Point and direction in the frame of the scan.
   SymmetryTurn turn{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
-  double excess = 0.0;  ///< the greater of the true shares over what RotationLimits allow of each
+  TurnSigns signs;
+  bool of_solid = false;  ///< made by code
+  double excess = 0.0;    ///< the greater of the true shares over what RotationLimits allow of each
 
   bool isRight() const { return excess <= 1.0; }
 };
@@ -27,6 +30,9 @@ std::vector<JudgedTurn> judgedTurns(const Model& model, int num_views);
 /// The same for one scan of a solid made by code: see turningScan().
 /// \param i which solid and view.
 std::vector<JudgedTurn> judgedTurnsOfSolid(int i, bool report);
+
+/// How a table calls a solid.
+std::string solidName(int i);
 
 /// A row for each turn, from which calibrate_turns can fit.
 /// \param names of what each list of turns is of.

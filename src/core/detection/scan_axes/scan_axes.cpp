@@ -8,6 +8,8 @@
 #include "core/base/parallel.h"
 #include "core/detection/scan_axes/axis_starts.h"
 #include "core/detection/scan_axes/turn_confidence.h"
+#include "core/detection/scan_axes/turn_limits.h"
+#include "core/detection/scan_axes/turn_signs.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/neighbours/answerable_points.h"
@@ -23,19 +25,8 @@ constexpr int kRoundTurns = 10;
 // Radians: turns that the fit of a round body uses, both ways. chosen: smaller ones fix the axis badly, larger ones
 // leave what was seen.
 constexpr double kSmallTurn = 0.26, kLargerTurn = 0.7;
-// Shares of the points seen that the worst turn may throw into empty space, and farther than ten tolerances there: of
-// folds and of round bodies. measured: pcl_symmetry_evaluate shapes turns, tuning half; 0.000 and 0.000 of round
-// bodies, 0.024 and 0.009 of a mug whose handle is 2.5 % of what is seen. chosen: folds are given as much as features
-// of whole objects, halved; twice takes shallow features for symmetric.
-constexpr double kMostOff = 0.05, kMostFar = 0.0125, kMostRoundOff = 0.015, kMostRoundFar = 0.004;
-// The same for screening, and tolerances of its distances. chosen: twice, for the error of the EDT.
+// kMostOff and kMostFar for screening, and tolerances of its distances. chosen: twice, for the error of the EDT.
 constexpr double kRoughFactor = 3.0, kRoughSlack = 2.0;
-// Shares that land on the surface by small turns of a round body, by the best turn of a fold, and of fold 2 (of which
-// most is hidden). chosen: half lists turns that nothing seen confirms, twice loses slender bodies.
-constexpr double kRoundOn = 0.6, kFoldOn = 0.3, kHalfTurnOn = 0.75;
-// By how much more the turns halfway throw into empty space. chosen: half lets chance choose folds of round bodies,
-// twice loses shallow folds.
-constexpr double kHalfwayMore = 0.06;
 constexpr std::size_t kMostPlanesOfAxes = 8;                    // chosen: 28 lines; more are of false planes
 constexpr double kPlaneShare = 0.85;                            // chosen: planes of less are none of the whole
 constexpr double kSameTurnAngle = 0.12, kSameTurnOffset = 0.1;  // radians, radii; chosen: no body has two axes nearer
@@ -83,20 +74,9 @@ TurnsTogether turnsOfFold(const Shares& shares, int fold, double first, const Tu
 /// What a line is, as far as one scan can tell.
 struct JudgedTurns {
   Line3d line;
-  int fold;
-  TurnsTogether own, halfway;
-  double margin;
+  SymmetryTurn turn;  ///< without a place
+  double margin;      ///< marginOf()
 };
-
-/// The least margin to a limit, >= 0 where all are kept: by it the orders of a line and the lines are compared. What is
-/// reported is turnConfidence(), which is fitted to lines that were chosen so.
-double marginOf(int fold, const TurnsTogether& own, const TurnsTogether& halfway) {
-  const double least_on = fold == 0 ? kRoundOn : fold == 2 ? kHalfTurnOn : kFoldOn;
-  const double most_off = fold == 0 ? kMostRoundOff : kMostOff, most_far = fold == 0 ? kMostRoundFar : kMostFar;
-  double margin = std::min({1.0 - own.off / most_off, 1.0 - own.far / most_far, own.on / least_on - 1.0});
-  if (fold > 0) margin = std::min(margin, (halfway.off - own.off) / kHalfwayMore - 1.0);
-  return margin;
-}
 
 class AxisJudge {
 public:
@@ -108,7 +88,7 @@ public:
   std::optional<JudgedTurns> judged(const Line3d& line) const {
     constexpr TurnLimits kRough{kRoughFactor * kMostOff, kRoughFactor * kMostFar};  // derived: from both
     const auto roughly = [&](double angle) {
-      return evidence_.roughly(line, angle, kRoughSlack, kRough.off, kRough.far);
+      return evidence_.roughly(Eigen::Affine3d(turnAbout(line, angle)), kRoughSlack, kRough.off, kRough.far);
     };
     std::optional<JudgedTurns> best;
     const auto take = [&](JudgedTurns&& turns) {
@@ -123,13 +103,12 @@ public:
   }
 
   JudgedTurns exactly(Line3d line, int fold) const {
-    line = evidence_.refined(line, fitAngles(fold));
-    const auto shares = [&](double angle) { return evidence_.exactly(line, angle); };
-    JudgedTurns turns{line, fold, {}, {}, 0.0};
-    turns.own = fold == 0 ? roundTurns(shares) : turnsOfFold(shares, fold, 0.0);
-    if (fold > 0) turns.halfway = turnsOfFold(shares, fold, 0.5);
-    turns.margin = marginOf(fold, turns.own, turns.halfway);
-    return turns;
+    line = evidence_.closelyRefined(line, fitAngles(fold));
+    const auto shares = [&](double angle) { return evidence_.exactly(Eigen::Affine3d(turnAbout(line, angle))); };
+    const TurnsTogether own = fold == 0 ? roundTurns(shares) : turnsOfFold(shares, fold, 0.0);
+    SymmetryTurn turn{Eigen::Vector3d::Zero(), line.direction(), fold, 0.0, own.on, own.off, own.far, 0.0};
+    if (fold > 0) turn.halfway = turnsOfFold(shares, fold, 0.5).off;
+    return {line, turn, marginOf(turn)};
   }
 
 private:
@@ -196,13 +175,15 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
       found.push_back(*turns);
   }
   std::vector<SymmetryTurn> result;
-  for (const JudgedTurns& turns : found) {
-    result.push_back({turns.line.projection(Eigen::Vector3d::Zero()) * cloud.scale + cloud.center,
-                      turns.line.direction(), turns.fold, 0.0, turns.own.on, turns.own.off, turns.own.far,
-                      turns.halfway.off});
-    result.back().confidence = turnConfidence(result.back());
-    if (result.back().confidence < options.min_possible) result.pop_back();
+  for (JudgedTurns& turns : found) {
+    turns.turn.point = turns.line.projection(Eigen::Vector3d::Zero()) * cloud.scale + cloud.center;
+    result.push_back(turns.turn);
   }
+  const std::vector<TurnSigns> signs = turnSigns(evidence, result);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i].confidence = turnConfidence(result[i], signs[i]);
+  result.erase(std::remove_if(result.begin(), result.end(),
+                              [&](const SymmetryTurn& turn) { return turn.confidence < options.min_possible; }),
+               result.end());
   std::stable_sort(result.begin(), result.end(),
                    [](const SymmetryTurn& a, const SymmetryTurn& b) { return a.confidence > b.confidence; });
   return result;
@@ -225,8 +206,9 @@ std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vect
   };
   axes.erase(std::remove_if(axes.begin(), axes.end(),
                             [&](const SymmetryAxis& axis) {
-                              const TurnsTogether all =
-                                  roundTurns([&](double angle) { return evidence.exactly(lineOf(axis), angle); });
+                              const TurnsTogether all = roundTurns([&](double angle) {
+                                return evidence.exactly(Eigen::Affine3d(turnAbout(lineOf(axis), angle)));
+                              });
                               return all.far > kMostRoundFar;
                             }),
              axes.end());

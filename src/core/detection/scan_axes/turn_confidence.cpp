@@ -14,6 +14,11 @@ namespace {
 constexpr double kMostHalfway = 0.3;
 // Share of the points that counts as little. derived: two of a thousand points, what chance takes.
 constexpr double kLittleShare = 2e-3;
+// The same of planes, which are screened at steps. chosen: what half a step throws off; half and twice fit as well.
+constexpr double kLittleOfPlanes = 5e-3;
+// Stiffness of a line that is hardly held. chosen: sheets have 1e-9 to 1e-4, boxes 0.05; ten times as much fits as
+// well.
+constexpr double kLittleHold = 1e-3;
 
 }  // namespace
 
@@ -21,16 +26,25 @@ TurnKind kindOf(const SymmetryTurn& turn) {
   return turn.fold == 0 ? TurnKind::AnyAngle : turn.fold == 2 ? TurnKind::Half : TurnKind::Folds;
 }
 
-std::vector<double> turnOddsTerms(const SymmetryTurn& turn) {
+std::vector<double> turnOddsTerms(const SymmetryTurn& turn, const TurnSigns& signs) {
   std::vector<double> terms{1.0, std::log1p(turn.off / kLittleShare), std::log1p(turn.far / kLittleShare),
                             1.0 - turn.support};
-  if (turn.fold > 0) terms.push_back(std::min(kMostHalfway, turn.halfway - turn.off));
-  if (turn.fold > 2) terms.push_back(1.0 / turn.fold);
+  switch (kindOf(turn)) {
+    case TurnKind::AnyAngle:
+      break;
+    case TurnKind::Half:
+      terms.insert(terms.end(), {std::log(signs.grown), -std::log1p(signs.hold / kLittleHold),
+                                 std::log1p(signs.planes_off / kLittleOfPlanes), signs.beside});
+      break;
+    case TurnKind::Folds:
+      terms.insert(terms.end(), {std::min(kMostHalfway, turn.halfway - turn.off), 1.0 / turn.fold});
+      break;
+  }
   return terms;
 }
 
-double turnConfidence(const SymmetryTurn& turn) {
-  const std::vector<double> terms = turnOddsTerms(turn);
+double turnConfidence(const SymmetryTurn& turn, const TurnSigns& signs) {
+  const std::vector<double> terms = turnOddsTerms(turn, signs);
   const std::vector<double>& numbers = kTurnConfidenceFit[static_cast<std::size_t>(kindOf(turn))];
   double log_odds = 0.0;
   for (std::size_t k = 0; k < terms.size(); ++k) log_odds += numbers[k] * terms[k];

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/detection/scan_axes/turn_signs.h"
 #include "pcl_symmetry/core/detection/plane_detection.h"
 
 namespace pcl_symmetry {
@@ -14,11 +15,11 @@ TurnKind kindOf(const SymmetryTurn& turn);
 /// Terms of the log odds that turns which a scan shows are symmetries of the whole object; the first is 1. The numbers
 /// that they are multiplied with are fitted by calibrate_turns.
 /// \param turn with the shares that were seen.
-std::vector<double> turnOddsTerms(const SymmetryTurn& turn);
+std::vector<double> turnOddsTerms(const SymmetryTurn& turn, const TurnSigns& signs);
 
 /// Probability that the turns map at least 90 % of the whole surface to within 1 % of the diameter of the surface, and
 /// all but 1.25 % to within ten times that: the limits of ObjectSymmetryOptions.
 /// \param turn with the shares that were seen.
-double turnConfidence(const SymmetryTurn& turn);
+double turnConfidence(const SymmetryTurn& turn, const TurnSigns& signs);
 
 }  // namespace pcl_symmetry
