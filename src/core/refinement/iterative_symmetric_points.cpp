@@ -9,6 +9,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/refinement/far_test.h"
+#include "core/refinement/step_equations.h"
 #include "core/refinement/surface_fit.h"
 
 namespace pcl_symmetry {
@@ -45,56 +46,55 @@ struct WeightedExtent {
   }
 };
 
-/// Normal equations of a plane's step. The unknowns (a, b, c) move the normal n by a u + b v, and the plane's distance
-/// from the middle of the samples by extent * c.
-struct StepEquations {
-  Eigen::Vector3d n, u, v;
-  Eigen::Vector3d middle;
-  double extent;
-  double offset;  ///< of the plane from the middle
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+/// Three coordinates of a point to a place of a block.
+template <typename Column>
+void put(const Column& from, PairBlock::Coordinates& to, int place) {
+  for (int k = 0; k < 3; ++k) to[k][place] = static_cast<double>(from[k]);
+}
 
-  StepEquations(const ReflectionPlane& plane, const WeightedExtent& samples)
-      : n(plane.normal()),
-        u(n.unitOrthogonal()),
-        v(n.cross(u)),
-        middle(samples.middle),
-        extent(samples.extent),
-        offset(plane.offset() - n.dot(middle)) {}
-
-  /// Adds w (m . (x' - y))^2; fills the lower half of h.
-  void addPointToPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& x_normal,
-                       const Eigen::Vector3d& y_normal, double pair_weight) {
-    const Eigen::Vector3d p = x - middle, q = y - middle;
-    const double height = n.dot(p) - offset;
-    const Eigen::Vector3d turned = x_normal - 2.0 * n.dot(x_normal) * n;
-    const double cosine = turned.dot(y_normal);
-    const Eigen::Vector3d m = (y_normal + (cosine < 0.0 ? -turned : turned)).normalized();
-    const double m_n = m.dot(n), weight = pair_weight * cosine * cosine;
-    const Eigen::Vector3d slope(-2.0 * (u.dot(p) * m_n + height * m.dot(u)),
-                                -2.0 * (v.dot(p) * m_n + height * m.dot(v)), 2.0 * extent * m_n);
-    h.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
-    g += weight * m.dot(p - 2.0 * height * n - q) * slope;
+/// Calls use(block) for all pairs with a weight, in their order.
+/// \param fill fill(i, block, place) writes the points and normals of pair i to a place of a block.
+template <typename Fill, typename Use>
+void forBlocks(const std::vector<double>& weights, const Fill& fill, const Use& use) {
+  PairBlock block;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] == 0.0) continue;
+    block.weights[block.size] = weights[i];
+    fill(static_cast<Eigen::Index>(i), block, block.size++);
+    if (block.size < PairBlock::kMost) continue;
+    use(block);
+    block.size = 0;
   }
+  if (block.size > 0) use(block);
+}
 
-  /// Adds w |x' - y|^2.
-  void addPointToPoint(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double weight) {
-    const Eigen::Vector3d p = x - middle, q = y - middle;
-    const double height = n.dot(p) - offset;
-    Eigen::Matrix3d slopes;  // of the reflected point
-    slopes.col(0) = -2.0 * (u.dot(p) * n + height * u);
-    slopes.col(1) = -2.0 * (v.dot(p) * n + height * v);
-    slopes.col(2) = 2.0 * extent * n;
-    h += weight * slopes.transpose() * slopes;
-    g += weight * slopes.transpose() * (p - 2.0 * height * n - q);
+/// stepReflectionPlane() of pairs that \p fill writes, see forBlocks().
+template <typename Fill>
+ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weights, const ReflectionPlane& plane,
+                             const Fill& fill) {
+  const WeightedExtent samples(x, weights);
+  if (!(samples.extent > 0.0)) return plane;
+  StepEquations across(plane, samples.middle, samples.extent);
+  forBlocks(weights, fill, [&](const PairBlock& block) { across.addPointToPlane(block); });
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
+  const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
+  int num_soft = 0;
+  while (num_soft < 3 && !(stiffness[num_soft] > kLeastStiffness * stiffness[2])) ++num_soft;
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();
+  for (int i = num_soft; i < 3; ++i)
+    step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
+  if (num_soft > 0) {
+    StepEquations whole(plane, samples.middle, samples.extent);
+    forBlocks(weights, fill, [&](const PairBlock& block) { whole.addPointToPoint(block); });
+    const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
+    const Eigen::MatrixXd reduced = soft.transpose() * whole.h * soft;
+    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * whole.g);
   }
-
-  ReflectionPlane moved(const Eigen::Vector3d& step) const {
-    const Eigen::Vector3d normal = (n + step[0] * u + step[1] * v).normalized();
-    return ReflectionPlane(normal, normal.dot(middle) + offset + step[2] * extent);
-  }
-};
+  const double length = step.norm();
+  if (!std::isfinite(length)) return plane;
+  if (length > kLongestStep) step *= kLongestStep / length;
+  return across.moved(step);
+}
 
 /// The closest points to the reflections, where there are any within reach of the weights.
 IspStep matchReflections(const IspSurface& surface, const Points& reflected, double sigma,
@@ -186,33 +186,12 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
 ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
                                     const PointsRef& y_normals, const std::vector<double>& weights,
                                     const ReflectionPlane& plane) {
-  const WeightedExtent samples(x, weights);
-  if (!(samples.extent > 0.0)) return plane;
-  StepEquations across(plane, samples);
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    if (weights[i] == 0.0) continue;
-    across.addPointToPlane(x.col(i).cast<double>(), y.col(i).cast<double>(), x_normals.col(i).cast<double>(),
-                           y_normals.col(i).cast<double>(), weights[i]);
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
-  const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
-  int num_soft = 0;
-  while (num_soft < 3 && !(stiffness[num_soft] > kLeastStiffness * stiffness[2])) ++num_soft;
-  Eigen::Vector3d step = Eigen::Vector3d::Zero();
-  for (int i = num_soft; i < 3; ++i)
-    step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
-  if (num_soft > 0) {
-    StepEquations whole(plane, samples);
-    for (Eigen::Index i = 0; i < x.cols(); ++i)
-      whole.addPointToPoint(x.col(i).cast<double>(), y.col(i).cast<double>(), weights[i]);
-    const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
-    const Eigen::MatrixXd reduced = soft.transpose() * whole.h * soft;
-    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * whole.g);
-  }
-  const double length = step.norm();
-  if (!std::isfinite(length)) return plane;
-  if (length > kLongestStep) step *= kLongestStep / length;
-  return across.moved(step);
+  return steppedPlane(x, weights, plane, [&](Eigen::Index i, PairBlock& block, int place) {
+    put(x.col(i), block.x, place);
+    put(y.col(i), block.y, place);
+    put(x_normals.col(i), block.x_normals, place);
+    put(y_normals.col(i), block.y_normals, place);
+  });
 }
 
 IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
@@ -223,13 +202,13 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
     step.plane = fitReflectionPlane(pairs.x, pairs.y, pairs.weights, plane);
     return std::move(step);
   }
-  const Eigen::Index size = pairs.x.cols();
-  Points x_normals(3, size), y_normals(3, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    x_normals.col(i) = surface.normals.col(samples[i]);
-    y_normals.col(i) = surface.normals.col(step.closest[i] >= 0 ? step.closest[i] : samples[i]);
-  }
-  step.plane = stepReflectionPlane(pairs.x, pairs.y, x_normals, y_normals, pairs.weights, plane);
+  const auto fill = [&](Eigen::Index i, PairBlock& block, int place) {
+    put(pairs.x.col(i), block.x, place);
+    put(pairs.y.col(i), block.y, place);
+    put(surface.normals.col(samples[i]), block.x_normals, place);
+    put(surface.normals.col(step.closest[i]), block.y_normals, place);
+  };
+  step.plane = steppedPlane(pairs.x, pairs.weights, plane, fill);
   return std::move(step);
 }
 

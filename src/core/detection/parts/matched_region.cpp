@@ -4,6 +4,7 @@
 #include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
@@ -57,8 +58,8 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
   });
 }
 
-MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane) const {
-  const IspStep step = fit_.matches(plane, samples_);
+MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses) const {
+  IspStep step = fit_.matches(plane, samples_, guesses);
   const std::vector<float> support = fit_.shares(plane, samples_, step).point_support;
   const std::size_t size = samples_.size(), num_neighbours = neighbours_.size() / size;
   std::vector<char> matched(size);
@@ -69,6 +70,7 @@ MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane) const {
   }
   const std::vector<char> inside = inLargest(matched, step, support);
   MatchedRegion region;
+  region.closest = std::move(step.closest);
   for (std::size_t i = 0; i < size; ++i) {
     if (!inside[i]) continue;
     region.points.push_back(samples_[i]);

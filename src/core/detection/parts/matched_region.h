@@ -14,6 +14,7 @@ struct MatchedRegion {
   double support = 0.0;     ///< mean support of its samples, relative to what sampling and noise allow, in [0, 1]
   /// Length of its edge, where the surface goes on without a match, as a share of the edge of a flat disc as large.
   double edge = 0.0;
+  std::vector<int> closest;  ///< to the reflection of each sample, as IspStep has it
 };
 
 /// Finds the regions that planes map onto themselves. Beyond the paper, whose Figure 8 shows such regions in white.
@@ -27,8 +28,9 @@ public:
   MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, std::uint64_t seed, int num_threads);
 
   /// \param plane normalised frame.
+  /// \param guesses MatchedRegion::closest of a plane nearby, which makes the search faster; null = not known.
   /// \return the largest region, empty where nothing matches.
-  MatchedRegion largest(const ReflectionPlane& plane) const;
+  MatchedRegion largest(const ReflectionPlane& plane, const std::vector<int>* guesses = nullptr) const;
 
 private:
   std::vector<char> inLargest(const std::vector<char>& matched, const IspStep& step,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "core/base/constants.h"
@@ -12,6 +13,8 @@
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
+#include "core/neighbours/search/neighbour_walk.h"
+#include "core/neighbours/search/point_tree.h"
 #include "core/refinement/plane_tolerance.h"
 
 namespace pcl_symmetry {
@@ -105,10 +108,23 @@ std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vec
 struct BallSearch {
   const NormalizedCloud& cloud;
   const PlaneFit& fit;
+  const std::unique_ptr<NeighbourWalk> walk;  ///< null: the cloud has no lists of neighbours
+  /// Planes of balls are matched by walks, as those that are kept are refined again on their regions.
+  const IspSurface surface;
   IspOptions isp;
 
   BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit, IspUpdate update)
-      : cloud(the_cloud), fit(the_fit) {
+      : cloud(the_cloud),
+        fit(the_fit),
+        walk(cloud.tree && cloud.tree->lists()
+                 ? std::make_unique<NeighbourWalk>(cloud.points, *cloud.tree->lists(), *cloud.search)
+                 : nullptr),
+        surface{cloud.points,
+                cloud.geometry.normals,
+                walk ? *walk : *cloud.search,
+                cloud.surface.at_border,
+                walk ? nullptr : cloud.surface.far,
+                1} {
     isp.update = update;
     isp.sigma = cloud.sigma;
     isp.final_sigma = cloud.final_sigma;
@@ -119,7 +135,7 @@ struct BallSearch {
   /// \return nothing where the ball has too few or too many points, the plane leaves the ball, or little matches.
   std::optional<SymmetricPart> refined(const ReflectionPlane& start, const std::vector<int>& ball,
                                        const Eigen::Vector3d& middle, double radius) const {
-    IspResult result = refineSymmetricPoints(cloud.surface, thinned(ball, kBallSamples), start, isp);
+    IspResult result = refineSymmetricPoints(surface, thinned(ball, kBallSamples), start, isp);
     // A ball about a point of the plane is cut into equal halves.
     const Eigen::Vector3d center = middle - result.plane.signedDistance(middle) * result.plane.normal();
     const std::vector<int> moved = within(cloud.points, center.cast<float>(), radius);
@@ -128,10 +144,11 @@ struct BallSearch {
     IspOptions fine = isp;
     fine.sigma = fine.final_sigma;
     const int num_before = result.iterations;
-    result = refineSymmetricPoints(cloud.surface, samples, result.plane, fine);
+    result = refineSymmetricPoints(surface, samples, result.plane, fine);
     if (std::abs(result.plane.signedDistance(middle)) > kFarthestPlane * radius) return std::nullopt;
     SymmetricPart part{result.plane, {}, 0.0, 0.0, num_before + result.iterations, 0.0};
-    part.support = fit.relativeSupport(fit.shares(part.plane, samples));
+    const IspStep step = matchSymmetricPoints(surface, samples, part.plane, cloud.final_sigma, &result.last.closest);
+    part.support = fit.relativeSupport(fit.shares(part.plane, samples, step));
     part.share = static_cast<double>(moved.size()) / static_cast<double>(cloud.points.cols());
     if (part.support < kLeastSupport) return std::nullopt;
     return part;
@@ -175,7 +192,7 @@ std::optional<SymmetricPart> onItsRegion(SymmetricPart part, const BallSearch& s
         refineSymmetricPoints(search.cloud.surface, thinned(region.points, kRegionSamples), part.plane, isp);
     part.plane = result.plane;
     part.iterations += result.iterations;
-    region = regions.largest(part.plane);
+    region = regions.largest(part.plane, &region.closest);
   }
   if (region.share < kLeastPart || region.share > kLargestPart) return std::nullopt;
   part.longer_edge = region.edge - kLeastEdge - kEdgePerShare * region.share;

@@ -31,6 +31,9 @@ public:
   /// \param lists of the same points.
   void use(NeighbourLists lists) { lists_ = std::move(lists); }
 
+  /// \return what use() was given; null = nothing.
+  const NeighbourLists* lists() const { return lists_ ? &*lists_ : nullptr; }
+
 private:
   using Node = PointTreeNode;
   /// A node that a query has put off, and the squared distance of its box.
