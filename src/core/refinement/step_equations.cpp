@@ -8,7 +8,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kMost = PairBlock::kMost;
+constexpr int kMost = PairBlock::kMost;  // derived: that of a block
 
 /// What the terms of a block depend on beside its pairs.
 struct StepFrame {
