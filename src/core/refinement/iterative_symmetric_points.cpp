@@ -8,6 +8,8 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/simd.h"
+#include "core/geometry/point_samples.h"
 #include "core/refinement/far_test.h"
 #include "core/refinement/step_equations.h"
 #include "core/refinement/surface_fit.h"
@@ -106,6 +108,11 @@ IspStep matchReflections(const IspSurface& surface, const Points& reflected, dou
   const float bound = surface.far ? surface.far->bound(kReach * sigma) : 0.0f;
   const auto sq_reach = static_cast<float>(kReach * kReach * sigma * sigma);
   parallelRanges(size, kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
+    if (!surface.far && size <= kBlockSize) {  // all at once
+      if (guesses) step.closest = *guesses;
+      surface.search.searchWithin(reflected, sq_reach, step.closest, step.sq_distances);
+      return;
+    }
     std::vector<Eigen::Index> near;
     for (std::size_t i = begin; i < end; ++i)
       if (!surface.far || !(*surface.far)(reflected.col(i).cast<double>(), bound)) near.push_back(i);
@@ -124,6 +131,27 @@ IspStep matchReflections(const IspSurface& surface, const Points& reflected, dou
   return step;
 }
 
+/// Reflects points, as ReflectionPlane::reflect() does.
+/// \param points,reflected three coordinates each.
+PCL_SYMMETRY_MULTIVERSION
+void reflectAll(const float* points, Eigen::Index size, const double* normal, double offset, float* reflected) {
+  const double n0 = normal[0], n1 = normal[1], n2 = normal[2];
+#pragma GCC ivdep
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const double x0 = points[3 * i], x1 = points[3 * i + 1], x2 = points[3 * i + 2];
+    const double twice = 2.0 * (n0 * x0 + n1 * x1 + n2 * x2 - offset);
+    reflected[3 * i] = static_cast<float>(x0 - twice * n0);
+    reflected[3 * i + 1] = static_cast<float>(x1 - twice * n1);
+    reflected[3 * i + 2] = static_cast<float>(x2 - twice * n2);
+  }
+}
+
+Points reflections(const Points& points, const ReflectionPlane& plane) {
+  Points reflected(3, points.cols());
+  reflectAll(points.data(), points.cols(), plane.normal().data(), plane.offset(), reflected.data());
+  return reflected;
+}
+
 /// The pairs of samples and closest points to their reflections, before the plane moves.
 struct WeightedPairs {
   Points x, y;
@@ -132,11 +160,7 @@ struct WeightedPairs {
 
   WeightedPairs(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane, double sigma,
                 const std::vector<int>* guesses)
-      : x(3, static_cast<Eigen::Index>(samples.size())), y(3, x.cols()), weights(samples.size()) {
-    for (Eigen::Index i = 0; i < x.cols(); ++i) {
-      x.col(i) = surface.points.col(samples[i]);
-      y.col(i) = plane.reflect(x.col(i).cast<double>()).cast<float>();
-    }
+      : x(pointsAt(surface.points, samples)), y(reflections(x, plane)), weights(samples.size()) {
     step = matchReflections(surface, y, sigma, guesses);
     step.plane = plane;
     double sum = 0.0, sq_sum = 0.0;
@@ -214,9 +238,7 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
 
 IspStep matchReflectionsOnly(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
                              double sigma, const std::vector<int>* guesses) {
-  Points reflected(3, static_cast<Eigen::Index>(samples.size()));
-  for (Eigen::Index i = 0; i < reflected.cols(); ++i)
-    reflected.col(i) = plane.reflect(surface.points.col(samples[i]).cast<double>()).cast<float>();
+  const Points reflected = reflections(pointsAt(surface.points, samples), plane);
   return matchReflections(surface, reflected, sigma, guesses);
 }
 

@@ -8,8 +8,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kMost = PairBlock::kMost;  // derived: that of a block
-
 /// What the terms of a block depend on beside its pairs.
 struct StepFrame {
   double n[3], u[3], v[3], middle[3];
@@ -18,7 +16,8 @@ struct StepFrame {
 
 /// Slope and value of the residual of each pair of a block, and its weight.
 struct StepTerms {
-  double slopes[3][kMost], residuals[kMost], weights[kMost];
+  PairBlock::Coordinates slopes;
+  double residuals[PairBlock::kMost], weights[PairBlock::kMost];
 };
 
 StepFrame frameOf(const StepEquations& equations) {
