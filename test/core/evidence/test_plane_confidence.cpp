@@ -58,8 +58,8 @@ TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("hold", [](PlaneEvidence& e, double t) { e.hold = 0.1 * (1.0 - t); });
   expectFalls("unknown", [](PlaneEvidence& e, double t) {
     e.unknown = t;
-    // What a scan hides has its part in D: where D is the same although more is hidden, what is seen agrees better.
-    if (e.partial) e.score -= EvidenceUnits().hidden_loss * t;
+    // What is hidden or missing has its part in D: where D is the same although more is, what is seen agrees better.
+    if (!e.volume) e.score -= EvidenceUnits().hidden_loss * t;
   });
   expectFalls("score", [](PlaneEvidence& e, double t) { e.score = 1.0 - t; });
   expectFalls("support", [](PlaneEvidence& e, double t) { e.support = 1.0 - t; });
