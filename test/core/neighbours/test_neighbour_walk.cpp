@@ -56,8 +56,9 @@ TEST(NeighbourWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
     double excess = 0.0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       ASSERT_GE(walked[i], 0);
-      EXPECT_EQ(sq_walked[i], (queries.col(i) - points.col(walked[i])).squaredNorm());
-      EXPECT_GE(sq_walked[i], sq_closest[i]);
+      // derived: four roundings, which vector instructions leave out or not
+      EXPECT_FLOAT_EQ(sq_walked[i], (queries.col(i) - points.col(walked[i])).squaredNorm());
+      EXPECT_GE(sq_walked[i], sq_closest[i] * (1.0f - 1e-6f));
       num_same += walked[i] == closest[i] ? 1 : 0;
       excess += std::sqrt(sq_walked[i]) - std::sqrt(sq_closest[i]);
     }
