@@ -20,8 +20,8 @@ constexpr double kFarTurn = 10.0;  // tolerances. derived: as ObjectSymmetryOpti
 // Widths of the weights of the fit, tolerances, from start to end. chosen: starts are off by a few degrees; half loses
 // them, twice lets wrong matches pull.
 constexpr std::array<double, 6> kFitWidths{8.0, 5.0, 3.0, 2.0, 1.5, 1.5};
-// The same of the close fit, which starts from the other one. measured: of the half turns of scans of PSB, fold 0, that
-// fits on the whole mesh make symmetries, 73 of 75 are symmetries with these, 61 with last widths of 1.5 tolerances.
+// The same of the close fit, which starts from the other one. measured: of 75 half turns of scans of PSB, fold 0, that
+// a fit on the whole mesh makes symmetries, 67 in place of 61 are symmetries with these in place of last widths of 1.5.
 constexpr std::array<double, 6> kCloseFitWidths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};
 // Tolerances: points beside the rim by less pull nothing. chosen: the rim is as exact as its pixels; half lets noise
 // pull, twice leaves lines off by as much.

@@ -1,7 +1,6 @@
 #include "core/detection/scan_axes/turn_signs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/base/constants.h"
@@ -12,11 +11,11 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Planes through a line that are screened, and tolerances of the screening. chosen: half a step is 1.9 degrees, by
-// which a point at half a radius moves 1.6 of the tolerances; half misses planes, twice takes twice the time.
-constexpr int kNumScreenedPlanes = 48;
+// Pairs of perpendicular planes through a line that are screened, and tolerances of the screening. chosen: half the
+// last step is 0.9 degrees, by which a point at half a radius moves 0.8 tolerances; half misses planes, twice takes
+// twice the time.
+constexpr int kNumPlanePairs = 24;
 constexpr double kPlaneSlack = 2.0;
-constexpr int kPairStep = kNumScreenedPlanes / 2;  // derived: planes of a pair are perpendicular
 // Radians and radii that lines may miss a right angle and each other by. chosen: lines of scans are off by a third of
 // this; twice lets chance cross.
 constexpr double kUprightAngle = 6.0 * kDegree, kCrossingGap = 0.06;
@@ -36,18 +35,27 @@ Eigen::Affine3d mirrorThrough(const Line3d& line, double angle) {
 
 /// TurnSigns::planes_off.
 double planesOff(const TurnEvidence& evidence, const Line3d& line) {
-  std::array<double, kNumScreenedPlanes> costs;
-  for (int k = 0; k < kNumScreenedPlanes; ++k) {
-    const TurnShares shares =
-        evidence.roughly(mirrorThrough(line, kPi * k / kNumScreenedPlanes), kPlaneSlack, 1.0, 1.0);
-    costs[k] = shares.off - kLandedCounts * shares.on;
-  }
-  int best = 0;
-  for (int k = 1; k < kPairStep; ++k)
-    if (costs[k] + costs[k + kPairStep] < costs[best] + costs[best + kPairStep]) best = k;
-  const double angle = kPi * best / kNumScreenedPlanes;
-  return std::max(evidence.exactly(mirrorThrough(line, angle)).off,
-                  evidence.exactly(mirrorThrough(line, angle + 0.5 * kPi)).off);
+  constexpr double kStep = 0.5 * kPi / kNumPlanePairs;  // radians. derived: pairs repeat after a right angle
+  const auto cost = [&](double angle) {
+    double sum = 0.0;
+    for (const double turned : {angle, angle + 0.5 * kPi}) {
+      const TurnShares shares = evidence.roughly(mirrorThrough(line, turned), kPlaneSlack, 1.0, 1.0);
+      sum += shares.off - kLandedCounts * shares.on;
+    }
+    return sum;
+  };
+  double best = 0.0, least = cost(0.0);
+  const auto take = [&](double angle) {
+    const double of_angle = cost(angle);
+    if (of_angle >= least) return;
+    least = of_angle;
+    best = angle;
+  };
+  for (int k = 1; k < kNumPlanePairs; ++k) take(k * kStep);
+  const double coarse = best;
+  for (const double beside : {-0.5 * kStep, 0.5 * kStep}) take(coarse + beside);
+  return std::max(evidence.exactly(mirrorThrough(line, best)).off,
+                  evidence.exactly(mirrorThrough(line, best + 0.5 * kPi)).off);
 }
 
 /// TurnSigns::grown.
