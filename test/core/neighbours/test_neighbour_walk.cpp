@@ -56,7 +56,7 @@ TEST(NeighbourWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
     double excess = 0.0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       ASSERT_GE(walked[i], 0);
-      EXPECT_EQ(sq_walked[i], (queries.col(i) - points.col(walked[i])).squaredNorm());
+      EXPECT_FLOAT_EQ(sq_walked[i], (queries.col(i) - points.col(walked[i])).squaredNorm());
       EXPECT_GE(sq_walked[i], sq_closest[i]);
       num_same += walked[i] == closest[i] ? 1 : 0;
       excess += std::sqrt(sq_walked[i]) - std::sqrt(sq_closest[i]);
