@@ -6,8 +6,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Cells along each side of the grid where walks begin. chosen: as many as take a hundredth of the time of the search for
-// parts; at half, walks are longer, at twice, the grid takes longer to make than it saves.
+// Cells along each side of the grid where walks begin. chosen: as many as take a hundredth of the time of the search
+// for parts; at half, walks are longer, at twice, the grid takes longer to make than it saves.
 constexpr int kStartCells = 32;
 
 }  // namespace
