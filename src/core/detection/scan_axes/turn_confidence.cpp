@@ -27,20 +27,21 @@ TurnKind kindOf(const SymmetryTurn& turn) {
 }
 
 std::vector<double> turnOddsTerms(const SymmetryTurn& turn, const TurnSigns& signs) {
-  std::vector<double> terms{1.0, std::log1p(turn.off / kLittleShare), std::log1p(turn.far / kLittleShare),
-                            1.0 - turn.support};
+  const double off = std::log1p(turn.off / kLittleShare), far = std::log1p(turn.far / kLittleShare);
   switch (kindOf(turn)) {
-    case TurnKind::AnyAngle:
-      break;
-    case TurnKind::Half:
-      terms.insert(terms.end(), {std::log(signs.grown), -std::log1p(signs.hold / kLittleHold),
-                                 std::log1p(signs.planes_off / kLittleOfPlanes), signs.beside});
-      break;
+    case TurnKind::Half:  // without what is far off: what the object grows by says that, and off does
+      return {1.0,
+              off,
+              1.0 - turn.support,
+              std::log(signs.grown),
+              -std::log1p(signs.hold / kLittleHold),
+              std::log1p(signs.planes_off / kLittleOfPlanes),
+              signs.beside};
     case TurnKind::Folds:
-      terms.insert(terms.end(), {std::min(kMostHalfway, turn.halfway - turn.off), 1.0 / turn.fold});
-      break;
+      return {1.0, off, far, 1.0 - turn.support, std::min(kMostHalfway, turn.halfway - turn.off), 1.0 / turn.fold};
+    default:
+      return {1.0, off, far, 1.0 - turn.support};
   }
-  return terms;
 }
 
 double turnConfidence(const SymmetryTurn& turn, const TurnSigns& signs) {

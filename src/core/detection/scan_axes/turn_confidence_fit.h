@@ -7,10 +7,10 @@
 namespace pcl_symmetry {
 
 // Coefficients of turnOddsTerms(), by TurnKind.
-// fitted: symmetries among the turns of each kind: 177 of 218, 68 of 1963, 149 of 375.
+// fitted: symmetries among the turns of each kind: 177 of 219, 70 of 2026, 168 of 345.
 inline const std::array<std::vector<double>, 3> kTurnConfidenceFit{
-    {{2.055, -0.1166, -3.876, -16.88},
-     {-1.566, -0.8895, -0.2387, -0.5774, -9.52, -0.7103, -0.6933, -1.01},
-     {3.053, -1.596, -1.069, -7.227, 10.89, -6.353}}};
+    {{2.062, -0.05684, -3.933, -17.04},
+     {-1.648, -0.7303, -1.091, -10.72, -0.7635, -0.9233, -0.7037},
+     {2.813, -1.502, -1.421, -7.243, 11.17, -2.497}}};
 
 }  // namespace pcl_symmetry
