@@ -158,6 +158,14 @@ draw_figure_16() {
   done
 }
 
+# Beyond the paper: the transform of turns about axes.
+draw_axes() {
+  local model
+  for model in propeller rim bottle chair; do
+    draw "axes_$model" pcl_symmetry_map "$model.ply" -of axes -size 260 -png "$gallery/axes_$model.png"
+  done
+}
+
 # Rates against points, noise, cuts and views; Figures 12, 13 and 14.
 draw_benchmark_charts() {
   local sweep
@@ -180,6 +188,7 @@ draw_figures_7_8_and_10
 draw figure_11 draw_scan_centers "$gallery/figure_11.png" car.ply
 draw_figure_15
 draw_figure_16
+draw_axes
 if $estimators; then
   draw error_against_time benchmark_accuracy -data "$models" -png "$pictures/error_against_time.png"
 fi
