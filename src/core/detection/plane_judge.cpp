@@ -148,7 +148,7 @@ std::vector<float> PlaneJudge::unknownMatches(const Reflected& reflected, const 
     return unknown;
   }
   const auto trust = static_cast<float>(std::clamp(offset_stiffness / kHeld - 1.0, 0.0, 1.0));
-  if (trust <= 0.0f || cloud_.isVolume() || static_cast<Eigen::Index>(size) != cloud_.points.cols()) return unknown;
+  if (trust <= 0.0f || static_cast<Eigen::Index>(size) != cloud_.points.cols()) return unknown;
   unknown = missingCounterparts(matched, step.closest, cloud_.geometry, borders());
   for (std::size_t i = 0; i < size; ++i)
     if (!matched[i] && isCutOff(reflected.points.col(static_cast<Eigen::Index>(i)))) unknown[i] = 1.0f;
@@ -166,10 +166,12 @@ PlaneJudge::Agreement PlaneJudge::agreement(const ReflectionPlane& plane, const 
     within[k] = std::min(1.0, shareWithin(measured, kTolerances[k] * tolerance_) / own_shares_[k]);
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
-  const Eigen::Matrix3d stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
-  const std::vector<float> unknown = cloud_.isScan() || within[0] < kSurelyWhole
-                                         ? unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim)
-                                         : std::vector<float>(size, 0.0f);
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+  std::vector<float> unknown(size, 0.0f);
+  if (cloud_.isScan() || (!cloud_.isVolume() && within[0] < kSurelyWhole)) {
+    stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
+    unknown = unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim);
+  }
   std::vector<float> telling;  // distances of the samples that say something
   double missing_at_twice = 0.0;
   for (std::size_t i = 0; i < size; ++i) {

@@ -93,7 +93,7 @@ private:
   struct Agreement {
     double share;         ///< within the tolerance, of those that say something
     double double_share;  ///< the same within twice the tolerance
-    double hold;          ///< how firmly those within the tolerance hold the plane
+    double hold;          ///< how firmly those within the tolerance hold the plane; 0 where nothing is missing
     double unknown;       ///< say nothing
     double deviation;     ///< distance that 97 % of those that say something stay within
   };

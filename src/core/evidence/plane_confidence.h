@@ -18,7 +18,7 @@ struct PlaneEvidence {
   /// Share of the surface mapped to within the tolerance of the surface, of that which says something, in [0, 1].
   double share = 1.0;
   double double_share = 1.0;  ///< the same within twice the tolerance, >= share
-  double hold = 1.0;          ///< how firmly what is matched holds the plane, see secondStiffness(), >= 0
+  double hold = 1.0;          ///< of scans: how firmly what is matched holds the plane, see secondStiffness(), >= 0
   double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
   double unknown = 0.0;       ///< share of the surface that says nothing: its reflection was not seen or was cut off
   bool further = false;       ///< another plane of the same cloud has better evidence
