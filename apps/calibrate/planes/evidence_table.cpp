@@ -11,58 +11,54 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// derived: the members of EvidenceSample and PlaneEvidence.
-constexpr const char* kHeading =
-    "model,row,rank,partial,volume,share_on_mesh,near_share,share,unknown,support,conflict,baseline,score,own_"
-    "score,"
-    "spacing,tolerance,roughness,double_share,hold\n";
-constexpr std::size_t kNumValues = 17;  // derived: the columns of kHeading after the names
+/// A number of the evidence and the name of its column.
+struct Column {
+  const char* name;
+  double PlaneEvidence::*value;
+};
+
+// derived: the members of PlaneEvidence that are numbers.
+constexpr std::array kEvidence{Column{"share", &PlaneEvidence::share},
+                               Column{"unknown", &PlaneEvidence::unknown},
+                               Column{"support", &PlaneEvidence::support},
+                               Column{"conflict", &PlaneEvidence::conflict},
+                               Column{"baseline", &PlaneEvidence::baseline},
+                               Column{"score", &PlaneEvidence::score},
+                               Column{"own_score", &PlaneEvidence::own_score},
+                               Column{"spacing", &PlaneEvidence::spacing},
+                               Column{"tolerance", &PlaneEvidence::tolerance},
+                               Column{"roughness", &PlaneEvidence::roughness},
+                               Column{"double_share", &PlaneEvidence::double_share},
+                               Column{"hold", &PlaneEvidence::hold}};
+constexpr std::size_t kFirst = 5;                              // derived: the columns of numbers before them
+constexpr std::size_t kNumValues = kFirst + kEvidence.size();  // derived: all columns of numbers
+
+std::string heading() {
+  std::string text = "model,row,rank,partial,volume,share_on_mesh,near_share";
+  for (const Column& column : kEvidence) text += std::string(",") + column.name;
+  return text + "\n";
+}
 
 std::array<double, kNumValues> valuesOf(const EvidenceSample& sample) {
   const PlaneEvidence& e = sample.evidence;
-  return {static_cast<double>(sample.rank),
-          static_cast<double>(e.partial),
-          static_cast<double>(e.volume),
-          sample.share,
-          sample.near_share,
-          e.share,
-          e.unknown,
-          e.support,
-          e.conflict,
-          e.baseline,
-          e.score,
-          e.own_score,
-          e.spacing,
-          e.tolerance,
-          e.roughness,
-          e.double_share,
-          e.hold};
+  std::array<double, kNumValues> values{static_cast<double>(sample.rank), static_cast<double>(e.partial),
+                                        static_cast<double>(e.volume), sample.share, sample.near_share};
+  for (std::size_t k = 0; k < kEvidence.size(); ++k) values[kFirst + k] = e.*kEvidence[k].value;
+  return values;
 }
 
 EvidenceSample sampleFrom(const std::string& model, const std::string& row, const std::array<double, kNumValues>& v) {
   EvidenceSample sample{model, row, {}, v[3], v[4], static_cast<int>(v[0])};
-  PlaneEvidence& e = sample.evidence;
-  e.partial = v[1] > 0.0;
-  e.volume = v[2] > 0.0;
-  e.share = v[5];
-  e.unknown = v[6];
-  e.support = v[7];
-  e.conflict = v[8];
-  e.baseline = v[9];
-  e.score = v[10];
-  e.own_score = v[11];
-  e.spacing = v[12];
-  e.tolerance = v[13];
-  e.roughness = v[14];
-  e.double_share = v[15];
-  e.hold = v[16];
+  sample.evidence.partial = v[1] > 0.0;
+  sample.evidence.volume = v[2] > 0.0;
+  for (std::size_t k = 0; k < kEvidence.size(); ++k) sample.evidence.*kEvidence[k].value = v[kFirst + k];
   return sample;
 }
 
 }  // namespace
 
 std::string evidenceTable(const std::vector<EvidenceSample>& samples) {
-  std::string text = kHeading;
+  std::string text = heading();
   for (const EvidenceSample& sample : samples) {
     text += sample.model + "," + sample.row;
     for (const double value : valuesOf(sample)) {
@@ -78,8 +74,7 @@ std::string evidenceTable(const std::vector<EvidenceSample>& samples) {
 std::vector<EvidenceSample> readEvidenceTable(const std::string& path) {
   std::istringstream text(readWholeFile(path));
   std::string line, model, row;
-  if (!std::getline(text, line) || line + "\n" != kHeading)
-    throw InputError(path + ": line 1 must be " + std::string(kHeading));
+  if (!std::getline(text, line) || line + "\n" != heading()) throw InputError(path + ": line 1 must be " + heading());
   std::vector<EvidenceSample> samples;
   for (int number = 2; std::getline(text, line); ++number) {
     std::istringstream fields(line);

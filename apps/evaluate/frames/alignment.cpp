@@ -16,7 +16,6 @@
 #include "evaluate/frames/mesh_ties.h"
 #include "evaluate/references/reference_symmetries.h"
 #include "evaluate/runs/packed_rows.h"
-#include "evaluate/runs/resumable_run.h"
 #include "evaluate/segmentation/patches.h"
 #include "evaluate/shared/class_file.h"
 #include "evaluate/shared/model_flags.h"
@@ -90,18 +89,8 @@ public:
                    models.end());
     }
     Step step(console_, "Evaluating " + std::to_string(models.size()) + " models");
-    std::vector<std::string> names;
-    for (const Model& model : models) names.push_back(model.key);
-    std::vector<ItemRows<FrameErrors>> all(models.size());
-    double num_done = 0.0;
-    work_.run(names, {[&](std::size_t i) { return packed(evaluate(models[i])); },
-                      [&](std::size_t i, const std::string& bytes) {
-                        all[i] = unpackedRows<FrameErrors>(bytes);
-                        step.progress(++num_done / static_cast<double>(models.size()));
-                      },
-                      [&](std::size_t i) {
-                        return packed(ItemRows<FrameErrors>{{}, models[i].path + ": the process that did it died"});
-                      }});
+    const std::vector<ItemRows<FrameErrors>> all = rowsOfModels<FrameErrors>(
+        models, [&](const Model& model) { return evaluate(model); }, work_, step);
     if (!work_.isFirst()) return;
     for (const ItemRows<FrameErrors>& item : all) {
       errors_.insert(errors_.end(), item.rows.begin(), item.rows.end());

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "common/command_line/console.h"
+#include "evaluate/runs/resumable_run.h"
+#include "evaluate/shared/model_list.h"
 #include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
@@ -54,6 +57,28 @@ ItemRows<Row> unpackedRows(const std::string& packed) {
     get(bytes, item.rows.back());
   }
   return item;
+}
+
+/// Evaluates models, shared by the processes of a run.
+/// \param evaluate gives the ItemRows<Row> of a model.
+/// \param step shows how far it is.
+/// \return one for each model, on the first process.
+template <typename Row, typename Evaluate>
+std::vector<ItemRows<Row>> rowsOfModels(const std::vector<Model>& models, const Evaluate& evaluate, ResumableRun& work,
+                                        Step& step) {
+  std::vector<std::string> names;
+  for (const Model& model : models) names.push_back(model.key);
+  std::vector<ItemRows<Row>> all(models.size());
+  double num_done = 0.0;
+  work.run(names, {[&](std::size_t i) { return packed<Row>(evaluate(models[i])); },
+                   [&](std::size_t i, const std::string& bytes) {
+                     all[i] = unpackedRows<Row>(bytes);
+                     step.progress(++num_done / static_cast<double>(models.size()));
+                   },
+                   [&](std::size_t i) {
+                     return packed(ItemRows<Row>{{}, models[i].path + ": the process that did it died"});
+                   }});
+  return all;
 }
 
 }  // namespace pcl_symmetry::apps

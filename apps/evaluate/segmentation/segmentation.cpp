@@ -14,7 +14,6 @@
 #include "evaluate/people/segment_files.h"
 #include "evaluate/references/reference_symmetries.h"
 #include "evaluate/runs/packed_rows.h"
-#include "evaluate/runs/resumable_run.h"
 #include "evaluate/segmentation/mirror_agreement.h"
 #include "evaluate/segmentation/segmentation_methods.h"
 #include "evaluate/segmentation/segmentation_report.h"
@@ -132,19 +131,8 @@ public:
       if (models.empty()) throw InputError(options_.meshes + ": no mesh is selected by -remainders");
     }
     Step step(console_, "Evaluating " + std::to_string(models.size()) + " models");
-    std::vector<std::string> names;
-    for (const Model& model : models) names.push_back(model.key);
-    std::vector<ItemRows<SegmentationResult>> all(models.size());
-    double num_done = 0.0;
-    work_.run(names,
-              {[&](std::size_t i) { return packed(evaluate(models[i])); },
-               [&](std::size_t i, const std::string& bytes) {
-                 all[i] = unpackedRows<SegmentationResult>(bytes);
-                 step.progress(++num_done / static_cast<double>(models.size()));
-               },
-               [&](std::size_t i) {
-                 return packed(ItemRows<SegmentationResult>{{}, models[i].path + ": the process that did it died"});
-               }});
+    const std::vector<ItemRows<SegmentationResult>> all = rowsOfModels<SegmentationResult>(
+        models, [&](const Model& model) { return evaluate(model); }, work_, step);
     if (!work_.isFirst()) return;
     step.done();
     for (const ItemRows<SegmentationResult>& item : all) {
