@@ -25,7 +25,7 @@ struct CalibrationOptions {
   std::vector<std::string> folders;
   ModelSelection selection;
   double tolerance = 0.01;
-  int num_shapes = 144;
+  int num_shapes = 144, num_parts = 0;
   std::optional<std::string> csv, from, others, output;
   bool sensitivity = false;
   CommonOptions common;
@@ -42,6 +42,8 @@ CommandLine commandLine(CalibrationOptions& options) {
       .text("from", "FILE", options.from, "fit to the planes of this file, which -csv wrote, and sample no clouds")
       .text("others", "FILE", options.others, "print what the fit decides on the planes of this file too")
       .flag("sensitivity", options.sensitivity, "print what half and twice of each chosen unit decides on -others")
+      .number("cross_validation", options.num_parts, Range::closed(0, 100),
+              "also judge each plane by a fit to the other models, of which one part in this many is left out; 0 = not")
       .text("output", "FILE.h", options.output, "C++ header with the numbers")
       .common(options.common, kThreads | kQuiet);
   return line;
@@ -99,6 +101,7 @@ int run(int argc, char** argv) {
   CalibrationOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  if (options.num_parts == 1) throw UsageError("-cross_validation = 1, must be 0, or 2 and more");
   if (options.sensitivity && !options.others) throw UsageError("-sensitivity needs -others");
   std::vector<EvidenceSample> samples = options.from ? readEvidenceTable(*options.from) : sampleAll(options);
   if (options.csv) writeText(*options.csv, evidenceTable(samples));
@@ -110,6 +113,11 @@ int run(int argc, char** argv) {
                 fit[kind].num_asymmetric);
   printDecisions(decisionsOf(samples, fit));
   printReliabilities(samples, fit);
+  if (options.num_parts > 0) {
+    const std::array<double, 3> losses = crossValidation(samples, options.num_parts);
+    for (std::size_t kind = 0; kind < losses.size(); ++kind)
+      std::printf("%-8s %.4f nats a plane by fits to other models\n", kKindNames[kind], losses[kind]);
+  }
   if (options.others) report(samples, fit, options);
   const std::string header = headerText(fit, models.size(), options.tolerance);
   std::printf("%s", header.c_str());

@@ -1,7 +1,10 @@
 #include "calibrate/planes/confidence_fitting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "calibrate/logistic_regression.h"
@@ -79,6 +82,13 @@ void markFurther(std::vector<EvidenceSample>& samples, const Worth& worth) {
   }
 }
 
+/// Log odds of a plane as if it were the best of its cloud.
+double oddsAlone(const EvidenceSample& sample, const DecisionFit& fit, const EvidenceUnits& units) {
+  PlaneEvidence alone = sample.evidence;
+  alone.further = false;
+  return logOdds(alone, fit, units);
+}
+
 }  // namespace
 
 bool isSymmetry(const EvidenceSample& sample) {
@@ -91,13 +101,31 @@ DecisionFit fitDecision(std::vector<EvidenceSample>& samples, const EvidenceUnit
   for (int pass = 0; pass < kFurtherPasses; ++pass) {
     for (const EvidenceKind kind : {EvidenceKind::Surface, EvidenceKind::Scan, EvidenceKind::Volume})
       fit[static_cast<std::size_t>(kind)] = fitKind(samples, kind, units);
-    markFurther(samples, [&](const EvidenceSample& sample) {
-      PlaneEvidence alone = sample.evidence;
-      alone.further = false;
-      return logOdds(alone, fit, units);
-    });
+    markFurther(samples, [&](const EvidenceSample& sample) { return oddsAlone(sample, fit, units); });
   }
   return fit;
+}
+
+std::array<double, 3> crossValidation(const std::vector<EvidenceSample>& samples, int num_parts) {
+  std::set<std::string> names;
+  for (const EvidenceSample& sample : samples) names.insert(sample.model);
+  std::map<std::string, int> part_of;
+  for (const std::string& name : names) part_of.emplace(name, static_cast<int>(part_of.size()) % num_parts);
+  std::array<double, 3> losses{}, weights{};
+  for (int part = 0; part < num_parts; ++part) {
+    std::vector<EvidenceSample> others, judged;
+    for (const EvidenceSample& sample : samples) (part_of[sample.model] == part ? judged : others).push_back(sample);
+    const DecisionFit fit = fitDecision(others);
+    markFurther(judged, [&](const EvidenceSample& sample) { return oddsAlone(sample, fit, {}); });
+    for (const EvidenceSample& sample : judged) {
+      const auto kind = static_cast<std::size_t>(kindOf(sample.evidence));
+      const double odds = logOdds(sample.evidence, fit), weight = weightOf(sample);
+      losses[kind] += weight * std::log1p(std::exp(isSymmetry(sample) ? -odds : odds));
+      weights[kind] += weight;
+    }
+  }
+  for (std::size_t kind = 0; kind < losses.size(); ++kind) losses[kind] /= weights[kind];
+  return losses;
 }
 
 double logOdds(const PlaneEvidence& evidence, const DecisionFit& fit, const EvidenceUnits& units) {

@@ -35,6 +35,12 @@ bool isSymmetry(const EvidenceSample& sample);
 /// \throws InputError where a kind has no symmetries or nothing else.
 DecisionFit fitDecision(std::vector<EvidenceSample>& samples, const EvidenceUnits& units = {});
 
+/// What a form of the log odds is worth: each plane is judged by a fit to the other models.
+/// \param num_parts >= 2, of the models, in turn by name.
+/// \return mean negative log likelihood of the planes with their weights in the fit, nats, by EvidenceKind.
+/// \throws InputError as fitDecision().
+std::array<double, 3> crossValidation(const std::vector<EvidenceSample>& samples, int num_parts);
+
 /// Log odds of a fit that may differ from that of the library.
 double logOdds(const PlaneEvidence& evidence, const DecisionFit& fit, const EvidenceUnits& units = {});
 

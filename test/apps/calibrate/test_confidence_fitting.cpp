@@ -76,6 +76,20 @@ TEST(ConfidenceFitting, NearlySymmetricPlanesAreNone) {
   EXPECT_LT(oddsOfFirst(samples), before - 0.5);
 }
 
+TEST(ConfidenceFitting, PlanesOfOtherModelsAreForeseenBetterThanByTheirNumber) {
+  const std::vector<EvidenceSample> samples = madeUpSamples();
+  const std::array<double, 3> losses = crossValidation(samples, 5);
+  double symmetric = 0.0;
+  for (const EvidenceSample& sample : samples) symmetric += isSymmetry(sample) ? 1.0 : 0.0;
+  const double share = symmetric / static_cast<double>(samples.size());
+  // What a forecast costs that knows their number alone.
+  const double by_number = -share * std::log(share) - (1.0 - share) * std::log(1.0 - share);
+  for (const double loss : losses) {
+    EXPECT_GT(loss, 0.0);
+    EXPECT_LT(loss, 0.9 * by_number);
+  }
+}
+
 TEST(EvidenceTable, NamesTheLineThatCannotBeRead) {
   const TemporaryFolder folder;
   const std::string good = evidenceTable(madeUpSamples());
