@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/constants.h"
+#include "core/detection/scan_axes/turn_confidence.h"
 #include "shapes/one_side.h"
 
 namespace {
@@ -65,6 +66,11 @@ TEST(TurnSigns, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
   EXPECT_GT(signs[1].grown, 1.05);
   EXPECT_EQ(signs[0].beside, 0.0);
   EXPECT_EQ(signs[1].beside, 1.0);
+  // A turn that the other signs leave too little confidence is not asked for planes.
+  const std::vector<TurnSigns> few = turnSigns(scanned.evidence, {right, wrong}, 0.2);
+  EXPECT_EQ(few[0].planes_off, signs[0].planes_off);
+  EXPECT_EQ(few[1].planes_off, 0.0);
+  EXPECT_LT(turnConfidence(wrong, few[1]), 0.2);
 }
 
 TEST(TurnSigns, AFlatSideHoldsNoLineAndABoxDoes) {

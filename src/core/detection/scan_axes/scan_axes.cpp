@@ -179,7 +179,7 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
     turns.turn.point = turns.line.projection(Eigen::Vector3d::Zero()) * cloud.scale + cloud.center;
     result.push_back(turns.turn);
   }
-  const std::vector<TurnSigns> signs = turnSigns(evidence, result);
+  const std::vector<TurnSigns> signs = turnSigns(evidence, result, options.min_possible);
   for (std::size_t i = 0; i < result.size(); ++i) result[i].confidence = turnConfidence(result[i], signs[i]);
   result.erase(std::remove_if(result.begin(), result.end(),
                               [&](const SymmetryTurn& turn) { return turn.confidence < options.min_possible; }),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/detection/scan_axes/turn_confidence.h"
 #include "core/detection/scan_axes/turn_limits.h"
 #include "core/neighbours/diameter.h"
 
@@ -76,7 +77,8 @@ bool crossesUpright(const Line3d& a, const Line3d& b) {
 
 }  // namespace
 
-std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector<SymmetryTurn>& turns) {
+std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector<SymmetryTurn>& turns,
+                                 double min_confidence) {
   const NormalizedCloud& cloud = evidence.cloud();
   const auto lineOf = [&](const SymmetryTurn& turn) {
     return Line3d((turn.point - cloud.center) / cloud.scale, turn.direction);
@@ -90,9 +92,10 @@ std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector
     const Line3d line = lineOf(turns[i]);
     signs[i].grown = grownBy(cloud, Eigen::Affine3d(turnAbout(line, kPi)));
     signs[i].hold = evidence.hold(line, kPi);
-    signs[i].planes_off = planesOff(evidence, line);
     const bool is_best = marginOf(turns[i]) >= marginOf(*best);
     signs[i].beside = is_best || crossesUpright(line, lineOf(*best)) ? 0.0 : 1.0;
+    // Planes only speak against a turn, and take most of the time.
+    if (turnConfidence(turns[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
   }
   return signs;
 }

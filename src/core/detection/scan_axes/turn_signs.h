@@ -21,7 +21,9 @@ struct TurnSigns {
 };
 
 /// \param turns of one scan, input frame, with the shares that were seen.
+/// \param min_confidence planes are not looked for where the other signs leave a turn less, see turnConfidence().
 /// \return one each; other turns than half turns have the defaults.
-std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector<SymmetryTurn>& turns);
+std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector<SymmetryTurn>& turns,
+                                 double min_confidence = 0.0);
 
 }  // namespace pcl_symmetry
