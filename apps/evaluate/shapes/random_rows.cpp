@@ -121,6 +121,23 @@ Cloud line(int count, bool bent, RandomStream& random) {
   return cloud;
 }
 
+/// Points along a bent wire: a cubic curve between random places, or a spiral that opens and climbs.
+Cloud wire(int count, bool spiral, RandomStream& random) {
+  const double noise = 0.01 * random.uniform();  // lengths
+  std::array<Vector3d, 4> places;
+  for (Vector3d& place : places) place = normalVector(random);
+  const double turns = 0.75 + random.uniform(), opening = 0.3 + random.uniform(), climb = 0.3 + random.uniform();
+  Cloud cloud;
+  for (int i = 0; i < count; ++i) {
+    const double t = random.uniform(), s = 1.0 - t, angle = 2.0 * kPi * turns * t, radius = 0.2 + opening * t * t;
+    const Vector3d x = spiral ? Vector3d(radius * std::cos(angle), radius * std::sin(angle), climb * t)
+                              : Vector3d(s * s * s * places[0] + 3.0 * s * s * t * places[1] +
+                                         3.0 * s * t * t * places[2] + t * t * t * places[3]);
+    add(cloud, x + noise * normalVector(random));
+  }
+  return cloud;
+}
+
 /// A flat table of a random outline, and objects on a part of it: boxes, or balls.
 Cloud table(int count, bool balls, RandomStream& random) {
   constexpr double kOnObjects = 0.3;  // share of the points; chosen: with less than 0.1 the outline alone decides
@@ -149,7 +166,7 @@ Cloud table(int count, bool balls, RandomStream& random) {
 
 const std::vector<std::string>& randomKinds() {
   static const std::vector<std::string> kinds = {"fewer than 20 points", "filled", "blobs", "walk", "sheet", "line",
-                                                 "table with objects"};
+                                                 "table with objects",   "wire"};
   return kinds;
 }
 
@@ -163,6 +180,7 @@ Cloud randomCloud(const std::string& kind, bool report, RandomStream& random) {
   if (kind == "filled") return filled(count, report, random);
   if (kind == "blobs") return blobs(count, report ? 3 : 1, random);
   if (kind == "walk") return walk(count, report, random);
+  if (kind == "wire") return wire(count, report, random);
   if (kind == "sheet") return sheet(count, report ? 0.05 : 0.0, 0.01 * random.uniform(), random);
   return line(count, report, random);
 }

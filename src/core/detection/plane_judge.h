@@ -132,6 +132,7 @@ private:
   mutable std::once_flag borders_found_;
   mutable std::vector<char> borders_;   ///< of the cloud; found where they are first asked for
   mutable std::vector<CutPlane> cuts_;  ///< found together with the borders
+  mutable double border_trust_ = 1.0;   ///< how far borders say what is missing, in [0, 1]; found together with them
 };
 
 }  // namespace pcl_symmetry

@@ -32,7 +32,7 @@ inline std::vector<int> drawSamples(Eigen::Index size, int num_samples, std::uin
 }
 
 /// \return 3 x samples.size(), the points with these indices.
-inline Points pointsAt(const Points& points, const std::vector<int>& samples) {
+inline Points pointsAt(const PointsRef& points, const std::vector<int>& samples) {
   Points chosen(3, static_cast<Eigen::Index>(samples.size()));
   for (std::size_t i = 0; i < samples.size(); ++i) chosen.col(static_cast<Eigen::Index>(i)) = points.col(samples[i]);
   return chosen;

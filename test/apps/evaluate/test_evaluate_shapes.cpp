@@ -85,8 +85,8 @@ TEST_F(EvaluateShapes, CountsPlanesOfFolds) {
 
 TEST_F(EvaluateShapes, CountsViewsRandomCloudsAndComposites) {
   EXPECT_EQ(rows("views -num 2 -points 1500")["all"]["no symmetry"]["total"], 2);
-  const auto random = rows("random -num 7");
-  EXPECT_EQ(random.size(), 8u) << "seven kinds and all";
+  const auto random = rows("random -num 8");
+  EXPECT_EQ(random.size(), 9u) << "eight kinds and all";
   EXPECT_EQ(random.at("fewer than 20 points")["called symmetric"]["count"], 0);
   EXPECT_GT(rows("composites -num 1 -points 1500")["all"]["planes of parts found"]["total"], 0);
 }

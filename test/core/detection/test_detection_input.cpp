@@ -48,6 +48,27 @@ double noise(RandomStream& random) {
   return std::sqrt(3.0) * (random.uniform() + random.uniform() + random.uniform() + random.uniform() - 2.0);
 }
 
+TEST(DetectPlanes, BentWiresHaveNoSymmetryByWhatIsMissing) {
+  // All of a wire is an open border, and each viewpoint sees it once: neither excuses what has no counterpart.
+  int num_called = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomStream random(seed);
+    const double opening = 0.3 + random.uniform(), climb = 0.3 + random.uniform(), width = 0.01 * random.uniform();
+    Points wire(3, 60 + 20 * static_cast<int>(seed));
+    for (Eigen::Index i = 0; i < wire.cols(); ++i) {
+      const double t = random.uniform(), angle = 7.0 * t, radius = 0.2 + opening * t * t;
+      const Eigen::Vector3d off(noise(random), noise(random), noise(random));
+      wire.col(i) =
+          (Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), climb * t) + width * off).cast<float>();
+    }
+    const Detection detection = detectPlanes(wire);
+    for (const SymmetryPlane& plane : detection.planes) num_called += plane.kind == PlaneKind::Symmetry ? 1 : 0;
+    EXPECT_TRUE(detection.axes.empty()) << seed;
+    EXPECT_TRUE(detection.centers.empty()) << seed;
+  }
+  EXPECT_EQ(num_called, 0);
+}
+
 TEST(DetectPlanes, OfANoisyLineNothingIsASymmetryButItsAxis) {
   // Noise of 0.9 % of the length along each axis across the line: 97 % of the points lie within 2.4 %, and their
   // spacing is 1.3 to 3 %. The cross-section is not resolved.

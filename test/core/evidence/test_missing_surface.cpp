@@ -60,6 +60,19 @@ std::pair<double, double> matchedAndMissing(const Surface& surface, const Reflec
           std::accumulate(missing.begin(), missing.end(), 0.0) / count};
 }
 
+TEST(OpenBorders, AreNearEverywhereOnAWireAndNowhereOnAClosedSurface) {
+  const Surface closed(cap(2.0)), cut(cap(0.3));
+  EXPECT_LT(shareNearBorders(closed.borders, closed.geometry), 0.25);
+  EXPECT_LT(shareNearBorders(cut.borders, cut.geometry), 0.4);
+  Points arc(3, 300);
+  for (Eigen::Index i = 0; i < arc.cols(); ++i) {
+    const double angle = 0.01 * static_cast<double>(i);
+    arc.col(i) = Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.1 * angle).cast<float>();
+  }
+  const Surface wire(arc);
+  EXPECT_GT(shareNearBorders(wire.borders, wire.geometry), 0.95);
+}
+
 TEST(OpenBorders, OfAClosedSurfaceAreRareAndOfACutOneFollowTheCut) {
   EXPECT_LT(Surface(cap(2.0)).borderShare(), 0.03);
   const Surface cut(cap(0.3));

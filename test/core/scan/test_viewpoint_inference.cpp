@@ -44,6 +44,20 @@ TEST(InferView, PrefersTheStoredViewpointWhereItIsTrue) {
   EXPECT_EQ(view->position, viewpoint);
 }
 
+TEST(InferView, FindsNoneForWires) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    RandomStream random(seed);
+    Points wire(3, 40 + 40 * static_cast<int>(seed));
+    for (Eigen::Index i = 0; i < wire.cols(); ++i) {
+      const double t = random.uniform(), angle = 5.0 * t;
+      wire.col(i) =
+          Eigen::Vector3d((0.3 + t) * std::cos(angle), (0.3 + t) * std::sin(angle), t + 0.003 * gaussian(random))
+              .cast<float>();
+    }
+    EXPECT_FALSE(inferView(wire, kElsewhere)) << seed;
+  }
+}
+
 TEST(InferView, FindsNoneForWholeObjects) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed)
     for (const int count : {1000, 10'000})

@@ -113,6 +113,16 @@ std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& s
   return borders;
 }
 
+double shareNearBorders(const std::vector<char>& borders, const LocalGeometry& geometry) {
+  const std::vector<char> near = nearBorders(borders, geometry);
+  std::size_t num_pairs = 0, num_near = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    num_pairs += geometry.nearest[i].size();
+    for (const int j : geometry.nearest[i]) num_near += near[i] || near[j] ? 1 : 0;
+  }
+  return num_pairs > 0 ? static_cast<double>(num_near) / static_cast<double>(num_pairs) : 0.0;
+}
+
 std::vector<float> missingCounterparts(const std::vector<char>& matched, const std::vector<int>& closest,
                                        const LocalGeometry& geometry, const std::vector<char>& borders) {
   const std::size_t size = matched.size();

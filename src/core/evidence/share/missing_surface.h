@@ -22,6 +22,12 @@ namespace pcl_symmetry {
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
                               int num_threads);
 
+/// How often the place between two neighbouring samples lies within about three spacings of an open border, by chance.
+/// \param borders what openBorders() returned.
+/// \param geometry of the samples.
+/// \return in [0, 1]; 0 for a closed surface, 1 for a wire.
+double shareNearBorders(const std::vector<char>& borders, const LocalGeometry& geometry);
+
 /// How well an open border explains that a sample has no counterpart under a plane.
 ///
 /// Neighbouring samples without counterpart form regions. A region is explained as far as its edge runs along open
