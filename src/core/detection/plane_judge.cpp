@@ -221,6 +221,7 @@ PlaneEvidence PlaneJudge::evidence(const PlaneShares& shares, const Agreement& a
   evidence.tolerance = tolerance_;
   evidence.unknown = agreement.unknown;
   evidence.own_score = own_score_;
+  evidence.flat = thinness_ == Thinness::Sheet;
   return evidence;
 }
 

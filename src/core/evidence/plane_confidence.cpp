@@ -21,6 +21,10 @@ constexpr double kCoarsest = 5.0, kLostPerCoarseness = 2.0;
 // distribution of 450 has 5.4. At 3, clouds of 3000 noisy points become uncertain; at 5, chance makes symmetries of
 // blobs.
 constexpr double kCoarsestVolume = 4.0;
+// The same limit where all points lie in one plane: any plane across maps the inside, and the outline is known to a
+// spacing. chosen: a random sheet of 300 to 500 points has 3 to 4, of 1500 points 2. At 3, half of the random sheets of
+// 500 points that pass for symmetric still do; at 1, discs and rectangles of 3000 points become uncertain.
+constexpr double kCoarsestFlat = 2.0;
 // Units of a share per share that says nothing. chosen: half of it may be off; only widens intervals.
 constexpr double kUnknownShare = 0.5;
 
@@ -128,7 +132,9 @@ ShareInterval shareInterval(const PlaneEvidence& evidence) {
 double planeConfidence(const PlaneEvidence& evidence) {
   const std::vector<double> terms = logOddsTerms(evidence);
   const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(kindOf(evidence))];
-  const double coarsest = kindOf(evidence) == EvidenceKind::Volume ? kCoarsestVolume : kCoarsest;
+  const double coarsest = evidence.flat                              ? kCoarsestFlat
+                          : kindOf(evidence) == EvidenceKind::Volume ? kCoarsestVolume
+                                                                     : kCoarsest;
   const double unresolved = kLostPerCoarseness * std::max(0.0, coarseness(evidence) - coarsest);
   const double log_odds = std::inner_product(terms.begin(), terms.end(), coefficients.begin(), 0.0) - unresolved;
   return 1.0 / (1.0 + std::exp(-log_odds));

@@ -21,6 +21,7 @@ struct PlaneEvidence {
   double hold = 1.0;          ///< of scans: how firmly what is matched holds the plane, see secondStiffness(), >= 0
   double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
   double unknown = 0.0;       ///< share of the surface that says nothing: its reflection was not seen or was cut off
+  bool flat = false;          ///< all points lie in one plane: the outline alone tells
   bool further = false;       ///< another plane of the same cloud has better evidence
 };
 

@@ -28,6 +28,9 @@ constexpr double kAsGood = 1.3;
 // refuses true viewpoints of scans without noise, twice accepts places that are 10 degrees off.
 constexpr double kAsGoodBeyond = 2.0 * ScanDensity::kLeastVariance;
 
+// derived: 12 neighbours give a density, so that fewer points have fewer than 25 independent ones, and the three
+// numbers of a viewpoint explain a quarter of their variance by chance.
+constexpr Eigen::Index kFewestPoints = 300;
 // Of the points, for open borders. chosen: fewer see borders everywhere, more cost time.
 constexpr int kBorderSamples = 2000;
 // Share of the surface near open borders from which there is no surface to be seen. chosen: 60 scans of 1000 and of
@@ -68,6 +71,7 @@ Eigen::Vector3d onItsSide(const PointsRef& points, const ScanDensity& density, c
 }  // namespace
 
 std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vector3d& stored) {
+  if (points.cols() < kFewestPoints) return std::nullopt;
   const ScanDensity density(points);
   const std::optional<Eigen::Vector3d> best = density.bestViewpoint();
   if (!best) return std::nullopt;
