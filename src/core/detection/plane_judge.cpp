@@ -13,6 +13,7 @@
 #include "core/evidence/share/surface_distance.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
+#include "core/normals/open_borders.h"
 
 namespace pcl_symmetry {
 

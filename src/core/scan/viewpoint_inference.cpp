@@ -1,8 +1,7 @@
 #include "core/scan/viewpoint_inference.h"
 
-#include "core/evidence/share/missing_surface.h"
 #include "core/geometry/point_samples.h"
-#include "core/normals/surface_normals.h"
+#include "core/normals/open_borders.h"
 #include "core/scan/scan_density.h"
 #include "core/scan/single_view.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/evidence/plane_support.h"
-#include "core/evidence/share/missing_surface.h"
+#include "core/normals/open_borders.h"
 #include "shapes/shapes.h"
 
 namespace {

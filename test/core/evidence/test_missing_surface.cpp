@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/normals/open_borders.h"
 #include "shapes/shapes.h"
 
 namespace {

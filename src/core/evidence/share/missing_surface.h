@@ -12,22 +12,6 @@ namespace pcl_symmetry {
 /// Beyond the paper, which has whole shapes. For a true plane the points without a counterpart begin where the cloud,
 /// or its reflection, ends; for a false one they begin in the middle of the surface.
 
-/// Finds the points at the open borders of a sampled surface: the neighbours in the tangent plane leave a gap, and the
-/// surface does not fold there.
-/// \param samples 3 x N, finite.
-/// \param search over the same samples.
-/// \param normals 3 x N, unit.
-/// \param num_threads 0 = one per core.
-/// \return N values, 1 at a border.
-std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
-                              int num_threads);
-
-/// How often the place between two neighbouring samples lies within about three spacings of an open border, by chance.
-/// \param borders what openBorders() returned.
-/// \param geometry of the samples.
-/// \return in [0, 1]; 0 for a closed surface, 1 for a wire.
-double shareNearBorders(const std::vector<char>& borders, const LocalGeometry& geometry);
-
 /// How well an open border explains that a sample has no counterpart under a plane.
 ///
 /// Neighbouring samples without counterpart form regions. A region is explained as far as its edge runs along open
