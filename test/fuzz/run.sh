@@ -37,7 +37,8 @@ for target in "${targets[@]}"; do
   leaks=1
   if [[ $target == obj || $target == stl ]]; then leaks=0; fi  # Assimp leaks some kB of files that it refuses
   mkdir -p "$folder/corpus/$target" "$folder/findings/$target"
-  if FUZZ_KIND=$target OMP_NUM_THREADS=1 "$folder/test/fuzz/$program" -max_total_time="$seconds" -timeout=120 -rss_limit_mb=3000 \
+  # The option of libFuzzer does not reach the check at the end of the process.
+  if FUZZ_KIND=$target OMP_NUM_THREADS=1 ASAN_OPTIONS=detect_leaks=$leaks "$folder/test/fuzz/$program" -max_total_time="$seconds" -timeout=120 -rss_limit_mb=3000 \
     -malloc_limit_mb=300 -max_len=$longest -detect_leaks=$leaks -close_fd_mask=1 -artifact_prefix="$folder/findings/$target/" \
     "$folder/corpus/$target" "$folder/test/fuzz/seeds/$target" 2>"$folder/findings/$target.log"; then
     echo "$target: nothing found, $(grep -oE 'Done [0-9]+ runs' "$folder/findings/$target.log" | head -1)"
