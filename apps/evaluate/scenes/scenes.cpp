@@ -18,6 +18,7 @@
 #include "core/base/random.h"
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/registration/motion_error.h"
+#include "evaluate/scenes/recognition_curve.h"
 #include "evaluate/scenes/scene_report.h"
 #include "evaluate/scenes/table_scene.h"
 #include "evaluate/shared/model_flags.h"
@@ -51,6 +52,7 @@ struct EvaluateScenesOptions {
   std::vector<double> noise = {0.0, 1.0};
   int num_scenes = 100, min_points = 300, leave_out = 0, most_in_band = 0;
   bool no_planes = false;
+  std::optional<std::string> seen, curve;
   std::string place = "table", sensor = "camera";
   int num_rings = 64;
   SceneOptionsOfTable table;
@@ -82,12 +84,17 @@ CommandLine commandLine(EvaluateScenesOptions& o) {
       .number("leave_out", o.leave_out, Range::closed(0, 1'000'000),
               "also ask a database which model an object is; every N-th model is left out of it; 0 = do not ask")
       .number("min_merit", o.recognition.min_merit, Range::closed(-1, 1), "least merit of the pose of a known model")
+      .number("candidates", o.recognition.num_candidates, Range::closed(1, 1'000'000),
+              "number of models that are brought to an object")
       .flag("no_planes", o.no_planes, "only ask the database")
+      .text("seen", "LIST", o.seen,
+            "only ask in these of the ways alone, scene, table and filtered, with commas between")
       .number("min_confidence", o.operating_point.min_confidence, Range::closed(0, 1),
               "least confidence of an answer that decides")
       .text("export", "DIR", o.export_folder,
             "write every scene as PCD with the field object, and ground_truth.json with poses and planes")
       .text("csv", "FILE", o.csv, "a row for each object")
+      .text("curve", "FILE", o.curve, "CSV of what is recognized by the least confidence that is asked for")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }
@@ -182,7 +189,8 @@ private:
         clusters[static_cast<std::size_t>(image.ids[i])].push_back(static_cast<pcl::index_t>(i));
     const auto seen = std::make_shared<const SeenSpace>(*image.cloud);
     const auto on_table = std::make_shared<const SeenSpace>(withPlace(*seen, scene));
-    const Cloud::ConstPtr filtered = withoutDepthErrors(image.cloud, *seen, options_.common.threads);
+    const Cloud::ConstPtr filtered =
+        isAsked("filtered") ? withoutDepthErrors(image.cloud, *seen, options_.common.threads) : image.cloud;
     const auto filtered_seen = std::make_shared<const SeenSpace>(withPlace(SeenSpace(*filtered), scene));
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       if (image.cropped[k] || clusters[k].size() < static_cast<std::size_t>(options_.min_points)) continue;
@@ -195,13 +203,15 @@ private:
       result.scene = number;
       result.noise = noise;
       result.occlusion = image.occlusion(k);
-      judge(
-          scene.objects[k], "alone", *alone, std::move(result),
-          [&] { return detectAnswers(alone, options_.common.seed + 1, options_.common.threads); },
-          [&] { return database_.recognize(*alone, recognition()); });
-      const auto judgeIn = [&](const char* row, const Cloud::ConstPtr& frame, const SeenSpace::ConstPtr& space) {
+      if (isAsked("alone"))
         judge(
-            scene.objects[k], row, *alone, results_.back(),
+            scene.objects[k], "alone", *alone, result,
+            [&] { return detectAnswers(alone, options_.common.seed + 1, options_.common.threads); },
+            [&] { return database_.recognize(*alone, recognition()); });
+      const auto judgeIn = [&](const char* row, const Cloud::ConstPtr& frame, const SeenSpace::ConstPtr& space) {
+        if (!isAsked(row)) return;
+        judge(
+            scene.objects[k], row, *alone, result,
             [&] { return detectAnswers(frame, clusters[k], space, options_.common.seed + 1, options_.common.threads); },
             [&] { return database_.recognize(*frame, clusters[k], recognition(), space); });
       };
@@ -209,6 +219,10 @@ private:
       judgeIn("table", image.cloud, on_table);
       if (filtered != image.cloud) judgeIn("filtered", filtered, filtered_seen);
     }
+  }
+
+  bool isAsked(const std::string& row) const {
+    return !options_.seen || ("," + *options_.seen + ",").find("," + row + ",") != std::string::npos;
   }
 
   /// No object reaches into the table or into the walls of a bin.
@@ -230,6 +244,7 @@ private:
   RecognitionOptions recognition() const {
     RecognitionOptions options = options_.recognition;
     options.num_threads = options_.common.threads;
+    options.min_merit = -1.0;  // answers that are not accepted show what another operating point would give
     return options;
   }
 
@@ -263,7 +278,10 @@ private:
     result.milliseconds = watch.lap();
     if (found.empty()) return result;
     result.answer = found.front().name;
+    result.support = found.front().score.support;
+    result.conflict = found.front().score.conflict;
     result.merit = found.front().score.merit();
+    result.accepted = result.merit >= options_.recognition.min_merit;
     result.confidence = found.front().confidence;
     result.is_right = result.answer == models_[object.model].name;
     const ReferenceSymmetries& symmetries = references_[object.model];
@@ -301,7 +319,9 @@ private:
       writeText((boost::filesystem::path(*options_.export_folder) / "ground_truth.json").string(),
                 nlohmann::json{{"scenes", ground_truth_}}.dump(1) + "\n");
     std::fputs(sceneTable(results_).c_str(), stdout);
+    if (options_.leave_out > 0) printReliability(recognitionReliability(results_));
     if (options_.csv) writeText(*options_.csv, sceneCSV(results_));
+    if (options_.curve) writeText(*options_.curve, recognitionCurveCSV(results_));
     if (!options_.common.json_path) return;
     const nlohmann::json summary{{"models", models_.size()},     {"scenes", options_.num_scenes},
                                  {"place", options_.place},      {"sensor", options_.sensor},
