@@ -1,8 +1,10 @@
 #include "evaluate/scenes/recognition_curve.h"
 
+#include <cstdio>
 #include <map>
 #include <tuple>
 
+#include "calibrate/logistic_regression.h"
 #include "evaluate/shared/table_text.h"
 
 namespace pcl_symmetry::apps {
@@ -79,6 +81,27 @@ std::vector<Reliability> recognitionReliability(const std::vector<SceneResult>& 
   for (const auto& [key, forecasts] : groups)
     reliabilities.push_back(reliabilityOf("noise " + fixed(key.first, 1) + ", " + key.second, forecasts, {}));
   return reliabilities;
+}
+
+std::string fittedConfidence(const std::vector<SceneResult>& results) {
+  std::vector<const RecognitionResult*> answers;
+  for (const SceneResult& result : results)
+    if (bandOf(result.occlusion) && result.recognition && !result.recognition->answer.empty())
+      answers.push_back(&*result.recognition);
+  const auto size = static_cast<Eigen::Index>(answers.size());
+  if (size == 0) return "";
+  Eigen::MatrixXd terms(size, 3);
+  Eigen::VectorXd outcomes(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const RecognitionResult& answer = *answers[static_cast<std::size_t>(i)];
+    terms.row(i) << 1.0, answer.merit, answer.lead;
+    outcomes[i] = answer.is_right ? 1.0 : 0.0;
+  }
+  const Eigen::VectorXd fitted = fitLogistic(terms, outcomes);
+  char line[128];
+  std::snprintf(line, sizeof(line), "confidence of %zu answers: constant = %.1f, merit = %.1f, lead = %.1f\n",
+                answers.size(), fitted[0], fitted[1], fitted[2]);
+  return line;
 }
 
 }  // namespace pcl_symmetry::apps

@@ -18,4 +18,7 @@ std::string recognitionCurveCSV(const std::vector<SceneResult>& results);
 /// together, one group for each noise and way of seeing.
 std::vector<Reliability> recognitionReliability(const std::vector<SceneResult>& results);
 
+/// The numbers of RecognizedModel::confidence that fit all answers best: a logistic regression on merit and lead.
+std::string fittedConfidence(const std::vector<SceneResult>& results);
+
 }  // namespace pcl_symmetry::apps

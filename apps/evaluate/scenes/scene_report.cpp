@@ -141,6 +141,7 @@ std::string sceneCSV(const std::vector<SceneResult>& results) {
                          .add("support")
                          .add("conflict")
                          .add("merit")
+                         .add("lead")
                          .add("answer_confidence")
                          .add("milliseconds")
                          .end();
@@ -160,6 +161,7 @@ std::string sceneCSV(const std::vector<SceneResult>& results) {
           .add(recognition->support)
           .add(recognition->conflict)
           .add(recognition->merit)
+          .add(recognition->lead)
           .add(recognition->confidence)
           .add(recognition->milliseconds);
     text += row.end();

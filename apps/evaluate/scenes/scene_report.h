@@ -18,6 +18,7 @@ struct RecognitionResult {
   bool accepted = false;    ///< at the operating point; otherwise the object is called unknown
   std::string answer;       ///< the best one, accepted or not; empty where there is none
   double support = 0.0, conflict = 0.0, merit = 0.0, confidence = 0.0;
+  double lead = 0.0;  ///< of its merit over that of the best other model
   double milliseconds = 0.0;
 };
 
