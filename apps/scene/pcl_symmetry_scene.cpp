@@ -56,6 +56,8 @@ CommandLine commandLine(SceneToolOptions& o) {
       .number("min_points", o.scene.min_points, Range::closed(20, 1'000'000'000), "least number of points of an object")
       .number("max_points", o.scene.max_points, Range::closed(100, 1'000'000'000),
               "points of an object that are analysed")
+      .number("accept", o.scene.recognition.min_confidence, Range::closed(0, 1),
+              "with -database: least confidence of a name that is accepted")
       .number("min_confidence", o.scene.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
       .flag("no_filter", o.no_filter, "leaves the errors of a depth camera in organized frames")

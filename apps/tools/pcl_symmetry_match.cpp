@@ -44,6 +44,8 @@ CommandLine commandLine(MatchOptions& options) {
       .flag("recognize", options.recognize, "bring the models to the scan and keep those that fit")
       .number("candidates", options.recognition.num_candidates, Range::closed(1, 1'000'000),
               "number of models that are brought to the scan")
+      .number("min_confidence", options.recognition.min_confidence, Range::closed(0, 1),
+              "least confidence of a known model")
       .number("min_merit", options.recognition.min_merit, Range::closed(-1, 1),
               "least merit of the pose of a known model")
       .common(options.common, kMeshPoints | kJson | kThreads | kViewpoint | kQuiet);

@@ -88,6 +88,21 @@ std::shared_ptr<const ViewSearch> DatabaseParts::views() {
   return views_;
 }
 
+std::shared_ptr<const PairSearch> DatabaseParts::pairs() {
+  std::unique_lock<std::mutex> lock(mutex);
+  const std::uint64_t version = store.version();
+  if (pairs_version_ == version) return pairs_;
+  if (store.models().size() > PairSearch::kMostModels) return pairs_ = nullptr;
+  const std::vector<StoredModel> models = store.models();
+  const std::shared_ptr<const PairSearch> before = pairs_;
+  lock.unlock();  // clouds are read under it, one at a time
+  const auto read = [&](const StoredModel& model) { return points(model, PairSearch::kModelPoints); };
+  const auto made = std::make_shared<const PairSearch>(models, read, before.get(), options.num_threads);
+  lock.lock();
+  pairs_version_ = version;
+  return pairs_ = made;
+}
+
 PositionCloud DatabaseParts::cloud(const StoredModel& model) {
   const std::string bytes = [&] {
     const std::lock_guard<std::mutex> lock(mutex);

@@ -9,6 +9,7 @@
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/recognition/symmetry_database.h"
 #include "recognition/packing/packed_model.h"
+#include "recognition/search/pair_search.h"
 #include "recognition/search/shape_search.h"
 #include "recognition/search/view_search.h"
 #include "recognition/storage/model_store.h"
@@ -24,6 +25,8 @@ struct DatabaseParts {
   /// Of the state that is read now.
   std::shared_ptr<const ShapeSearch> shapes();
   std::shared_ptr<const ViewSearch> views();
+  /// Pairs of points of all models; null in a large database.
+  std::shared_ptr<const PairSearch> pairs();
   /// What is fitted in the store; null forms where there is nothing. The mutex must be held.
   FittedForms storedForms();
 
@@ -47,7 +50,8 @@ struct DatabaseParts {
 private:
   std::shared_ptr<const ShapeSearch> shapes_;
   std::shared_ptr<const ViewSearch> views_;
-  std::uint64_t shapes_version_ = 0, views_version_ = 0;  // of the store when they were read
+  std::shared_ptr<const PairSearch> pairs_;
+  std::uint64_t shapes_version_ = 0, views_version_ = 0, pairs_version_ = 0;  // of the store when they were read
   FittedForms forms_;
 };
 

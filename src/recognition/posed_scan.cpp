@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/registration/pose_scoring.h"
+
 namespace pcl_symmetry::detail {
 
 namespace {
@@ -10,14 +12,23 @@ namespace {
 // Ratio of the radius of a scan's bounding ball to that of the whole object. chosen: 1 would hold if every scan showed
 // the longest extent; half takes the object for twice its size, so that widths in radii are too wide by that factor.
 constexpr double kSeenRadius = 0.95;
+// Points of each cloud that decide whether a model fits. chosen: as in pose refinement.
+constexpr int kJudgedPoints = 3000;
+// Radii, least width of the Gaussian of that judgement; otherwise it is the accuracy of the scan. measured: of widths
+// of 0.015, 0.03 and 0.05, the one that tells right models from wrong ones best, in 89 objects of scenes of fold 0 with
+// the noise of a depth camera (the area under the curve is 0.998, 0.990 and less; 0.985 with distances from points and
+// normals).
+constexpr double kLeastWidth = 0.015;
 
 }  // namespace
 
-PosedScan::PosedScan(const Points& points, const Visibility& seen, const CloudRegistrationOptions& options)
+PosedScan::PosedScan(const Points& points, const std::optional<Visibility>& seen,
+                     const CloudRegistrationOptions& options)
     : options_(options),
       ball_(boundingBall(points)),
       scale_(ball_.radius / kSeenRadius),
-      surface_(surfaceOf(points, ball_.center, seen.normalized(ball_.center, scale_))) {}
+      surface_(surfaceOf(points, ball_.center,
+                         seen ? std::optional(seen->normalized(ball_.center, scale_)) : std::nullopt)) {}
 
 void PosedScan::bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses) {
   const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
@@ -28,7 +39,7 @@ void PosedScan::bringTo(const std::string& name, const Points& points, const std
   search.num_rotations = 0;
   PosedSurface surface = surfaceOf(points, frames.target_center, std::nullopt);
   std::vector<RankedPose> found = searchPoses(surface_, surface, hypotheses, search);
-  models_.push_back({name, frames, std::move(surface), std::move(found)});
+  if (!found.empty()) models_.push_back({name, frames, std::move(surface), std::move(found)});
 }
 
 Recognition PosedScan::refined(int num_refined) {
@@ -40,9 +51,20 @@ Recognition PosedScan::refined(int num_refined) {
     if (found.size() == static_cast<std::size_t>(num_refined)) break;
     const RankedPose best =
         refinePoses(surface_, model.surface, RefinementTarget(model.surface), model.poses, options_).front();
-    found.push_back({model.name, model.frames.toInput(best.T_model_scan), best.score, 0.0});
+    const PoseScore score = scoreOf(model.surface, best.T_model_scan);
+    found.push_back({model.name, model.frames.toInput(best.T_model_scan), score, 0.0});
   }
   return found;
+}
+
+PoseScore PosedScan::judged(const Points& points, const Eigen::Isometry3d& T_model_scan) const {
+  const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
+  return scoreOf(surfaceOf(points, frames.target_center, std::nullopt), frames.toSearch(T_model_scan));
+}
+
+PoseScore PosedScan::scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const {
+  return PoseScorer(surface_, model)
+      .score(T_model_scan, {kJudgedPoints, std::max(kLeastWidth, surface_.accuracy), true, true});
 }
 
 PosedSurface PosedScan::surfaceOf(const Points& points, const Eigen::Vector3d& center,

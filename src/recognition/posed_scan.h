@@ -12,21 +12,26 @@
 
 namespace pcl_symmetry::detail {
 
-/// A scan from a viewpoint that is brought to many models: every model is searched for poses, the models with the best
-/// poses are refined.
+/// A scan that is brought to many models: every model is searched for poses, the models with the best poses are
+/// refined.
 class PosedScan {
 public:
   /// \param points 3 x N, finite, input units, not all equal.
-  /// \param seen what the scanner saw.
-  PosedScan(const Points& points, const Visibility& seen, const CloudRegistrationOptions& options);
+  /// \param seen what the scanner saw; nothing = the points show the object from all sides.
+  PosedScan(const Points& points, const std::optional<Visibility>& seen, const CloudRegistrationOptions& options);
 
   /// Searches a model for poses of the scan.
   /// \param points of the model, 3 x M, finite, units of the scan.
-  /// \param poses T_model_scan to try.
+  /// \param poses T_model_scan to try; without one the model is left out.
   void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses);
 
-  /// \return the \p num_refined models with the best poses, these refined, in any order; confidences are 0.
+  /// \return the \p num_refined models with the best poses, these refined and judged, in any order; confidences are 0.
   Recognition refined(int num_refined);
+
+  /// How well a scan fits a model: by its distances from the surface between the points, so that it does not count how
+  /// densely the model was sampled.
+  /// \param points of the model, 3 x M, finite, units of the scan.
+  PoseScore judged(const Points& points, const Eigen::Isometry3d& T_model_scan) const;
 
 private:
   struct PosedModel {
@@ -36,6 +41,7 @@ private:
     std::vector<RankedPose> poses;  // best first
   };
 
+  PoseScore scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const;
   PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, std::optional<Visibility> seen) const;
 
   CloudRegistrationOptions options_;

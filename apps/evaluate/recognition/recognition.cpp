@@ -47,6 +47,7 @@ CommandLine commandLine(EvaluateRecognitionOptions& o) {
       .number("noise", o.noise, Range::closed(0, 1), "standard deviation of the depth, in diagonals")
       .number("candidates", o.recognition.num_candidates, Range::closed(1, 1'000'000),
               "number of models that are brought to a scan")
+      .number("min_confidence", o.recognition.min_confidence, Range::closed(0, 1), "least confidence of a known model")
       .number("min_merit", o.recognition.min_merit, Range::closed(-1, 1), "least merit of the pose of a known model")
       .text("csv", "FILE", o.csv, "a row for each scan")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iterator>
 
+#include "core/base/median.h"
 #include "evaluate/shared/table_text.h"
 
 namespace pcl_symmetry::apps {
@@ -17,6 +18,7 @@ struct Group {
   std::size_t band = 0;
   CloudResults planes;
   Proportion right_model, right_pose, unknown_of_known, unknown_of_others;
+  std::vector<double> milliseconds;  ///< of recognitions
 };
 
 std::string nameOf(std::size_t band) {
@@ -35,17 +37,18 @@ std::vector<Group> groupsOf(const std::vector<SceneResult>& results) {
       return other.name == result.row && other.noise == result.noise && other.band == *band;
     });
     if (group == groups.end())
-      group = groups.insert(groups.end(), Group{result.row, result.noise, *band, {}, {}, {}, {}, {}});
+      group = groups.insert(groups.end(), Group{result.row, result.noise, *band, {}, {}, {}, {}, {}, {}});
     if (result.asked_planes) group->planes.push_back(&result.planes);
     if (!result.recognition) continue;
     const RecognitionResult& recognition = *result.recognition;
     if (recognition.is_known) {
-      group->right_model.add(recognition.is_right);
-      group->right_pose.add(recognition.right_pose);
-      group->unknown_of_known.add(recognition.answer.empty());
+      group->right_model.add(recognition.accepted && recognition.is_right);
+      group->right_pose.add(recognition.accepted && recognition.right_pose);
+      group->unknown_of_known.add(!recognition.accepted);
     } else {
-      group->unknown_of_others.add(recognition.answer.empty());
+      group->unknown_of_others.add(!recognition.accepted);
     }
+    group->milliseconds.push_back(recognition.milliseconds);
   }
   std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
     return a.noise != b.noise ? a.noise < b.noise : a.band < b.band;
@@ -73,7 +76,11 @@ std::string sceneTable(const std::vector<SceneResult>& results) {
                 "symmetric: first plane right", "asymmetric: called symmetric");
   text += line;
   const std::vector<Group> groups = groupsOf(results);
+  const bool has_planes =
+      std::any_of(results.begin(), results.end(), [](const SceneResult& result) { return result.asked_planes; });
+  if (!has_planes) text.clear();
   for (const Group& group : groups) {
+    if (!has_planes) break;
     const DecisionStatistics decisions = summarize(group.planes).decisions;
     std::snprintf(line, sizeof(line), "%-6s %-11s %-8s %-34s %-34s\n", fixed(group.noise, 1).c_str(),
                   nameOf(group.band).c_str(), group.name.c_str(), decisions.decided_right.text().c_str(),
@@ -83,14 +90,14 @@ std::string sceneTable(const std::vector<SceneResult>& results) {
   const bool has_recognition = std::any_of(results.begin(), results.end(),
                                            [](const SceneResult& result) { return result.recognition.has_value(); });
   if (!has_recognition) return text;
-  std::snprintf(line, sizeof(line), "\n%-6s %-11s %-8s %-32s %-32s %-32s %-32s\n", "noise", "hidden", "seen",
-                "right model", "right model and pose", "known: called unknown", "others: called unknown");
+  std::snprintf(line, sizeof(line), "\n%-6s %-11s %-8s %-26s %-26s %-26s %-26s %s\n", "noise", "hidden", "seen",
+                "right model", "right model and pose", "known: called unknown", "others: called unknown", "ms");
   text += line;
   for (const Group& group : groups) {
-    std::snprintf(line, sizeof(line), "%-6s %-11s %-8s %-32s %-32s %-32s %-32s\n", fixed(group.noise, 1).c_str(),
+    std::snprintf(line, sizeof(line), "%-6s %-11s %-8s %-26s %-26s %-26s %-26s %s\n", fixed(group.noise, 1).c_str(),
                   nameOf(group.band).c_str(), group.name.c_str(), group.right_model.text().c_str(),
                   group.right_pose.text().c_str(), group.unknown_of_known.text().c_str(),
-                  group.unknown_of_others.text().c_str());
+                  group.unknown_of_others.text().c_str(), fixed(median(group.milliseconds), 0).c_str());
     text += line;
   }
   return text;
@@ -127,9 +134,16 @@ std::string sceneCSV(const std::vector<SceneResult>& results) {
                          .add("decided_right")
                          .add("first_right")
                          .add("confidence")
+                         .add("known")
                          .add("answer")
-                         .add("merit")
+                         .add("accepted")
                          .add("right_pose")
+                         .add("support")
+                         .add("conflict")
+                         .add("merit")
+                         .add("lead")
+                         .add("answer_confidence")
+                         .add("milliseconds")
                          .end();
   for (const SceneResult& result : results) {
     const CloudResult& planes = result.planes;
@@ -139,10 +153,17 @@ std::string sceneCSV(const std::vector<SceneResult>& results) {
     row.add(result.occlusion).add(result.row).add(static_cast<double>(planes.num_points));
     row.add(planes.called() ? 1.0 : 0.0).add(planes.decidedRight() ? 1.0 : 0.0).add(planes.firstIsRight() ? 1.0 : 0.0);
     row.add(has_answer ? planes.answers.answers.front().score : 0.0);
-    if (result.recognition)
-      row.add(result.recognition->answer)
-          .add(result.recognition->merit)
-          .add(result.recognition->right_pose ? 1.0 : 0.0);
+    if (const auto& recognition = result.recognition)
+      row.add(recognition->is_known ? 1.0 : 0.0)
+          .add(recognition->answer)
+          .add(recognition->accepted ? 1.0 : 0.0)
+          .add(recognition->right_pose ? 1.0 : 0.0)
+          .add(recognition->support)
+          .add(recognition->conflict)
+          .add(recognition->merit)
+          .add(recognition->lead)
+          .add(recognition->confidence)
+          .add(recognition->milliseconds);
     text += row.end();
   }
   return text;

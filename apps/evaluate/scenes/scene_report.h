@@ -12,11 +12,13 @@ namespace pcl_symmetry::apps {
 
 /// What a database answered for one object.
 struct RecognitionResult {
-  bool is_known = false;  ///< the model is in the database
-  bool is_right = false;  ///< the answer is the very model
-  bool right_pose = false;
-  std::string answer;  ///< empty: unknown
-  double merit = 0.0, confidence = 0.0;
+  bool is_known = false;    ///< the model is in the database
+  bool is_right = false;    ///< the best answer is the very model
+  bool right_pose = false;  ///< that, and no point of it is off by too much
+  bool accepted = false;    ///< at the operating point; otherwise the object is called unknown
+  std::string answer;       ///< the best one, accepted or not; empty where there is none
+  double support = 0.0, conflict = 0.0, merit = 0.0, confidence = 0.0;
+  double lead = 0.0;  ///< of its merit over that of the best other model
   double milliseconds = 0.0;
 };
 

@@ -3,6 +3,7 @@
 #include <pcl/common/point_tests.h>
 #include <pcl/conversions.h>
 
+#include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +19,7 @@
 #include "core/base/random.h"
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/registration/motion_error.h"
+#include "evaluate/scenes/recognition_curve.h"
 #include "evaluate/scenes/scene_report.h"
 #include "evaluate/scenes/table_scene.h"
 #include "evaluate/shared/model_flags.h"
@@ -40,6 +42,8 @@ constexpr double kRightPose = 0.05;
 // Metres that an object may seem to reach into the table. chosen: three deviations of the depth at 1 m; half takes
 // noise for a contradiction, twice lets reflections sink into the table.
 constexpr double kTableMargin = 0.004;
+// Greatest lead over another model that counts. derived: as in the confidence of the library.
+constexpr double kMostLead = 0.3;
 // Points of a model in the database. chosen: as many as in `recognition`.
 constexpr int kModelPoints = 20'000;
 
@@ -50,7 +54,9 @@ struct EvaluateScenesOptions {
   std::optional<std::string> references_path, export_folder, csv;
   std::vector<double> noise = {0.0, 1.0};
   int num_scenes = 100, min_points = 300, leave_out = 0, most_in_band = 0;
-  bool no_planes = false;
+  double least_occlusion = 0.0;
+  bool no_planes = false, fit = false;
+  std::optional<std::string> seen, curve;
   std::string place = "table", sensor = "camera";
   int num_rings = 64;
   SceneOptionsOfTable table;
@@ -77,17 +83,26 @@ CommandLine commandLine(EvaluateScenesOptions& o) {
       .choice("sensor", o.sensor, {"camera", "lidar"}, "depth camera of 640 x 480 pixels, or a scanner with rings")
       .number("rings", o.num_rings, Range::closed(4, 1024), "number of rings of the scanner")
       .number("min_points", o.min_points, Range::closed(20, 1'000'000), "least number of points of an object")
+      .number("least_occlusion", o.least_occlusion, Range::closed(0, 1),
+              "share of an object that others hide below which it is passed over")
       .number("most_in_band", o.most_in_band, Range::closed(0, 1'000'000),
               "objects of a band of occlusion after which others of it are passed over; 0 = none are")
       .number("leave_out", o.leave_out, Range::closed(0, 1'000'000),
               "also ask a database which model an object is; every N-th model is left out of it; 0 = do not ask")
-      .number("min_merit", o.recognition.min_merit, Range::closed(-1, 1), "least merit of the pose of a known model")
+      .number("accept", o.recognition.min_confidence, Range::closed(0, 1),
+              "least confidence of a name that is accepted")
+      .flag("fit", o.fit, "print the numbers of the confidence of names that fit these answers best")
+      .number("candidates", o.recognition.num_candidates, Range::closed(1, 1'000'000),
+              "number of models that are brought to an object")
       .flag("no_planes", o.no_planes, "only ask the database")
+      .text("seen", "LIST", o.seen,
+            "only ask in these of the ways alone, scene, table and filtered, with commas between")
       .number("min_confidence", o.operating_point.min_confidence, Range::closed(0, 1),
               "least confidence of an answer that decides")
       .text("export", "DIR", o.export_folder,
             "write every scene as PCD with the field object, and ground_truth.json with poses and planes")
       .text("csv", "FILE", o.csv, "a row for each object")
+      .text("curve", "FILE", o.curve, "CSV of what is recognized by the least confidence that is asked for")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
 }
@@ -182,7 +197,8 @@ private:
         clusters[static_cast<std::size_t>(image.ids[i])].push_back(static_cast<pcl::index_t>(i));
     const auto seen = std::make_shared<const SeenSpace>(*image.cloud);
     const auto on_table = std::make_shared<const SeenSpace>(withPlace(*seen, scene));
-    const Cloud::ConstPtr filtered = withoutDepthErrors(image.cloud, *seen, options_.common.threads);
+    const Cloud::ConstPtr filtered =
+        isAsked("filtered") ? withoutDepthErrors(image.cloud, *seen, options_.common.threads) : image.cloud;
     const auto filtered_seen = std::make_shared<const SeenSpace>(withPlace(SeenSpace(*filtered), scene));
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       if (image.cropped[k] || clusters[k].size() < static_cast<std::size_t>(options_.min_points)) continue;
@@ -195,13 +211,15 @@ private:
       result.scene = number;
       result.noise = noise;
       result.occlusion = image.occlusion(k);
-      judge(
-          scene.objects[k], "alone", *alone, std::move(result),
-          [&] { return detectAnswers(alone, options_.common.seed + 1, options_.common.threads); },
-          [&] { return database_.recognize(*alone, recognition()); });
-      const auto judgeIn = [&](const char* row, const Cloud::ConstPtr& frame, const SeenSpace::ConstPtr& space) {
+      if (isAsked("alone"))
         judge(
-            scene.objects[k], row, *alone, results_.back(),
+            scene.objects[k], "alone", *alone, result,
+            [&] { return detectAnswers(alone, options_.common.seed + 1, options_.common.threads); },
+            [&] { return database_.recognize(*alone, recognition()); });
+      const auto judgeIn = [&](const char* row, const Cloud::ConstPtr& frame, const SeenSpace::ConstPtr& space) {
+        if (!isAsked(row)) return;
+        judge(
+            scene.objects[k], row, *alone, result,
             [&] { return detectAnswers(frame, clusters[k], space, options_.common.seed + 1, options_.common.threads); },
             [&] { return database_.recognize(*frame, clusters[k], recognition(), space); });
       };
@@ -209,6 +227,10 @@ private:
       judgeIn("table", image.cloud, on_table);
       if (filtered != image.cloud) judgeIn("filtered", filtered, filtered_seen);
     }
+  }
+
+  bool isAsked(const std::string& row) const {
+    return !options_.seen || ("," + *options_.seen + ",").find("," + row + ",") != std::string::npos;
   }
 
   /// No object reaches into the table or into the walls of a bin.
@@ -222,7 +244,7 @@ private:
   /// Counts the objects of each band.
   bool isWanted(double occlusion, double noise) {
     const std::optional<std::size_t> band = bandOf(occlusion);
-    if (!band) return false;
+    if (!band || occlusion < options_.least_occlusion) return false;
     const int number = ++num_in_band_[{noise, *band}];
     return options_.most_in_band == 0 || number <= options_.most_in_band;
   }
@@ -230,6 +252,8 @@ private:
   RecognitionOptions recognition() const {
     RecognitionOptions options = options_.recognition;
     options.num_threads = options_.common.threads;
+    options.min_merit = -1.0;
+    options.min_confidence = 0.0;  // answers that are not accepted show what another operating point would give
     return options;
   }
 
@@ -263,8 +287,13 @@ private:
     result.milliseconds = watch.lap();
     if (found.empty()) return result;
     result.answer = found.front().name;
+    result.support = found.front().score.support;
+    result.conflict = found.front().score.conflict;
     result.merit = found.front().score.merit();
     result.confidence = found.front().confidence;
+    result.lead = std::min(kMostLead, result.merit - (found.size() > 1 ? found[1].score.merit() : 0.0));
+    result.accepted =
+        result.confidence >= options_.recognition.min_confidence && result.merit >= options_.recognition.min_merit;
     result.is_right = result.answer == models_[object.model].name;
     const ReferenceSymmetries& symmetries = references_[object.model];
     const MotionError error = motionError(found.front().T_model_scan, object.T_scene_model.inverse(), symmetries);
@@ -301,7 +330,10 @@ private:
       writeText((boost::filesystem::path(*options_.export_folder) / "ground_truth.json").string(),
                 nlohmann::json{{"scenes", ground_truth_}}.dump(1) + "\n");
     std::fputs(sceneTable(results_).c_str(), stdout);
+    if (options_.leave_out > 0) printReliability(recognitionReliability(results_));
+    if (options_.fit) std::fputs(fittedConfidence(results_).c_str(), stdout);
     if (options_.csv) writeText(*options_.csv, sceneCSV(results_));
+    if (options_.curve) writeText(*options_.curve, recognitionCurveCSV(results_));
     if (!options_.common.json_path) return;
     const nlohmann::json summary{{"models", models_.size()},     {"scenes", options_.num_scenes},
                                  {"place", options_.place},      {"sensor", options_.sensor},
@@ -327,6 +359,7 @@ private:
 int evaluateScenes(int argc, char** argv) {
   EvaluateScenesOptions options;
   if (!commandLine(options).parse(argc, argv)) return 0;
+  if (options.fit && options.leave_out < 1) throw UsageError("-fit needs -leave_out");
   if (options.no_planes && options.leave_out < 1) throw UsageError("-no_planes needs -leave_out");
   options.table.in_bin = options.place == "bin";
   if (options.sensor == "lidar") options.table.sensor = SceneSensor::lidar(options.num_rings);

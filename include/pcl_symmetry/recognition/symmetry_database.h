@@ -53,11 +53,12 @@ struct RecognitionOptions {
   /// Added to the distance of two views if their radii differ by a factor of e, >= 0. A smaller value is better where
   /// other objects hide much of the object. chosen: 0 ignores the size.
   double size_weight = 0.25;
-  /// Least merit of a pose that is accepted, in [-1, 1], see PoseScore::merit(). It suits clouds that are sampled
-  /// evenly, as scanners do; points drawn at random reach lower merits. measured: pcl_symmetry_evaluate recognition on
-  /// the training half of the Princeton Shape Benchmark, where 0.64 leaves 9.6 % of the known models unknown and
-  /// accepts 26 % of the unknown ones, and 0.60 6.0 % and 37 %.
-  double min_merit = 0.64;
+  /// Least confidence of a model that is accepted, in [0, 1], see RecognizedModel::confidence. chosen: an answer is as
+  /// often right as wrong there; README has a curve of what other values accept.
+  double min_confidence = 0.5;
+  /// Least merit of a pose that is accepted whatever its confidence, in [-1, 1], see RecognizedModel::score. chosen:
+  /// below that a scan hardly fits; the confidence asks for more.
+  double min_merit = 0.5;
   CloudRegistrationOptions registration = quickRegistration();  ///< search for poses and their refinement
   int num_threads = 0;                                          ///< >= 0; 0 = one per core
 
@@ -79,9 +80,11 @@ struct ModelMatch {
 struct RecognizedModel {
   std::string name;                                                ///< of the model
   Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();  ///< frame of the scan to that of the model
-  PoseScore score;                                                 ///< how well the scan fits there
-  /// How likely the scan shows this model and no other one of the database, in [0, 1]: the soft maximum over the merits
-  /// of all accepted models, times the root of (merit - min_merit) / (1 - min_merit). The sum is at most 1.
+  /// How well the scan fits there: support is the share of its points on the surface of the model, as wide as the
+  /// points of the scan are apart and noisy. How densely the model was sampled does not count.
+  PoseScore score;
+  /// Probability that the scan shows this model, in [0, 1]: a logistic function of the merit and of how far it is ahead
+  /// of the best other model, fitted to scenes with objects that are not in the database. The sum is at most 1.
   double confidence = 0.0;
 };
 

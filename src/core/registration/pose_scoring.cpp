@@ -54,6 +54,16 @@ float nearness(const Matches& matches, Eigen::Index i, const PosedSurface& to, d
   return std::exp(factor * (to.points.col(matches.closest[i]) - matches.places.col(i)).squaredNorm());
 }
 
+/// The Gaussian of the distance of a match from the disc about its closest point: flat, as wide as points are apart.
+float nearnessOfSurface(const Matches& matches, Eigen::Index i, const PosedSurface& to, double width) {
+  const int j = matches.closest[i];
+  const Eigen::Vector3f apart = matches.places.col(i) - to.points.col(j);
+  const float height = apart.dot(to.normals.col(j)), sq_height = height * height;
+  const float across = std::sqrt(std::max(0.0f, apart.squaredNorm() - sq_height));
+  const float beyond = std::max(0.0f, across - to.spacing[static_cast<std::size_t>(j)]);
+  return std::exp(static_cast<float>(-1.0 / (width * width)) * (sq_height + beyond * beyond));
+}
+
 /// Share of a point's support that its normal leaves it: 1 where it is parallel to that of the closest point.
 float normalFactor(const Matches& matches, Eigen::Index i, const PosedSurface& to) {
   const float cosine = matches.normals.col(i).dot(to.normals.col(matches.closest[i]));
@@ -108,8 +118,9 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   const Matches on_model = match(scan_, model_, T_model_scan, detail);
   double unexplained = 0.0;
   for (Eigen::Index i = 0; i < on_model.places.cols(); ++i) {
-    const float near = nearness(on_model, i, model_, detail.width);
-    score.support += near * normalFactor(on_model, i, model_);
+    const float near = detail.from_surface ? nearnessOfSurface(on_model, i, model_, detail.width)
+                                           : nearness(on_model, i, model_, detail.width);
+    score.support += detail.from_surface ? near : near * normalFactor(on_model, i, model_);
     if (model_.seen && isInFreeSpace(on_model, i, model_)) unexplained += 1.0 - near;
   }
   score.support /= static_cast<double>(on_model.places.cols());

@@ -36,11 +36,12 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       grid(input),
       search(makeTreeSearch(input)) {
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, num_threads);
-  const double spacing = median(geometry.spacing);
-  if (median(geometry.roughness) > kRoughShare * spacing)
+  const double typical = median(geometry.spacing);
+  spacing = geometry.spacing;
+  if (median(geometry.roughness) > kRoughShare * typical)
     geometry = localGeometry(points, *search, kNumRoughNeighbours, num_threads);
   normals = std::move(geometry.normals);
-  accuracy = spacing + 2.0 * median(std::move(geometry.roughness));
+  accuracy = typical + 2.0 * median(std::move(geometry.roughness));
 }
 
 }  // namespace pcl_symmetry

@@ -122,6 +122,67 @@ TEST_F(SymmetryDatabaseTest, RecognizesAViewWithItsPose) {
   EXPECT_TRUE(database.recognize(seenFrom(ball(), {0.0f, 0.0f, 6.0f}), optionsForRandomPoints()).empty());
 }
 
+/// An object, and a wall that hides one side of it from a scanner.
+struct HalfHidden {
+  Cloud scene;
+  pcl::Indices cluster;       // what is seen of the object
+  std::size_t num_alone = 0;  // points that are seen without the wall
+
+  HalfHidden(const Cloud& object, const Eigen::Vector3f& viewpoint) {
+    num_alone = seenFrom(object, viewpoint).size();
+    const Eigen::Vector3f middle = elsewhere().translation().cast<float>();
+    const Eigen::Vector3f ahead = (middle - viewpoint).normalized();
+    const Eigen::Vector3f right = ahead.cross(Eigen::Vector3f::UnitZ()).normalized(), up = right.cross(ahead);
+    Cloud both = object;
+    RandomStream random(3);
+    for (int i = 0; i < 20'000; ++i) {
+      both.push_back({});
+      both.back().getVector3fMap() = viewpoint + 0.5f * (middle - viewpoint) +
+                                     static_cast<float>(0.1 + 1.5 * random.uniform()) * right +
+                                     static_cast<float>(3.0 * random.uniform() - 1.5) * up;
+    }
+    scene = seenFrom(both, viewpoint);
+    for (std::size_t i = 0; i < scene.size(); ++i)
+      if ((scene[i].getVector3fMap() - viewpoint).dot(ahead) > 0.6f * (middle - viewpoint).norm())
+        cluster.push_back(static_cast<pcl::index_t>(i));
+  }
+};
+
+TEST_F(SymmetryDatabaseTest, RecognizesWhatIsHiddenInPart) {
+  SymmetryDatabase database(":memory:");
+  fill(database);
+  const Eigen::Vector3f viewpoint(-2.0f, 6.0f, 4.0f);
+  Viewpoint given;
+  given.mode = Viewpoint::Mode::Given;
+  given.position = viewpoint.cast<double>();
+  for (const Kind& kind : kKinds) {
+    const HalfHidden view(rodOnBox(kind.half, kind.rod, elsewhere(), 2), viewpoint);
+    EXPECT_LT(view.cluster.size(), 0.8 * static_cast<double>(view.num_alone)) << kind.name;
+    const auto seen = std::make_shared<const SeenSpace>(view.scene, given);
+    const Recognition found = database.recognize(view.scene, view.cluster, optionsForRandomPoints(), seen);
+    ASSERT_FALSE(found.empty()) << kind.name;
+    EXPECT_EQ(found[0].name, kind.name);
+    double sum = 0.0;
+    for (const RecognizedModel& model : found) sum += model.confidence;
+    EXPECT_LE(sum, 1.0 + 1e-9);
+    EXPECT_GE(found[0].confidence, 0.5);
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, ModelsOfAnotherSizeHaveNoPairsInCommon) {
+  SymmetryDatabase database(":memory:", quick());
+  database.add("cube", cube());
+  for (const double scale : {1e-4, 1e4}) {
+    Cloud scaled = cube();
+    for (auto& point : scaled) point.getVector3fMap() *= static_cast<float>(scale);
+    database.add("cube" + std::to_string(scale), scaled);
+  }
+  const Cloud view = seenFrom(rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const Recognition found = database.recognize(view, optionsForRandomPoints());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].name, "cube");
+}
+
 /// The models of a file under \p count names each.
 void fillWithCopies(const std::string& from, const std::string& to, int count) {
   detail::ModelStore source(from, 10.0, ""), target(to, 10.0, "");
@@ -350,6 +411,9 @@ TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
   RecognitionOptions options;
   options.num_candidates = 0;
   EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "num_candidates = 0, must be >= 1");
+  options = {};
+  options.min_confidence = 1.5;
+  EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "min_confidence = 1.5, must be in [0, 1]");
   EXPECT_EQ(test::messageOf([&] { database.match(cube(), -1); }), "num_nearest = -1, must be >= 0");
   EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase::check(file_); }), file_ + ": there is no such file");
   EXPECT_EQ(ioMessageOf([&] { database.importFrom(folder_ + "/x"); }), folder_ + "/x: there is no such file or folder");

@@ -1,0 +1,144 @@
+#include "core/matching/pairs/point_pair_index.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/base/random.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// Points spread over an ellipsoid with a lump on it.
+Points lumpyEllipsoid(const Eigen::Vector3d& half, int count, std::uint64_t seed) {
+  Points points(3, count);
+  RandomStream random(seed);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Eigen::Vector3d x =
+        Eigen::Vector3d::NullaryExpr([&] { return random.uniform() + random.uniform() + random.uniform() - 1.5; })
+            .normalized()
+            .cwiseProduct(half);
+    if (i % 5 == 0) x = Eigen::Vector3d(0.5 * half.x(), 0.3 * half.y(), half.z()) + 0.35 * x;
+    points.col(i) = x.cast<float>();
+  }
+  return points;
+}
+
+const Eigen::Vector3d kHalves[] = {
+    {1.0, 0.6, 0.3}, {0.5, 0.5, 0.9}, {1.2, 0.3, 0.3}, {0.8, 0.8, 0.15}, {0.7, 0.4, 0.7}};
+
+std::vector<SurfacePoints> shapes(double scale) {
+  std::vector<SurfacePoints> made;
+  for (const Eigen::Vector3d& half : kHalves)
+    made.push_back(evenSurfacePoints(scale * lumpyEllipsoid(half, 4000, 1), PointPairIndex::kShapePoints, 1, 1));
+  return made;
+}
+
+Eigen::Isometry3d elsewhere(double scale) {
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(1.1, Eigen::Vector3d(0.3, -0.8, 0.5).normalized()));
+  pose.translation() = scale * Eigen::Vector3d(3.0, -1.0, 2.0);
+  return pose;
+}
+
+/// The side of a shape that is turned to a viewer above it, without what lies beyond a plane: about half of what is
+/// seen.
+Points halfHidden(const Eigen::Vector3d& half, double scale) {
+  const Points all = lumpyEllipsoid(half, 6000, 2);
+  std::vector<int> kept;
+  for (Eigen::Index i = 0; i < all.cols(); ++i)
+    if (all(2, i) > 0.0f && all(0, i) > 0.0f) kept.push_back(static_cast<int>(i));
+  Points points(3, static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)) =
+        (elsewhere(scale) * Eigen::Vector3d(scale * all.col(kept[i]).cast<double>())).cast<float>();
+  return points;
+}
+
+/// \return at the best of the poses, how far points of a scan are from the closest one of a shape. The 250 points of a shape
+/// of 5 units of area are 0.14 apart, so that points of its own surface are 0.05 off.
+double leastMeanDistance(const Points& scan, const std::vector<Eigen::Isometry3d>& poses, const Points& shape) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Isometry3d& pose : poses) {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < scan.cols(); ++i) {
+      const Eigen::Vector3f x = (pose * scan.col(i).cast<double>()).cast<float>();
+      sum += (shape.colwise() - x).colwise().norm().minCoeff();
+    }
+    least = std::min(least, sum / static_cast<double>(scan.cols()));
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST(SurfacePoints, AreSpreadEvenly) {
+  const Points points = lumpyEllipsoid(kHalves[0], 4000, 1);
+  const SurfacePoints few = evenSurfacePoints(points, 200, 1, 1);
+  EXPECT_LE(few.points.cols(), 200);
+  EXPECT_GT(few.points.cols(), 150);
+  float least = 1.0f;
+  for (Eigen::Index i = 0; i < few.points.cols(); ++i) {
+    EXPECT_NEAR(few.normals.col(i).norm(), 1.0f, 1e-4f);
+    for (Eigen::Index j = 0; j < i; ++j) least = std::min(least, (few.points.col(i) - few.points.col(j)).norm());
+  }
+  // derived: of 200 points drawn at random on 5 units of area, two would be within sqrt(5 / (pi 200^2 / 2)) = 0.01.
+  EXPECT_GT(least, 0.05f);
+  EXPECT_EQ(evenSurfacePoints(points.leftCols(50), 200, 1, 1).points.cols(), 50);
+}
+
+TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {
+  for (const double scale : {1.0, 1e-3, 1e4}) {
+    const std::vector<SurfacePoints> made = shapes(scale);
+    const PointPairIndex index(made, 1);
+    ASSERT_EQ(index.numShapes(), 5);
+    for (int k = 0; k < 5; ++k) {
+      const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[k], scale), PointPairIndex::kScanPoints, 1, 1);
+      const std::vector<ShapeOfPairs> found = index.nearest(scan);
+      ASSERT_EQ(found.size(), 5u);
+      EXPECT_EQ(found[0].shape, k) << scale;
+      ASSERT_GE(found[0].T_shape_scan.size(), 1u);
+      EXPECT_LE(found[0].T_shape_scan.size(), 6u);
+      EXPECT_LT(leastMeanDistance(scan.points, found[0].T_shape_scan, made[static_cast<std::size_t>(k)].points),
+                0.1 * scale)
+          << k;
+    }
+  }
+}
+
+TEST(PointPairIndex, ThreadsDoNotChangeIt) {
+  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[1], 1.0), PointPairIndex::kScanPoints, 1, 1);
+  std::vector<ShapeOfPairs> found[2];
+  for (int i = 0; i < 2; ++i) {
+    PairSearchOptions options;
+    options.num_nearest = 3;
+    options.num_poses = 2;
+    options.num_threads = 1 + 3 * i;
+    found[i] = PointPairIndex(shapes(1.0), options.num_threads).nearest(scan, options);
+    ASSERT_EQ(found[i].size(), 3u);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(found[0][k].shape, found[1][k].shape);
+    EXPECT_EQ(found[0][k].votes, found[1][k].votes);
+    ASSERT_EQ(found[0][k].T_shape_scan.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i)
+      EXPECT_EQ(found[0][k].T_shape_scan[i].matrix(), found[1][k].T_shape_scan[i].matrix());
+  }
+}
+
+TEST(PointPairIndex, DegenerateShapesAreFoundByNoPair) {
+  const Points same = Points::Constant(3, 30, 2.0f);
+  std::vector<SurfacePoints> with = shapes(1.0);
+  with.push_back(evenSurfacePoints(same, 20, 1, 1));
+  const PointPairIndex index(with, 1);
+  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[0], 1.0), PointPairIndex::kScanPoints, 1, 1);
+  EXPECT_EQ(index.nearest(scan).front().shape, 0);
+  EXPECT_EQ(index.nearest(scan).back().votes, 0.0);
+  for (const ShapeOfPairs& shape : index.nearest(evenSurfacePoints(same, 20, 1, 1))) EXPECT_EQ(shape.votes, 0.0);
+  EXPECT_TRUE(PointPairIndex({}, 1).nearest(scan).empty());
+}
+
+}  // namespace pcl_symmetry
