@@ -33,16 +33,11 @@ std::string failed(const std::string& reason) {
   return static_cast<char>(Outcome::Failed) + reason;
 }
 
-std::string textOf(detail::UnpackedBytes& bytes) {
-  const auto size = bytes.get<std::uint32_t>();
-  return {bytes.take(size), size};
-}
-
 class SharedBuild {
 public:
   SharedBuild(SharedWork& processes, const std::string& file, const DatabaseOptions& options,
-              const std::vector<ModelInput>& inputs, const BuildProgress& progress)
-      : processes_(processes), options_(options), inputs_(inputs), progress_(progress) {
+              const std::vector<ModelInput>& inputs, StoreOrder order, const BuildProgress& progress)
+      : processes_(processes), options_(options), inputs_(inputs), order_(order), progress_(progress) {
     if (processes_.isFirst()) parts_.emplace(file, options);
   }
 
@@ -52,7 +47,7 @@ public:
     for (std::size_t i = 0; i < inputs_.size(); ++i)
       if (!names.insert(inputs_[i].name).second) repeated_.insert(i);
     processes_.run(inputs_.size(), {[this](std::size_t i) { return described(i); },
-                                    [this](std::size_t i, const std::string& bytes) { take(i, bytes); },
+                                    [this](std::size_t i, const std::string& bytes) { takeInOrder(i, bytes); },
                                     [](std::size_t) { return failed("the processes that described it died"); }});
     for (const auto& [i, reason] : failures_) report_.failures.emplace_back(inputs_[i].name, reason);
     if (parts_) detail::withBadArguments([&] { parts_->save(); });
@@ -72,7 +67,7 @@ private:
     std::string text = bytes.bytes();
     processes_.broadcast(text);
     detail::UnpackedBytes checksums(text);
-    for (std::size_t i = 0; i < inputs_.size(); ++i) stored_.push_back(textOf(checksums));
+    for (std::size_t i = 0; i < inputs_.size(); ++i) stored_.push_back(checksums.text());
   }
 
   std::string described(std::size_t i) const {
@@ -81,12 +76,21 @@ private:
       if (repeated_.count(i) > 0)
         throw std::invalid_argument("name = '" + input.name + "' is that of an earlier model, names must differ");
       detail::checkModelName(input.name);
-      ModelInfo info{input.name, 0, input.source(), 0};
+      ModelInfo info{input.name, 0, input.source ? input.source() : ModelSource(), 0};
       if (!stored_[i].empty() && stored_[i] == info.source.checksum) return {static_cast<char>(Outcome::Kept)};
       const Points points = detail::finitePoints(input.load(), options_.max_points);
       return bytesOf(info, detail::describedModel(points, options_).packed);
     } catch (const std::exception& error) {
       return failed(error.what());
+    }
+  }
+
+  void takeInOrder(std::size_t i, const std::string& bytes) {
+    if (order_ == StoreOrder::AsDescribed) return take(i, bytes);
+    waiting_[i] = bytes;
+    for (auto next = waiting_.find(next_); next != waiting_.end(); next = waiting_.find(++next_)) {
+      take(next_, next->second);
+      waiting_.erase(next);
     }
   }
 
@@ -103,10 +107,10 @@ private:
       detail::PackedModel model;
       model.num_points = info.num_points = packed.get<std::uint64_t>();
       info.source.tags.resize(packed.get<std::uint32_t>());
-      for (std::string& tag : info.source.tags) tag = textOf(packed);
+      for (std::string& tag : info.source.tags) tag = packed.text();
       for (std::string* text :
            {&info.source.path, &info.source.checksum, &model.cloud, &model.signatures, &model.views})
-        *text = textOf(packed);
+        *text = packed.text();
       parts_->add(info, model, detail::unpackedSignatures(model.signatures));
       ++report_.num_added;
     }
@@ -116,8 +120,11 @@ private:
   SharedWork& processes_;
   const DatabaseOptions& options_;
   const std::vector<ModelInput>& inputs_;
+  const StoreOrder order_;
   const BuildProgress& progress_;
   std::optional<detail::DatabaseParts> parts_;  // of the first process
+  std::map<std::size_t, std::string> waiting_;  // described, while an input before them is not
+  std::size_t next_ = 0;                        // that is stored in order
   std::vector<std::string> stored_;             // checksums of the inputs' sources in the database
   std::set<std::size_t> repeated_;
   std::map<std::size_t, std::string> failures_;
@@ -128,8 +135,8 @@ private:
 }  // namespace
 
 BuildReport buildShared(SharedWork& processes, const std::string& file, const DatabaseOptions& options,
-                        const std::vector<ModelInput>& inputs, const BuildProgress& progress) {
-  return SharedBuild(processes, file, options, inputs, progress).run();
+                        const std::vector<ModelInput>& inputs, StoreOrder order, const BuildProgress& progress) {
+  return SharedBuild(processes, file, options, inputs, order, progress).run();
 }
 
 }  // namespace pcl_symmetry::apps

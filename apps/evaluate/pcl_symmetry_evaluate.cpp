@@ -22,19 +22,18 @@ using namespace pcl_symmetry::apps;
 struct SubCommand {
   const char* name;
   const char* summary;
-  int (*run)(int argc, char** argv);
-  int (*run_shared)(int argc, char** argv, SharedWork& processes) = nullptr;  ///< in place of run: by many processes
+  int (*run)(int argc, char** argv, SharedWork& processes);
 };
 
 // derived: all rooms of the folder that are a sub-command.
 constexpr SubCommand kSubCommands[] = {
-    {"planes", "how well symmetry planes are found", nullptr, evaluatePlanes},
-    {"alignment", "how well the frames of scans agree with those of whole models", nullptr, evaluateAlignment},
+    {"planes", "how well symmetry planes are found", evaluatePlanes},
+    {"alignment", "how well the frames of scans agree with those of whole models", evaluateAlignment},
     {"recognition", "how well a scan tells which model of a database it shows", evaluateRecognition},
     {"registration", "how well scans are brought to models of their objects", evaluateRegistration},
-    {"retrieval", "how well shapes find others of their class", nullptr, evaluateRetrieval},
-    {"rotations", "how well groups of rotations of solids are found", nullptr, evaluateRotations},
-    {"segmentation", "how close segmentations come to those that people made", nullptr, evaluateSegmentation},
+    {"retrieval", "how well shapes find others of their class", evaluateRetrieval},
+    {"rotations", "how well groups of rotations of solids are found", evaluateRotations},
+    {"segmentation", "how close segmentations come to those that people made", evaluateSegmentation},
     {"scenes", "planes and models of objects among others, seen by a depth camera", evaluateScenes},
     {"shapes", "decisions on shapes made by code: folds, views, random clouds, composites", evaluateShapes}};
 
@@ -42,10 +41,9 @@ void printUsage() {
   std::printf(
       "Measures how well symmetries are found and shapes are cut into parts, on data with known answers.\n\n"
       "Usage: pcl_symmetry_evaluate COMMAND [-flag value]\n\n");
-  for (const SubCommand& command : kSubCommands)
-    std::printf("  %-14s %s%s\n", command.name, command.summary, command.run_shared ? " (*)" : "");
+  for (const SubCommand& command : kSubCommands) std::printf("  %-14s %s\n", command.name, command.summary);
   std::printf(
-      "\n(*) The processes that mpirun or srun starts share the work.\n"
+      "\nThe processes that mpirun or srun starts share the work.\n"
       "\npcl_symmetry_evaluate COMMAND -h tells the flags of a command.\n\nExample:\n"
       "  pcl_symmetry_evaluate planes meshes -csv clouds.csv\n");
 }
@@ -61,12 +59,8 @@ int run(int argc, char** argv, SharedWork& processes) {
     printVersion("pcl_symmetry_evaluate");
     return 0;
   }
-  for (const SubCommand& command : kSubCommands) {
-    if (name != command.name) continue;
-    if (command.run_shared) return command.run_shared(argc - 1, argv + 1, processes);
-    if (processes.isShared()) throw UsageError("command = " + name + ", is for one process: start it without mpirun");
-    return command.run(argc - 1, argv + 1);
-  }
+  for (const SubCommand& command : kSubCommands)
+    if (name == command.name) return command.run(argc - 1, argv + 1, processes);
   throw UsageError("unknown command '" + name + "'");
 }
 

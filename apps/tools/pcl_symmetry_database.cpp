@@ -94,9 +94,10 @@ private:
     const std::vector<ModelInput> inputs =
         modelInputs(files, options_.common.mesh_points, options_.common.librarySeed(), tags);
     const auto progress = [&](double share) { return step.progress(share), true; };
-    const BuildReport report = processes_.isShared()
-                                   ? buildShared(processes_, options_.file, database_options, inputs, progress)
-                                   : SymmetryDatabase(options_.file, database_options).build(inputs, progress);
+    const BuildReport report =
+        processes_.isShared()
+            ? buildShared(processes_, options_.file, database_options, inputs, StoreOrder::AsDescribed, progress)
+            : SymmetryDatabase(options_.file, database_options).build(inputs, progress);
     if (!processes_.isFirst()) return 0;
     step.done(std::to_string(report.num_added) + " models" +
               (report.num_kept > 0 ? ", " + std::to_string(report.num_kept) + " kept" : ""));

@@ -23,11 +23,6 @@ std::string recordOf(const std::string& name, const std::string& result) {
   return whole.bytes();
 }
 
-std::string textOf(detail::UnpackedBytes& bytes) {
-  const auto size = bytes.get<std::uint32_t>();
-  return {bytes.take(size), size};
-}
-
 }  // namespace
 
 ResultJournal::ResultJournal(std::string path, const std::string& purpose) : path_(std::move(path)) {
@@ -54,7 +49,7 @@ void ResultJournal::read(const std::string& purpose) {
   try {
     while (bytes.left() > 0) {
       const auto checksum = bytes.get<std::int64_t>();
-      std::string name = textOf(bytes), result = textOf(bytes);
+      std::string name = bytes.text(), result = bytes.text();
       if (recordOf(name, result)
               .compare(0, sizeof(checksum), reinterpret_cast<const char*>(&checksum), sizeof(checksum)) != 0)
         break;

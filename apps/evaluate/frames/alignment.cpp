@@ -89,13 +89,10 @@ public:
                    models.end());
     }
     Step step(console_, "Evaluating " + std::to_string(models.size()) + " models");
-    const std::vector<ItemRows<FrameErrors>> all = rowsOfModels<FrameErrors>(
-        models, [&](const Model& model) { return evaluate(model); }, work_, step);
+    errors_ = joinedRows(rowsOfModels<FrameErrors>(
+                             models, [&](const Model& model) { return evaluate(model); }, work_, step),
+                         left_out_);
     if (!work_.isFirst()) return;
-    for (const ItemRows<FrameErrors>& item : all) {
-      errors_.insert(errors_.end(), item.rows.begin(), item.rows.end());
-      if (!item.left_out.empty()) left_out_.push_back(item.left_out);
-    }
     step.done(std::to_string(errors_.size() / methods_.size()) + " clouds");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
     if (errors_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");

@@ -167,7 +167,7 @@ void put(detail::PackedBytes& bytes, const FrameErrors& errors) {
 }
 
 void get(detail::UnpackedBytes& bytes, FrameErrors& errors) {
-  errors.model = textOf(bytes);
+  errors.model = bytes.text();
   errors.view = bytes.get<int>();
   errors.method = bytes.get<AlignmentMethod>();
   for (double FrameErrors::*number : kNumbers) errors.*number = bytes.get<double>();

@@ -8,6 +8,7 @@
 #include <pcl/registration/icp.h>
 #include <pcl/registration/sample_consensus_prerejective.h>
 
+#include <cstdlib>
 #include <limits>
 #include <string>
 
@@ -153,6 +154,7 @@ RegistrationAnswer registerByFeatures(const Cloud::ConstPtr& raw, const Cloud::C
   alignment.setSimilarityThreshold(0.9f);
   alignment.setMaxCorrespondenceDistance(2.5 * leaf.size);
   alignment.setInlierFraction(0.25f);
+  std::srand(1);  // the class draws from this stream: an answer does not depend on those before
   NormalCloud aligned;
   alignment.align(aligned);
   answer.converged = alignment.hasConverged();

@@ -1,18 +1,20 @@
 #include "evaluate/recognition/recognition.h"
 
-#include <pcl/exceptions.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/shape_output.h"
 #include "evaluate/clouds/test_clouds.h"
+#include "evaluate/runs/packed_rows.h"
+#include "evaluate/runs/shared_database.h"
 #include "evaluate/shared/class_file.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
@@ -27,7 +29,7 @@ namespace {
 struct EvaluateRecognitionOptions {
   std::vector<std::string> folders;
   ModelSelection selection;
-  std::optional<std::string> class_path, csv;
+  std::optional<std::string> class_path, csv, journal;
   int num_points = 10'000, leave_out = 10, query_every = 1;
   double noise = 0.0;
   RecognitionOptions recognition;
@@ -51,34 +53,51 @@ CommandLine commandLine(EvaluateRecognitionOptions& o) {
       .number("min_merit", o.recognition.min_merit, Range::closed(-1, 1), "least merit of the pose of a known model")
       .text("csv", "FILE", o.csv, "a row for each scan")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  ResumableRun::addFlag(line, o.journal);
   return line;
 }
 
 struct Query {
   std::string model, answer;  ///< the answer is empty where the object is said to be unknown
-  bool known;                 ///< the model is in the database
-  bool same_class;
-  double merit, milliseconds;
+  bool known = false;         ///< the model is in the database
+  bool same_class = false;
+  double merit = 0.0, milliseconds = 0.0;
 };
+
+void put(detail::PackedBytes& bytes, const Query& query) {
+  bytes.putText(query.model);
+  bytes.putText(query.answer);
+  for (const bool is : {query.known, query.same_class}) bytes.put(is);
+  for (const double number : {query.merit, query.milliseconds}) bytes.put(number);
+}
+
+void get(detail::UnpackedBytes& bytes, Query& query) {
+  query.model = bytes.text();
+  query.answer = bytes.text();
+  for (bool* is : {&query.known, &query.same_class}) *is = bytes.get<bool>();
+  for (double* number : {&query.merit, &query.milliseconds}) *number = bytes.get<double>();
+}
 
 class RecognitionEvaluation {
 public:
-  explicit RecognitionEvaluation(const EvaluateRecognitionOptions& options)
-      : options_(options), console_(options.common.quiet), database_(emptyDatabase()) {}
+  RecognitionEvaluation(const EvaluateRecognitionOptions& options, ResumableRun& work)
+      : options_(options), work_(work), console_(options.common.quiet || !work.isFirst()) {}
 
   void run() {
     list();
     build();
-    Step step(console_, "Recognizing scans");
+    std::vector<Model> asked;
+    std::set<std::string> unknown;
     for (std::size_t i = 0; i < models_.size(); ++i) {
-      step.progress(static_cast<double>(i) / static_cast<double>(models_.size()));
-      if (!isLeftOut(i) && i % static_cast<std::size_t>(options_.query_every) != 0) continue;
-      try {
-        ask(models_[i], !isLeftOut(i));
-      } catch (const std::exception& error) {
-        left_out_.push_back(models_[i].path + ": " + error.what());
-      }
+      if (isLeftOut(i)) unknown.insert(models_[i].key);
+      if (isLeftOut(i) || i % static_cast<std::size_t>(options_.query_every) == 0) asked.push_back(models_[i]);
     }
+    Step step(console_, "Recognizing scans");
+    queries_ =
+        joinedRows(rowsOfModels<Query>(
+                       asked, [&](const Model& model) { return ask(model, !unknown.count(model.key)); }, work_, step),
+                   left_out_);
+    if (!work_.isFirst()) return;
     step.done(std::to_string(queries_.size()) + " scans");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
     if (queries_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
@@ -86,12 +105,6 @@ public:
   }
 
 private:
-  SymmetryDatabase emptyDatabase() const {
-    DatabaseOptions options;
-    options.num_threads = options_.common.threads;
-    return SymmetryDatabase(":memory:", options);
-  }
-
   void list() {
     models_ = listModels(options_.folders, options_.selection);
     if (!options_.class_path) return;
@@ -107,23 +120,35 @@ private:
 
   void build() {
     Step step(console_, "Building a database");
+    std::vector<ModelInput> inputs;
+    std::map<std::string, std::string> paths;  // by name
     for (std::size_t i = 0; i < models_.size(); ++i) {
-      step.progress(static_cast<double>(i) / static_cast<double>(models_.size()));
       if (isLeftOut(i)) continue;
-      try {
-        const Shape shape = loadShape(models_[i].path);
-        if (!shape.mesh) throw InputError("has no faces");
-        database_.add(models_[i].name, *sampleMesh(*shape.mesh, 20'000, options_.common.seed + 1));
-      } catch (const std::exception& error) {
-        left_out_.push_back(models_[i].path + ": " + error.what());
-      }
+      const Model& model = models_[i];
+      paths[model.name] = model.path;
+      inputs.push_back({model.name, {}, [&model, this] {
+                          const Shape shape = loadShape(model.path);
+                          if (!shape.mesh) throw InputError("has no faces");
+                          return *sampleMesh(*shape.mesh, 20'000, options_.common.seed + 1);
+                        }});
     }
-    database_.rebuild();
-    step.done(std::to_string(database_.size()) + " models");
+    DatabaseOptions options;
+    options.num_threads = options_.common.threads;
+    database_.emplace(inputs, options, work_, [&](double share) { step.progress(share); });
+    for (const auto& [name, reason] : database_->failures()) left_out_.push_back(paths[name] + ": " + reason);
+    step.done(std::to_string((*database_)->size()) + " models");
   }
 
-  void ask(const Model& model, bool known) {
-    if (known && !database_.contains(model.name)) return;
+  ItemRows<Query> ask(const Model& model, bool known) const {
+    try {
+      if (known && !(*database_)->contains(model.name)) return {};
+      return {{queryOf(model, known)}, ""};
+    } catch (const std::exception& error) {
+      return {{}, model.path + ": " + error.what()};
+    }
+  }
+
+  Query queryOf(const Model& model, bool known) const {
     TestCloudOptions clouds;
     clouds.num_points = options_.num_points;
     clouds.noise.clear();
@@ -136,14 +161,13 @@ private:
     RecognitionOptions recognition = options_.recognition;
     recognition.num_threads = options_.common.threads;
     Stopwatch watch;
-    const Recognition found = database_.recognize(*scan.cloud, recognition);
+    const Recognition found = (*database_)->recognize(*scan.cloud, recognition);
     Query query{model.name, "", known, false, 0.0, watch.lap()};
-    if (!found.empty()) {
-      query.answer = found.front().name;
-      query.merit = found.front().score.merit();
-      query.same_class = query.answer == model.name || classOf(query.answer) == classOf(model.name);
-    }
-    queries_.push_back(query);
+    if (found.empty()) return query;
+    query.answer = found.front().name;
+    query.merit = found.front().score.merit();
+    query.same_class = query.answer == model.name || classOf(query.answer) == classOf(model.name);
+    return query;
   }
 
   /// Without classes each model is one of its own.
@@ -172,7 +196,7 @@ private:
     for (const Query& query : queries_) times.push_back(query.milliseconds);
     std::sort(times.begin(), times.end());
     const double median = times[times.size() / 2], p95 = times[times.size() * 95 / 100];
-    std::printf("%zu scans, %zu models\n", queries_.size(), database_.size());
+    std::printf("%zu scans, %zu models\n", queries_.size(), (*database_)->size());
     std::printf("the very model first      %s %%\nits class first           %s %%\nfalsely unknown           %s %%\n",
                 fixed(very, 1, 100).c_str(), fixed(kind, 1, 100).c_str(), fixed(rejected, 1, 100).c_str());
     std::printf("unknown, of those left out %s %%\nmilliseconds              %s (95 %%: %s)\n",
@@ -180,7 +204,7 @@ private:
     if (options_.csv) writeText(*options_.csv, csv());
     if (!options_.common.json_path) return;
     const nlohmann::json summary{{"scans", queries_.size()},
-                                 {"models", database_.size()},
+                                 {"models", (*database_)->size()},
                                  {"very_model_rate", very},
                                  {"class_rate", kind},
                                  {"false_unknown_rate", rejected},
@@ -208,8 +232,9 @@ private:
   }
 
   const EvaluateRecognitionOptions& options_;
+  ResumableRun& work_;
   const Console console_;
-  SymmetryDatabase database_;
+  std::optional<SharedDatabase> database_;
   std::vector<Model> models_;
   std::map<std::string, std::string> classes_;
   std::vector<Query> queries_;
@@ -218,10 +243,12 @@ private:
 
 }  // namespace
 
-int evaluateRecognition(int argc, char** argv) {
+int evaluateRecognition(int argc, char** argv, SharedWork& processes) {
   EvaluateRecognitionOptions options;
   if (!commandLine(options).parse(argc, argv)) return 0;
-  RecognitionEvaluation(options).run();
+  ResumableRun work(processes, options.journal, argc, argv);
+  options.common.threads = work.threadsOfItem(options.common.threads);
+  RecognitionEvaluation(options, work).run();
   return 0;
 }
 

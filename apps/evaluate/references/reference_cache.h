@@ -26,6 +26,11 @@ public:
 
   void add(const std::string& key, std::size_t num_faces, const ReferenceSymmetries& symmetries);
 
+  /// All that is in it.
+  std::string text() const { return content_.dump(); }
+  /// \param text of another cache of the same options.
+  void setText(const std::string& text) { content_ = nlohmann::json::parse(text); }
+
   /// Writes the file if add() was called since.
   void save();
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -20,6 +22,8 @@
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/registration/motion_error.h"
 #include "evaluate/registration/registration_methods.h"
+#include "evaluate/runs/packed_rows.h"
+#include "evaluate/runs/shared_references.h"
 #include "evaluate/segmentation/patches.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
@@ -42,7 +46,7 @@ struct EvaluateRegistrationOptions {
   double around_distance = 0.1;  ///< diagonals
   std::optional<std::string> methods;
   bool impostors = false;
-  std::optional<std::string> csv;
+  std::optional<std::string> csv, journal;
   CommonOptions common;
 };
 
@@ -70,6 +74,7 @@ CommandLine commandLine(EvaluateRegistrationOptions& o) {
       .flag("impostors", o.impostors, "also try each scan with the mesh before its own, where nothing should fit")
       .text("csv", "FILE", o.csv, "a row for each scan and method")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  ResumableRun::addFlag(line, o.journal);
   return line;
 }
 
@@ -99,6 +104,27 @@ struct Trial {
   MotionError error;  ///< radians and diagonals; of impostors without meaning
   bool right = false;
 };
+
+/// Where the scan was brought to is left out: nothing asks for it later.
+void put(detail::PackedBytes& bytes, const Trial& trial) {
+  bytes.putText(trial.scan);
+  bytes.putText(trial.model);
+  bytes.put(trial.method);
+  for (const bool is : {trial.impostor, trial.answer.converged, trial.right}) bytes.put(is);
+  for (const double number : {trial.answer.support, trial.answer.conflict, trial.answer.milliseconds,
+                              trial.answer.processor_ms, trial.error.angle, trial.error.distance})
+    bytes.put(number);
+}
+
+void get(detail::UnpackedBytes& bytes, Trial& trial) {
+  trial.scan = bytes.text();
+  trial.model = bytes.text();
+  trial.method = bytes.get<std::size_t>();
+  for (bool* is : {&trial.impostor, &trial.answer.converged, &trial.right}) *is = bytes.get<bool>();
+  for (double* number : {&trial.answer.support, &trial.answer.conflict, &trial.answer.milliseconds,
+                         &trial.answer.processor_ms, &trial.error.angle, &trial.error.distance})
+    *number = bytes.get<double>();
+}
 
 /// What the trials of one method add up to. Rates in [0, 1], NaN where there is nothing to count.
 struct Summary {
@@ -151,9 +177,10 @@ Summary summarize(const std::vector<Trial>& trials, std::size_t method) {
 
 class RegistrationEvaluation {
 public:
-  explicit RegistrationEvaluation(const EvaluateRegistrationOptions& options)
+  RegistrationEvaluation(const EvaluateRegistrationOptions& options, ResumableRun& work)
       : options_(options),
-        console_(options.common.quiet),
+        work_(work),
+        console_(options.common.quiet || !work.isFirst()),
         methods_(chosenMethods(options.methods.value_or("symmetry,pca,features"))),
         cache_(options.references_path.value_or(""), ReferenceOptions()) {
     clouds_.num_points = options.num_points;
@@ -161,20 +188,19 @@ public:
     clouds_.scan_noise = {options.noise};
     clouds_.num_views = options.num_views;
     clouds_.seed = options.common.seed;
+    references_.num_threads = options.common.threads;
   }
 
   void run() {
-    const std::vector<Model> models = listModels(options_.folders, options_.selection);
-    Step step(console_, "Registering scans of " + std::to_string(models.size()) + " models");
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
-      try {
-        evaluate(models[i]);
-      } catch (const std::exception& error) {
-        left_out_.push_back(models[i].path + ": " + error.what());
-      }
-    }
-    cache_.save();
+    models_ = listModels(options_.folders, options_.selection);
+    shareReferences(models_, references_, cache_, work_, console_);
+    Step step(console_, "Registering scans of " + std::to_string(models_.size()) + " models");
+    std::vector<std::string> names;
+    for (const Model& model : models_) names.push_back(model.key);
+    trials_ = joinedRows(rowsOfItems<Trial>(
+                             names, [&](std::size_t i) { return evaluate(i); }, work_, step),
+                         left_out_);
+    if (!work_.isFirst()) return;
     step.done(std::to_string(trials_.size()) + " trials");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
     if (trials_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
@@ -184,27 +210,61 @@ public:
 private:
   struct Target {
     std::string name;
+    pcl::PolygonMesh::ConstPtr mesh;
     pcl::PointCloud<pcl::PointXYZ>::Ptr cloud;
     std::vector<RegisterToTarget> methods;
   };
 
-  void evaluate(const Model& model) {
-    const Shape shape = loadShape(model.path);
-    if (!shape.mesh) throw InputError("has no faces");
-    const ReferenceSymmetries references = referencesOf(model, *shape.mesh);
-    const TestCloudMaker maker(*shape.mesh, model.key, clouds_);
-    Target target{model.name, sampleMesh(*shape.mesh, options_.num_points, options_.common.seed + 1), {}};
-    for (const RegistrationMethod& method : methods_)
-      target.methods.push_back(method.toTarget(target.cloud, options_.common.seed + 1, options_.common.threads));
+  ItemRows<Trial> evaluate(std::size_t i) {
+    ItemRows<Trial> item;
+    try {
+      addTrials(i, item.rows);
+    } catch (const std::exception& error) {
+      item.left_out = models_[i].path + ": " + error.what();
+    }
+    return item;
+  }
+
+  void addTrials(std::size_t i, std::vector<Trial>& trials) {
+    const Model& model = models_[i];
+    const std::shared_ptr<const Target> target = targetOf(i), other = options_.impostors ? targetBefore(i) : nullptr;
+    const std::optional<ReferenceSymmetries> known = cache_.find(model.key, target->mesh->polygons.size());
+    const ReferenceSymmetries references = known ? *known : findReferenceSymmetries(*target->mesh, references_);
+    const TestCloudMaker maker(*target->mesh, model.key, clouds_);
     for (const CloudRecipe& recipe : recipesFor(clouds_)) {
       const TestCloud scan = maker.make(recipe);
       removePatches(*scan.cloud, options_.missing, kNumPatches,
                     options_.common.seed + static_cast<std::uint64_t>(recipe.view) + 1);
       const std::string name = model.name + "_" + recipe.name;
-      tryAll(name, scan, target, &references);
-      if (options_.impostors && before_) tryAll(name, scan, *before_, nullptr);
+      tryAll(name, scan, *target, &references, trials);
+      if (other) tryAll(name, scan, *other, nullptr, trials);
     }
-    before_ = target;
+  }
+
+  /// The last two are kept: a process that does one model after the other makes each target once.
+  std::shared_ptr<const Target> targetOf(std::size_t i) {
+    if (const auto kept = targets_.find(i); kept != targets_.end()) return kept->second;
+    const Shape shape = loadShape(models_[i].path);
+    if (!shape.mesh) throw InputError("has no faces");
+    Target target{models_[i].name,
+                  pcl::make_shared<pcl::PolygonMesh>(*shape.mesh),
+                  sampleMesh(*shape.mesh, options_.num_points, options_.common.seed + 1),
+                  {}};
+    for (const RegistrationMethod& method : methods_)
+      target.methods.push_back(method.toTarget(target.cloud, options_.common.seed + 1, options_.common.threads));
+    while (targets_.size() > 1) targets_.erase(targets_.begin());
+    return targets_[i] = std::make_shared<const Target>(std::move(target));
+  }
+
+  /// \return null where no model before can be used.
+  std::shared_ptr<const Target> targetBefore(std::size_t i) {
+    while (i-- > 0) {
+      try {
+        return targetOf(i);
+      } catch (const std::exception&) {  // its own item says so
+      }
+    }
+    return nullptr;
   }
 
   /// The true pose, turned about the middle of the target and moved, both in random directions.
@@ -226,30 +286,24 @@ private:
             kSearched * distance + 2.0 * std::sin(0.5 * kSearched * angle) * diagonal};
   }
 
-  ReferenceSymmetries referencesOf(const Model& model, const pcl::PolygonMesh& mesh) {
-    if (const auto cached = cache_.find(model.key, mesh.polygons.size())) return *cached;
-    ReferenceOptions options;
-    options.num_threads = options_.common.threads;
-    const ReferenceSymmetries references = findReferenceSymmetries(mesh, options);
-    cache_.add(model.key, mesh.polygons.size(), references);
-    return references;
-  }
-
   /// \param references of the target; null where it is an impostor.
   void tryAll(const std::string& name, const TestCloud& scan, const Target& target,
-              const ReferenceSymmetries* references) {
+              const ReferenceSymmetries* references, std::vector<Trial>& trials) {
     std::optional<PoseGuess> guess;
     if (options_.around && references) guess = guessFor(name, scan, target, references->diagonal);
     for (std::size_t k = 0; k < methods_.size(); ++k) {
       const auto run = [&] { return target.methods[k](scan.cloud, guess); };
-      if (trials_.size() < methods_.size()) run();  // threads, tables and pages are there from the second call on
+      if (num_warm_ == k) {
+        run();  // threads, tables and pages are there from the second call on
+        ++num_warm_;
+      }
       Trial trial{name, target.name, k, !references, run(), {}, false};
       if (references) {
         trial.error = motionError(trial.answer.T_target_source, scan.T_cloud_model.inverse(), *references);
         trial.right = trial.error.within(options_.max_angle * kDegree, options_.max_distance * references->diagonal);
         trial.error.distance /= references->diagonal;
       }
-      trials_.push_back(trial);
+      trials.push_back(trial);
     }
   }
 
@@ -298,23 +352,29 @@ private:
   }
 
   const EvaluateRegistrationOptions& options_;
+  ResumableRun& work_;
   const Console console_;
   const std::vector<RegistrationMethod> methods_;
   TestCloudOptions clouds_;
+  ReferenceOptions references_;
   ReferenceCache cache_;
-  std::optional<Target> before_;
+  std::vector<Model> models_;
+  std::map<std::size_t, std::shared_ptr<const Target>> targets_;  // by index of the model
+  std::size_t num_warm_ = 0;                                      // methods that were called before
   std::vector<std::string> left_out_;
   std::vector<Trial> trials_;
 };
 
 }  // namespace
 
-int evaluateRegistration(int argc, char** argv) {
+int evaluateRegistration(int argc, char** argv, SharedWork& processes) {
   EvaluateRegistrationOptions options;
   if (!commandLine(options).parse(argc, argv)) return 0;
+  ResumableRun work(processes, options.journal, argc, argv);
+  options.common.threads = work.threadsOfItem(options.common.threads);
   // Classes that find nothing say so once a scan; the table counts them.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  RegistrationEvaluation(options).run();
+  RegistrationEvaluation(options, work).run();
   return 0;
 }
 

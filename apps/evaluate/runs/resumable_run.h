@@ -22,6 +22,7 @@ public:
   /// \param argc,argv the command line: a journal is taken for the same one alone, but for -resume, -threads, -quiet.
   ResumableRun(SharedWork& processes, const std::optional<std::string>& path, int argc, char** argv);
 
+  SharedWork& processes() { return processes_; }
   bool isFirst() const { return processes_.isFirst(); }
   /// Gives all processes the text of the first one.
   void broadcast(std::string& text) { processes_.broadcast(text); }

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/base/median.h"
+#include "evaluate/planes/models/model_result.h"
 #include "evaluate/shared/table_text.h"
 
 namespace pcl_symmetry::apps {
@@ -61,7 +62,48 @@ nlohmann::json toJson(const Proportion& proportion) {
   return {{"count", proportion.count}, {"total", proportion.total}, {"low", interval.low}, {"high", interval.high}};
 }
 
+/// Objects of scenes are made without one.
+const std::vector<CloudRecipe>& noRecipes() {
+  static const std::vector<CloudRecipe> none(1);
+  return none;
+}
+
 }  // namespace
+
+void put(detail::PackedBytes& bytes, const RecognitionResult& result) {
+  for (const bool is : {result.is_known, result.is_right, result.right_pose, result.accepted}) bytes.put(is);
+  bytes.putText(result.answer);
+  for (const double number :
+       {result.support, result.conflict, result.merit, result.confidence, result.lead, result.milliseconds})
+    bytes.put(number);
+}
+
+void get(detail::UnpackedBytes& bytes, RecognitionResult& result) {
+  for (bool* is : {&result.is_known, &result.is_right, &result.right_pose, &result.accepted}) *is = bytes.get<bool>();
+  result.answer = bytes.text();
+  for (double* number :
+       {&result.support, &result.conflict, &result.merit, &result.confidence, &result.lead, &result.milliseconds})
+    *number = bytes.get<double>();
+}
+
+void put(detail::PackedBytes& bytes, const SceneResult& result) {
+  bytes.put(result.scene);
+  bytes.putText(result.row);
+  for (const double number : {result.occlusion, result.noise}) bytes.put(number);
+  bytes.put(result.asked_planes);
+  put(bytes, result.planes, noRecipes());
+  bytes.put(result.recognition.has_value());
+  if (result.recognition) put(bytes, *result.recognition);
+}
+
+void get(detail::UnpackedBytes& bytes, SceneResult& result) {
+  result.scene = bytes.get<int>();
+  result.row = bytes.text();
+  for (double* number : {&result.occlusion, &result.noise}) *number = bytes.get<double>();
+  result.asked_planes = bytes.get<bool>();
+  result.planes = cloudFrom(bytes, noRecipes());
+  if (bytes.get<bool>()) get(bytes, result.recognition.emplace());
+}
 
 std::optional<std::size_t> bandOf(double occlusion) {
   for (std::size_t band = 0; band + 1 < std::size(kOcclusionBands); ++band)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evaluate/planes/plane_statistics.h"
+#include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
 
@@ -32,6 +33,10 @@ struct SceneResult {
   CloudResult planes;
   std::optional<RecognitionResult> recognition;
 };
+
+// As bytes: of answers, scores and judgements go along, not where they are.
+void put(detail::PackedBytes& bytes, const SceneResult& result);
+void get(detail::UnpackedBytes& bytes, SceneResult& result);
 
 /// Bands of occlusion: [0, 10), [10, 30), [30, 50), [50, 70) per cent.
 /// derived: the bands that the README reports; beyond 70 % little is left to see.

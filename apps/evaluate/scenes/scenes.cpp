@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
 
 #include "common/command_line/command_line.h"
 #include "common/command_line/console.h"
@@ -19,13 +21,15 @@
 #include "core/base/random.h"
 #include "evaluate/references/reference_cache.h"
 #include "evaluate/registration/motion_error.h"
+#include "evaluate/runs/packed_rows.h"
+#include "evaluate/runs/shared_database.h"
+#include "evaluate/runs/shared_references.h"
 #include "evaluate/scenes/recognition_curve.h"
 #include "evaluate/scenes/scene_report.h"
 #include "evaluate/scenes/table_scene.h"
 #include "evaluate/shared/model_flags.h"
 #include "evaluate/shared/model_list.h"
 #include "pcl_symmetry/mesh_sampling.h"
-#include "pcl_symmetry/recognition/symmetry_database.h"
 #include "pcl_symmetry/scene/symmetry_scene.h"
 
 namespace pcl_symmetry::apps {
@@ -51,7 +55,7 @@ struct EvaluateScenesOptions {
   std::vector<std::string> folders;
   ModelSelection selection;
   ReferenceOptions references;
-  std::optional<std::string> references_path, export_folder, csv;
+  std::optional<std::string> references_path, export_folder, csv, journal;
   std::vector<double> noise = {0.0, 1.0};
   int num_scenes = 100, min_points = 300, leave_out = 0, most_in_band = 0;
   double least_occlusion = 0.0;
@@ -104,41 +108,65 @@ CommandLine commandLine(EvaluateScenesOptions& o) {
       .text("csv", "FILE", o.csv, "a row for each object")
       .text("curve", "FILE", o.curve, "CSV of what is recognized by the least confidence that is asked for")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
+  ResumableRun::addFlag(line, o.journal);
   return line;
+}
+
+/// An object of a scene that can be asked about.
+struct SeenObject {
+  int scene;
+  std::size_t noise;  ///< index
+  std::size_t object;
+
+  bool operator<(const SeenObject& other) const {
+    return std::tie(scene, noise, object) < std::tie(other.scene, other.noise, other.object);
+  }
+};
+
+/// And how much of it others hide.
+struct SeenObjectInBand {
+  SeenObject object;
+  std::size_t band;
+};
+
+void put(detail::PackedBytes& bytes, const SeenObjectInBand& seen) {
+  bytes.put(seen);
+}
+
+void get(detail::UnpackedBytes& bytes, SeenObjectInBand& seen) {
+  seen = bytes.get<SeenObjectInBand>();
 }
 
 class ScenesEvaluation {
 public:
-  explicit ScenesEvaluation(const EvaluateScenesOptions& options)
+  ScenesEvaluation(const EvaluateScenesOptions& options, ResumableRun& work)
       : options_(options),
-        console_(options.common.quiet),
-        cache_(options.references_path.value_or(""), options.references),
-        database_(":memory:", databaseOptions(options)) {}
+        work_(work),
+        console_(options.common.quiet || !work.isFirst()),
+        cache_(options.references_path.value_or(""), options.references) {}
 
   void run() {
     load();
     if (options_.leave_out > 0) build();
     if (options_.export_folder) makeFolder(*options_.export_folder);
+    if (options_.most_in_band > 0) choose();
     Step step(console_, "Looking at " + std::to_string(options_.num_scenes) + " scenes");
-    for (int i = 0; i < options_.num_scenes; ++i) {
-      step.progress(static_cast<double>(i) / options_.num_scenes);
-      const std::uint64_t seed = RandomStream(options_.common.seed, static_cast<std::uint64_t>(i))();
-      const TableScene scene = drawScene(models_, options_.table, seed);
-      for (const double noise : options_.noise) evaluate(i, scene, noise, seed);
-    }
+    const auto evaluated = rowsOfItems<SceneResult>(
+        namesOfScenes("scene "), [&](std::size_t i) { return evaluate(static_cast<int>(i)); }, work_, step);
+    if (!work_.isFirst()) return;
+    for (const ItemRows<SceneResult>& scene : evaluated)
+      if (!scene.attached.empty()) ground_truth_.update(nlohmann::json::parse(scene.attached));
+    const std::size_t num_left_out = left_out_.size();
+    results_ = joinedRows(evaluated, left_out_);
     step.done(std::to_string(results_.size()) + " objects");
+    for (std::size_t i = num_left_out; i < left_out_.size(); ++i) console_.warn("left out: " + left_out_[i]);
     report();
   }
 
 private:
-  static DatabaseOptions databaseOptions(const EvaluateScenesOptions& options) {
-    DatabaseOptions database;
-    database.num_threads = options.common.threads;
-    return database;
-  }
-
   void load() {
     const std::vector<Model> models = listModels(options_.folders, options_.selection);
+    shareReferences(models, options_.references, cache_, work_, console_);
     Step step(console_, "Loading " + std::to_string(models.size()) + " models");
     for (std::size_t i = 0; i < models.size(); ++i) {
       step.progress(static_cast<double>(i) / static_cast<double>(models.size()));
@@ -148,7 +176,6 @@ private:
         left_out_.push_back(models[i].path + ": " + error.what());
       }
     }
-    cache_.save();
     step.done(std::to_string(models_.size()) + " models");
     for (const std::string& reason : left_out_) console_.warn("left out: " + reason);
     if (models_.empty()) throw InputError(options_.folders.front() + ": no mesh could be used");
@@ -161,13 +188,10 @@ private:
     RandomStream random(options_.common.seed, models_.size());
     const double diagonal = kLeastDiagonal + (kGreatestDiagonal - kLeastDiagonal) * random.uniform();
     SceneModel scene_model(model.name, *shape.mesh, diagonal);
-    std::optional<ReferenceSymmetries> references = cache_.find(model.key, shape.mesh->polygons.size());
-    if (!references) {
-      references = findReferenceSymmetries(*shape.mesh, options_.references);
-      cache_.add(model.key, shape.mesh->polygons.size(), *references);
-    }
+    const std::optional<ReferenceSymmetries> known = cache_.find(model.key, shape.mesh->polygons.size());
+    const ReferenceSymmetries references = known ? *known : findReferenceSymmetries(*shape.mesh, options_.references);
     models_.push_back(std::move(scene_model));
-    references_.push_back(references->scaled(own.center(), diagonal / own.diagonal()));
+    references_.push_back(references.scaled(own.center(), diagonal / own.diagonal()));
   }
 
   bool isLeftOut(std::size_t model) const {
@@ -177,51 +201,141 @@ private:
 
   void build() {
     Step step(console_, "Building a database");
+    std::vector<ModelInput> inputs;
     for (std::size_t i = 0; i < models_.size(); ++i) {
-      step.progress(static_cast<double>(i) / static_cast<double>(models_.size()));
-      if (!isLeftOut(i))
-        database_.add(models_[i].name, *sampleMesh(models_[i].mesh, kModelPoints, options_.common.seed + 1));
+      if (isLeftOut(i)) continue;
+      const SceneModel& model = models_[i];
+      inputs.push_back(
+          {model.name, {}, [&model, this] { return *sampleMesh(model.mesh, kModelPoints, options_.common.seed + 1); }});
     }
-    database_.rebuild();
-    step.done(std::to_string(database_.size()) + " models");
+    DatabaseOptions database;
+    database.num_threads = options_.common.threads;
+    database_.emplace(inputs, database, work_, [&](double share) { step.progress(share); });
+    for (const auto& [name, reason] : database_->failures()) throw InputError(name + ": " + reason);
+    step.done(std::to_string((*database_)->size()) + " models");
   }
 
-  void evaluate(int number, const TableScene& scene, double noise, std::uint64_t seed) {
+  std::vector<std::string> namesOfScenes(const std::string& what) const {
+    std::vector<std::string> names;
+    for (int i = 0; i < options_.num_scenes; ++i) names.push_back(what + std::to_string(i));
+    return names;
+  }
+
+  struct Scene {
+    std::uint64_t seed;
+    TableScene scene;
+  };
+
+  Scene sceneOf(int number) const {
+    const std::uint64_t seed = RandomStream(options_.common.seed, static_cast<std::uint64_t>(number))();
+    return {seed, drawScene(models_, options_.table, seed)};
+  }
+
+  /// What the sensor sees of a scene.
+  struct Look {
+    SceneImage image;
+    std::vector<pcl::Indices> clusters;  ///< points of each object
+
+    bool shows(std::size_t object, const EvaluateScenesOptions& options) const {
+      const double occlusion = image.occlusion(object);
+      return !image.cropped[object] && clusters[object].size() >= static_cast<std::size_t>(options.min_points) &&
+             bandOf(occlusion) && occlusion >= options.least_occlusion;
+    }
+  };
+
+  Look lookAt(const Scene& scene, double noise) const {
     DepthNoise camera;
     camera.factor = noise;
-    const SceneImage image = renderScene(models_, scene, camera, seed);
-    if (options_.export_folder) exportScene(number, scene, image, noise);
-    std::vector<pcl::Indices> clusters(scene.objects.size());
+    Look look{renderScene(models_, scene.scene, camera, scene.seed),
+              std::vector<pcl::Indices>(scene.scene.objects.size())};
+    const SceneImage& image = look.image;
     for (std::size_t i = 0; i < image.ids.size(); ++i)
       if (image.ids[i] >= 0 && pcl::isXYZFinite((*image.cloud)[i]))
-        clusters[static_cast<std::size_t>(image.ids[i])].push_back(static_cast<pcl::index_t>(i));
+        look.clusters[static_cast<std::size_t>(image.ids[i])].push_back(static_cast<pcl::index_t>(i));
+    return look;
+  }
+
+  /// Chooses the first objects of each band, in the order of the scenes.
+  void choose() {
+    Step step(console_, "Counting objects of " + std::to_string(options_.num_scenes) + " scenes");
+    const auto seen = rowsOfItems<SeenObjectInBand>(
+        namesOfScenes("objects of scene "), [&](std::size_t i) { return objectsOf(static_cast<int>(i)); }, work_, step);
+    std::map<std::pair<double, std::size_t>, int> num_in_band;  // by noise
+    detail::PackedBytes wanted;
+    std::vector<std::string> lost;  // these scenes are looked for once more
+    for (const SeenObjectInBand& one : joinedRows(seen, lost))
+      if (++num_in_band[{options_.noise[one.object.noise], one.band}] <= options_.most_in_band) wanted.put(one.object);
+    std::string text = wanted.bytes();
+    work_.broadcast(text);
+    detail::UnpackedBytes bytes(text);
+    while (bytes.left() > 0) wanted_.insert(bytes.get<SeenObject>());
+    step.done(std::to_string(wanted_.size()) + " objects");
+  }
+
+  ItemRows<SeenObjectInBand> objectsOf(int number) const {
+    const Scene scene = sceneOf(number);
+    ItemRows<SeenObjectInBand> item;
+    for (std::size_t n = 0; n < options_.noise.size(); ++n) {
+      const Look look = lookAt(scene, options_.noise[n]);
+      for (std::size_t k = 0; k < look.clusters.size(); ++k)
+        if (look.shows(k, options_)) item.rows.push_back({{number, n, k}, bandOf(look.image.occlusion(k)).value()});
+    }
+    return item;
+  }
+
+  bool isWanted(const SeenObject& object) const { return options_.most_in_band == 0 || wanted_.count(object) > 0; }
+
+  bool isLookedAt(int number, std::size_t noise) const {
+    if (options_.most_in_band == 0 || options_.export_folder) return true;
+    const auto first = wanted_.lower_bound({number, noise, 0});
+    return first != wanted_.end() && first->scene == number && first->noise == noise;
+  }
+
+  ItemRows<SceneResult> evaluate(int number) {
+    ItemRows<SceneResult> item;
+    nlohmann::json ground_truth = nlohmann::json::object();
+    std::optional<Scene> scene;
+    for (std::size_t n = 0; n < options_.noise.size(); ++n) {
+      if (!isLookedAt(number, n)) continue;
+      if (!scene) scene = sceneOf(number);
+      const Look look = lookAt(*scene, options_.noise[n]);
+      if (options_.export_folder) exportScene(number, scene->scene, look.image, options_.noise[n], ground_truth);
+      evaluate(number, n, *scene, look, item.rows);
+    }
+    if (!ground_truth.empty()) item.attached = ground_truth.dump();
+    return item;
+  }
+
+  void evaluate(int number, std::size_t noise, const Scene& of, const Look& look, std::vector<SceneResult>& results) {
+    const SceneImage& image = look.image;
+    const TableScene& scene = of.scene;
     const auto seen = std::make_shared<const SeenSpace>(*image.cloud);
     const auto on_table = std::make_shared<const SeenSpace>(withPlace(*seen, scene));
     const Cloud::ConstPtr filtered =
         isAsked("filtered") ? withoutDepthErrors(image.cloud, *seen, options_.common.threads) : image.cloud;
     const auto filtered_seen = std::make_shared<const SeenSpace>(withPlace(SeenSpace(*filtered), scene));
-    for (std::size_t k = 0; k < clusters.size(); ++k) {
-      if (image.cropped[k] || clusters[k].size() < static_cast<std::size_t>(options_.min_points)) continue;
-      if (!isWanted(image.occlusion(k), noise)) continue;
+    for (std::size_t k = 0; k < look.clusters.size(); ++k) {
+      if (!look.shows(k, options_) || !isWanted({number, noise, k})) continue;
+      const pcl::Indices& cluster = look.clusters[k];
       // The cluster alone: as a user who cuts it out and keeps the viewpoint gives it.
-      auto alone = pcl::make_shared<Cloud>(*image.cloud, clusters[k]);
+      auto alone = pcl::make_shared<Cloud>(*image.cloud, cluster);
       alone->sensor_origin_ = image.cloud->sensor_origin_;
       alone->sensor_orientation_ = image.cloud->sensor_orientation_;
       SceneResult result;
       result.scene = number;
-      result.noise = noise;
+      result.noise = options_.noise[noise];
       result.occlusion = image.occlusion(k);
       if (isAsked("alone"))
-        judge(
+        results.push_back(judged(
             scene.objects[k], "alone", *alone, result,
             [&] { return detectAnswers(alone, options_.common.seed + 1, options_.common.threads); },
-            [&] { return database_.recognize(*alone, recognition()); });
+            [&] { return (*database_)->recognize(*alone, recognition()); }));
       const auto judgeIn = [&](const char* row, const Cloud::ConstPtr& frame, const SeenSpace::ConstPtr& space) {
         if (!isAsked(row)) return;
-        judge(
+        results.push_back(judged(
             scene.objects[k], row, *alone, result,
-            [&] { return detectAnswers(frame, clusters[k], space, options_.common.seed + 1, options_.common.threads); },
-            [&] { return database_.recognize(*frame, clusters[k], recognition(), space); });
+            [&] { return detectAnswers(frame, cluster, space, options_.common.seed + 1, options_.common.threads); },
+            [&] { return (*database_)->recognize(*frame, cluster, recognition(), space); }));
       };
       judgeIn("scene", image.cloud, seen);
       judgeIn("table", image.cloud, on_table);
@@ -241,14 +355,6 @@ private:
     return result;
   }
 
-  /// Counts the objects of each band.
-  bool isWanted(double occlusion, double noise) {
-    const std::optional<std::size_t> band = bandOf(occlusion);
-    if (!band || occlusion < options_.least_occlusion) return false;
-    const int number = ++num_in_band_[{noise, *band}];
-    return options_.most_in_band == 0 || number <= options_.most_in_band;
-  }
-
   RecognitionOptions recognition() const {
     RecognitionOptions options = options_.recognition;
     options.num_threads = options_.common.threads;
@@ -259,8 +365,8 @@ private:
 
   /// \param result knows scene, noise and occlusion.
   template <typename Detect, typename Recognize>
-  void judge(const PlacedModel& object, const std::string& row, const Cloud& cluster, SceneResult result,
-             const Detect& detect, const Recognize& recognize) {
+  SceneResult judged(const PlacedModel& object, const std::string& row, const Cloud& cluster, SceneResult result,
+                     const Detect& detect, const Recognize& recognize) const {
     const ReferenceSymmetries references = references_[object.model].transformed(object.T_scene_model);
     result.row = row;
     result.asked_planes = !options_.no_planes;
@@ -273,9 +379,8 @@ private:
     if (!options_.no_planes) planes.answers = detect();
     planes.match = matchAnswers(planes.answers.answers, references, options_.limits);
     result.planes = std::move(planes);
-    result.recognition.reset();
     if (options_.leave_out > 0) result.recognition = judged(object, recognize);
-    results_.push_back(std::move(result));
+    return result;
   }
 
   template <typename Recognize>
@@ -303,7 +408,8 @@ private:
     return result;
   }
 
-  void exportScene(int number, const TableScene& scene, const SceneImage& image, double noise) {
+  void exportScene(int number, const TableScene& scene, const SceneImage& image, double noise,
+                   nlohmann::json& ground_truth) const {
     char name[64];
     std::snprintf(name, sizeof(name), "scene_%04d_noise_%g", number, noise);
     pcl::PCLPointCloud2 fields;
@@ -322,7 +428,7 @@ private:
                          {"num_alone", image.num_alone[k]},
                          {"symmetries", toJson(references_[object.model].transformed(object.T_scene_model))}});
     }
-    ground_truth_[name] = objects;
+    ground_truth[name] = objects;
   }
 
   void report() const {
@@ -343,27 +449,30 @@ private:
   }
 
   const EvaluateScenesOptions& options_;
+  ResumableRun& work_;
   const Console console_;
   ReferenceCache cache_;
-  SymmetryDatabase database_;
+  std::optional<SharedDatabase> database_;
   std::vector<SceneModel> models_;
   std::vector<ReferenceSymmetries> references_;  ///< of the models
   std::vector<std::string> left_out_;
+  std::set<SeenObject> wanted_;  ///< where bands have a limit
   std::vector<SceneResult> results_;
-  std::map<std::pair<double, std::size_t>, int> num_in_band_;  ///< by noise
   nlohmann::json ground_truth_ = nlohmann::json::object();
 };
 
 }  // namespace
 
-int evaluateScenes(int argc, char** argv) {
+int evaluateScenes(int argc, char** argv, SharedWork& processes) {
   EvaluateScenesOptions options;
   if (!commandLine(options).parse(argc, argv)) return 0;
   if (options.fit && options.leave_out < 1) throw UsageError("-fit needs -leave_out");
   if (options.no_planes && options.leave_out < 1) throw UsageError("-no_planes needs -leave_out");
   options.table.in_bin = options.place == "bin";
   if (options.sensor == "lidar") options.table.sensor = SceneSensor::lidar(options.num_rings);
-  ScenesEvaluation(options).run();
+  ResumableRun work(processes, options.journal, argc, argv);
+  options.common.threads = options.references.num_threads = work.threadsOfItem(options.common.threads);
+  ScenesEvaluation(options, work).run();
   return 0;
 }
 

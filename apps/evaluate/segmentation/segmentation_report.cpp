@@ -164,7 +164,7 @@ void put(detail::PackedBytes& bytes, const SegmentationResult& result) {
 }
 
 void get(detail::UnpackedBytes& bytes, SegmentationResult& result) {
-  for (std::string* text : {&result.method, &result.model, &result.category}) *text = textOf(bytes);
+  for (std::string* text : {&result.method, &result.model, &result.category}) *text = bytes.text();
   result.distance = bytes.get<SegmentationDistance>();
   for (double* number : {&result.num_segments, &result.smallest_share, &result.mirror_agreement, &result.milliseconds})
     *number = bytes.get<double>();

@@ -118,64 +118,69 @@ Composite joined(const Part& a, const Part& b, RandomStream& random) {
   return result;
 }
 
-}  // namespace
+const char kNumModels[] = "models", kNumWrong[] = "wrong local planes";  // chosen: the words of the note
 
-ShapeReport measureComposites(const ShapeRowOptions& options) {
-  ShapeReport report(
-      {"planes of parts found", "right, of local ones", "models with a plane of each", "called symmetric"});
-  report.log("parts,planes,found,local,wrong,symmetries,axes");
-  const ModelParts models(options);
-  const int count = options.count(kCompositeCases);
-  int num_models = 0, num_wrong = 0, num_called_wrong = 0;
+void measureComposite(int i, const ModelParts& models, const ShapeRowOptions& options, ShapeReport& report) {
+  RandomStream random(options.caseSeed(i));
+  std::vector<Part> parts;
+  for (int k = 0; k < 2; ++k) {
+    if (models.empty()) {
+      parts.push_back(solidPart(options.report, options.num_points / 2, random));
+    } else if (auto part = models.part(static_cast<std::size_t>(2 * i + k), options.num_points / 2, random())) {
+      parts.push_back(std::move(*part));
+    }
+  }
+  if (parts.size() < 2) return;
+  const Composite composite = joined(parts[0], parts[1], random);
   DetectionOptions detection = detectionOptions(options);
   detection.approximate = true;
-  for (int i = 0; i < count; ++i) {
-    options.progress(static_cast<double>(i) / count);
-    RandomStream random(options.caseSeed(i));
-    std::vector<Part> parts;
-    for (int k = 0; k < 2; ++k) {
-      if (models.empty()) {
-        parts.push_back(solidPart(options.report, options.num_points / 2, random));
-      } else if (auto part = models.part(static_cast<std::size_t>(2 * i + k), options.num_points / 2, random())) {
-        parts.push_back(std::move(*part));
-      }
-    }
-    if (parts.size() < 2) continue;
-    const Composite composite = joined(parts[0], parts[1], random);
-    const ShapeAnswers answers = detectShape(composite.cloud, detection);
-    const auto same = [&](const ReflectionPlane& a, const ReflectionPlane& b) {
-      return difference(a, b, composite.center).within(kPartAngle, kPartOffset * composite.diagonal);
-    };
-    int found = 0, local = 0, wrong = 0;
-    std::vector<int> of_part(2, 0);
-    for (std::size_t k = 0; k < composite.planes.size(); ++k) {
-      const bool has = std::any_of(answers.planes.begin(), answers.planes.end(),
-                                   [&](const auto& plane) { return same(plane, composite.planes[k]); });
-      found += has ? 1 : 0;
-      of_part[k < parts[0].planes.size() ? 0 : 1] += has ? 1 : 0;
-      report.at("all", 0).add(has);
-    }
-    for (const SymmetryPlane& plane : answers.planes) {
-      if (plane.kind == PlaneKind::Approximate || plane.kind == PlaneKind::Possible) continue;
-      const bool right = std::any_of(composite.planes.begin(), composite.planes.end(),
-                                     [&](const auto& other) { return same(plane, other); });
-      report.at("all", 1).add(right);
-      local += 1;
-      wrong += right ? 0 : 1;
-    }
-    report.at("all", 2).add(of_part[0] > 0 && of_part[1] > 0);
-    report.at("all", 3).add(answers.callSymmetric());
-    ++num_models;
-    num_wrong += wrong;
-    num_called_wrong += answers.callSymmetric() ? 1 : 0;
-    Row row;
-    row.add(parts[0].name + "+" + parts[1].name).add(double(composite.planes.size())).add(double(found));
-    row.add(double(local)).add(double(wrong)).add(double(answers.symmetries().size())).add(double(answers.axes.size()));
-    report.log(row.end());
+  const ShapeAnswers answers = detectShape(composite.cloud, detection);
+  const auto same = [&](const ReflectionPlane& a, const ReflectionPlane& b) {
+    return difference(a, b, composite.center).within(kPartAngle, kPartOffset * composite.diagonal);
+  };
+  int found = 0, local = 0, wrong = 0;
+  std::vector<int> of_part(2, 0);
+  for (std::size_t k = 0; k < composite.planes.size(); ++k) {
+    const bool has = std::any_of(answers.planes.begin(), answers.planes.end(),
+                                 [&](const auto& plane) { return same(plane, composite.planes[k]); });
+    found += has ? 1 : 0;
+    of_part[k < parts[0].planes.size() ? 0 : 1] += has ? 1 : 0;
+    report.at("all", 0).add(has);
   }
-  report.note("wrong local planes a model: " + fixed(num_models > 0 ? double(num_wrong) / num_models : 0.0, 2) +
-              " of " + std::to_string(num_models) + " models");
-  return report;
+  for (const SymmetryPlane& plane : answers.planes) {
+    if (plane.kind == PlaneKind::Approximate || plane.kind == PlaneKind::Possible) continue;
+    const bool right = std::any_of(composite.planes.begin(), composite.planes.end(),
+                                   [&](const auto& other) { return same(plane, other); });
+    report.at("all", 1).add(right);
+    local += 1;
+    wrong += right ? 0 : 1;
+  }
+  report.at("all", 2).add(of_part[0] > 0 && of_part[1] > 0);
+  report.at("all", 3).add(answers.callSymmetric());
+  report.tally(kNumModels) += 1;
+  report.tally(kNumWrong) += wrong;
+  Row row;
+  row.add(parts[0].name + "+" + parts[1].name).add(double(composite.planes.size())).add(double(found));
+  row.add(double(local)).add(double(wrong)).add(double(answers.symmetries().size())).add(double(answers.axes.size()));
+  report.log(row.end());
+}
+
+}  // namespace
+
+ShapeCases compositeCases(const ShapeRowOptions& options) {
+  ShapeCases cases{
+      ShapeReport({"planes of parts found", "right, of local ones", "models with a plane of each", "called symmetric"}),
+      options.count(kCompositeCases),
+      [&options, models = ModelParts(options)](int i, ShapeReport& report) {
+        measureComposite(i, models, options, report);
+      },
+      [](ShapeReport& report) {
+        const int num_models = report.tally(kNumModels), num_wrong = report.tally(kNumWrong);
+        report.note("wrong local planes a model: " + fixed(num_models > 0 ? double(num_wrong) / num_models : 0.0, 2) +
+                    " of " + std::to_string(num_models) + " models");
+      }};
+  cases.report.log("parts,planes,found,local,wrong,symmetries,axes");
+  return cases;
 }
 
 }  // namespace pcl_symmetry::apps

@@ -51,51 +51,54 @@ std::string summary(const ShapeAnswers& answers) {
          std::to_string(answers.centers.size()) + "c";
 }
 
+void measureCounts(const Model& model, std::uint64_t seed, const ShapeRowOptions& options, ShapeReport& report) {
+  const Shape shape = loadShape(model.path);
+  if (!shape.mesh) return;
+  std::vector<ShapeAnswers> answers;
+  Eigen::AlignedBox3d box;
+  Row row;
+  row.add(model.name);
+  std::string confidences;
+  for (const int num_points : kPointCounts) {
+    const auto cloud = sampleMesh(*shape.mesh, num_points, seed);
+    RandomStream random(seed);
+    moveAndBlur(*cloud, randomPose(random(), 1.0), 0.0, random);
+    for (const pcl::PointXYZ& point : *cloud) box.extend(point.getVector3fMap().cast<double>());
+    answers.push_back(detectShape(cloud, detectionOptions(options)));
+    row.add(summary(answers.back()));
+    for (const SymmetryPlane& plane : answers.back().planes) confidences += fixed(plane.confidence, 2) + " ";
+    confidences += "| ";
+  }
+  report.log(row.add(confidences).end());
+  bool same_decision = true, same = true;
+  for (std::size_t k = 0; k + 1 < answers.size(); ++k) {
+    same_decision = same_decision && answers[k].callSymmetric() == answers[k + 1].callSymmetric();
+    const double diagonal = box.sizes().norm();
+    same = same && holds(answers[k], answers[k + 1], box.center(), diagonal) &&
+           holds(answers[k + 1], answers[k], box.center(), diagonal);
+    const std::string row_name = std::to_string(kPointCounts[k]) + " and " + std::to_string(kPointCounts[k + 1]);
+    report.at(row_name, kSameDecision).add(answers[k].callSymmetric() == answers[k + 1].callSymmetric());
+    report.at(row_name, kSameAnswers)
+        .add(holds(answers[k], answers[k + 1], box.center(), diagonal) &&
+             holds(answers[k + 1], answers[k], box.center(), diagonal));
+  }
+  report.at("all three", kSameDecision).add(same_decision);
+  report.at("all three", kSameAnswers).add(same);
+}
+
 }  // namespace
 
-ShapeReport measurePointCounts(const ShapeRowOptions& options) {
+ShapeCases pointCountCases(const ShapeRowOptions& options) {
   if (options.folders.empty()) throw UsageError("missing argument 'FOLDER': counts needs models");
-  ShapeReport report({"same decision", "same symmetries"});
-  report.log("model,at5000,at20000,at100000,confidences");
-  std::vector<Model> models = listModels(options.folders, options.selection);
+  const std::vector<Model> models = listModels(options.folders, options.selection);
   const std::size_t count = std::min(models.size(), static_cast<std::size_t>(options.count(kCountModels)));
-  for (std::size_t i = 0; i < count; ++i) {
-    options.progress(static_cast<double>(i) / static_cast<double>(count));
-    const Model& model = models[i * models.size() / count];
-    const Shape shape = loadShape(model.path);
-    if (!shape.mesh) continue;
-    std::vector<ShapeAnswers> answers;
-    Eigen::AlignedBox3d box;
-    Row row;
-    row.add(model.name);
-    std::string confidences;
-    for (const int num_points : kPointCounts) {
-      const auto cloud = sampleMesh(*shape.mesh, num_points, options.caseSeed(static_cast<int>(i)));
-      RandomStream random(options.caseSeed(static_cast<int>(i)));
-      moveAndBlur(*cloud, randomPose(random(), 1.0), 0.0, random);
-      for (const pcl::PointXYZ& point : *cloud) box.extend(point.getVector3fMap().cast<double>());
-      answers.push_back(detectShape(cloud, detectionOptions(options)));
-      row.add(summary(answers.back()));
-      for (const SymmetryPlane& plane : answers.back().planes) confidences += fixed(plane.confidence, 2) + " ";
-      confidences += "| ";
-    }
-    report.log(row.add(confidences).end());
-    bool same_decision = true, same = true;
-    for (std::size_t k = 0; k + 1 < answers.size(); ++k) {
-      same_decision = same_decision && answers[k].callSymmetric() == answers[k + 1].callSymmetric();
-      const double diagonal = box.sizes().norm();
-      same = same && holds(answers[k], answers[k + 1], box.center(), diagonal) &&
-             holds(answers[k + 1], answers[k], box.center(), diagonal);
-      const std::string row_name = std::to_string(kPointCounts[k]) + " and " + std::to_string(kPointCounts[k + 1]);
-      report.at(row_name, kSameDecision).add(answers[k].callSymmetric() == answers[k + 1].callSymmetric());
-      report.at(row_name, kSameAnswers)
-          .add(holds(answers[k], answers[k + 1], box.center(), diagonal) &&
-               holds(answers[k + 1], answers[k], box.center(), diagonal));
-    }
-    report.at("all three", kSameDecision).add(same_decision);
-    report.at("all three", kSameAnswers).add(same);
-  }
-  return report;
+  ShapeCases cases{ShapeReport({"same decision", "same symmetries"}), static_cast<int>(count),
+                   [&options, models, count](int i, ShapeReport& report) {
+                     const Model& model = models[static_cast<std::size_t>(i) * models.size() / count];
+                     measureCounts(model, options.caseSeed(i), options, report);
+                   }};
+  cases.report.log("model,at5000,at20000,at100000,confidences");
+  return cases;
 }
 
 }  // namespace pcl_symmetry::apps

@@ -79,11 +79,6 @@ FoldCounts countsOf(const SweptShape& shape, const FoldTruth& truth, const Shape
   return counts;
 }
 
-void add(Proportion& sum, const Proportion& more) {
-  sum.count += more.count;
-  sum.total += more.total;
-}
-
 std::string foldRange(int num_folds) {
   return num_folds == 0    ? "round"
          : num_folds <= 6  ? "2 to 6 folds"
@@ -104,34 +99,35 @@ std::string logLine(const FoldedCloud& what, const ShapeAnswers& answers, const 
   return row.end();
 }
 
+void measureFold(int i, const ShapeRowOptions& options, ShapeReport& report) {
+  const FoldedCloud what = foldedCloud(i, options.caseSeed(i), options.report, options.num_points);
+  const SweptShape& shape = what.shape;
+  const ShapeAnswers answers = detectShape(what.cloud, detectionOptions(options));
+  std::array<FoldCounts, 2> counts;
+  for (std::size_t k = 0; k < counts.size(); ++k)
+    counts[k] = countsOf(shape, FoldTruth(shape, what.pose, kFoldAngles[k]), answers);
+  std::vector<std::string> rows{"noise " + std::to_string(what.noise), foldRange(shape.num_folds), what.body, "all"};
+  if (what.thinned) rows.emplace_back("thinned");
+  for (const std::string& row : rows) {
+    report.at(row, kRecall1) += counts[0].recall;
+    report.at(row, kPrecision1) += counts[0].precision;
+    report.at(row, kRecall5) += counts[1].recall;
+    report.at(row, kPrecision5) += counts[1].precision;
+    if (!shape.isNearlyRound()) report.at(row, kSwallowed).add(counts[1].swallowed);
+  }
+  report.log(logLine(what, answers, counts[0], counts[1]));
+}
+
 }  // namespace
 
-ShapeReport measureFolds(const ShapeRowOptions& options) {
-  ShapeReport report({"recall, 1 deg", "precision, 1 deg", "recall, 5 deg", "precision, 5 deg", "axis swallows folds"});
-  report.log(
+ShapeCases foldCases(const ShapeRowOptions& options) {
+  ShapeCases cases{
+      ShapeReport({"recall, 1 deg", "precision, 1 deg", "recall, 5 deg", "precision, 5 deg", "axis swallows folds"}),
+      options.count(kFoldCases), [&options](int i, ShapeReport& report) { measureFold(i, options, report); }};
+  cases.report.log(
       "body,folds,noise,density,between,found1,of1,right1,answers1,found5,of5,right5,answers5,axes,centers,planes,"
       "symmetries");
-  const int count = options.count(kFoldCases);
-  for (int i = 0; i < count; ++i) {
-    options.progress(static_cast<double>(i) / count);
-    const FoldedCloud what = foldedCloud(i, options.caseSeed(i), options.report, options.num_points);
-    const SweptShape& shape = what.shape;
-    const ShapeAnswers answers = detectShape(what.cloud, detectionOptions(options));
-    std::array<FoldCounts, 2> counts;
-    for (std::size_t k = 0; k < counts.size(); ++k)
-      counts[k] = countsOf(shape, FoldTruth(shape, what.pose, kFoldAngles[k]), answers);
-    std::vector<std::string> rows{"noise " + std::to_string(what.noise), foldRange(shape.num_folds), what.body, "all"};
-    if (what.thinned) rows.emplace_back("thinned");
-    for (const std::string& row : rows) {
-      add(report.at(row, kRecall1), counts[0].recall);
-      add(report.at(row, kPrecision1), counts[0].precision);
-      add(report.at(row, kRecall5), counts[1].recall);
-      add(report.at(row, kPrecision5), counts[1].precision);
-      if (!shape.isNearlyRound()) report.at(row, kSwallowed).add(counts[1].swallowed);
-    }
-    report.log(logLine(what, answers, counts[0], counts[1]));
-  }
-  return report;
+  return cases;
 }
 
 }  // namespace pcl_symmetry::apps

@@ -185,43 +185,44 @@ Cloud randomCloud(const std::string& kind, bool report, RandomStream& random) {
   return line(count, report, random);
 }
 
+void measureRandomCloud(int i, const ShapeRowOptions& options, ShapeReport& report) {
+  RandomStream random(options.caseSeed(i));
+  const auto& kinds = randomKinds();
+  const std::string& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
+  Cloud::Ptr cloud(new Cloud(randomCloud(kind, options.report, random)));
+  const Eigen::Isometry3d pose = randomPose(random(), 1.0);
+  moveAndBlur(*cloud, pose, 0.0, random);
+  const ShapeAnswers answers = detectShape(cloud, detectionOptions(options));
+  const auto num_planes = answers.symmetries().size();
+  // A straight line has an axis: to say so is right.
+  const bool is_line = kind == "line" && !options.report && answers.callLine(pose.linear().col(0));
+  for (const std::string& row : {kind, std::string("all")}) {
+    report.at(row, 0).add(answers.callSymmetric() && !is_line);
+    report.at(row, 1).add(num_planes > 0);
+    report.at(row, 2).add(!answers.axes.empty());
+    report.at(row, 3).add(!answers.centers.empty());
+    report.at(row, 4).add(answers.planes.size() > num_planes);
+    report.at(row, 5).add(is_line);
+  }
+  Row row;
+  row.add(kind).add(double(cloud->size())).add(double(num_planes)).add(double(answers.axes.size()));
+  row.add(double(answers.centers.size())).add(double(answers.planes.size() - num_planes));
+  if (!answers.planes.empty())
+    row.add(answers.planes[0].confidence)
+        .add(answers.planes[0].share)
+        .add(answers.planes[0].score)
+        .add(answers.planes[0].deviation);
+  report.log(row.end());
+}
+
 }  // namespace
 
-ShapeReport measureRandomClouds(const ShapeRowOptions& options) {
-  ShapeReport report({"called symmetric", "a plane", "an axis", "a center", "possible", "a line that has its axis"});
-  report.log("kind,points,planes,axes,centers,possible,confidence,share,score,deviation");
-  const auto& kinds = randomKinds();
-  const int count = options.count(kRandomCases);
-  for (int i = 0; i < count; ++i) {
-    options.progress(static_cast<double>(i) / count);
-    RandomStream random(options.caseSeed(i));
-    const std::string& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
-    Cloud::Ptr cloud(new Cloud(randomCloud(kind, options.report, random)));
-    const Eigen::Isometry3d pose = randomPose(random(), 1.0);
-    moveAndBlur(*cloud, pose, 0.0, random);
-    const ShapeAnswers answers = detectShape(cloud, detectionOptions(options));
-    const auto num_planes = answers.symmetries().size();
-    // A straight line has an axis: to say so is right.
-    const bool is_line = kind == "line" && !options.report && answers.callLine(pose.linear().col(0));
-    for (const std::string& row : {kind, std::string("all")}) {
-      report.at(row, 0).add(answers.callSymmetric() && !is_line);
-      report.at(row, 1).add(num_planes > 0);
-      report.at(row, 2).add(!answers.axes.empty());
-      report.at(row, 3).add(!answers.centers.empty());
-      report.at(row, 4).add(answers.planes.size() > num_planes);
-      report.at(row, 5).add(is_line);
-    }
-    Row row;
-    row.add(kind).add(double(cloud->size())).add(double(num_planes)).add(double(answers.axes.size()));
-    row.add(double(answers.centers.size())).add(double(answers.planes.size() - num_planes));
-    if (!answers.planes.empty())
-      row.add(answers.planes[0].confidence)
-          .add(answers.planes[0].share)
-          .add(answers.planes[0].score)
-          .add(answers.planes[0].deviation);
-    report.log(row.end());
-  }
-  return report;
+ShapeCases randomCases(const ShapeRowOptions& options) {
+  ShapeCases cases{
+      ShapeReport({"called symmetric", "a plane", "an axis", "a center", "possible", "a line that has its axis"}),
+      options.count(kRandomCases), [&options](int i, ShapeReport& report) { measureRandomCloud(i, options, report); }};
+  cases.report.log("kind,points,planes,axes,centers,possible,confidence,share,score,deviation");
+  return cases;
 }
 
 }  // namespace pcl_symmetry::apps

@@ -16,22 +16,22 @@ namespace {
 struct ShapeKind {
   const char* name;
   const char* summary;
-  ShapeReport (*measure)(const ShapeRowOptions&);
+  ShapeCases (*cases)(const ShapeRowOptions&);
 };
 
 // derived: all kinds of this room.
 constexpr ShapeKind kShapeKinds[] = {
-    {"folds", "prisms, tubes, rims and cones of 2 to 24 folds, and round bodies", measureFolds},
-    {"views", "round bodies and balls seen from one side", measureViews},
-    {"turns", "axes of round bodies, of folds and of mugs seen from one side", measureTurns},
-    {"random", "clouds without symmetry", measureRandomClouds},
-    {"composites", "two symmetric parts stuck together", measureComposites},
-    {"counts", "models at 5 000, 20 000 and 100 000 points", measurePointCounts}};
+    {"folds", "prisms, tubes, rims and cones of 2 to 24 folds, and round bodies", foldCases},
+    {"views", "round bodies and balls seen from one side", viewCases},
+    {"turns", "axes of round bodies, of folds and of mugs seen from one side", turnCases},
+    {"random", "clouds without symmetry", randomCases},
+    {"composites", "two symmetric parts stuck together", compositeCases},
+    {"counts", "models at 5 000, 20 000 and 100 000 points", pointCountCases}};
 
 struct EvaluateShapesOptions {
   std::string kind;
   std::string half = "tuning";
-  std::optional<std::string> folder, csv;
+  std::optional<std::string> folder, csv, journal;
   ShapeRowOptions rows;
   CommonOptions common;
 };
@@ -49,6 +49,7 @@ CommandLine commandLine(EvaluateShapesOptions& o) {
       .number("num", o.rows.num, Range::closed(0, 1'000'000), "number of clouds, 0 = about two minutes")
       .number("points", o.rows.num_points, Range::closed(100, 10'000'000), "number of points per cloud")
       .text("csv", "FILE", o.csv, "a row for each cloud");
+  ResumableRun::addFlag(line, o.journal);
   addSelectionFlags(line, o.rows.selection);
   line.common(o.common, kJson | kSeed | kThreads | kQuiet);
   return line;
@@ -56,21 +57,22 @@ CommandLine commandLine(EvaluateShapesOptions& o) {
 
 }  // namespace
 
-int evaluateShapes(int argc, char** argv) {
+int evaluateShapes(int argc, char** argv, SharedWork& processes) {
   EvaluateShapesOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  const Console console(options.common.quiet);
+  ResumableRun work(processes, options.journal, argc, argv);
+  const Console console(options.common.quiet || !work.isFirst());
   ShapeRowOptions& rows = options.rows;
   rows.report = options.half == "report";
   if (options.folder) rows.folders = {*options.folder};
   rows.seed = options.common.seed;
-  rows.threads = options.common.threads;
+  rows.threads = work.threadsOfItem(options.common.threads);
   for (const ShapeKind& kind : kShapeKinds) {
     if (options.kind != kind.name) continue;
     Step step(console, std::string("Evaluating ") + kind.summary);
-    rows.progress = [&](double fraction) { step.progress(fraction); };
-    const ShapeReport report = kind.measure(rows);
+    const ShapeReport report = measuredCases(kind.cases(rows), work, step);
+    if (!work.isFirst()) return 0;
     step.done();
     report.print();
     if (options.csv) writeText(*options.csv, report.csv());

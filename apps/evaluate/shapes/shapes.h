@@ -2,10 +2,13 @@
 /// construction.
 #pragma once
 
+#include "common/processes/shared_work.h"
+
 namespace pcl_symmetry::apps {
 
 /// The sub-command, with argv[0] its name.
+/// \param processes that share its work.
 /// \return the exit code.
-int evaluateShapes(int argc, char** argv);
+int evaluateShapes(int argc, char** argv, SharedWork& processes);
 
 }  // namespace pcl_symmetry::apps

@@ -120,6 +120,35 @@ void addEvidence(Row& row, const ShapeAnswers& answers, const SweptShape& shape,
   if (nearest) row.add(nearest->off).add(nearest->far).add(nearest->support).add(nearest->halfway);
 }
 
+void measureTurn(int i, const ShapeRowOptions& options, ShapeReport& report) {
+  const TurningScan solid = turningScan(i, options);
+  const SweptShape& shape = solid.shape;
+  const VirtualScan& scan = solid.scan;
+  const double handle = solid.kind == "handle" ? handleShare(solid) : 0.0;
+  if (handle > kHiddenHandle && handle < kVisibleHandle) return;
+  const bool in_sight = handle >= kVisibleHandle;
+  const ShapeAnswers answers = detectShape(scan.cloud, detectionOptions(options));
+  const ClosestTurn closest = closestTurn(answers, shape, scan.T_scan_model);
+  const bool round = shape.num_folds == 0 || shape.isNearlyRound();
+  const bool right = closest.error <= 1.0;
+  const std::string row = in_sight ? "handle in sight" : solid.kind == "handle" ? "handle hidden" : solid.kind;
+  for (const std::string& name : {row, std::string(in_sight ? "" : "all but handles in sight")}) {
+    if (name.empty()) continue;
+    if (!in_sight) {
+      report.at(name, kAxisRight).add(right);
+      report.at(name, kFoldRight).add(right && (closest.order == shape.num_folds || (closest.order == 0 && round)));
+    }
+    report.at(name, kConfident).add(std::isfinite(closest.error));
+    report.at(name, kFalseRound).add(closest.called_round && (in_sight || !round));
+    report.at(name, kWrongAxis).add(closest.other);
+  }
+  Row line;
+  line.add(row).add(shape.body).add(double(shape.num_folds)).add(std::acos(std::abs(solid.direction.z())) / kDegree);
+  line.add(handle).add(closest.error).add(double(closest.order)).add(closest.confidence);
+  addEvidence(line, answers, shape, scan.T_scan_model);
+  report.log(line.end());
+}
+
 }  // namespace
 
 TurningScan turningScan(int i, const ShapeRowOptions& options) {
@@ -135,41 +164,13 @@ TurningScan turningScan(int i, const ShapeRowOptions& options) {
   return solid;
 }
 
-ShapeReport measureTurns(const ShapeRowOptions& options) {
-  ShapeReport report({"axis within 1 deg, 1 %", "and its order", "called a symmetry", "called round, but is not",
-                      "another axis of order 3 and more"});
-  report.log("kind,body,folds,slant,handle,error,order,confidence,best_error,off,far,support,halfway");
-  const int count = options.count(kTurnSolids * kTurnViews);
-  for (int i = 0; i < count; ++i) {
-    options.progress(static_cast<double>(i) / count);
-    const TurningScan solid = turningScan(i, options);
-    const SweptShape& shape = solid.shape;
-    const VirtualScan& scan = solid.scan;
-    const double handle = solid.kind == "handle" ? handleShare(solid) : 0.0;
-    if (handle > kHiddenHandle && handle < kVisibleHandle) continue;
-    const bool in_sight = handle >= kVisibleHandle;
-    const ShapeAnswers answers = detectShape(scan.cloud, detectionOptions(options));
-    const ClosestTurn closest = closestTurn(answers, shape, scan.T_scan_model);
-    const bool round = shape.num_folds == 0 || shape.isNearlyRound();
-    const bool right = closest.error <= 1.0;
-    const std::string row = in_sight ? "handle in sight" : solid.kind == "handle" ? "handle hidden" : solid.kind;
-    for (const std::string& name : {row, std::string(in_sight ? "" : "all but handles in sight")}) {
-      if (name.empty()) continue;
-      if (!in_sight) {
-        report.at(name, kAxisRight).add(right);
-        report.at(name, kFoldRight).add(right && (closest.order == shape.num_folds || (closest.order == 0 && round)));
-      }
-      report.at(name, kConfident).add(std::isfinite(closest.error));
-      report.at(name, kFalseRound).add(closest.called_round && (in_sight || !round));
-      report.at(name, kWrongAxis).add(closest.other);
-    }
-    Row line;
-    line.add(row).add(shape.body).add(double(shape.num_folds)).add(std::acos(std::abs(solid.direction.z())) / kDegree);
-    line.add(handle).add(closest.error).add(double(closest.order)).add(closest.confidence);
-    addEvidence(line, answers, shape, scan.T_scan_model);
-    report.log(line.end());
-  }
-  return report;
+ShapeCases turnCases(const ShapeRowOptions& options) {
+  ShapeCases cases{ShapeReport({"axis within 1 deg, 1 %", "and its order", "called a symmetry",
+                                "called round, but is not", "another axis of order 3 and more"}),
+                   options.count(kTurnSolids * kTurnViews),
+                   [&options](int i, ShapeReport& report) { measureTurn(i, options, report); }};
+  cases.report.log("kind,body,folds,slant,handle,error,order,confidence,best_error,off,far,support,halfway");
+  return cases;
 }
 
 }  // namespace pcl_symmetry::apps

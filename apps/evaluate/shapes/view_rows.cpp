@@ -36,55 +36,55 @@ double errorOf(const ShapeAnswers& answers, const SweptShape& shape, const Eigen
   return least;
 }
 
-}  // namespace
-
-ShapeReport measureViews(const ShapeRowOptions& options) {
-  ShapeReport report({"axis or center within 1 deg, 1 %", "within 5 deg, 5 %", "symmetries, but no family",
-                      "no symmetry", "family of a prism, which has none"});
-  report.log("body,slant,error,axes,centers,symmetries,planes,confidence,share,score");
+void measureView(int i, const ShapeRowOptions& options, ShapeReport& report) {
   std::vector<std::string> bodies = roundBodies(options.report);
   bodies.emplace_back("ball");
   bodies.emplace_back("prism");
-  const int count = options.count(kViewCases);
-  for (int i = 0; i < count; ++i) {
-    options.progress(static_cast<double>(i) / count);
-    RandomStream random(options.caseSeed(i));
-    const std::string& body = bodies[i % bodies.size()];
-    const SweptShape shape =
-        body == "prism"
-            ? foldedShape(body, kFewestSides + static_cast<int>(random.below(kMostSides - kFewestSides + 1)),
-                          options.report, random)
-            : roundShape(body, random);
-    VirtualScannerOptions scanning;
-    scanning.num_points = options.num_points;
-    scanning.random_pose = true;
-    scanning.seed = random();
-    scanning.num_threads = options.threads;
-    const Eigen::Vector3d direction = randomPose(random(), 0.0).linear().col(0);
-    const VirtualScan scan = VirtualScanner(shape.mesh).scan(direction, scanning);
-    const ShapeAnswers answers = detectShape(scan.cloud, detectionOptions(options));
-    const double error = errorOf(answers, shape, scan.T_scan_model);
-    const bool has_family = !answers.axes.empty() || !answers.centers.empty();
-    const double slant = std::acos(std::abs(direction.z())) / kDegree;  // of the view against the axis
-    const std::string view = slant < 30 ? "along the axis" : slant < 60 ? "oblique" : "across the axis";
-    if (body == "prism") {
-      report.at(body, kFalseFamily).add(has_family && !shape.isNearlyRound());
-    } else {
-      for (const std::string& row : {body, body == "ball" ? std::string("any") : view, std::string("all")}) {
-        report.at(row, kWithin).add(error <= 1.0);
-        report.at(row, kNearby).add(error <= kNear);
-        report.at(row, kOnlyPlanes).add(!has_family && answers.callSymmetric());
-        report.at(row, kNothing).add(!answers.callSymmetric());
-      }
+  RandomStream random(options.caseSeed(i));
+  const std::string& body = bodies[i % bodies.size()];
+  const SweptShape shape =
+      body == "prism" ? foldedShape(body, kFewestSides + static_cast<int>(random.below(kMostSides - kFewestSides + 1)),
+                                    options.report, random)
+                      : roundShape(body, random);
+  VirtualScannerOptions scanning;
+  scanning.num_points = options.num_points;
+  scanning.random_pose = true;
+  scanning.seed = random();
+  scanning.num_threads = options.threads;
+  const Eigen::Vector3d direction = randomPose(random(), 0.0).linear().col(0);
+  const VirtualScan scan = VirtualScanner(shape.mesh).scan(direction, scanning);
+  const ShapeAnswers answers = detectShape(scan.cloud, detectionOptions(options));
+  const double error = errorOf(answers, shape, scan.T_scan_model);
+  const bool has_family = !answers.axes.empty() || !answers.centers.empty();
+  const double slant = std::acos(std::abs(direction.z())) / kDegree;  // of the view against the axis
+  const std::string view = slant < 30 ? "along the axis" : slant < 60 ? "oblique" : "across the axis";
+  if (body == "prism") {
+    report.at(body, kFalseFamily).add(has_family && !shape.isNearlyRound());
+  } else {
+    for (const std::string& row : {body, body == "ball" ? std::string("any") : view, std::string("all")}) {
+      report.at(row, kWithin).add(error <= 1.0);
+      report.at(row, kNearby).add(error <= kNear);
+      report.at(row, kOnlyPlanes).add(!has_family && answers.callSymmetric());
+      report.at(row, kNothing).add(!answers.callSymmetric());
     }
-    Row row;
-    row.add(shape.body).add(slant).add(error).add(double(answers.axes.size())).add(double(answers.centers.size()));
-    row.add(double(answers.symmetries().size())).add(double(answers.planes.size()));
-    if (!answers.planes.empty())
-      row.add(answers.planes[0].confidence).add(answers.planes[0].share).add(answers.planes[0].score);
-    report.log(row.end());
   }
-  return report;
+  Row row;
+  row.add(shape.body).add(slant).add(error).add(double(answers.axes.size())).add(double(answers.centers.size()));
+  row.add(double(answers.symmetries().size())).add(double(answers.planes.size()));
+  if (!answers.planes.empty())
+    row.add(answers.planes[0].confidence).add(answers.planes[0].share).add(answers.planes[0].score);
+  report.log(row.end());
+}
+
+}  // namespace
+
+ShapeCases viewCases(const ShapeRowOptions& options) {
+  ShapeCases cases{ShapeReport({"axis or center within 1 deg, 1 %", "within 5 deg, 5 %", "symmetries, but no family",
+                                "no symmetry", "family of a prism, which has none"}),
+                   options.count(kViewCases),
+                   [&options](int i, ShapeReport& report) { measureView(i, options, report); }};
+  cases.report.log("body,slant,error,axes,centers,symmetries,planes,confidence,share,score");
+  return cases;
 }
 
 }  // namespace pcl_symmetry::apps

@@ -17,6 +17,12 @@ struct Proportion {
     ++total;
   }
 
+  Proportion& operator+=(const Proportion& more) {
+    count += more.count;
+    total += more.total;
+    return *this;
+  }
+
   /// \return in [0, 1]; NaN where nothing was counted.
   double rate() const;
 

@@ -44,6 +44,11 @@ public:
     position_ += size;
     return bytes_.data() + position_ - size;
   }
+  /// \return what putText() put.
+  std::string text() {
+    const auto size = get<std::uint32_t>();
+    return {take(size), size};
+  }
   std::size_t left() const { return bytes_.size() - position_; }
 
 private:

@@ -171,9 +171,108 @@ TEST_F(SharedEvaluation, GoesOnWhereItWasInterrupted) {
   EXPECT_NE(error_.find("other flags"), std::string::npos) << error_;
 }
 
-TEST_F(SharedEvaluation, SaysWhatIsForOneProcess) {
-  EXPECT_NE(evaluate(2, "shapes"), 0);
-  EXPECT_NE(error_.find("is for one process"), std::string::npos) << error_;
+TEST_F(SharedEvaluation, OfShapesIsThatOfOneProcess) {
+  for (const std::string kind : {"folds", "composites"}) {
+    const auto arguments = [&](const std::string& to) {
+      return "shapes " + kind + " -num 5 -points 800 -csv " + (folder_ / to) + ".csv -json " + (folder_ / to) +
+             ".json -resume " + (folder_ / (kind + to)) + ".journal";
+    };
+    ASSERT_EQ(evaluate(0, arguments("one")), 0) << error_;
+    const std::string printed = output_;
+    EXPECT_GE(std::count(printed.begin(), printed.end(), '\n'), 2) << printed;
+    for (const int processes : {2, 4}) {
+      boost::filesystem::remove(folder_ / (kind + "many.journal"));
+      ASSERT_EQ(evaluate(processes, arguments("many")), 0) << error_;
+      EXPECT_EQ(output_, printed);
+      EXPECT_EQ(contentOf(folder_ / "many.csv"), contentOf(folder_ / "one.csv"));
+      EXPECT_EQ(contentOf(folder_ / "many.json"), contentOf(folder_ / "one.json"));
+    }
+    boost::filesystem::remove(folder_ / "many.csv");
+    const std::string journal = folder_ / (kind + "many.journal");
+    boost::filesystem::resize_file(journal, boost::filesystem::file_size(journal) / 2);
+    ASSERT_EQ(evaluate(2, arguments("many")), 0) << error_;
+    EXPECT_EQ(contentOf(folder_ / "many.csv"), contentOf(folder_ / "one.csv"));
+  }
+}
+
+TEST_F(SharedEvaluation, OfRecognitionIsThatOfOneProcess) {
+  const auto arguments = [&](const std::string& to) {
+    return "recognition " + meshes_ + " -leave_out 3 -points 800 -min_merit 0.3 -csv " + (folder_ / to) +
+           ".csv -json " + (folder_ / to) + ".json -resume " + (folder_ / to) + ".journal";
+  };
+  const auto summary = [&](const std::string& to) {
+    json read = json::parse(contentOf(folder_ / (to + ".json")));
+    for (const char* time : {"median_ms", "p95_ms"}) read.erase(time);
+    return read;
+  };
+  ASSERT_EQ(evaluate(0, arguments("one")), 0) << error_;
+  EXPECT_EQ(summary("one")["left_out"].size(), 1u);
+  EXPECT_EQ(summary("one")["scans"], 6);
+  EXPECT_GT(summary("one")["very_model_rate"], 0.0);
+  for (const int processes : {2, 4}) {
+    boost::filesystem::remove(folder_ / "many.journal");
+    ASSERT_EQ(evaluate(processes, arguments("many")), 0) << error_;
+    EXPECT_EQ(withoutTimes(contentOf(folder_ / "many.csv")), withoutTimes(contentOf(folder_ / "one.csv")));
+    EXPECT_EQ(summary("many"), summary("one"));
+  }
+}
+
+TEST_F(SharedEvaluation, OfRegistrationIsThatOfOneProcess) {
+  const auto arguments = [&](const std::string& to) {
+    return "registration " + meshes_ + " -max 4 -num_views 2 -points 800 -impostors -methods symmetry,pca,features " +
+           "-csv " + (folder_ / to) + ".csv -references " + (folder_ / to) + ".references -json " + (folder_ / to) +
+           ".json -resume " + (folder_ / to) + ".journal";
+  };
+  const auto summary = [&](const std::string& to) {
+    json read = json::parse(contentOf(folder_ / (to + ".json")));
+    for (json& method : read["methods"])
+      for (const char* time : {"median_ms", "p95_ms", "median_processor_ms"}) method.erase(time);
+    return read;
+  };
+  ASSERT_EQ(evaluate(0, arguments("one")), 0) << error_;
+  const std::string one = withoutTimes(contentOf(folder_ / "one.csv"));
+  // Three of the four models can be used, and two of them have another one before them.
+  EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 1 + 3 * 2 * (3 + 2)) << one;
+  for (const int processes : {2, 4}) {
+    for (const char* file : {"many.journal", "many.references"}) boost::filesystem::remove(folder_ / file);
+    ASSERT_EQ(evaluate(processes, arguments("many")), 0) << error_;
+    EXPECT_EQ(withoutTimes(contentOf(folder_ / "many.csv")), one);
+    EXPECT_EQ(contentOf(folder_ / "many.references"), contentOf(folder_ / "one.references"));
+    EXPECT_EQ(summary("many"), summary("one"));
+  }
+}
+
+TEST_F(SharedEvaluation, OfScenesIsThatOfOneProcess) {
+  const auto arguments = [&](const std::string& to) {
+    return "scenes " + meshes_ + " -max 5 -scenes 4 -objects 4 -most_in_band 2 -noise 0,1 -leave_out 3 -csv " +
+           (folder_ / to) + ".csv -references " + (folder_ / to) + ".references -json " + (folder_ / to) +
+           ".json -export " + (folder_ / to) + " -resume " + (folder_ / to) + ".journal";
+  };
+  const auto summary = [&](const std::string& to) {
+    json read = json::parse(contentOf(folder_ / (to + ".json")));
+    for (json& row : read["rows"]) row.erase("median_ms");
+    return read;
+  };
+  const auto expectSame = [&] {
+    EXPECT_EQ(contentOf(folder_ / "many.csv"), contentOf(folder_ / "one.csv"));
+    EXPECT_EQ(contentOf(folder_ / "many.references"), contentOf(folder_ / "one.references"));
+    EXPECT_EQ(contentOf(folder_ / "many/ground_truth.json"), contentOf(folder_ / "one/ground_truth.json"));
+    EXPECT_EQ(summary("many"), summary("one"));
+  };
+  ASSERT_EQ(evaluate(0, arguments("one")), 0) << error_;
+  const std::string printed = output_, csv = contentOf(folder_ / "one.csv");
+  EXPECT_GE(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
+  for (const int processes : {2, 4}) {
+    for (const char* file : {"many.journal", "many.references"}) boost::filesystem::remove(folder_ / file);
+    ASSERT_EQ(evaluate(processes, arguments("many")), 0) << error_;
+    EXPECT_EQ(output_, printed);
+    expectSame();
+  }
+  // As if the run had ended in the middle.
+  boost::filesystem::resize_file(folder_ / "many.journal", boost::filesystem::file_size(folder_ / "many.journal") / 2);
+  for (const char* file : {"many.csv", "many.references"}) boost::filesystem::remove(folder_ / file);
+  ASSERT_EQ(evaluate(2, arguments("many")), 0) << error_;
+  expectSame();
 }
 
 }  // namespace

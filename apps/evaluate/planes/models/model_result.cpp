@@ -59,6 +59,8 @@ void get(UnpackedBytes& bytes, PlaneAnswers& answers) {
   answers.failed = bytes.get<bool>();
 }
 
+}  // namespace
+
 void put(PackedBytes& bytes, const CloudResult& cloud, const std::vector<CloudRecipe>& recipes) {
   bytes.putText(cloud.model);
   bytes.putText(cloud.cloud);
@@ -79,8 +81,8 @@ void put(PackedBytes& bytes, const CloudResult& cloud, const std::vector<CloudRe
 
 CloudResult cloudFrom(UnpackedBytes& bytes, const std::vector<CloudRecipe>& recipes) {
   CloudResult cloud;
-  cloud.model = textOf(bytes);
-  cloud.cloud = textOf(bytes);
+  cloud.model = bytes.text();
+  cloud.cloud = bytes.text();
   const auto recipe = bytes.get<std::uint32_t>();
   if (recipe >= recipes.size()) throw std::invalid_argument("recipe = " + std::to_string(recipe) + ", must be known");
   cloud.recipe = recipes[recipe];
@@ -96,8 +98,6 @@ CloudResult cloudFrom(UnpackedBytes& bytes, const std::vector<CloudRecipe>& reci
     cloud.view_verdicts.push_back(bytes.get<ViewVerdict>());
   return cloud;
 }
-
-}  // namespace
 
 std::string packedResult(const ModelResult& result, const std::vector<CloudRecipe>& recipes) {
   PackedBytes bytes;
@@ -119,11 +119,11 @@ ModelResult unpackedResult(const std::string& packed, const std::vector<CloudRec
   getOptional(bytes, result.kind);
   result.num_clouds = bytes.get<int>();
   for (auto left = bytes.get<std::uint32_t>(); left > 0; --left) result.clouds.push_back(cloudFrom(bytes, recipes));
-  for (auto left = bytes.get<std::uint32_t>(); left > 0; --left) result.left_out.push_back(textOf(bytes));
-  const std::string references = textOf(bytes);
+  for (auto left = bytes.get<std::uint32_t>(); left > 0; --left) result.left_out.push_back(bytes.text());
+  const std::string references = bytes.text();
   if (!references.empty()) result.found_references = referencesFromJson(nlohmann::json::parse(references));
   result.num_faces = bytes.get<std::size_t>();
-  result.ground_truth = textOf(bytes);
+  result.ground_truth = bytes.text();
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "evaluate/planes/plane_statistics.h"
 #include "evaluate/references/reference_symmetries.h"
+#include "recognition/packing/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
 
@@ -26,5 +27,9 @@ std::string packedResult(const ModelResult& result, const std::vector<CloudRecip
 /// \param recipes as packedResult() had them.
 /// \throws std::invalid_argument for other bytes.
 ModelResult unpackedResult(const std::string& bytes, const std::vector<CloudRecipe>& recipes);
+
+// One cloud of it.
+void put(detail::PackedBytes& bytes, const CloudResult& cloud, const std::vector<CloudRecipe>& recipes);
+CloudResult cloudFrom(detail::UnpackedBytes& bytes, const std::vector<CloudRecipe>& recipes);
 
 }  // namespace pcl_symmetry::apps
