@@ -70,10 +70,11 @@ FrameWeights fitFrameWeights(const std::vector<FrameSample>& samples) {
 std::string headerText(const FrameWeights& weights, std::size_t num_models, std::size_t num_clouds) {
   return "// Written by calibrate_frames. Do not edit.\n#pragma once\n\n#include <array>\n\nnamespace pcl_symmetry "
          "{\n\n/// Weights of frameProbabilities(): of whole clouds and of scans.\nstruct FrameFit {\n  "
-         "std::array<double, 6> whole, scan;\n};\n\n// fitted: " +
-         std::to_string(num_clouds) + " clouds of " + std::to_string(num_models) +
-         " models.\nconstexpr FrameFit kFrameFit{" + listed(weights.whole) + ",\n                             " +
-         listed(weights.scan) + "};\n\n}  // namespace pcl_symmetry\n";
+         "std::array<double, " +
+         std::to_string(kNumFrameTerms) + "> whole, scan;\n};\n\n// fitted: " + std::to_string(num_clouds) +
+         " clouds of " + std::to_string(num_models) + " models.\nconstexpr FrameFit kFrameFit{" +
+         listed(weights.whole) + ",\n                             " + listed(weights.scan) +
+         "};\n\n}  // namespace pcl_symmetry\n";
 }
 
 }  // namespace pcl_symmetry::apps

@@ -1,11 +1,13 @@
 #include "evaluate/calibration/reliability.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <limits>
 
+#include "core/base/random.h"
 #include "evaluate/shared/table_text.h"
 
 namespace pcl_symmetry::apps {
@@ -13,6 +15,8 @@ namespace pcl_symmetry::apps {
 namespace {
 
 constexpr int kNumBins = 10;  // chosen: with some hundred answers twice leaves bins of a handful, half hides curves
+// Draws of the calibration error by chance. chosen: its mean is then known to 2 %; twice takes twice the time.
+constexpr int kNumDraws = 200;
 /// Borders of the bins of the best share. chosen: fine where the answer should change, between near and symmetric.
 constexpr double kShares[] = {0.0, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.92, 0.94, 0.95, 0.96, 0.97, 0.98, 0.99, 1.0};
 
@@ -34,6 +38,25 @@ std::string cell(const Proportion& proportion) {
   return proportion.total > 0 ? fixed(proportion.rate(), 0, 100) + " / " + std::to_string(proportion.total) : "-";
 }
 
+std::size_t binOf(double confidence) {
+  return static_cast<std::size_t>(std::min(kNumBins - 1, static_cast<int>(confidence * kNumBins)));
+}
+
+/// Mean over draws of the calibration error that forecasts have which are right as often as they say.
+double chanceError(const std::vector<Forecast>& forecasts) {
+  RandomStream random(1);
+  double sum = 0.0;
+  for (int draw = 0; draw < kNumDraws; ++draw) {
+    std::array<double, kNumBins> beyond{};  // stated less drawn
+    for (const Forecast& forecast : forecasts) {
+      const double confidence = std::clamp(forecast.confidence, 0.0, 1.0);
+      beyond[binOf(confidence)] += confidence - (random.uniform() < confidence ? 1.0 : 0.0);
+    }
+    for (const double error : beyond) sum += std::abs(error);
+  }
+  return sum / kNumDraws / static_cast<double>(forecasts.size());
+}
+
 void countForecasts(const std::vector<Forecast>& forecasts, Reliability& reliability) {
   for (int k = 0; k < kNumBins; ++k)
     reliability.bins.push_back({static_cast<double>(k) / kNumBins, static_cast<double>(k + 1) / kNumBins, 0.0, {}});
@@ -41,7 +64,7 @@ void countForecasts(const std::vector<Forecast>& forecasts, Reliability& reliabi
   double sum_squares = 0.0, sum_errors = 0.0;
   for (const Forecast& forecast : forecasts) {
     const double confidence = std::clamp(forecast.confidence, 0.0, 1.0);
-    ReliabilityBin& bin = reliability.bins[std::min(kNumBins - 1, static_cast<int>(confidence * kNumBins))];
+    ReliabilityBin& bin = reliability.bins[binOf(confidence)];
     bin.sum_confidence += confidence;
     bin.right.add(forecast.right);
     sum_squares += std::pow(confidence - (forecast.right ? 1.0 : 0.0), 2);
@@ -51,6 +74,7 @@ void countForecasts(const std::vector<Forecast>& forecasts, Reliability& reliabi
       forecasts.empty() ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(forecasts.size());
   reliability.brier = sum_squares / size;
   reliability.calibration_error = sum_errors / size;
+  reliability.chance_error = chanceError(forecasts);
 }
 
 }  // namespace
@@ -73,13 +97,14 @@ Reliability reliabilityOf(const std::string& label, const std::vector<Forecast>&
 
 void printReliability(const std::vector<Reliability>& groups) {
   if (groups.empty()) return;
-  std::vector<std::string> borders = {"answers", "ECE", "Brier"};
+  std::vector<std::string> borders = {"answers", "ECE", "by chance", "Brier"};
   for (const ReliabilityBin& bin : groups.front().bins) borders.push_back(fixed(bin.low, 1) + "-" + fixed(bin.high, 1));
   std::printf("Reliability: answers at a reference, %% / answers, by confidence\n");
   printHeading("clouds", borders);
   for (const Reliability& group : groups) {
-    std::printf("%-22s %10d %10s %10s", group.label.c_str(), group.num_forecasts,
-                fixed(group.calibration_error, 3).c_str(), fixed(group.brier, 3).c_str());
+    std::printf("%-22s %10d %10s %10s %10s", group.label.c_str(), group.num_forecasts,
+                fixed(group.calibration_error, 3).c_str(), fixed(group.chance_error, 3).c_str(),
+                fixed(group.brier, 3).c_str());
     for (const ReliabilityBin& bin : group.bins) std::printf(" %10s", cell(bin.right).c_str());
     std::printf("\n");
   }

@@ -42,6 +42,9 @@ struct Reliability {
   /// Mean over the answers of the difference between the mean confidence and the rate of right answers of their bin;
   /// NaN without answers.
   double calibration_error = 0.0;
+  /// What chance alone leaves of it: its mean where each answer is right with the probability that was stated. NaN
+  /// without answers.
+  double chance_error = 0.0;
   double brier = 0.0;  ///< mean square of confidence less 1 for right and 0 for wrong answers; NaN without answers
   std::vector<ShareBin> shares;
 };

@@ -17,13 +17,13 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 /// The center of symmetry (COS): where the three planes meet.
 ///
 /// Departure from the paper: the profiles of the second and third plane are often flat, so each offset is the mean over
-/// all offsets, weighted by score and by closeness to the middle of the extent of the points. The first plane of a scan
-/// counts less the further it is from that middle.
+/// all offsets, weighted by score and by closeness to the middle of the extent of the points. A first plane that may be
+/// no symmetry, as that of a scan or of a low score, counts less the further it is from that middle.
 /// \return input frame.
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame);
 
-/// The center of a scan where several frames are nearly as good: the mean of their centers, weighted by their values.
-/// Frames of a symmetric shape have one center, but where a shape has no symmetry what was seen decides which is best.
+/// The center where several frames are nearly as good: the mean of their centers, weighted by their values. Frames of a
+/// symmetric shape have one center, but where a shape has no symmetry chance and what was seen decide which is best.
 /// \param centers of the frames, input frame.
 /// \param frames best first, at least one.
 Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const std::vector<FrameCandidate>& frames);

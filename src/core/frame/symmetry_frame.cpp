@@ -157,7 +157,7 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   frame.axes = principalSymmetryAxes(points, best.axes);
   std::vector<Eigen::Vector3d> centers;
   for (const FrameCandidate& other : frames) centers.push_back(centerOfSymmetry(evidence, other));
-  frame.center = evidence.scanned() ? meanCenter(centers, frames) : centers.front();
+  frame.center = meanCenter(centers, frames);
   frame.scores = best.scores.cast<double>().cwiseMin(1.0);
   frame.revolution_axis = revolutionAxis(evidence, best, options.tie);
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);

@@ -57,7 +57,7 @@ TEST(FrameFitting, IsFiniteWhereTheFirstFrameIsAlwaysRight) {
 TEST(FrameFitting, WritesTheHeaderOfTheLibrary) {
   const std::string text = headerText(FrameWeights{}, 3, 7);
   EXPECT_NE(text.find("7 clouds of 3 models"), std::string::npos);
-  EXPECT_NE(text.find("kFrameFit{{0, 0, 0, 0, 0, 0}"), std::string::npos) << text;
+  EXPECT_NE(text.find("kFrameFit{{0, 0, 0, 0, 0, 0, 0, 0}"), std::string::npos) << text;
 }
 
 }  // namespace

@@ -47,6 +47,16 @@ TEST(Reliability, ProbabilitiesThatComeTrueHaveNoError) {
   EXPECT_NEAR(boastful.calibration_error, 0.25, 1e-12) << "half of the answers are half too sure";
   EXPECT_NEAR(boastful.brier, 0.25, 1e-12);
   EXPECT_TRUE(std::isnan(reliabilityOf("none", {}, {}).brier));
+  EXPECT_TRUE(std::isnan(reliabilityOf("none", {}, {}).chance_error));
+}
+
+TEST(Reliability, ChanceLeavesTheMeanDeviationOfItsDraws) {
+  // Of 20 draws of probability 3/4, de Moivre's 2 k C(20, k) p^k q^(21 - k) / 20 with k = 16 is 0.0759; 200 means of
+  // draws with a deviation of 0.058 each lie within 0.0125 of it, three standard errors.
+  const Reliability one_bin = reliabilityOf("", std::vector<Forecast>(20, {0.75, true}), {});
+  EXPECT_NEAR(one_bin.chance_error, 0.0759, 0.0125);
+  EXPECT_NEAR(reliabilityOf("", {{1.0, false}, {0.0, true}}, {}).chance_error, 0.0, 1e-12)
+      << "nothing is left to chance";
 }
 
 TEST(Reliability, CloudsAreBinnedByTheShareOfTheirBestPlane) {

@@ -49,6 +49,22 @@ TEST(MeanCenter, LiesBetweenFramesThatAreNearlyAsGood) {
   EXPECT_EQ(meanCenter({centers[1]}, {frames[1]}), centers[1]);
 }
 
+TEST(CenterOfSymmetry, OfAWholeFollowsTheFirstPlaneAsFarAsItIsASymmetry) {
+  const Points cloud = box({1.0, 0.6, 0.3}, 6000, Sampling::Random, 3).cloud();
+  const PointsRef points(cloud);
+  const FrameEvidence evidence(points, FrameOptions(), nullptr);
+  constexpr float kAside = 5.0f;  // cells
+  const auto firstOffset = [&](float score) {
+    FrameCandidate frame = candidate(Eigen::Matrix3d::Identity(), Eigen::Vector3f::Constant(score));
+    frame.offsets[0] = kAside;
+    return evidence.toCells(centerOfSymmetry(evidence, frame)).x();
+  };
+  // From kAside to a middle within half a cell of 0, by 5^3 / (5^2 + d^2) cells: d is 0.06 of about 29 cells over 1 -
+  // score, 174 for a symmetry and 2.5 for a score of 0.3.
+  EXPECT_NEAR(firstOffset(1.0f), kAside, 0.01f);
+  EXPECT_NEAR(firstOffset(0.3f), 1.0f, 0.6f);
+}
+
 TEST(EquivalentFrames, HaveEverySignThatIsARotation) {
   EquivalentFrames frames;
   const Eigen::Isometry3d pose = randomPose(2);

@@ -15,7 +15,8 @@ using namespace pcl_symmetry::test;
 
 FrameChoice choiceWith(double value) {
   FrameChoice choice;
-  choice.terms << 1.0, value, 0.0, 0.0, 0.0, 0.0;
+  choice.terms[0] = 1.0;
+  choice.terms[1] = value;
   return choice;
 }
 

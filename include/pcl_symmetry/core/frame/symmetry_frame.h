@@ -83,8 +83,8 @@ struct SymmetryFrame {
 /// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. The
 /// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points. Where
 /// faces about the first axis make the shape stand level at little loss of symmetry, the other two axes follow them. A
-/// scan is completed by its reflection across the first plane before the other two are searched, free space speaks
-/// against planes, and its center is a mean over frames that are nearly as good.
+/// scan is completed by its reflection across the first plane before the other two are searched, and free space speaks
+/// against planes. The center is a mean over frames that are nearly as good.
 ///
 /// Order: the first plane is that of the frame that is best as a whole. The second scores more than the third or, where
 /// the two tie, the points spread more along it.

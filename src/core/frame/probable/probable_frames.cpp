@@ -84,9 +84,13 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
     const Outline outline(evidence.points(), h.frame.axes.col(0));
     h.terms << 1.0, h.frame.value - best, h.frame.scores[0],
         outline.boxAt(outline.angleOf(h.frame.axes.col(1))).contact,
-        std::min(angleBetween(h.frame.axes, principal) / kFarFromPrincipal, 1.0), 0.0;
+        std::min(angleBetween(h.frame.axes, principal) / kFarFromPrincipal, 1.0), 0.0,
+        h.frame.scores[1] + h.frame.scores[2], 0.0;
   }
-  if (!choices.empty()) choices.front().terms[5] = 1.0;
+  if (!choices.empty()) {
+    choices.front().terms[5] = 1.0;
+    choices.front().terms[7] = choices.front().frame.scores[0];
+  }
   return choices;
 }
 

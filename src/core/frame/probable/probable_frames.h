@@ -21,7 +21,9 @@ namespace pcl_symmetry {
 ///   3  Outline::Box::contact, seen along the first axis
 ///   4  angle to the principal axes of the points, in any order and sign, as a share of 20 degrees, at most 1
 ///   5  1 for the frame that the search put first
-constexpr int kNumFrameTerms = 6;  // derived: the list above
+///   6  sum of the scores of the second and third plane
+///   7  score of the first plane for the frame that the search put first, else 0
+constexpr int kNumFrameTerms = 8;  // derived: the list above
 using FrameTerms = Eigen::Matrix<double, kNumFrameTerms, 1>;
 
 /// A frame that may be the shape's own.
