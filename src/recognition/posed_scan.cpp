@@ -19,16 +19,16 @@ PosedScan::PosedScan(const Points& points, const Visibility& seen, const CloudRe
       scale_(ball_.radius / kSeenRadius),
       surface_(surfaceOf(points, ball_.center, seen.normalized(ball_.center, scale_))) {}
 
-void PosedScan::bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses) {
+void PosedScan::bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses,
+                        PointReader read) {
   const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
   std::vector<Eigen::Isometry3d> hypotheses;
   for (const Eigen::Isometry3d& pose : poses) hypotheses.push_back(frames.toSearch(pose));
   PoseSearchOptions search = options_.search;
   search.num_threads = options_.num_threads;
   search.num_rotations = 0;
-  PosedSurface surface = surfaceOf(points, frames.target_center, std::nullopt);
-  std::vector<RankedPose> found = searchPoses(surface_, surface, hypotheses, search);
-  models_.push_back({name, frames, std::move(surface), std::move(found)});
+  const PosedSurface surface = surfaceOf(points, frames.target_center, std::nullopt);
+  models_.push_back({name, frames, searchPoses(surface_, surface, hypotheses, search), std::move(read)});
 }
 
 Recognition PosedScan::refined(int num_refined) {
@@ -38,10 +38,11 @@ Recognition PosedScan::refined(int num_refined) {
   Recognition found;
   for (const PosedModel& model : models_) {
     if (found.size() == static_cast<std::size_t>(num_refined)) break;
-    const RankedPose best =
-        refinePoses(surface_, model.surface, RefinementTarget(model.surface), model.poses, options_).front();
+    const PosedSurface surface = surfaceOf(model.read(), model.frames.target_center, std::nullopt);
+    const RankedPose best = refinePoses(surface_, surface, RefinementTarget(surface), model.poses, options_).front();
     found.push_back({model.name, model.frames.toInput(best.T_model_scan), best.score, 0.0});
   }
+  models_.clear();
   return found;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,20 +21,26 @@ public:
   /// \param seen what the scanner saw.
   PosedScan(const Points& points, const Visibility& seen, const CloudRegistrationOptions& options);
 
-  /// Searches a model for poses of the scan.
-  /// \param points of the model, 3 x M, finite, units of the scan.
-  /// \param poses T_model_scan to try.
-  void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses);
+  /// Reads the points of a model, 3 x M, finite, units of the scan.
+  using PointReader = std::function<Points()>;
 
-  /// \return the \p num_refined models with the best poses, these refined, in any order; confidences are 0.
+  /// Searches a model for poses of the scan.
+  /// \param points of the model, fewer than for refined().
+  /// \param poses T_model_scan to try.
+  /// \param read all points that poses are refined with.
+  void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses,
+               PointReader read);
+
+  /// Refines the poses of the \p num_refined models with the best ones, and forgets all models.
+  /// \return these models, in any order; confidences are 0.
   Recognition refined(int num_refined);
 
 private:
   struct PosedModel {
     std::string name;
     SearchFrames frames;
-    PosedSurface surface;
     std::vector<RankedPose> poses;  // best first
+    PointReader read;
   };
 
   PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, std::optional<Visibility> seen) const;

@@ -26,20 +26,36 @@ constexpr double kMeritSharpness = 20.0;
 // pose, twice gains little as fine steps use a few hundred points.
 constexpr std::size_t kScanPoints = 10'000;
 constexpr std::size_t kModelPoints = 5'000;  // chosen: see above
+// Points of a model that its poses are searched by. measured: of 119 scans of models of the Princeton Shape Benchmark
+// (fold 0 of the training half) among 100 000 models, 103 are right with 1250 and with 5000, in 0.38 and 0.49 s.
+constexpr std::size_t kCoarsePoints = 1'250;
 
-/// Models that look like the scan from some side, brought to it from the poses of these views.
+/// Models that look like the scan from some side, brought to it from the poses of these views: the most alike first,
+/// and others where none of these is accepted. In a large database many look more like a scan than the model that it
+/// shows.
 Recognition fitLikeViews(DatabaseParts& database, const Points& points, const Points& scan_points,
                          const Visibility& seen, const RecognitionOptions& options) {
   ViewSearchOptions search;
-  search.num_nearest = options.num_candidates;
+  search.num_nearest = std::max(options.num_candidates, options.max_candidates);
   search.size_weight = options.size_weight;
   search.num_threads = options.num_threads;
   const View view = viewOf(points, boundingBall(points).center - seen.viewpoint());
   PosedScan scan(scan_points, seen, options.registration);
   const auto read = [&](const StoredModel& model) { return database.viewsOf(model); };
-  for (const auto& [model, T_model_scan] : database.views()->nearest(view, search, read))
-    scan.bringTo(model.name, database.points(model, kModelPoints), T_model_scan);
-  return scan.refined(options.num_refined);
+  const std::vector<detail::ModelOfView> candidates = database.views()->nearest(view, search, read);
+  const std::size_t first = std::min(candidates.size(), static_cast<std::size_t>(options.num_candidates));
+  const auto fitted = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const StoredModel& model = candidates[i].model;
+      scan.bringTo(model.name, database.points(model, kCoarsePoints), candidates[i].T_model_scan,
+                   [&] { return database.points(model, kModelPoints); });
+    }
+    return scan.refined(options.num_refined);
+  };
+  const auto isAccepted = [&](const RecognizedModel& model) { return model.score.merit() >= options.min_merit; };
+  Recognition found = fitted(0, first);
+  if (std::none_of(found.begin(), found.end(), isAccepted)) found = fitted(first, candidates.size());
+  return found;
 }
 
 /// Models of like shape, registered to the scan.
@@ -110,6 +126,7 @@ CloudRegistrationOptions RecognitionOptions::quickRegistration() {
 
 void RecognitionOptions::validate() const {
   check(num_candidates >= 1, "num_candidates", num_candidates, ">= 1");
+  check(max_candidates >= 1, "max_candidates", max_candidates, ">= 1");
   check(num_refined >= 1, "num_refined", num_refined, ">= 1");
   check(size_weight >= 0.0, "size_weight", size_weight, ">= 0");
   check(min_merit >= -1.0 && min_merit <= 1.0, "min_merit", min_merit, "in [-1, 1]");

@@ -143,7 +143,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
     SymmetryDatabase database(few, options);
     fill(database);
   }
-  fillWithCopies(few, file_, 26);
+  fillWithCopies(few, file_, 52);
   RecognitionOptions recognition = optionsForRandomPoints();
   recognition.num_candidates = 2;
   recognition.num_refined = 1;
@@ -153,7 +153,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
     return found.empty() ? "" : found[0].name;
   };
   SymmetryDatabase database(file_, options);
-  ASSERT_EQ(database.size(), 104u);
+  ASSERT_EQ(database.size(), 208u);
   const std::string made = nameIn(database);
   EXPECT_EQ(made.substr(0, 5), "plate") << "its codes are made";
   database.save();
@@ -350,6 +350,9 @@ TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
   RecognitionOptions options;
   options.num_candidates = 0;
   EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "num_candidates = 0, must be >= 1");
+  options.num_candidates = 1;
+  options.max_candidates = 0;
+  EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "max_candidates = 0, must be >= 1");
   EXPECT_EQ(test::messageOf([&] { database.match(cube(), -1); }), "num_nearest = -1, must be >= 0");
   EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase::check(file_); }), file_ + ": there is no such file");
   EXPECT_EQ(ioMessageOf([&] { database.importFrom(folder_ + "/x"); }), folder_ + "/x: there is no such file or folder");
