@@ -15,7 +15,7 @@ namespace {
 
 // Models whose views are compared in full. measured: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of
 // the training half) among 100 000 models, the scanned one is among the 50 models with the nearest codes for 109, among
-// 100 for 114, 200 for 117 and 400 for 118. Twice as many take 30 ms more.
+// 100 for 114, 200 for 117 and 400 for 118. Twice as many are read for one of them.
 constexpr std::size_t kViewCandidates = 200;
 
 ViewIndex indexOf(const std::vector<StoredModel>& models, const ViewSearch::ViewReader& read, int num_threads) {
