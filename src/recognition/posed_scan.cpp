@@ -30,16 +30,17 @@ PosedScan::PosedScan(const Points& points, const std::optional<Visibility>& seen
       surface_(surfaceOf(points, ball_.center,
                          seen ? std::optional(seen->normalized(ball_.center, scale_)) : std::nullopt)) {}
 
-void PosedScan::bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses) {
+void PosedScan::bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses,
+                        PointReader read) {
   const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
   std::vector<Eigen::Isometry3d> hypotheses;
   for (const Eigen::Isometry3d& pose : poses) hypotheses.push_back(frames.toSearch(pose));
   PoseSearchOptions search = options_.search;
   search.num_threads = options_.num_threads;
   search.num_rotations = 0;
-  PosedSurface surface = surfaceOf(points, frames.target_center, std::nullopt);
+  const PosedSurface surface = surfaceOf(points, frames.target_center, std::nullopt);
   std::vector<RankedPose> found = searchPoses(surface_, surface, hypotheses, search);
-  if (!found.empty()) models_.push_back({name, frames, std::move(surface), std::move(found)});
+  if (!found.empty()) models_.push_back({name, frames, std::move(found), std::move(read)});
 }
 
 Recognition PosedScan::refined(int num_refined) {
@@ -49,11 +50,11 @@ Recognition PosedScan::refined(int num_refined) {
   Recognition found;
   for (const PosedModel& model : models_) {
     if (found.size() == static_cast<std::size_t>(num_refined)) break;
-    const RankedPose best =
-        refinePoses(surface_, model.surface, RefinementTarget(model.surface), model.poses, options_).front();
-    const PoseScore score = scoreOf(model.surface, best.T_model_scan);
-    found.push_back({model.name, model.frames.toInput(best.T_model_scan), score, 0.0});
+    const PosedSurface surface = surfaceOf(model.read(), model.frames.target_center, std::nullopt);
+    const RankedPose best = refinePoses(surface_, surface, RefinementTarget(surface), model.poses, options_).front();
+    found.push_back({model.name, model.frames.toInput(best.T_model_scan), scoreOf(surface, best.T_model_scan), 0.0});
   }
+  models_.clear();
   return found;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,12 +21,18 @@ public:
   /// \param seen what the scanner saw; nothing = the points show the object from all sides.
   PosedScan(const Points& points, const std::optional<Visibility>& seen, const CloudRegistrationOptions& options);
 
-  /// Searches a model for poses of the scan.
-  /// \param points of the model, 3 x M, finite, units of the scan.
-  /// \param poses T_model_scan to try; without one the model is left out.
-  void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses);
+  /// Reads the points of a model, 3 x M, finite, units of the scan.
+  using PointReader = std::function<Points()>;
 
-  /// \return the \p num_refined models with the best poses, these refined and judged, in any order; confidences are 0.
+  /// Searches a model for poses of the scan.
+  /// \param points of the model that poses are searched by, as many as refined() reads or fewer.
+  /// \param poses T_model_scan to try; without one the model is left out.
+  /// \param read all points that poses are refined and judged with.
+  void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses,
+               PointReader read);
+
+  /// Refines and judges the poses of the \p num_refined models with the best ones, and forgets all models.
+  /// \return these models, in any order; confidences are 0.
   Recognition refined(int num_refined);
 
   /// How well a scan fits a model: by its distances from the surface between the points, so that it does not count how
@@ -37,8 +44,8 @@ private:
   struct PosedModel {
     std::string name;
     SearchFrames frames;
-    PosedSurface surface;
     std::vector<RankedPose> poses;  // best first
+    PointReader read;
   };
 
   PoseScore scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const;

@@ -34,18 +34,22 @@ constexpr double kMostLead = 0.3;
 // pose, twice gains little as fine steps use a few hundred points.
 constexpr std::size_t kScanPoints = 10'000;
 constexpr std::size_t kModelPoints = 5'000;  // chosen: see above
+// Points of a model that its poses are searched by. measured: of 119 scans of models of the Princeton Shape Benchmark
+// (fold 0 of the training half) among 100 000 models, 103 are right with 1250 and with 5000, in 0.38 and 0.49 s.
+constexpr std::size_t kCoarsePoints = 1'250;
 
 /// Models that look like the scan from some side, or that have pairs of points as it has, each with poses to try.
-std::vector<detail::ModelOfView> candidatesFor(DatabaseParts& database, const Points& points, const Points& scan_points,
-                                               const Visibility& seen, const RecognitionOptions& options) {
+/// \param num_alike how many of the first kind.
+std::vector<detail::ModelOfView> candidatesFor(DatabaseParts& database, const detail::PairSearch* pairs,
+                                               const Points& points, const Points& scan_points, const Visibility& seen,
+                                               const RecognitionOptions& options, int num_alike) {
   ViewSearchOptions search;
-  search.num_nearest = options.num_candidates;
+  search.num_nearest = num_alike;
   search.size_weight = options.size_weight;
   search.num_threads = options.num_threads;
   const View view = viewOf(points, boundingBall(points).center - seen.viewpoint());
   const auto read = [&](const StoredModel& model) { return database.viewsOf(model); };
   std::vector<detail::ModelOfView> candidates = database.views()->nearest(view, search, read);
-  const std::shared_ptr<const detail::PairSearch> pairs = database.pairs();
   if (!pairs) return candidates;
   PairSearchOptions pair_search;
   pair_search.num_nearest = options.num_candidates;
@@ -59,29 +63,6 @@ std::vector<detail::ModelOfView> candidatesFor(DatabaseParts& database, const Po
       same->T_model_scan.insert(same->T_model_scan.end(), found.T_model_scan.begin(), found.T_model_scan.end());
   }
   return candidates;
-}
-
-/// Candidates brought to the scan from their poses.
-Recognition fitLikeViews(DatabaseParts& database, const Points& points, const Points& scan_points,
-                         const Visibility& seen, const RecognitionOptions& options) {
-  PosedScan scan(scan_points, seen, options.registration);
-  for (const auto& [model, T_model_scan] : candidatesFor(database, points, scan_points, seen, options))
-    scan.bringTo(model.name, database.points(model, kModelPoints), T_model_scan);
-  return scan.refined(options.num_refined);
-}
-
-/// Models of like shape, registered to the scan.
-Recognition fitLikeShapes(DatabaseParts& database, const Points& points, const Points& scan_points,
-                          const RecognitionOptions& options) {
-  Recognition found;
-  const PosedScan scan(scan_points, std::nullopt, options.registration);
-  for (const auto& [model, distance] : database.shapes()->nearest(points, nullptr, options.num_candidates)) {
-    const Points model_points = database.points(model, kScanPoints);
-    const CloudRegistration posed = registerClouds(scan_points, std::nullopt, model_points, std::nullopt,
-                                                   Eigen::Isometry3d::Identity(), options.registration);
-    found.push_back({model.name, posed.T_target_source, scan.judged(model_points, posed.T_target_source), 0.0});
-  }
-  return found;
 }
 
 /// See RecognizedModel::confidence.
@@ -100,18 +81,60 @@ void fillConfidences(Recognition& found) {
     for (RecognizedModel& model : found) model.confidence /= sum;
 }
 
-/// Sorts models, best first, and drops those that are not accepted.
-void keepAccepted(Recognition& found, const RecognitionOptions& options) {
+/// Sorts models, best first, and judges them together.
+void rank(Recognition& found) {
   std::stable_sort(found.begin(), found.end(), [](const RecognizedModel& a, const RecognizedModel& b) {
     return a.score.merit() > b.score.merit();
   });
   fillConfidences(found);
-  found.erase(std::remove_if(found.begin(), found.end(),
-                             [&](const RecognizedModel& model) {
-                               return model.score.merit() < options.min_merit ||
-                                      model.confidence < options.min_confidence;
-                             }),
-              found.end());
+}
+
+bool isAccepted(const RecognizedModel& model, const RecognitionOptions& options) {
+  return model.score.merit() >= options.min_merit && model.confidence >= options.min_confidence;
+}
+
+/// Candidates brought to the scan from their poses. In a large database, which has no search by pairs, many look more
+/// like a scan than the model that it shows: more are tried where none of the first is accepted.
+/// \return models, best first.
+Recognition fitLikeViews(DatabaseParts& database, const Points& points, const Points& scan_points,
+                         const Visibility& seen, const RecognitionOptions& options) {
+  const std::shared_ptr<const detail::PairSearch> pairs = database.pairs();
+  const int num_alike = pairs ? options.num_candidates : std::max(options.num_candidates, options.max_candidates);
+  const std::vector<detail::ModelOfView> candidates =
+      candidatesFor(database, pairs.get(), points, scan_points, seen, options, num_alike);
+  PosedScan scan(scan_points, seen, options.registration);
+  Recognition found;
+  const auto fit = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const StoredModel& model = candidates[i].model;
+      scan.bringTo(model.name, database.points(model, pairs ? kModelPoints : kCoarsePoints), candidates[i].T_model_scan,
+                   [&] { return database.points(model, kModelPoints); });
+    }
+    const Recognition fitted = scan.refined(options.num_refined);
+    found.insert(found.end(), fitted.begin(), fitted.end());
+    rank(found);
+  };
+  const std::size_t first =
+      pairs ? candidates.size() : std::min(candidates.size(), static_cast<std::size_t>(options.num_candidates));
+  fit(0, first);
+  if (first < candidates.size() && (found.empty() || !isAccepted(found.front(), options)))
+    fit(first, candidates.size());
+  return found;
+}
+
+/// Models of like shape, registered to the scan.
+Recognition fitLikeShapes(DatabaseParts& database, const Points& points, const Points& scan_points,
+                          const RecognitionOptions& options) {
+  Recognition found;
+  const PosedScan scan(scan_points, std::nullopt, options.registration);
+  for (const auto& [model, distance] : database.shapes()->nearest(points, nullptr, options.num_candidates)) {
+    const Points model_points = database.points(model, kScanPoints);
+    const CloudRegistration posed = registerClouds(scan_points, std::nullopt, model_points, std::nullopt,
+                                                   Eigen::Isometry3d::Identity(), options.registration);
+    found.push_back({model.name, posed.T_target_source, scan.judged(model_points, posed.T_target_source), 0.0});
+  }
+  rank(found);
+  return found;
 }
 
 /// \param scan_points fewer of the points, for poses.
@@ -126,7 +149,9 @@ Recognition recognizeIn(DatabaseParts& database, const Points& points, const Poi
     const std::optional<Visibility> seen = detail::withBadArguments(find_seen);
     Recognition found = seen ? fitLikeViews(database, points, scan_points, *seen, used)
                              : fitLikeShapes(database, points, scan_points, used);
-    keepAccepted(found, options);
+    found.erase(std::remove_if(found.begin(), found.end(),
+                               [&](const RecognizedModel& model) { return !isAccepted(model, options); }),
+                found.end());
     return found;
   });
 }
@@ -147,6 +172,7 @@ CloudRegistrationOptions RecognitionOptions::quickRegistration() {
 
 void RecognitionOptions::validate() const {
   check(num_candidates >= 1, "num_candidates", num_candidates, ">= 1");
+  check(max_candidates >= 1, "max_candidates", max_candidates, ">= 1");
   check(num_refined >= 1, "num_refined", num_refined, ">= 1");
   check(size_weight >= 0.0, "size_weight", size_weight, ">= 0");
   check(min_merit >= -1.0 && min_merit <= 1.0, "min_merit", min_merit, "in [-1, 1]");

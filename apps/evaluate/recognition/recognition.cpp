@@ -48,7 +48,9 @@ CommandLine commandLine(EvaluateRecognitionOptions& o) {
       .number("points", o.num_points, Range::closed(100, 10'000'000), "number of points per scan")
       .number("noise", o.noise, Range::closed(0, 1), "standard deviation of the depth, in diagonals")
       .number("candidates", o.recognition.num_candidates, Range::closed(1, 1'000'000),
-              "number of models that are brought to a scan")
+              "number of models that are brought to a scan first")
+      .number("max_candidates", o.recognition.max_candidates, Range::closed(1, 1'000'000),
+              "number of models that are tried until one is accepted")
       .number("min_confidence", o.recognition.min_confidence, Range::closed(0, 1), "least confidence of a known model")
       .number("min_merit", o.recognition.min_merit, Range::closed(-1, 1), "least merit of the pose of a known model")
       .text("csv", "FILE", o.csv, "a row for each scan")

@@ -15,6 +15,11 @@ namespace {
 // shapes.
 constexpr std::size_t kBlock = 16;
 constexpr double kLargestDistance = 2.0;  // derived: of two unit vectors
+// Nearest views of a shape whose mean distance ranks it: a scan lies between views, and another shape is like it from
+// one side by chance. measured: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of the training half)
+// among 100 000 models, the scanned one is among the nearest ten for 103 with one view, 107 with two, 106 with three
+// and 103 with five.
+constexpr std::size_t kMeanViews = 2;
 
 struct NearView {
   double distance;
@@ -42,6 +47,13 @@ std::vector<NearView> nearestViews(const std::vector<View>& views, const View& s
   return nearest;
 }
 
+double meanDistance(const std::vector<NearView>& nearest) {
+  const std::size_t count = std::min(kMeanViews, nearest.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) sum += nearest[i].distance;
+  return sum / static_cast<double>(count);
+}
+
 }  // namespace
 
 void ViewSearchOptions::validate() const {
@@ -66,7 +78,7 @@ std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, const ViewSearchOp
   std::vector<int> order;
   for (std::size_t i = 0; i < views.size(); ++i)
     if (!views[i].empty()) order.push_back(static_cast<int>(i));
-  const auto distance = [&](int shape) { return views[static_cast<std::size_t>(shape)].front().distance; };
+  const auto distance = [&](int shape) { return meanDistance(views[static_cast<std::size_t>(shape)]); };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
   order.resize(std::min(order.size(), static_cast<std::size_t>(options.num_nearest)));
 

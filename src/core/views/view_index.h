@@ -20,8 +20,8 @@ struct ViewSearchOptions {
 
 /// A shape that looks like a scan from some side.
 struct ShapeOfView {
-  int shape;                                    ///< number of the shape, in the order in which shapes were added
-  double distance;                              ///< least distance of its views, with the difference of sizes
+  int shape;        ///< number of the shape, in the order in which shapes were added
+  double distance;  ///< mean distance of its two nearest views, with the difference of sizes
   std::vector<Eigen::Isometry3d> T_shape_scan;  ///< poses of the nearest views, nearest first
 };
 

@@ -204,7 +204,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
     SymmetryDatabase database(few, options);
     fill(database);
   }
-  fillWithCopies(few, file_, 26);
+  fillWithCopies(few, file_, 52);
   RecognitionOptions recognition = optionsForRandomPoints();
   recognition.num_candidates = 2;
   recognition.num_refined = 1;
@@ -214,7 +214,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
     return found.empty() ? "" : found[0].name;
   };
   SymmetryDatabase database(file_, options);
-  ASSERT_EQ(database.size(), 104u);
+  ASSERT_EQ(database.size(), 208u);
   const std::string made = nameIn(database);
   EXPECT_EQ(made.substr(0, 5), "plate") << "its codes are made";
   database.save();
@@ -411,6 +411,9 @@ TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
   RecognitionOptions options;
   options.num_candidates = 0;
   EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "num_candidates = 0, must be >= 1");
+  options.num_candidates = 1;
+  options.max_candidates = 0;
+  EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "max_candidates = 0, must be >= 1");
   options = {};
   options.min_confidence = 1.5;
   EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "min_confidence = 1.5, must be in [0, 1]");
