@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
-#include "calibrate/logistic_regression.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "evaluate/calibration/logistic_regression.h"
 
 namespace pcl_symmetry::apps {
 

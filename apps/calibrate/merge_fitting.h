@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/logistic_regression.h"
 #include "calibrate/merge_samples.h"
+#include "evaluate/calibration/logistic_regression.h"
 
 namespace pcl_symmetry::apps {
 

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "calibrate/logistic_regression.h"
 #include "common/command_line/run_tool.h"
+#include "evaluate/calibration/logistic_regression.h"
 
 namespace pcl_symmetry::apps {
 

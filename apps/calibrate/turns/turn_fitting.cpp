@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "calibrate/logistic_regression.h"
 #include "common/command_line/tool_errors.h"
 #include "core/detection/scan_axes/turn_confidence.h"
+#include "evaluate/calibration/logistic_regression.h"
 
 namespace pcl_symmetry::apps {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-#include "calibrate/logistic_regression.h"
+#include "evaluate/calibration/logistic_regression.h"
 #include "evaluate/shared/table_text.h"
 
 namespace pcl_symmetry::apps {

@@ -1,4 +1,4 @@
-#include "calibrate/logistic_regression.h"
+#include "evaluate/calibration/logistic_regression.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
