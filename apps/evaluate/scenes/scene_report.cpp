@@ -132,11 +132,11 @@ std::string sceneTable(const std::vector<SceneResult>& results) {
   const bool has_recognition = std::any_of(results.begin(), results.end(),
                                            [](const SceneResult& result) { return result.recognition.has_value(); });
   if (!has_recognition) return text;
-  std::snprintf(line, sizeof(line), "\n%-6s %-11s %-8s %-26s %-26s %-26s %-26s %s\n", "noise", "hidden", "seen",
+  std::snprintf(line, sizeof(line), "\n%-6s %-11s %-8s %-31s %-31s %-31s %-31s %s\n", "noise", "hidden", "seen",
                 "right model", "right model and pose", "known: called unknown", "others: called unknown", "ms");
   text += line;
   for (const Group& group : groups) {
-    std::snprintf(line, sizeof(line), "%-6s %-11s %-8s %-26s %-26s %-26s %-26s %s\n", fixed(group.noise, 1).c_str(),
+    std::snprintf(line, sizeof(line), "%-6s %-11s %-8s %-31s %-31s %-31s %-31s %s\n", fixed(group.noise, 1).c_str(),
                   nameOf(group.band).c_str(), group.name.c_str(), group.right_model.text().c_str(),
                   group.right_pose.text().c_str(), group.unknown_of_known.text().c_str(),
                   group.unknown_of_others.text().c_str(), fixed(median(group.milliseconds), 0).c_str());

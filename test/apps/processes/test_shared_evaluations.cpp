@@ -242,6 +242,11 @@ TEST_F(SharedEvaluation, OfRegistrationIsThatOfOneProcess) {
   }
 }
 
+/// A table whose last column is a time.
+std::string withoutLastNumbers(const std::string& text) {
+  return std::regex_replace(text, std::regex(" +[0-9]+\n"), "\n");
+}
+
 TEST_F(SharedEvaluation, OfScenesIsThatOfOneProcess) {
   const auto arguments = [&](const std::string& to) {
     return "scenes " + meshes_ + " -max 5 -scenes 4 -objects 4 -most_in_band 2 -noise 0,1 -leave_out 3 -csv " +
@@ -260,12 +265,12 @@ TEST_F(SharedEvaluation, OfScenesIsThatOfOneProcess) {
     EXPECT_EQ(summary("many"), summary("one"));
   };
   ASSERT_EQ(evaluate(0, arguments("one")), 0) << error_;
-  const std::string printed = output_, csv = contentOf(folder_ / "one.csv");
+  const std::string printed = withoutLastNumbers(output_), csv = contentOf(folder_ / "one.csv");
   EXPECT_GE(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
   for (const int processes : {2, 4}) {
     for (const char* file : {"many.journal", "many.references"}) boost::filesystem::remove(folder_ / file);
     ASSERT_EQ(evaluate(processes, arguments("many")), 0) << error_;
-    EXPECT_EQ(output_, printed);
+    EXPECT_EQ(withoutLastNumbers(output_), printed);
     expectSame();
   }
   // As if the run had ended in the middle.
