@@ -39,7 +39,7 @@ protected:
     std::string command = toolPath("evaluate") + " " + arguments + " -quiet";
 #ifdef MPI_RUN
     if (num_processes > 0)
-      command = "timeout 100 " MPI_RUN " -n " + std::to_string(num_processes) +
+      command = "timeout 300 " MPI_RUN " -n " + std::to_string(num_processes) +
                 " --allow-run-as-root --oversubscribe --bind-to none " + command;
 #endif
     return run(command);
@@ -249,7 +249,7 @@ std::string withoutLastNumbers(const std::string& text) {
 
 TEST_F(SharedEvaluation, OfScenesIsThatOfOneProcess) {
   const auto arguments = [&](const std::string& to) {
-    return "scenes " + meshes_ + " -max 5 -scenes 4 -objects 4 -most_in_band 2 -noise 0,1 -leave_out 3 -csv " +
+    return "scenes " + meshes_ + " -max 5 -scenes 2 -objects 4 -most_in_band 2 -noise 0,1 -leave_out 3 -csv " +
            (folder_ / to) + ".csv -references " + (folder_ / to) + ".references -json " + (folder_ / to) +
            ".json -export " + (folder_ / to) + " -resume " + (folder_ / to) + ".journal";
   };
