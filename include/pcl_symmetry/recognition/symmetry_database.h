@@ -48,10 +48,10 @@ struct DatabaseOptions {
 struct RecognitionOptions {
   /// Models that are brought to the scan coarsely, >= 1. chosen: half misses more models, twice takes twice the time.
   int num_candidates = 10;
-  /// For scans from a viewpoint, in databases of more than 300 models: models that are brought to it where none of these
-  /// is accepted, with these, >= 1; a number below num_candidates counts as that. Unknown objects take the time of all. chosen: of 119 scans of models
-  /// of the Princeton Shape Benchmark (fold 0 of the training half) among 100 000 models, 103 are right with 40 and 107
-  /// with 100, which take up to 1.3 and 1.9 s of processor time.
+  /// For scans from a viewpoint, in databases of more than 300 models: models that are brought to it where none of
+  /// these is accepted, with these, >= 1; a number below num_candidates counts as that. Unknown objects take the time
+  /// of all. chosen: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of the training half) among
+  /// 100 000 models, 103 are right with 40 and 107 with 100, which take up to 1.3 and 1.9 s of processor time.
   int max_candidates = 70;
   /// For scans from a viewpoint: models with the best coarse poses, whose poses are refined, >= 1, of num_candidates
   /// and again of the others. chosen: as num_candidates.

@@ -183,16 +183,20 @@ TEST_F(SymmetryDatabaseTest, ModelsOfAnotherSizeHaveNoPairsInCommon) {
   EXPECT_EQ(found[0].name, "cube");
 }
 
+/// Stores a model \p count times, under its name and a number.
+/// \param views of which it has the looks.
+void addCopies(detail::ModelStore& source, const detail::StoredModel& model, const detail::StoredModel& views,
+               int count, detail::ModelStore& target) {
+  const detail::PackedModel packed{source.part(detail::ModelPart::Cloud, model),
+                                   source.part(detail::ModelPart::Signatures, model),
+                                   source.part(detail::ModelPart::Views, views), 5000};
+  for (int i = 0; i < count; ++i) target.add({model.name + std::to_string(i), 0, {}, packed.num_points}, packed, 0, {});
+}
+
 /// The models of a file under \p count names each.
 void fillWithCopies(const std::string& from, const std::string& to, int count) {
   detail::ModelStore source(from, 10.0, ""), target(to, 10.0, "");
-  for (const detail::StoredModel& model : source.models()) {
-    const detail::PackedModel packed{source.part(detail::ModelPart::Cloud, model),
-                                     source.part(detail::ModelPart::Signatures, model),
-                                     source.part(detail::ModelPart::Views, model), 5000};
-    for (int i = 0; i < count; ++i)
-      target.add({model.name + std::to_string(i), 0, {}, packed.num_points}, packed, 0, {});
-  }
+  for (const detail::StoredModel& model : source.models()) addCopies(source, model, model, count, target);
 }
 
 TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreCompared) {
@@ -222,6 +226,34 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
   database.add("another", rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 1));
   EXPECT_EQ(nameIn(SymmetryDatabase(file_, options)), made) << "codes of a new model are stored with it";
   EXPECT_TRUE(SymmetryDatabase::check(file_).empty());
+}
+
+TEST_F(SymmetryDatabaseTest, TriesMoreModelsWhereNoneOfTheFirstIsAccepted) {
+  DatabaseOptions options;
+  options.num_views = 20;
+  options.num_references = 20;
+  const std::string few = folder_ + "/few.db";
+  {
+    SymmetryDatabase database(few, options);
+    fill(database);
+  }
+  {
+    detail::ModelStore source(few, 10.0, ""), target(file_, 10.0, "");
+    const auto models = source.models();                  // beam, cube, plate, post
+    addCopies(source, models[1], models[2], 30, target);  // cubes that look like the plate
+    addCopies(source, models[2], models[2], 1, target);
+    addCopies(source, models[0], models[0], 280, target);  // so many that pairs of points are not searched
+  }
+  const SymmetryDatabase database(file_, options);
+  const Cloud view = seenFrom(rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  RecognitionOptions recognition = optionsForRandomPoints();
+  recognition.num_candidates = 2;
+  recognition.max_candidates = 2;
+  EXPECT_TRUE(database.recognize(view, recognition).empty());
+  recognition.max_candidates = 70;
+  const Recognition found = database.recognize(view, recognition);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].name, "plate0");
 }
 
 TEST_F(SymmetryDatabaseTest, ChangesAreStoredAtOnce) {
