@@ -19,8 +19,20 @@ constexpr int kJudgedPoints = 3000;
 // the noise of a depth camera (the area under the curve is 0.998, 0.990 and less; 0.985 with distances from points and
 // normals).
 constexpr double kLeastWidth = 0.015;
+// Points of each of two models that are compared. chosen: the share is known to 0.02 then (standard error).
+constexpr int kComparedPoints = 500;
+// Radii, width of the Gaussian of that comparison. derived: twice the least width, as each of the two was brought to
+// the scan by itself.
+constexpr double kSameSurface = 2.0 * kLeastWidth;
 
 }  // namespace
+
+double sharedSurface(const PosedModel& a, const PosedModel& b) {
+  const Eigen::Isometry3d T_b_a = b.T_surface_scan * a.T_surface_scan.inverse();
+  const PoseScorer::Detail detail{kComparedPoints, kSameSurface, true, true};
+  return std::min(PoseScorer(*a.surface, *b.surface).score(T_b_a, detail).support,
+                  PoseScorer(*b.surface, *a.surface).score(T_b_a.inverse(), detail).support);
+}
 
 PosedScan::PosedScan(const Points& points, const std::optional<Visibility>& seen,
                      const CloudRegistrationOptions& options)
@@ -43,24 +55,29 @@ void PosedScan::bringTo(const std::string& name, const Points& points, const std
   if (!found.empty()) models_.push_back({name, frames, std::move(found), std::move(read)});
 }
 
-Recognition PosedScan::refined(int num_refined) {
-  std::stable_sort(models_.begin(), models_.end(), [](const PosedModel& a, const PosedModel& b) {
+std::vector<PosedModel> PosedScan::refined(int num_refined) {
+  std::stable_sort(models_.begin(), models_.end(), [](const SearchedModel& a, const SearchedModel& b) {
     return a.poses.front().score.merit() > b.poses.front().score.merit();
   });
-  Recognition found;
-  for (const PosedModel& model : models_) {
+  std::vector<PosedModel> found;
+  for (const SearchedModel& model : models_) {
     if (found.size() == static_cast<std::size_t>(num_refined)) break;
-    const PosedSurface surface = surfaceOf(model.read(), model.frames.target_center, std::nullopt);
-    const RankedPose best = refinePoses(surface_, surface, RefinementTarget(surface), model.poses, options_).front();
-    found.push_back({model.name, model.frames.toInput(best.T_model_scan), scoreOf(surface, best.T_model_scan), 0.0});
+    const auto surface =
+        std::make_shared<const PosedSurface>(surfaceOf(model.read(), model.frames.target_center, std::nullopt));
+    const Eigen::Isometry3d pose =
+        refinePoses(surface_, *surface, RefinementTarget(*surface), model.poses, options_).front().T_model_scan;
+    found.push_back({{model.name, model.frames.toInput(pose), scoreOf(*surface, pose), 0.0}, surface, pose});
   }
   models_.clear();
   return found;
 }
 
-PoseScore PosedScan::judged(const Points& points, const Eigen::Isometry3d& T_model_scan) const {
+PosedModel PosedScan::judged(const std::string& name, const Points& points,
+                             const Eigen::Isometry3d& T_model_scan) const {
   const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
-  return scoreOf(surfaceOf(points, frames.target_center, std::nullopt), frames.toSearch(T_model_scan));
+  const auto surface = std::make_shared<const PosedSurface>(surfaceOf(points, frames.target_center, std::nullopt));
+  const Eigen::Isometry3d pose = frames.toSearch(T_model_scan);
+  return {{name, T_model_scan, scoreOf(*surface, pose), 0.0}, surface, pose};
 }
 
 PoseScore PosedScan::scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const {

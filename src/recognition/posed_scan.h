@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,18 @@
 #include "registration/pose_refinement.h"
 
 namespace pcl_symmetry::detail {
+
+/// A model that a scan was brought to.
+struct PosedModel {
+  RecognizedModel model;  ///< its confidence is 0
+  std::shared_ptr<const PosedSurface> surface;
+  Eigen::Isometry3d T_surface_scan;  ///< as T_model_scan, in radii about the centers of both
+};
+
+/// The share of each surface that lies on the other one where a scan puts both, the smaller of the two shares, in
+/// [0, 1]: near 1 for models of the same shape. Gaussian of the distance, as wide as samples of one surface may be
+/// apart.
+double sharedSurface(const PosedModel& a, const PosedModel& b);
 
 /// A scan that is brought to many models: every model is searched for poses, the models with the best poses are
 /// refined.
@@ -32,16 +45,16 @@ public:
                PointReader read);
 
   /// Refines and judges the poses of the \p num_refined models with the best ones, and forgets all models.
-  /// \return these models, in any order; confidences are 0.
-  Recognition refined(int num_refined);
+  /// \return these models, in any order.
+  std::vector<PosedModel> refined(int num_refined);
 
   /// How well a scan fits a model: by its distances from the surface between the points, so that it does not count how
   /// densely the model was sampled.
   /// \param points of the model, 3 x M, finite, units of the scan.
-  PoseScore judged(const Points& points, const Eigen::Isometry3d& T_model_scan) const;
+  PosedModel judged(const std::string& name, const Points& points, const Eigen::Isometry3d& T_model_scan) const;
 
 private:
-  struct PosedModel {
+  struct SearchedModel {
     std::string name;
     SearchFrames frames;
     std::vector<RankedPose> poses;  // best first
@@ -55,7 +68,7 @@ private:
   BoundingBall ball_;
   double scale_;  // input units: estimated radius of the whole object
   PosedSurface surface_;
-  std::vector<PosedModel> models_;
+  std::vector<SearchedModel> models_;
 };
 
 }  // namespace pcl_symmetry::detail

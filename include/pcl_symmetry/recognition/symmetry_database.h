@@ -89,8 +89,10 @@ struct RecognizedModel {
   /// How well the scan fits there: support is the share of its points on the surface of the model, as wide as the
   /// points of the scan are apart and noisy. How densely the model was sampled does not count.
   PoseScore score;
-  /// Probability that the scan shows this model, in [0, 1]: a logistic function of the merit and of how far it is ahead
-  /// of the best other model, fitted to scenes with objects that are not in the database. The sum is at most 1.
+  /// Probability that the scan shows this model or one of the same shape, in [0, 1]: a logistic function of the merit
+  /// and of how far it is ahead of the best model of another shape, fitted to scenes with objects that are not in the
+  /// database. The sum over shapes is at most 1. Two models are of the same shape if they share 80 % of their surfaces
+  /// where the scan puts them.
   double confidence = 0.0;
 };
 

@@ -169,6 +169,24 @@ TEST_F(SymmetryDatabaseTest, RecognizesWhatIsHiddenInPart) {
   }
 }
 
+TEST_F(SymmetryDatabaseTest, AModelThatIsStoredTwiceIsAsCertainAsOnce) {
+  SymmetryDatabase database(":memory:");
+  fill(database);
+  // Another one of its kind fits, but not well.
+  const Cloud view = seenFrom(rodOnBox(1.05 * kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const Recognition once = database.recognize(view, optionsForRandomPoints());
+  ASSERT_EQ(once.size(), 1u);
+  EXPECT_EQ(once[0].name, "cube");
+  database.add("cube again", rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 9));
+  const Recognition twice = database.recognize(view, optionsForRandomPoints());
+  ASSERT_EQ(twice.size(), 2u);
+  for (const RecognizedModel& model : twice) {
+    EXPECT_EQ(model.name.substr(0, 4), "cube");
+    EXPECT_NEAR(model.confidence, once[0].confidence, 0.1) << model.name;
+    EXPECT_LT(model.score.merit(), 0.84) << "alone ahead of nothing, it would not be accepted";
+  }
+}
+
 TEST_F(SymmetryDatabaseTest, ModelsOfAnotherSizeHaveNoPairsInCommon) {
   SymmetryDatabase database(":memory:", quick());
   database.add("cube", cube());
