@@ -32,9 +32,9 @@ struct ConfidenceTerms {
 // by as much. Unbounded, a poor fit would be certain where all others fit worse.
 constexpr double kMostLead = 0.3;
 // Share of their surfaces that models of the same shape have in common, see sharedSurface(). chosen: of different
-// models that fit one scan best (119 scans of fold 0), one pair in twenty shares more; of models and their noisy
-// variants of up to twice the size seven in ten do.
-constexpr double kSameShape = 0.8;
+// models that fit one scan best (119 scans of fold 0), one pair in fifty shares more; of models and their noisy
+// variants of up to twice the size half do. 0.8 takes people in other poses for the same shape.
+constexpr double kSameShape = 0.9;
 // Points of the scan and of a model that poses are judged by. chosen: time grows with them; half loses accuracy of the
 // pose, twice gains little as fine steps use a few hundred points.
 constexpr std::size_t kScanPoints = 10'000;
