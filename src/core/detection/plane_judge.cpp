@@ -74,8 +74,7 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_, lineTolerance())),
       halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
                                : std::nullopt),
-      own_shares_(sharesWithin(halves_ ? halves_->ownDistances() : ownSurfaceDistances(cloud.points, cloud.geometry),
-                               tolerance_)),
+      own_shares_(sharesWithin(halves_ ? halves_->ownDistances() : ownSurfaceDistances(cloud.samples), tolerance_)),
       own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
                                              options.num_threads)
                          : 1.0) {}
@@ -122,7 +121,7 @@ PlaneJudge::Reflected PlaneJudge::reflected(const ReflectionPlane& plane, const 
   for (std::size_t i = 0; i < samples.size(); ++i)
     result.points.col(static_cast<Eigen::Index>(i)) =
         plane.reflect(cloud_.points.col(samples[i]).cast<double>()).cast<float>();
-  result.distances = surfaceDistances(result.points, step.closest, cloud_.points, cloud_.geometry);
+  result.distances = surfaceDistances(result.points, step.closest, cloud_.samples);
   return result;
 }
 
@@ -212,7 +211,7 @@ double PlaneJudge::deviation(const ReflectionPlane& plane) const {
   step.closest.assign(samples.size(), -1);
   Reflected all = reflected(normalized, samples, step);
   cloud_.search->search(all.points, 1, step.closest, step.sq_distances);
-  return deviationOf(surfaceDistances(all.points, step.closest, cloud_.points, cloud_.geometry)) * cloud_.scale;
+  return deviationOf(surfaceDistances(all.points, step.closest, cloud_.samples)) * cloud_.scale;
 }
 
 PlaneEvidence PlaneJudge::evidence(const PlaneShares& shares, const Agreement& agreement, double score) const {
@@ -332,26 +331,32 @@ std::vector<SymmetryPlane> PlaneJudge::findParts(const std::vector<SymmetryPlane
   std::copy_if(known.begin(), known.end(), std::back_inserter(decided), [](const SymmetryPlane& plane) {
     return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
   });
+  const std::vector<SymmetricPart> parts =
+      findSymmetricParts(cloud_, fit_, {options_.update, options_.seed, options_.num_threads});
   const std::vector<int> all = allOf(cloud_.points.cols());
-  std::vector<SymmetryPlane> planes;
-  for (const SymmetricPart& part :
-       findSymmetricParts(cloud_, fit_, {options_.update, options_.seed, options_.num_threads})) {
+  std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
+  parallelBlocks(parts.size(), options_.num_threads, [&](std::size_t i) {
+    const SymmetricPart& part = parts[i];
     const auto normalized = [this](const SymmetryPlane& plane) { return cloud_.toNormalized(plane); };
-    if (basinTolerance().anySame(decided, part.plane, normalized)) continue;
+    if (basinTolerance().anySame(decided, part.plane, normalized)) return;
     const IspStep step = fit_.matches(part.plane, all);
     SymmetryPlane plane = judged(part.plane, fit_.shares(part.plane, all, step), step, all).plane;
-    if (plane.kind == PlaneKind::Symmetry) continue;  // one of a family, which is known as its axis or center
+    if (plane.kind == PlaneKind::Symmetry) return;  // one of a family, which is known as its axis or center
     plane.kind = PlaneKind::Local;
     plane.iterations = part.iterations;
     plane.residual = step.residual * cloud_.scale;
-    planes.push_back(std::move(plane));
-  }
+    of_parts[i] = std::move(plane);
+  });
+  std::vector<SymmetryPlane> planes;
+  for (std::optional<SymmetryPlane>& plane : of_parts)
+    if (plane) planes.push_back(std::move(*plane));
   return planes;
 }
 
 const std::vector<char>& PlaneJudge::borders() const {
   std::call_once(borders_found_, [this] {
-    borders_ = openBorders(cloud_.points, *cloud_.search, cloud_.geometry.normals, options_.num_threads);
+    borders_ =
+        openBorders(cloud_.points, *cloud_.search, cloud_.geometry.normals, options_.num_threads, &cloud_.neighbours);
     cuts_ = findCutPlanes(cloud_.points, borders_, cloud_.spacing, options_.seed);
     const double near = shareNearBorders(borders_, cloud_.geometry);
     border_trust_ = std::clamp((kBordersEverywhere - near) / (kBordersEverywhere - kFewBorders), 0.0, 1.0);

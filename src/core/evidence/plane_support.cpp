@@ -6,8 +6,6 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/evidence/share/surface_distance.h"
-#include "core/normals/surface_normals.h"
 
 namespace pcl_symmetry {
 
@@ -18,9 +16,6 @@ namespace {
 constexpr float kNormalReach = 0.01f;
 // The same in units of the roughness. derived: 99.7 % of Gaussian noise.
 constexpr float kRoughReach = 3.0f;
-// Roughness in spacings at which normals mean nothing, and below which by 0.1 they count in full. chosen: between the
-// roughness of clean surfaces and that of volumes (0.42); smaller values ignore the normals of slightly noisy surfaces.
-constexpr float kRoughShare = 0.25f, kTrustWidth = 0.1f;
 // Radians between normals that agree. chosen: at half, curved surfaces with few samples lose support; at twice, the
 // faces of a blunt edge support each other.
 constexpr float kNormalAngle = 0.5f;
@@ -32,38 +27,34 @@ constexpr float kSurely = 0.99999f;
 constexpr float kMost = 9.0f;
 constexpr float kLeastLength = 1e-6f;  // radii. derived: rounding of coordinates about 1; avoids a division by 0
 
-/// How far a point with a normal lies off the surface at sample \p j, squared, in units of what its support allows.
+/// How far a point with a normal lies off the surface at a sample, squared, in units of what its support allows.
 /// \return \p most where it is not less.
-float sqDeviation(int j, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal, const Points& samples,
-                  const LocalGeometry& geometry, float most) {
-  const Eigen::Vector3f difference = point - samples.col(j);
-  const float reach = std::max(kLeastLength, kDiscRadius * geometry.spacing[j]);
+float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
+                  float most) {
+  const Eigen::Vector3f difference = point - sample.point;
+  const float reach = std::max(kLeastLength, sample.disc_radius);
   const float sq_length = difference.squaredNorm();
   const float along = sq_length < kSurely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
   if (along * along >= most) return most;
-  const auto normal = geometry.normals.col(j);
-  const float normal_reach = std::max(kNormalReach, kRoughReach * geometry.roughness[j]);
-  const float height = std::abs(normal.dot(difference));
+  const float normal_reach = std::max(kNormalReach, kRoughReach * sample.roughness);
+  const float height = std::abs(sample.normal.dot(difference));
   const float across = height < kSurely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
   const float sq_distance = along * along + across * across;
   if (sq_distance >= most) return most;
-  const float cosine = std::min(1.0f, std::abs(normal.dot(point_normal)));
-  if (cosine > kAgreeingCosine) return sq_distance;
+  const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
   // Normals count as far as they can be trusted, without a jump.
-  const float rough = geometry.roughness[j] / std::max(geometry.spacing[j], kLeastLength);
-  const float trust = std::clamp((kRoughShare - rough) / kTrustWidth, 0.0f, 1.0f);
-  if (trust == 0.0f) return sq_distance;
-  const float turned = trust * std::max(0.0f, std::acos(cosine) / kNormalAngle - 1.0f);
+  if (cosine > kAgreeingCosine || sample.normal_trust == 0.0f) return sq_distance;
+  const float turned = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kNormalAngle - 1.0f);
   return sq_distance + turned * turned;
 }
 
 /// Support by the closest sample or one of those next to it, whichever is best, but not by sample \p self (-1 = none).
 float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
-                  const Points& samples, const LocalGeometry& geometry) {
-  float least = sqDeviation(closest, point, point_normal, samples, geometry, kMost);
-  for (const int j : geometry.nearest[closest]) {
+                  const SurfaceSamples& samples) {
+  float least = sqDeviation(samples[closest], point, point_normal, kMost);
+  for (const int j : samples[closest].nearest) {
     if (least == 0.0f) return 1.0f;
-    if (j != self) least = std::min(least, sqDeviation(j, point, point_normal, samples, geometry, least));
+    if (j != self) least = std::min(least, sqDeviation(samples[j], point, point_normal, least));
   }
   return least < kMost ? std::exp(-least) : 0.0f;
 }
@@ -71,12 +62,12 @@ float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eig
 }  // namespace
 
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
-                            const Points& samples, const LocalGeometry& geometry, const Visibility* visibility) {
+                            const SurfaceSamples& samples, const Visibility* visibility) {
   const std::size_t size = closest.size();
   PointEvidence evidence{std::vector<float>(size), std::vector<float>(size)};
   for (std::size_t i = 0; i < size; ++i) {
     if (closest[i] >= 0)
-      evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples, geometry);
+      evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples);
     // Where all is explained, nothing is in conflict, seen or not.
     if (evidence.support[i] == 1.0f) continue;
     const bool seen = !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0;
@@ -85,10 +76,10 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
   return evidence;
 }
 
-std::vector<float> ownSupport(const Points& samples, const LocalGeometry& geometry) {
-  std::vector<float> support(static_cast<std::size_t>(samples.cols()));
-  for (int i = 0; i < samples.cols(); ++i)
-    support[i] = supportNear(geometry.nearest[i][0], i, samples.col(i), geometry.normals.col(i), samples, geometry);
+std::vector<float> ownSupport(const SurfaceSamples& samples) {
+  std::vector<float> support(static_cast<std::size_t>(samples.size()));
+  for (int i = 0; i < samples.size(); ++i)
+    support[i] = supportNear(samples[i].nearest[0], i, samples[i].point, samples[i].normal, samples);
   return support;
 }
 
@@ -103,7 +94,7 @@ std::vector<float> planeSupport(const PointsRef& points, const PointsRef& sample
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
   const auto search = makeTreeSearch(surface);
-  const LocalGeometry geometry = localGeometry(surface, *search, kNumSupportNeighbours, num_threads);
+  const SurfaceSamples described(surface, localGeometry(surface, *search, kNumSupportNeighbours, num_threads));
   const Eigen::Vector3f n = plane.normal().cast<float>();
   std::vector<float> support(points.cols());
   parallelRanges(points.cols(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
@@ -116,11 +107,11 @@ std::vector<float> planeSupport(const PointsRef& points, const PointsRef& sample
     for (Eigen::Index i = 0; i < size; ++i) {
       const Eigen::Vector3d x = points.col(begin + i).cast<double>();
       reflected.col(i) = ((plane.reflect(x) - ball.center) / ball.radius).cast<float>();
-      const Eigen::Vector3f normal = geometry.normals.col(closest[i]);
+      const Eigen::Vector3f normal = described[closest[i]].normal;
       normals.col(i) = normal - 2.0f * n.dot(normal) * n;
     }
     search->search(reflected, 1, closest, sq_distances);
-    const PointEvidence part = pointEvidence(reflected, normals, closest, surface, geometry, nullptr);
+    const PointEvidence part = pointEvidence(reflected, normals, closest, described, nullptr);
     std::copy(part.support.begin(), part.support.end(), support.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return support;

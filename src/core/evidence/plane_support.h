@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/normals/surface_normals.h"
+#include "core/evidence/share/surface_samples.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 #include "pcl_symmetry/core/scan/visibility.h"
@@ -26,17 +26,15 @@ struct PointEvidence {
 /// \param reflected 3 x M, reflections of points of the surface, normalised to the unit ball.
 /// \param reflected_normals 3 x M, reflections of their normals.
 /// \param closest M indices of the closest samples; -1: none is near.
-/// \param samples 3 x N, the surface, in the same frame.
-/// \param geometry of the samples.
+/// \param samples the surface, in the same frame.
 /// \param visibility what a scanner saw, in the same frame; null = the samples show the object from all sides.
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
-                            const Points& samples, const LocalGeometry& geometry, const Visibility* visibility);
+                            const SurfaceSamples& samples, const Visibility* visibility);
 
 /// Support of each sample on the surface that the other samples describe: what sampling alone leaves of a symmetry.
-/// \param samples 3 x N, normalised to the unit ball.
-/// \param geometry of the samples.
+/// \param samples N, normalised to the unit ball.
 /// \return N values in [0, 1].
-std::vector<float> ownSupport(const Points& samples, const LocalGeometry& geometry);
+std::vector<float> ownSupport(const SurfaceSamples& samples);
 
 /// \param support at least one value.
 /// \return the mean.

@@ -6,6 +6,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
 
@@ -68,16 +69,23 @@ bool isAtBorder(int self, const int* neighbours, int count, const Points& sample
 }  // namespace
 
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
-                              int num_threads) {
+                              int num_threads, const FoundNeighbours* known) {
   const auto size = static_cast<std::size_t>(samples.cols());
   const int count = static_cast<int>(std::min<Eigen::Index>(samples.cols(), kBorderNeighbours + 1));
+  const int num_known = known ? std::min(count, static_cast<int>(known->indices.size() / size)) : 0;
   std::vector<char> borders(size);
   parallelRanges(size, kBorderBlock, num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<int> indices;
+    std::vector<int> open, indices;
     std::vector<float> sq_distances;
-    search.search(samples.middleCols(begin, end - begin), count, indices, sq_distances);
-    for (std::size_t i = begin; i < end; ++i)
-      borders[i] = isAtBorder(static_cast<int>(i), indices.data() + (i - begin) * count, count, samples, normals);
+    // More neighbours only fill gaps, or fold the surface: what is inside by some of them is inside by all.
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto self = static_cast<int>(i);
+      const int* const nearest = known ? known->indices.data() + i * known->indices.size() / size : nullptr;
+      if (!known || isAtBorder(self, nearest, num_known, samples, normals)) open.push_back(self);
+    }
+    search.search(pointsAt(samples, open), count, indices, sq_distances);
+    for (std::size_t k = 0; k < open.size(); ++k)
+      borders[open[k]] = isAtBorder(open[k], &indices[k * static_cast<std::size_t>(count)], count, samples, normals);
   });
   return borders;
 }

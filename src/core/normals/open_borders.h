@@ -13,9 +13,11 @@ namespace pcl_symmetry {
 /// \param search over the same samples.
 /// \param normals 3 x N, unit.
 /// \param num_threads 0 = one per core.
+/// \param known the closest points of each sample, as localGeometry() finds them: where these leave no gap, no more are
+/// searched for; the answer is the same. Null = not known.
 /// \return N values, 1 at a border.
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
-                              int num_threads);
+                              int num_threads, const FoundNeighbours* known = nullptr);
 
 /// The points within two steps of a border along neighbours: about three spacings.
 /// \param borders what openBorders() returned.

@@ -114,6 +114,7 @@ IspStep matchReflections(const IspSurface& surface, const Points& reflected, dou
       return;
     }
     std::vector<Eigen::Index> near;
+    near.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i)
       if (!surface.far || !(*surface.far)(reflected.col(i).cast<double>(), bound)) near.push_back(i);
     Points queries(3, near.size());

@@ -26,13 +26,13 @@ constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supp
 /// The geometry of points, whose neighbours a tree uses from then on.
 /// \param search over the points.
 /// \param tree the same search, or null.
-LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, PointTree* tree, int num_threads) {
-  if (!tree || !NeighbourLists::isUseful(points.cols()))
-    return localGeometry(points, search, kNumSupportNeighbours, num_threads);
+/// \param[out] neighbours of the points.
+LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, PointTree* tree, int num_threads,
+                         FoundNeighbours& neighbours) {
+  LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbours, num_threads, &neighbours);
   static_assert(kNumSupportNeighbours == NeighbourLists::kNeighbours);
-  FoundNeighbours found;
-  LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbours, num_threads, &found);
-  tree->use(NeighbourLists(points, found.indices, found.sq_reach));
+  if (tree && NeighbourLists::isUseful(points.cols()))
+    tree->use(NeighbourLists(points, neighbours.indices, neighbours.sq_reach));
   return geometry;
 }
 
@@ -56,14 +56,15 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       points(normalizePoints(input, center, scale)),
       tree(input_search ? nullptr : std::make_shared<PointTree>(points)),
       search(input_search ? std::move(input_search) : tree),
-      geometry(withNormals(geometryOf(points, *search, tree.get(), num_threads), given_normals)),
+      geometry(withNormals(geometryOf(points, *search, tree.get(), num_threads, neighbours), given_normals)),
+      samples(points, geometry),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),
       surface{points, geometry.normals, *search, seen ? &geometry.at_border : nullptr, &far, num_threads},
       extent(farthestPair(points)),
       spacing(median(geometry.spacing)),
       roughness(median(geometry.roughness) / std::max(spacing, kLeastSpacing)),
-      baseline(std::max(meanSupport(ownSupport(points, geometry)), kLeastBaseline)),
+      baseline(std::max(meanSupport(ownSupport(samples)), kLeastBaseline)),
       sigma(edt.sigma() / scale),
       final_sigma(std::min(sigma, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing))) {}
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/normals/surface_normals.h"
+#include "core/evidence/share/surface_samples.h"
 #include "core/refinement/far_test.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/scan/visibility.h"
@@ -34,7 +34,9 @@ struct NormalizedCloud {
   const Points points;                    ///< 3 x N
   const std::shared_ptr<PointTree> tree;  ///< null: the search is of the caller
   const ClosestPointSearch::Ptr search;
+  FoundNeighbours neighbours;  ///< of the points, found together with their geometry
   const LocalGeometry geometry;
+  const SurfaceSamples samples;                ///< the points and their geometry
   const std::optional<Visibility> visibility;  ///< of a scan
   const FarTest far;
   const IspSurface surface;  ///< the above, as Iterative Symmetric Points wants it

@@ -116,12 +116,12 @@ PlaneShares SurfaceFit::shares(const ReflectionPlane& plane, const std::vector<i
   Points reflected(3, size), normals(3, size);
   const Eigen::Vector3f n = plane.normal().cast<float>();
   for (Eigen::Index i = 0; i < size; ++i) {
-    reflected.col(i) = plane.reflect(cloud_.points.col(samples[i]).cast<double>()).cast<float>();
-    const Eigen::Vector3f normal = cloud_.geometry.normals.col(samples[i]);
-    normals.col(i) = normal - 2.0f * n.dot(normal) * n;
+    const SurfaceSample& sample = cloud_.samples[samples[i]];
+    reflected.col(i) = plane.reflect(sample.point.cast<double>()).cast<float>();
+    normals.col(i) = sample.normal - 2.0f * n.dot(sample.normal) * n;
   }
-  PointEvidence evidence = pointEvidence(reflected, normals, step.closest, cloud_.points, cloud_.geometry,
-                                         cloud_.isScan() ? &*cloud_.visibility : nullptr);
+  PointEvidence evidence =
+      pointEvidence(reflected, normals, step.closest, cloud_.samples, cloud_.isScan() ? &*cloud_.visibility : nullptr);
   return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence.support)};
 }
 

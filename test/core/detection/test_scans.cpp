@@ -45,7 +45,7 @@ public:
     std::vector<float> sq_distances;
     search_->search(reflected, 1, closest, sq_distances);
     const PointEvidence evidence =
-        pointEvidence(reflected, R * geometry_.normals, closest, points_, geometry_, &visibility_);
+        pointEvidence(reflected, R * geometry_.normals, closest, {points_, geometry_}, &visibility_);
     return {mean(evidence.support), mean(evidence.conflict)};
   }
 

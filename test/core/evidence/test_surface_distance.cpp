@@ -25,7 +25,7 @@ double distanceOf(const Eigen::Vector3f& x) {
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search->search(point, 1, closest, sq_distances);
-  return surfaceDistances(point, closest, surface, geometry)[0];
+  return surfaceDistances(point, closest, {surface, geometry})[0];
 }
 
 TEST(SurfaceDistance, IsThatOfDiscsAroundTheSamples) {
@@ -42,7 +42,7 @@ TEST(SurfaceDistance, IsThatOfDiscsAroundTheSamples) {
 TEST(SurfaceDistance, IsInfiniteWhereNoSampleIsNear) {
   const Points surface = lattice(), point = Eigen::Vector3f::Zero();
   const LocalGeometry geometry = localGeometry(surface, *makeFlannSearch(surface), kNumSupportNeighbours, 1);
-  EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, surface, geometry)[0]));
+  EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, {surface, geometry})[0]));
 }
 
 TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
@@ -59,8 +59,8 @@ TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search->search(second, 1, closest, sq_distances);
-  const double own = shareWithin(ownSurfaceDistances(first, geometry), noise);
-  const double other = shareWithin(surfaceDistances(second, closest, first, geometry), noise);
+  const double own = shareWithin(ownSurfaceDistances({first, geometry}), noise);
+  const double other = shareWithin(surfaceDistances(second, closest, {first, geometry}), noise);
   // The standard error of either is 0.012. Without the factor for new points, own exceeds other by 0.1 and more.
   EXPECT_NEAR(own, other, 0.06);
 }

@@ -55,15 +55,17 @@ TEST(PointTree, GivesTheAnswersOfFlannAlsoWherePointsAreEquallyFar) {
   for (const auto& [name, points] : pointSets()) {
     const PointTree tree(points);
     const ClosestPointSearch::Ptr flann = makeFlannSearch(points);
-    const Points queries = queriesFor(points);
-    for (const int count : {1, 5, 9, 17}) {
-      if (count > points.cols()) continue;
-      std::vector<int> indices, expected;
-      std::vector<float> sq_distances, expected_sq;
-      tree.search(queries, count, indices, sq_distances);
-      flann->search(queries, count, expected, expected_sq);
-      EXPECT_EQ(indices, expected) << name << ", " << count << " neighbours";
-      EXPECT_EQ(sq_distances, expected_sq) << name << ", " << count << " neighbours";
+    // Scattered queries, whose neighbours are looked for one by one, and the points themselves, many at a time.
+    for (const Points& queries : {queriesFor(points), points}) {
+      for (const int count : {1, 5, 9, 17, 24, 30}) {
+        if (count > points.cols()) continue;
+        std::vector<int> indices, expected;
+        std::vector<float> sq_distances, expected_sq;
+        tree.search(queries, count, indices, sq_distances);
+        flann->search(queries, count, expected, expected_sq);
+        EXPECT_EQ(indices, expected) << name << ", " << count << " neighbours";
+        EXPECT_EQ(sq_distances, expected_sq) << name << ", " << count << " neighbours";
+      }
     }
   }
 }
@@ -102,11 +104,13 @@ TEST(PointTree, GivesTheAnswersOfFlannWithTheNeighboursOfGuesses) {
     const ClosestPointSearch::Ptr flann = makeFlannSearch(points);
     const Points queries = queriesFor(points);
     const auto size = static_cast<std::size_t>(queries.cols());
-    // Guesses anywhere, twice, and close ones: the point that the query was made from.
-    for (const int kind : {0, 1, 2}) {
-      std::vector<int> guesses(size);
-      for (std::size_t i = 0; i < size; ++i)
-        guesses[i] = static_cast<int>((kind == 2 ? i / 4 : 7 * i + static_cast<std::size_t>(kind)) % points.cols());
+    // Guesses anywhere, twice, and close ones: the point that the query was made from; none for every third query, and
+    // for all.
+    for (const int kind : {0, 1, 2, 3, 4}) {
+      std::vector<int> guesses(size, -1);
+      for (std::size_t i = 0; i < size && kind < 4; ++i)
+        if (kind < 3 || i % 3 > 0)
+          guesses[i] = static_cast<int>((kind >= 2 ? i / 4 : 7 * i + static_cast<std::size_t>(kind)) % points.cols());
       for (const float limit : {0.0f, 1e-4f, 0.0625f, 1e6f}) {
         std::vector<int> indices = guesses, expected = guesses;
         std::vector<float> sq_distances, expected_sq;

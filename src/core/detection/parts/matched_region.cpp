@@ -9,6 +9,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
+#include "core/refinement/surface_fit.h"
 
 namespace pcl_symmetry {
 
@@ -59,7 +60,7 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
 }
 
 MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses) const {
-  IspStep step = fit_.matches(plane, samples_, guesses);
+  IspStep step = matchReflectionsOnly(cloud_.surface, samples_, plane, cloud_.final_sigma, guesses);
   const std::vector<float> support = fit_.shares(plane, samples_, step).point_support;
   const std::size_t size = samples_.size(), num_neighbours = neighbours_.size() / size;
   std::vector<char> matched(size);

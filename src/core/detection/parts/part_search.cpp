@@ -17,6 +17,7 @@
 #include "core/neighbours/search/neighbour_walk.h"
 #include "core/neighbours/search/point_tree.h"
 #include "core/refinement/plane_tolerance.h"
+#include "core/refinement/surface_fit.h"
 
 namespace pcl_symmetry {
 
@@ -141,9 +142,8 @@ struct BallSearch {
   BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit, IspUpdate update)
       : cloud(the_cloud),
         fit(the_fit),
-        walk(cloud.tree && cloud.tree->lists()
-                 ? std::make_unique<NeighbourWalk>(cloud.points, *cloud.tree->lists(), *cloud.search)
-                 : nullptr),
+        walk(cloud.tree && cloud.tree->lists() ? std::make_unique<NeighbourWalk>(*cloud.tree->lists(), *cloud.search)
+                                               : nullptr),
         surface{cloud.points,
                 cloud.geometry.normals,
                 walk ? *walk : *cloud.search,
@@ -172,7 +172,7 @@ struct BallSearch {
     result = refineSymmetricPoints(surface, samples, result.plane, fine);
     if (std::abs(result.plane.signedDistance(middle)) > kFarthestPlane * radius) return std::nullopt;
     SymmetricPart part{result.plane, {}, 0.0, 0.0, num_before + result.iterations, 0.0};
-    const IspStep step = matchSymmetricPoints(surface, samples, part.plane, cloud.final_sigma, &result.last.closest);
+    const IspStep step = matchReflectionsOnly(surface, samples, part.plane, cloud.final_sigma, &result.last.closest);
     part.support = fit.relativeSupport(fit.shares(part.plane, samples, step));
     part.share = static_cast<double>(moved.size()) / static_cast<double>(cloud.points.cols());
     if (part.support < kLeastSupport) return std::nullopt;

@@ -122,7 +122,7 @@ TurnEvidence::Moved TurnEvidence::moved(const Eigen::Affine3d& motion) const {
   // Of points beyond the reach nothing is asked but that they are far.
   std::vector<float> sq_distances;
   cloud_.search->searchWithin(moved.points, static_cast<float>(reach_ * reach_), moved.closest, sq_distances);
-  moved.distances = surfaceDistances(moved.points, moved.closest, cloud_.points, cloud_.geometry);
+  moved.distances = surfaceDistances(moved.points, moved.closest, cloud_.samples);
   for (std::size_t i = 0; i < samples_.size(); ++i)
     moved.distances[i] = std::min(moved.distances[i], std::sqrt(sq_distances[i]));
   return moved;

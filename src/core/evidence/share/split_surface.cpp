@@ -20,7 +20,7 @@ SplitSurface::SplitSurface(const Points& points, std::uint64_t seed, int num_thr
   first_ = pointsAt(points, first);
   second_ = pointsAt(points, second);
   search_ = makeTreeSearch(second_);
-  geometry_ = localGeometry(second_, *search_, kNumSupportNeighbours, num_threads);
+  samples_.emplace(second_, localGeometry(second_, *search_, kNumSupportNeighbours, num_threads));
 }
 
 std::vector<float> SplitSurface::reflectedDistances(const ReflectionPlane& plane) const {
@@ -47,7 +47,7 @@ std::vector<float> SplitSurface::distances(const Points& points) const {
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search_->search(points, 1, closest, sq_distances);
-  return surfaceDistances(points, closest, second_, geometry_);
+  return surfaceDistances(points, closest, *samples_);
 }
 
 }  // namespace pcl_symmetry

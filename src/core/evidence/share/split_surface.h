@@ -1,9 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "core/normals/surface_normals.h"
+#include "core/evidence/share/surface_samples.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 #include "pcl_symmetry/core/geometry/reflection_plane.h"
 
@@ -37,8 +38,8 @@ private:
   std::vector<float> distances(const Points& points) const;
 
   Points first_, second_;
-  ClosestPointSearch::Ptr search_;  ///< of the second half
-  LocalGeometry geometry_;          ///< of the second half
+  ClosestPointSearch::Ptr search_;         ///< of the second half
+  std::optional<SurfaceSamples> samples_;  ///< the second half
 };
 
 }  // namespace pcl_symmetry

@@ -13,39 +13,38 @@ namespace {
 // (1 - l) and those of new points (1 + l) times that of the noise; the root of their ratio.
 constexpr float kNewPointFactor = 1.41421356f;
 
-/// Squared distance of a point from the disc of sample \p j.
-float sqDistanceFromDisc(int j, const Eigen::Vector3f& point, const Points& samples, const LocalGeometry& geometry,
-                         float across_factor) {
-  const Eigen::Vector3f difference = point - samples.col(j);
-  const float across = geometry.normals.col(j).dot(difference);
+/// Squared distance of a point from the disc of a sample.
+float sqDistanceFromDisc(const SurfaceSample& sample, const Eigen::Vector3f& point, float across_factor) {
+  const Eigen::Vector3f difference = point - sample.point;
+  const float across = sample.normal.dot(difference);
   const float along = std::sqrt(std::max(0.0f, difference.squaredNorm() - across * across));
-  const float beside = std::max(0.0f, along - kDiscRadius * geometry.spacing[j]);
+  const float beside = std::max(0.0f, along - sample.disc_radius);
   return across_factor * across_factor * across * across + beside * beside;
 }
 
 /// Distance from the nearest of the discs of a sample and its neighbours, but not from that of \p self (-1: none).
-float distanceNear(int closest, int self, const Eigen::Vector3f& point, const Points& samples,
-                   const LocalGeometry& geometry, float across_factor) {
-  float least = sqDistanceFromDisc(closest, point, samples, geometry, across_factor);
-  for (const int j : geometry.nearest[closest])
-    if (j != self) least = std::min(least, sqDistanceFromDisc(j, point, samples, geometry, across_factor));
+float distanceNear(int closest, int self, const Eigen::Vector3f& point, const SurfaceSamples& samples,
+                   float across_factor) {
+  float least = sqDistanceFromDisc(samples[closest], point, across_factor);
+  for (const int j : samples[closest].nearest)
+    if (j != self) least = std::min(least, sqDistanceFromDisc(samples[j], point, across_factor));
   return std::sqrt(least);
 }
 
 }  // namespace
 
-std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest, const Points& samples,
-                                    const LocalGeometry& geometry) {
+std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest,
+                                    const SurfaceSamples& samples) {
   std::vector<float> distances(closest.size(), std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < closest.size(); ++i)
-    if (closest[i] >= 0) distances[i] = distanceNear(closest[i], -1, points.col(i), samples, geometry, 1.0f);
+    if (closest[i] >= 0) distances[i] = distanceNear(closest[i], -1, points.col(i), samples, 1.0f);
   return distances;
 }
 
-std::vector<float> ownSurfaceDistances(const Points& samples, const LocalGeometry& geometry) {
-  std::vector<float> distances(static_cast<std::size_t>(samples.cols()));
-  for (int i = 0; i < samples.cols(); ++i)
-    distances[i] = distanceNear(geometry.nearest[i][0], i, samples.col(i), samples, geometry, kNewPointFactor);
+std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples) {
+  std::vector<float> distances(static_cast<std::size_t>(samples.size()));
+  for (int i = 0; i < samples.size(); ++i)
+    distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].point, samples, kNewPointFactor);
   return distances;
 }
 

@@ -1,5 +1,8 @@
 #include "core/neighbours/search/neighbour_lists.h"
 
+#include <algorithm>
+#include <array>
+
 #include "core/neighbours/search/wide_tree.h"
 
 #if defined(__x86_64__)
@@ -13,6 +16,9 @@ namespace {
 // Share of the squared reach up to which a list decides. derived: (1 / 2)^2, less what distances are rounded by
 // (relatively 1e-6).
 constexpr float kDecidingShare = 0.2499f;
+// Cells along each side of the grid where walks begin. chosen: at half, walks are longer, at twice, the grid takes
+// longer to make than it saves.
+constexpr int kStartCells = 32;
 
 }  // namespace
 
@@ -22,11 +28,14 @@ bool NeighbourLists::isUseful(Eigen::Index num_points) {
 
 NeighbourLists::NeighbourLists(const Points& points, const std::vector<int>& nearest,
                                const std::vector<float>& sq_reach)
-    : lists_(static_cast<std::size_t>(points.cols())), places_(lists_.size()) {
+    : lists_(static_cast<std::size_t>(points.cols())), grid_(points, kStartCells) {
   for (std::size_t i = 0; i < lists_.size(); ++i) {
-    const auto p = points.col(static_cast<Eigen::Index>(i));
-    places_[i] = {p.x(), p.y(), p.z(), kDecidingShare * sq_reach[i]};
     List& list = lists_[i];
+    const auto own = points.col(static_cast<Eigen::Index>(i));
+    list.own_x = own.x();
+    list.own_y = own.y();
+    list.own_z = own.z();
+    list.most_sq_distance = kDecidingShare * sq_reach[i];
     // The point itself is among the nearest, unless as many others are at the same place.
     int count = 0;
     for (int k = 0; k <= kNeighbours && count < kNeighbours; ++k) {
@@ -35,49 +44,69 @@ NeighbourLists::NeighbourLists(const Points& points, const std::vector<int>& nea
       list.x[count] = points(0, j);
       list.y[count] = points(1, j);
       list.z[count] = points(2, j);
-      list.index[count++] = j;
+      list.index[count++] = static_cast<std::uint16_t>(j);
     }
   }
 }
 
+void NeighbourLists::walk(const PointsRef& queries, int* indices, float* sq_distances, char* is_closest) const {
+  for (Eigen::Index begin = 0; begin < queries.cols(); begin += kTogether)
+    walkSome(queries.middleCols(begin, std::min<Eigen::Index>(kTogether, queries.cols() - begin)), indices + begin,
+             sq_distances + begin, is_closest + begin);
+}
+
 #if defined(__x86_64__)
 
-__attribute__((target("avx2"))) NeighbourLists::Answer NeighbourLists::closest(const float* query, int guess) const {
-  const __m256 x = _mm256_set1_ps(query[0]), y = _mm256_set1_ps(query[1]), z = _mm256_set1_ps(query[2]);
-  const Place* place = &places_[static_cast<std::size_t>(guess)];
-  const float dx = query[0] - place->x, dy = query[1] - place->y, dz = query[2] - place->z;
-  Answer answer{guess, dx * dx + dy * dy + dz * dz, false};
-  while (true) {
-    const bool decides = answer.sq_distance <= place->most_sq_distance;
-    const List& list = lists_[static_cast<std::size_t>(answer.index)];
-    const __m256 ax = _mm256_sub_ps(x, _mm256_loadu_ps(list.x)), ay = _mm256_sub_ps(y, _mm256_loadu_ps(list.y)),
-                 az = _mm256_sub_ps(z, _mm256_loadu_ps(list.z));
-    const __m256 sq = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, ax), _mm256_mul_ps(ay, ay)), _mm256_mul_ps(az, az));
-    __m128 least = _mm_min_ps(_mm256_castps256_ps128(sq), _mm256_extractf128_ps(sq, 1));
-    least = _mm_min_ps(least, _mm_movehl_ps(least, least));
-    least = _mm_min_ss(least, _mm_movehdup_ps(least));
-    const float sq_least = _mm_cvtss_f32(least);
-    if (sq_least > answer.sq_distance) {
-      answer.is_closest = decides;
-      return answer;
+/// \param queries at most kTogether.
+__attribute__((target("avx2"))) void NeighbourLists::walkSome(const PointsRef& queries, int* indices,
+                                                              float* sq_distances, char* is_closest) const {
+  const auto num_queries = static_cast<int>(queries.cols());
+  const float* const coordinates = queries.data();
+  const std::ptrdiff_t stride = queries.outerStride();
+  std::array<std::uint16_t, kTogether> walking;
+  for (int i = 0; i < num_queries; ++i) {
+    const List& list = lists_[static_cast<std::size_t>(indices[i])];
+    const float* const query = coordinates + stride * i;
+    const float dx = query[0] - list.own_x, dy = query[1] - list.own_y, dz = query[2] - list.own_z;
+    sq_distances[i] = dx * dx + dy * dy + dz * dz;
+    walking[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(i);
+  }
+  for (int num_walking = num_queries; num_walking > 0;) {
+    int num_on = 0;
+    for (int w = 0; w < num_walking; ++w) {
+      const int i = walking[static_cast<std::size_t>(w)];
+      const List& list = lists_[static_cast<std::size_t>(indices[i])];
+      const float* const query = coordinates + stride * i;
+      const __m256 ax = _mm256_sub_ps(_mm256_broadcast_ss(query), _mm256_load_ps(list.x)),
+                   ay = _mm256_sub_ps(_mm256_broadcast_ss(query + 1), _mm256_load_ps(list.y)),
+                   az = _mm256_sub_ps(_mm256_broadcast_ss(query + 2), _mm256_load_ps(list.z));
+      const __m256 sq =
+          _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, ax), _mm256_mul_ps(ay, ay)), _mm256_mul_ps(az, az));
+      __m128 least = _mm_min_ps(_mm256_castps256_ps128(sq), _mm256_extractf128_ps(sq, 1));
+      least = _mm_min_ps(least, _mm_movehl_ps(least, least));
+      least = _mm_min_ss(least, _mm_movehdup_ps(least));
+      const auto lanes =
+          static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_broadcastss_ps(least), _CMP_EQ_OQ)));
+      const float sq_least = _mm_cvtss_f32(least), sq_before = sq_distances[i];
+      const bool decides = sq_before <= list.most_sq_distance;
+      const bool is_closer = sq_least < sq_before, is_alone = (lanes & (lanes - 1)) == 0;
+      constexpr unsigned kLast = 1u << (kNeighbours - 1);  // derived: where distances are no numbers, no lane is set
+      const int change = list.index[__builtin_ctz(lanes | kLast)] - indices[i];
+      indices[i] += change & -static_cast<int>(is_closer);  // no branch: half of the guesses are the closest points
+      sq_distances[i] = _mm_cvtss_f32(_mm_min_ss(least, _mm_set_ss(sq_before)));
+      is_closest[i] = decides & ((is_closer & is_alone) | (sq_least > sq_before));
+      walking[static_cast<std::size_t>(num_on)] = static_cast<std::uint16_t>(i);
+      num_on += is_closer & is_alone & !decides;
     }
-    if (!(sq_least < answer.sq_distance)) return answer;  // as far away, or no number
-    const auto lanes =
-        static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_broadcastss_ps(least), _CMP_EQ_OQ)));
-    answer.index = list.index[__builtin_ctz(lanes)];
-    answer.sq_distance = sq_least;
-    if (decides || (lanes & (lanes - 1)) != 0) {
-      answer.is_closest = decides && (lanes & (lanes - 1)) == 0;
-      return answer;
-    }
-    place = &places_[static_cast<std::size_t>(answer.index)];
+    num_walking = num_on;
   }
 }
 
 #else
 
-NeighbourLists::Answer NeighbourLists::closest(const float*, int guess) const {
-  return {guess, 0.0f, false};
+void NeighbourLists::walkSome(const PointsRef& queries, int*, float* sq_distances, char* is_closest) const {
+  std::fill_n(sq_distances, queries.cols(), 0.0f);
+  std::fill_n(is_closest, queries.cols(), 0);
 }
 
 #endif

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include "core/neighbours/closest_point_grid.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 
 namespace pcl_symmetry {
@@ -16,6 +18,9 @@ public:
   static constexpr int kNeighbours = 8;  ///< of each point. derived: floats in a register of AVX2
   /// chosen: 128 bytes a point; beyond, filling the lists takes longer than they save
   static constexpr Eigen::Index kMostPoints = 50'000;
+  /// Queries that walk side by side. chosen: half as many wait for memory more often, twice as many leave the first
+  /// cache
+  static constexpr int kTogether = 256;
 
   /// Whether there are lists for \p num_points points: enough, not too many, and the instructions for them.
   static bool isUseful(Eigen::Index num_points);
@@ -26,35 +31,31 @@ public:
   /// \param sq_reach squared distance of the last one of each point.
   NeighbourLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach);
 
-  struct Answer {
-    int index;          ///< the closest point that was seen
-    float sq_distance;  ///< of it
-    bool is_closest;    ///< no other point is as close
-  };
-  /// \param query three coordinates.
-  /// \param guess index of a point.
-  Answer closest(const float* query, int guess) const;
+  /// Walks from a guess of the closest point to a neighbour as long as one is closer to the query, for many queries at
+  /// a time: each waits for memory while the others go on.
+  /// \param queries 3 x M.
+  /// \param[in,out] indices M guesses; after the call the points where the walks end.
+  /// \param[out] sq_distances of these points.
+  /// \param[out] is_closest whether no other point is as close; not told of all points of which it is true.
+  void walk(const PointsRef& queries, int* indices, float* sq_distances, char* is_closest) const;
 
-  /// Has the list of a point brought from memory, for a query that follows.
-  void prefetch(int guess) const {
-    const auto i = static_cast<std::size_t>(guess);
-    __builtin_prefetch(&places_[i]);
-    __builtin_prefetch(lists_[i].x);
-    __builtin_prefetch(lists_[i].z);
-  }
+  /// A point near a query, to begin a walk at.
+  int start(const Eigen::Vector3f& query) const { return grid_.closest(query); }
 
 private:
-  struct List {
+  /// A point and its neighbours: two lines of the cache.
+  struct alignas(64) List {
     float x[kNeighbours], y[kNeighbours], z[kNeighbours];
-    std::int32_t index[kNeighbours];
+    std::uint16_t index[kNeighbours];
+    float own_x, own_y, own_z;
+    float most_sq_distance;  ///< from a query, so that the list decides
   };
-  /// A point, and how far it may be from a query so that its list decides.
-  struct Place {
-    float x, y, z, most_sq_distance;
-  };
+  static_assert(kMostPoints <= std::numeric_limits<std::uint16_t>::max());
+
+  void walkSome(const PointsRef& queries, int* indices, float* sq_distances, char* is_closest) const;
 
   std::vector<List> lists_;
-  std::vector<Place> places_;
+  ClosestPointGrid grid_;
 };
 
 }  // namespace pcl_symmetry

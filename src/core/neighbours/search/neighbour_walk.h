@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/neighbours/closest_point_grid.h"
 #include "core/neighbours/search/neighbour_lists.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 
@@ -13,10 +12,9 @@ namespace pcl_symmetry {
 /// afterwards.
 class NeighbourWalk : public ClosestPointSearch {
 public:
-  /// \param points 3 x N.
-  /// \param lists of the same points; must outlive this object.
+  /// \param lists of the points; must outlive this object.
   /// \param exact answers search(); must outlive this object.
-  NeighbourWalk(const PointsRef& points, const NeighbourLists& lists, const ClosestPointSearch& exact);
+  NeighbourWalk(const NeighbourLists& lists, const ClosestPointSearch& exact) : lists_(lists), exact_(exact) {}
 
   /// The exact answers.
   void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
@@ -31,7 +29,6 @@ public:
 private:
   const NeighbourLists& lists_;
   const ClosestPointSearch& exact_;
-  ClosestPointGrid grid_;
 };
 
 }  // namespace pcl_symmetry

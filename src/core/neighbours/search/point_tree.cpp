@@ -1,9 +1,12 @@
 #include "core/neighbours/search/point_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "core/geometry/point_samples.h"
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -14,8 +17,14 @@ namespace pcl_symmetry {
 namespace {
 
 constexpr int kMostInLeaf = 10;  // points. derived: FLANN's default, which decides between points equally far away
-constexpr int kAhead = 4;        // queries; chosen: as long as a line takes from the second cache
-constexpr int kLanes = 4;        // derived: floats in a register of every x86-64 processor
+// Queries whose neighbours are looked for together, and those before the first that are asked alone. measured: nine
+// nearest of 10 000 points take 1.4 ms, with half as many together 1.5; twice as many take as long.
+constexpr Eigen::Index kSideBySide = 64, kFirstAlone = 8;
+// Deviations of the number of points within a distance by which it shall exceed the neighbours that are wanted.
+// measured: half takes as long, as more queries are asked again alone; twice takes 1.7 ms, and with 17 neighbours twice
+// the time.
+constexpr double kMarginOfCount = 3.0;
+constexpr int kLanes = 4;  // derived: floats in a register of every x86-64 processor
 
 /// The closest points so far, nearest first.
 class ClosestPoints {
@@ -221,26 +230,54 @@ void PointTree::visit(const Eigen::Vector3f& query, std::vector<Pending>& pendin
 
 /// \param start a point, which is the answer unless another one is strictly closer; or -1 and a limit.
 PointTree::Match PointTree::closest(const Eigen::Vector3f& query, Match start, Storage& storage) const {
-  if (wide_) {
-    WideTree::Closest found{start.sq_distance};
-    wide_->findClosest(ordered_, query.data(), storage.wide, found);
-    if (found.place < 0) return start;
-    if (!found.is_tied) return {index_[static_cast<std::size_t>(found.place)], found.sq_distance};
-  }
+  WideTree::Closest found{start.sq_distance};
+  if (wide_) wide_->findClosest(ordered_, query.data(), storage.wide, found);
+  return closest(query, start, found, storage);
+}
+
+/// \param found by the tree with eight children, if there is one.
+PointTree::Match PointTree::closest(const Eigen::Vector3f& query, Match start, const WideTree::Closest& found,
+                                    Storage& storage) const {
+  if (wide_ && found.place < 0) return start;
+  if (wide_ && !found.is_tied) return {index_[static_cast<std::size_t>(found.place)], found.sq_distance};
   // Of several points equally far away, the one that the tree with two children comes to first.
   ClosestPoint result(start.index, start.sq_distance);
   visit(query, storage.pending, result);
   return {result.index(), result.worst()};
 }
 
-/// \param guess a point that is likely to be close.
-PointTree::Match PointTree::closestByLists(const Eigen::Vector3f& query, int guess, Match start,
-                                           Storage& storage) const {
-  const NeighbourLists::Answer seen = lists_->closest(query.data(), guess);
-  if (seen.is_closest) return seen.sq_distance < start.sq_distance ? Match{seen.index, seen.sq_distance} : start;
-  // A limit just beyond the point that was seen: the tree decides which one it finds of several at that distance.
-  const float limit = std::nextafter(seen.sq_distance, std::numeric_limits<float>::infinity());
-  return closest(query, limit < start.sq_distance ? Match{-1, limit} : start, storage);
+/// closest() for at most NeighbourLists::kTogether queries: by walks along the lists, and by the tree for all of which
+/// these do not decide.
+/// \param guesses a point each that is likely to be close, or -1.
+/// \param[in,out] matches where to start; the answers.
+void PointTree::closestByWalks(const PointsRef& queries, const int* guesses, std::vector<Match>& matches,
+                               Storage& storage) const {
+  std::array<int, NeighbourLists::kTogether> seen;
+  std::array<float, NeighbourLists::kTogether> sq_seen;
+  std::array<char, NeighbourLists::kTogether> is_closest;
+  for (std::size_t i = 0; i < matches.size(); ++i)
+    seen[i] = guesses[i] >= 0 ? guesses[i] : lists_->start(queries.col(static_cast<Eigen::Index>(i)));
+  lists_->walk(queries, seen.data(), sq_seen.data(), is_closest.data());
+  std::vector<int> open;
+  std::vector<WideTree::Closest> found;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    Match& match = matches[i];
+    if (is_closest[i] != 0) {
+      if (sq_seen[i] < match.sq_distance) match = {seen[i], sq_seen[i]};
+      continue;
+    }
+    // A limit just beyond the point that was seen: the tree decides which one it finds of several at that distance.
+    const float limit = std::nextafter(sq_seen[i], std::numeric_limits<float>::infinity());
+    if (limit < match.sq_distance) match = {-1, limit};
+    open.push_back(static_cast<int>(i));
+    found.push_back({match.sq_distance});
+  }
+  const Points asked = pointsAt(queries, open);
+  wide_->findClosestOfMany(ordered_, asked, found);
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    Match& match = matches[static_cast<std::size_t>(open[k])];
+    match = closest(asked.col(static_cast<Eigen::Index>(k)), match, found[k], storage);
+  }
 }
 
 PointTree::Storage PointTree::storage() const {
@@ -254,22 +291,61 @@ void PointTree::search(const PointsRef& queries, int num_neighbours, std::vector
   indices.resize(num_queries * num_neighbours);
   sq_distances.resize(num_queries * num_neighbours);
   Storage storage = this->storage();
+  if (num_neighbours > 1 && num_neighbours <= WideTree::kMostOfMany && wide_)
+    return nearestOfMany(queries, num_neighbours, indices.data(), sq_distances.data(), storage);
   for (std::size_t i = 0; i < num_queries; ++i) {
     const Eigen::Vector3f query = queries.col(static_cast<Eigen::Index>(i));
-    if (num_neighbours == 1) {
-      const Match match = closest(query, {0, std::numeric_limits<float>::max()}, storage);
-      indices[i] = match.index;
-      sq_distances[i] = match.sq_distance;
+    if (num_neighbours > 1) {
+      nearest(query, num_neighbours, &indices[i * num_neighbours], &sq_distances[i * num_neighbours], storage);
       continue;
     }
-    int* const nearest = &indices[i * num_neighbours];
-    float* const nearest_sq = &sq_distances[i * num_neighbours];
-    if (wide_ && !wide_->findNearest(ordered_, query.data(), num_neighbours, storage.wide, nearest, nearest_sq)) {
-      for (int k = 0; k < num_neighbours; ++k) nearest[k] = index_[static_cast<std::size_t>(nearest[k])];
-      continue;
+    const Match match = closest(query, {0, std::numeric_limits<float>::max()}, storage);
+    indices[i] = match.index;
+    sq_distances[i] = match.sq_distance;
+  }
+}
+
+/// \param[out] indices,sq_distances of the closest points to a query.
+void PointTree::nearest(const Eigen::Vector3f& query, int num_neighbours, int* indices, float* sq_distances,
+                        Storage& storage) const {
+  if (wide_ && !wide_->findNearest(ordered_, query.data(), num_neighbours, storage.wide, indices, sq_distances)) {
+    for (int k = 0; k < num_neighbours; ++k) indices[k] = index_[static_cast<std::size_t>(indices[k])];
+    return;
+  }
+  ClosestPoints found(indices, sq_distances, num_neighbours);
+  visit(query, storage.pending, found);
+}
+
+/// The same for many queries: the points around some say within which distance those of the next ones are likely to be.
+void PointTree::nearestOfMany(const PointsRef& queries, int num_neighbours, int* indices, float* sq_distances,
+                              Storage& storage) const {
+  const double margin = 1.0 + kMarginOfCount / std::sqrt(num_neighbours);
+  double sum = 0.0;  // of the squared distances of the last neighbours of the queries before
+  Eigen::Index num_before = 0;
+  for (Eigen::Index begin = 0; begin < queries.cols();) {
+    const Eigen::Index most = num_before > 0 ? kSideBySide : kFirstAlone;
+    const Points some = queries.middleCols(begin, std::min(most, queries.cols() - begin));
+    const auto size = static_cast<std::size_t>(some.cols());
+    int* const found = indices + begin * num_neighbours;
+    float* const sq_found = sq_distances + begin * num_neighbours;
+    std::vector<char> is_open(size, 1);
+    if (num_before > 0) {
+      const auto sq_limit = static_cast<float>(margin * sum / static_cast<double>(num_before));
+      is_open = wide_->findNearestOfMany(ordered_, some, std::vector<WideTree::Closest>(size, {sq_limit}),
+                                         num_neighbours, found, sq_found);
     }
-    ClosestPoints found(nearest, nearest_sq, num_neighbours);
-    visit(query, storage.pending, found);
+    sum = 0.0;
+    for (std::size_t i = 0; i < size; ++i) {
+      int* const own = found + i * static_cast<std::size_t>(num_neighbours);
+      float* const sq_own = sq_found + i * static_cast<std::size_t>(num_neighbours);
+      if (is_open[i])
+        nearest(some.col(static_cast<Eigen::Index>(i)), num_neighbours, own, sq_own, storage);
+      else
+        for (int k = 0; k < num_neighbours; ++k) own[k] = index_[static_cast<std::size_t>(own[k])];
+      sum += sq_own[num_neighbours - 1];
+    }
+    num_before = some.cols();
+    begin += some.cols();
   }
 }
 
@@ -277,21 +353,27 @@ void PointTree::searchWithin(const PointsRef& queries, float max_sq_distance, st
                              std::vector<float>& sq_distances) const {
   // Points strictly closer than the limit are accepted.
   const float limit = std::nextafter(max_sq_distance, std::numeric_limits<float>::infinity());
+  const auto size = static_cast<Eigen::Index>(indices.size());
   sq_distances.resize(indices.size());
   Storage storage = this->storage();
-  for (Eigen::Index i = 0; i < queries.cols(); ++i) {
-    const Eigen::Vector3f query = queries.col(i);
-    const int guess = indices[i];
-    const Eigen::Index ahead = std::min(i + kAhead, queries.cols() - 1);
-    if (lists_ && indices[ahead] >= 0) lists_->prefetch(indices[ahead]);
-    Match match{-1, limit};
-    if (guess >= 0) {
-      const float guessed = (points_.col(guess) - query).squaredNorm();
-      if (guessed < limit) match = {guess, guessed};
+  std::vector<Match> matches;
+  for (Eigen::Index begin = 0; begin < size; begin += NeighbourLists::kTogether) {
+    const PointsRef some = queries.middleCols(begin, std::min<Eigen::Index>(NeighbourLists::kTogether, size - begin));
+    int* const guesses = indices.data() + begin;
+    matches.assign(static_cast<std::size_t>(some.cols()), {-1, limit});
+    for (Eigen::Index i = 0; i < some.cols(); ++i) {
+      if (guesses[i] < 0) continue;
+      const float guessed = (points_.col(guesses[i]) - some.col(i)).squaredNorm();
+      if (guessed < limit) matches[static_cast<std::size_t>(i)] = {guesses[i], guessed};
     }
-    match = guess >= 0 && lists_ ? closestByLists(query, guess, match, storage) : closest(query, match, storage);
-    indices[i] = match.index;
-    sq_distances[i] = match.index < 0 ? std::numeric_limits<float>::infinity() : match.sq_distance;
+    if (lists_) closestByWalks(some, guesses, matches, storage);
+    for (Eigen::Index i = 0; i < some.cols(); ++i) {
+      Match match = matches[static_cast<std::size_t>(i)];
+      if (!lists_) match = closest(some.col(i), match, storage);
+      guesses[i] = match.index;
+      sq_distances[static_cast<std::size_t>(begin + i)] =
+          match.index < 0 ? std::numeric_limits<float>::infinity() : match.sq_distance;
+    }
   }
 }
 

@@ -65,7 +65,13 @@ private:
   void visit(const Eigen::Vector3f& query, std::vector<Pending>& pending, Result& result) const;
   Storage storage() const;
   Match closest(const Eigen::Vector3f& query, Match start, Storage& storage) const;
-  Match closestByLists(const Eigen::Vector3f& query, int guess, Match start, Storage& storage) const;
+  Match closest(const Eigen::Vector3f& query, Match start, const WideTree::Closest& found, Storage& storage) const;
+  void nearest(const Eigen::Vector3f& query, int num_neighbours, int* indices, float* sq_distances,
+               Storage& storage) const;
+  void nearestOfMany(const PointsRef& queries, int num_neighbours, int* indices, float* sq_distances,
+                     Storage& storage) const;
+  void closestByWalks(const PointsRef& queries, const int* guesses, std::vector<Match>& matches,
+                      Storage& storage) const;
   template <typename Result>
   void visitLeaf(const Node& leaf, const Eigen::Vector3f& query, Result& result) const;
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/simd.h"
+#include "pcl_symmetry/core/geometry/point_set.h"
 
 namespace pcl_symmetry {
 
@@ -58,6 +59,13 @@ public:
   void findClosest(const OrderedCoordinates& points, const float* query, std::vector<Pending>& pending,
                    Closest& closest) const;
 
+  /// findClosest() for many queries whose limits are hardly greater than the answers. Level by level, so that no query
+  /// waits for the boxes of another.
+  /// \pre isSupported()
+  /// \param queries 3 x M.
+  /// \param closest M, as of findClosest().
+  void findClosestOfMany(const OrderedCoordinates& points, const Points& queries, std::vector<Closest>& closest) const;
+
   /// \param most how many closest points are wanted, at most as many as there are.
   /// \param[out] places,sq_distances room for them; nearest first.
   /// \return whether the tree with two children has to answer: points are equally far away, so that others may be found,
@@ -65,7 +73,32 @@ public:
   bool findNearest(const OrderedCoordinates& points, const float* query, int most, std::vector<Pending>& pending,
                    std::int32_t* places, float* sq_distances) const;
 
+  /// findNearest() for many queries, among the points within a distance of each: all of these are found first, level by
+  /// level, and then put in order.
+  /// \pre isSupported(); most <= kMostOfMany
+  /// \param queries 3 x M.
+  /// \param limits M, of which the squared distances count; fastest where about twice as many points are within them as
+  /// are wanted.
+  /// \param[out] places,sq_distances room for M times as many as are wanted.
+  /// \return M values, 1 where findNearest() has to answer: too few or too many points are within the distance, or some
+  /// are equally far away.
+  std::vector<char> findNearestOfMany(const OrderedCoordinates& points, const Points& queries,
+                                      const std::vector<Closest>& limits, int most, std::int32_t* places,
+                                      float* sq_distances) const;
+
+  /// chosen: half of the room for points within the distance
+  static constexpr int kMostOfMany = 24;
+
 private:
+  /// The points within the distance of a query, in no order. They fill whole vectors.
+  struct Within {
+    /// derived: points, one more vector that exceeds them, and what is written behind it
+    static constexpr int kRoom = 2 * kMostOfMany + 2 * kChildren;
+    std::array<float, kRoom> sq_distances;
+    std::array<std::int32_t, kRoom> places;
+    int size = 0;
+  };
+
   struct Node {
     std::array<std::array<float, kChildren>, 3> low, high;  ///< of the boxes of the children, axis by axis
     std::array<std::int32_t, kChildren> children;           ///< a node; or -1 - l: leaf l
@@ -74,6 +107,21 @@ private:
     std::int32_t first, num_points;
   };
 
+  /// Queries, and for each a node or leaf that may hold its closest point.
+  struct Pairs {
+    std::vector<std::int32_t> queries, children;
+    std::size_t size = 0;
+
+    void makeRoom(std::size_t num_more);
+  };
+
+  void findChildren(const Points& queries, const std::vector<Closest>& closest, const Pairs& at, Pairs& nodes,
+                    Pairs& leaves) const;
+  Pairs findLeaves(const Points& queries, const std::vector<Closest>& limits) const;
+  static void addLeaf(const OrderedCoordinates& points, const float* query, Leaf leaf, float sq_limit, Within& within);
+  static bool putInOrder(Within& within, int most, std::int32_t* places, float* sq_distances);
+  template <typename Result>
+  static void visitLeaf(const OrderedCoordinates& points, const float* query, Leaf leaf, Result& result);
   template <typename Result>
   void visit(const OrderedCoordinates& points, const float* query, Pending* pending, Result& result) const;
   std::int32_t add(const std::vector<PointTreeNode>& nodes, const std::vector<Leaf>& ranges, std::int32_t node,
