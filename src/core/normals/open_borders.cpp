@@ -1,5 +1,6 @@
 #include "core/normals/open_borders.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -69,6 +69,7 @@ __attribute__((target("avx2"))) void NeighbourLists::walkSome(const PointsRef& q
     const float* const query = coordinates + stride * i;
     const float dx = query[0] - list.own_x, dy = query[1] - list.own_y, dz = query[2] - list.own_z;
     sq_distances[i] = dx * dx + dy * dy + dz * dz;
+    __builtin_prefetch(list.x);
     walking[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(i);
   }
   for (int num_walking = num_queries; num_walking > 0;) {
@@ -95,6 +96,9 @@ __attribute__((target("avx2"))) void NeighbourLists::walkSome(const PointsRef& q
       indices[i] += change & -static_cast<int>(is_closer);  // no branch: half of the guesses are the closest points
       sq_distances[i] = _mm_cvtss_f32(_mm_min_ss(least, _mm_set_ss(sq_before)));
       is_closest[i] = decides & ((is_closer & is_alone) | (sq_least > sq_before));
+      const List& next = lists_[static_cast<std::size_t>(indices[i])];
+      __builtin_prefetch(next.x);  // for the next round
+      __builtin_prefetch(next.z);
       walking[static_cast<std::size_t>(num_on)] = static_cast<std::uint16_t>(i);
       num_on += is_closer & is_alone & !decides;
     }
