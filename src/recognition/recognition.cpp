@@ -38,8 +38,9 @@ constexpr std::size_t kModelPoints = 5'000;  // chosen: see above
 // (fold 0 of the training half) among 100 000 models, 103 are right with 1250 and with 5000, in 0.38 and 0.49 s.
 constexpr std::size_t kCoarsePoints = 1'250;
 
-/// Models that look like the scan from some side, or that have pairs of points as it has, each with poses to try.
-/// \param num_alike how many of the first kind.
+/// Models that look like the scan from some side, each with poses to try. With a search by pairs: of all models those
+/// that fit best in some pose that pairs of points or the looks of the scan suggest.
+/// \param num_alike how many that look like it.
 std::vector<detail::ModelOfView> candidatesFor(DatabaseParts& database, const detail::PairSearch* pairs,
                                                const Points& points, const Points& scan_points, const Visibility& seen,
                                                const RecognitionOptions& options, int num_alike) {
@@ -51,18 +52,10 @@ std::vector<detail::ModelOfView> candidatesFor(DatabaseParts& database, const de
   const auto read = [&](const StoredModel& model) { return database.viewsOf(model); };
   std::vector<detail::ModelOfView> candidates = database.views()->nearest(view, search, read);
   if (!pairs) return candidates;
-  PairSearchOptions pair_search;
-  pair_search.num_nearest = options.num_candidates;
-  pair_search.num_threads = options.num_threads;
-  for (detail::ModelOfView& found : pairs->nearest(scan_points, pair_search)) {
-    const auto same = std::find_if(candidates.begin(), candidates.end(),
-                                   [&](const auto& other) { return other.model.id == found.model.id; });
-    if (same == candidates.end())
-      candidates.push_back(std::move(found));
-    else
-      same->T_model_scan.insert(same->T_model_scan.end(), found.T_model_scan.begin(), found.T_model_scan.end());
-  }
-  return candidates;
+  PoseScreeningOptions screening;
+  screening.num_shapes = options.num_candidates;
+  screening.num_threads = options.num_threads;
+  return pairs->nearest(scan_points, seen, candidates, screening);
 }
 
 /// See RecognizedModel::confidence.
@@ -107,7 +100,7 @@ Recognition fitLikeViews(DatabaseParts& database, const Points& points, const Po
   const auto fit = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const StoredModel& model = candidates[i].model;
-      scan.bringTo(model.name, database.points(model, pairs ? kModelPoints : kCoarsePoints), candidates[i].T_model_scan,
+      scan.bringTo(model.name, database.points(model, kCoarsePoints), candidates[i].T_model_scan,
                    [&] { return database.points(model, kModelPoints); });
     }
     const Recognition fitted = scan.refined(options.num_refined);

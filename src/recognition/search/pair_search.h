@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/matching/pairs/point_pair_index.h"
+#include "core/matching/pairs/pose_screening.h"
 #include "recognition/search/view_search.h"
 #include "recognition/storage/model_store.h"
 
@@ -28,15 +30,25 @@ public:
   /// \param before whose points are taken over for the models that it has; null: none.
   PairSearch(std::vector<StoredModel> models, const PointReader& read, const PairSearch* before, int num_threads);
 
-  /// Models that have pairs as a scan has, those with most first.
+  /// Models that have poses in which they fit a scan best, best first. Poses that have pairs as the scan has are tried
+  /// for all models.
   /// \param scan 3 x N, finite, N >= 1, unit of the models.
-  std::vector<ModelOfView> nearest(const Points& scan, const PairSearchOptions& options) const;
+  /// \param seen what the scanner saw.
+  /// \param others more poses to try.
+  std::vector<ModelOfView> nearest(const Points& scan, const Visibility& seen, const std::vector<ModelOfView>& others,
+                                   const PoseScreeningOptions& options) const;
 
 private:
-  const SurfacePoints* find(std::int64_t model) const;
+  /// What is kept of a model.
+  struct Shape {
+    SurfacePoints of_pairs;
+    ScreenedSurface screened;
+  };
+
+  std::size_t indexOf(std::int64_t model) const;
 
   std::vector<StoredModel> models_;
-  std::vector<SurfacePoints> shapes_;  // of the models
+  std::vector<std::shared_ptr<const Shape>> shapes_;  // of the models
   std::optional<PointPairIndex> index_;
 };
 
