@@ -27,10 +27,9 @@ PairSearch::PairSearch(std::vector<StoredModel> models, const PointReader& read,
       shapes_[i] = before->shapes_[known];
       return;
     }
-    const Points points = read(models_[i]);
-    shapes_[i] = std::make_shared<const Shape>(
-        Shape{evenSurfacePoints(points, PointPairIndex::kShapePoints, kPairSeed, 1),
-              ScreenedSurface(evenSurfacePoints(points, ScreenedSurface::kShapePoints, kPairSeed, 1))});
+    std::vector<SurfacePoints> few = evenSurfacePoints(
+        read(models_[i]), {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed, 1);
+    shapes_[i] = std::make_shared<const Shape>(Shape{std::move(few[0]), ScreenedSurface(few[1])});
   });
   std::vector<SurfacePoints> of_pairs;
   for (const auto& shape : shapes_) of_pairs.push_back(shape->of_pairs);

@@ -14,8 +14,8 @@
 
 namespace pcl_symmetry::detail {
 
-/// Finds models that a scan can show by pairs of its points, see PointPairIndex: also where much of the object is
-/// hidden.
+/// Finds models that a scan can show, also where much of the object is hidden: by poses that pairs of its points
+/// suggest, see PointPairIndex, and that are tried, see screenPoses().
 class PairSearch {
 public:
   /// Models of a database from which on there is no such search. chosen: the pairs of a model take 0.3 MB and 10 ms to
