@@ -27,7 +27,7 @@ struct ConfidenceTerms {
   double constant = -26.5, merit = 29.7, lead = 29.6;
 };
 
-// Greatest lead that counts. derived: with it, a merit of 0.7 decides; a scan that only one model was brought to leads
+// Greatest lead that counts. derived: with it, a merit of 0.6 decides; a scan that only one model was brought to leads
 // by as much. Unbounded, a poor fit would be certain where all others fit worse.
 constexpr double kMostLead = 0.3;
 // Points of the scan and of a model that poses are judged by. chosen: time grows with them; half loses accuracy of the

@@ -26,8 +26,8 @@ constexpr std::size_t kNumImproved = 400;
 // Steps of the improvement. chosen: half shrinks the Gaussian faster than poses follow, twice takes twice the time.
 constexpr int kSteps = 6;
 // Radii of the shape, widths of the Gaussian at the first and the last step. chosen: poses of pairs are off by the
-// first. measured, the last, with the noise of a depth camera: 0.05, 0.08 and 0.12 leave 58, 59 and 61 of 71 models
-// among the first three (the first of 24 poses of each, the others of 48).
+// first. measured, the last, with the noise of a depth camera: 0.05 and 0.08 leave 58 and 61 of 71 models among the
+// first three with 24 poses of each model, 0.08 and 0.12 65 and 67 with 48.
 constexpr double kFirstWidth = 0.25, kLastWidth = 0.1;
 // Poses in one block of a thread. chosen: half adds overhead, twice leaves threads idle; results do not depend on it.
 constexpr std::size_t kPosesInBlock = 64;
