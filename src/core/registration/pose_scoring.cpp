@@ -78,12 +78,15 @@ bool isInFreeSpace(const Matches& matches, Eigen::Index i, const PosedSurface& t
 /// Least squares in a small motion (rotation vector, translation).
 class MotionEquations {
 public:
+  /// \param unit of the lengths.
+  explicit MotionEquations(double unit) : unit_(unit) {}
+
   /// w (n . (x + rotation x x + translation) - n . y)^2.
   void addPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& n, double weight) {
     Vector6d row;
-    row << x.cross(n), n;
+    row << x.cross(n) / unit_, n;
     hessian_.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-    gradient_ += weight * n.dot(y - x) * row;
+    gradient_ += weight * n.dot(y - x) / unit_ * row;
   }
 
   /// w |x + rotation x x + translation - y|^2.
@@ -100,13 +103,14 @@ public:
     if (!motion.allFinite()) return moved;
     const double angle = motion.head<3>().norm();
     if (angle > 0.0) moved.linear() = Eigen::AngleAxisd(angle, motion.head<3>() / angle).toRotationMatrix();
-    moved.translation() = motion.tail<3>();
+    moved.translation() = unit_ * motion.tail<3>();
     return moved;
   }
 
 private:
   using Vector6d = Eigen::Matrix<double, 6, 1>;
 
+  double unit_;
   Eigen::Matrix<double, 6, 6> hessian_ = Eigen::Matrix<double, 6, 6>::Zero();
   Vector6d gradient_ = Vector6d::Zero();
 };
@@ -139,7 +143,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
 }
 
 Eigen::Isometry3d PoseScorer::step(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const {
-  MotionEquations equations;
+  MotionEquations equations(detail.unit);
   const Matches on_model = match(scan_, model_, T_model_scan, detail);
   for (Eigen::Index i = 0; i < on_model.places.cols(); ++i) {
     const int j = on_model.closest[i];

@@ -18,6 +18,10 @@ constexpr double kRoughShare = 0.15;
 // edges.
 constexpr int kNumRoughNeighbours = 32;
 
+// Cells along each side of the grid of few points. chosen: as wide as a thousand points of a surface are apart; half
+// gives wrong neighbours, twice takes eight times the memory.
+constexpr int kFewCells = 24;
+
 std::vector<int> randomOrder(int size, std::uint64_t seed) {
   std::vector<int> order(size);
   std::iota(order.begin(), order.end(), 0);
@@ -42,6 +46,19 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
     geometry = localGeometry(points, *search, kNumRoughNeighbours, num_threads);
   normals = std::move(geometry.normals);
   accuracy = typical + 2.0 * median(std::move(geometry.roughness));
+}
+
+PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normals, std::optional<Visibility> seen_space)
+    : points(input),
+      normals(known_normals),
+      order(static_cast<std::size_t>(input.cols())),
+      seen(std::move(seen_space)),
+      grid(input, kFewCells),
+      search(makeTreeSearch(input)) {
+  std::iota(order.begin(), order.end(), 0);
+  LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, 1);
+  accuracy = median(geometry.spacing) + 2.0 * median(std::move(geometry.roughness));
+  spacing = std::move(geometry.spacing);
 }
 
 }  // namespace pcl_symmetry

@@ -27,6 +27,8 @@ struct PosedSurface {
   /// \param seed of the order.
   /// \param num_threads >= 0; 0 = one per core.
   PosedSurface(const PointsRef& points, std::optional<Visibility> seen, std::uint64_t seed, int num_threads);
+  /// Of a few points in random order, whose normals are known: the grid of closest points is coarser.
+  PosedSurface(const PointsRef& points, const PointsRef& normals, std::optional<Visibility> seen);
 };
 
 }  // namespace pcl_symmetry

@@ -3,20 +3,22 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/matching/pairs/point_pair_index.h"
+#include "core/matching/pairs/pose_screening.h"
 #include "recognition/search/view_search.h"
 #include "recognition/storage/model_store.h"
 
 namespace pcl_symmetry::detail {
 
-/// Finds models that a scan can show by pairs of its points, see PointPairIndex: also where much of the object is
-/// hidden.
+/// Finds models that a scan can show, also where much of the object is hidden: by poses that pairs of its points
+/// suggest, see PointPairIndex, and that are tried, see screenPoses().
 class PairSearch {
 public:
-  /// Models of a database from which on there is no such search. chosen: the pairs of a model take 0.3 MB and 10 ms to
+  /// Models of a database from which on there is no such search. chosen: the pairs of a model take 0.4 MB and 15 ms to
   /// make, each time that a database is opened; twice takes twice the memory and time.
   static constexpr std::size_t kMostModels = 300;
   /// Points of a model that give normals. chosen: half blurs edges, twice takes twice the time.
@@ -28,15 +30,25 @@ public:
   /// \param before whose points are taken over for the models that it has; null: none.
   PairSearch(std::vector<StoredModel> models, const PointReader& read, const PairSearch* before, int num_threads);
 
-  /// Models that have pairs as a scan has, those with most first.
+  /// Models that have poses in which they fit a scan best, best first. Poses that have pairs as the scan has are tried
+  /// for all models.
   /// \param scan 3 x N, finite, N >= 1, unit of the models.
-  std::vector<ModelOfView> nearest(const Points& scan, const PairSearchOptions& options) const;
+  /// \param seen what the scanner saw.
+  /// \param others more poses to try.
+  std::vector<ModelOfView> nearest(const Points& scan, const Visibility& seen, const std::vector<ModelOfView>& others,
+                                   const PoseScreeningOptions& options) const;
 
 private:
-  const SurfacePoints* find(std::int64_t model) const;
+  /// What is kept of a model.
+  struct Shape {
+    SurfacePoints of_pairs;
+    ScreenedSurface screened;
+  };
+
+  std::size_t indexOf(std::int64_t model) const;
 
   std::vector<StoredModel> models_;
-  std::vector<SurfacePoints> shapes_;  // of the models
+  std::vector<std::shared_ptr<const Shape>> shapes_;  // of the models
   std::optional<PointPairIndex> index_;
 };
 

@@ -88,6 +88,11 @@ TEST(SurfacePoints, AreSpreadEvenly) {
   // derived: of 200 points drawn at random on 5 units of area, two would be within sqrt(5 / (pi 200^2 / 2)) = 0.01.
   EXPECT_GT(least, 0.05f);
   EXPECT_EQ(evenSurfacePoints(points.leftCols(50), 200, 1, 1).points.cols(), 50);
+  const std::vector<SurfacePoints> both = evenSurfacePoints(points, {100, 200}, 1, 1);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_LE(both[0].points.cols(), 100);
+  EXPECT_EQ(both[1].points, few.points);
+  EXPECT_EQ(both[1].normals, few.normals);
 }
 
 TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {

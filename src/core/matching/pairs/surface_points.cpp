@@ -1,6 +1,7 @@
 #include "core/matching/pairs/surface_points.h"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/base/median.h"
@@ -38,17 +39,25 @@ std::vector<int> spreadPoints(const Points& points, double distance, int most, s
 
 }  // namespace
 
-SurfacePoints evenSurfacePoints(const Points& points, int count, std::uint64_t seed, int num_threads) {
+std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::vector<int>& counts, std::uint64_t seed,
+                                             int num_threads) {
   const ClosestPointSearch::Ptr search = makeTreeSearch(points);
   const LocalGeometry geometry = localGeometry(points, *search, kNeighbours, num_threads);
-  std::vector<int> chosen = allOf(points.cols());
-  if (points.cols() > count) {
-    double area = 0.0;
-    for (const float spacing : geometry.spacing) area += static_cast<double>(spacing) * spacing;
+  double area = 0.0;
+  for (const float spacing : geometry.spacing) area += static_cast<double>(spacing) * spacing;
+  std::vector<SurfacePoints> found;
+  for (const int count : counts) {
+    std::vector<int> chosen = allOf(points.cols());
     // Discs of half the distance cover that share of the area.
-    chosen = spreadPoints(points, std::sqrt(4.0 * kCovered * area / (std::acos(-1.0) * count)), count, seed);
+    if (points.cols() > count)
+      chosen = spreadPoints(points, std::sqrt(4.0 * kCovered * area / (std::acos(-1.0) * count)), count, seed);
+    found.push_back({pointsAt(points, chosen), pointsAt(geometry.normals, chosen)});
   }
-  return {pointsAt(points, chosen), pointsAt(geometry.normals, chosen)};
+  return found;
+}
+
+SurfacePoints evenSurfacePoints(const Points& points, int count, std::uint64_t seed, int num_threads) {
+  return std::move(evenSurfacePoints(points, std::vector<int>{count}, seed, num_threads).front());
 }
 
 }  // namespace pcl_symmetry

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "pcl_symmetry/core/geometry/point_set.h"
 
 namespace pcl_symmetry {
@@ -18,5 +21,9 @@ struct SurfacePoints {
 /// \return about \p count points, at most that many, in random order: the first k are spread over the surface too. All
 /// points where there are no more.
 SurfacePoints evenSurfacePoints(const Points& points, int count, std::uint64_t seed, int num_threads);
+
+/// The same for several counts: directions of the surface are found once.
+std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::vector<int>& counts, std::uint64_t seed,
+                                             int num_threads);
 
 }  // namespace pcl_symmetry
