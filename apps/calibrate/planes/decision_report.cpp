@@ -74,6 +74,7 @@ const std::vector<std::pair<const char*, double EvidenceUnits::*>>& unitNames() 
       {"precision", &EvidenceUnits::precision},
       {"precision_per_spacing", &EvidenceUnits::precision_per_spacing},
       {"precision_per_unknown", &EvidenceUnits::precision_per_unknown},
+      {"reach", &EvidenceUnits::reach},
       {"most_off", &EvidenceUnits::most_off},
       {"hidden_loss", &EvidenceUnits::hidden_loss},
       {"slipping", &EvidenceUnits::slipping},

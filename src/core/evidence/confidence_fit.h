@@ -16,10 +16,10 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{1.381, -1.966, -0.2305, -3.3, -0.255, -6.879, -3.895},
+inline const ConfidenceFit kConfidenceFit{{{{2.471, -1.499, -0.3866, -2.617, -0.2983, -5.798, -3.803},
                                             {0.2694, -0.9311, -0.8381, -10.54, -3.208, -1.119},
                                             {4.929, -1.002, -1.505, -0.9331, -11.81}}},
-                                          {{{-5.97, 1.1}, {-18.4, 0.342}, {-21.5, 0.766}}}};
+                                          {{{-6.82, 1.43}, {-18.4, 0.342}, {-21.5, 0.766}}}};
 // clang-format on
 
 }  // namespace pcl_symmetry

@@ -33,16 +33,25 @@ double coarseness(const PlaneEvidence& evidence) {
   return evidence.spacing / std::max(evidence.tolerance, kLeastTolerance);
 }
 
-/// \return log odds by the share of the surface that is off.
+/// \return log odds by a share of the surface that is off.
+double byOff(double off, double unit) {
+  return std::log((off + unit) / (kOffAtEvenOdds + unit));
+}
+
 double byShare(const PlaneEvidence& evidence, double unit) {
-  return std::log((1.0 - evidence.share + unit) / (kOffAtEvenOdds + unit));
+  return byOff(1.0 - evidence.share, unit);
+}
+
+/// \return the share of the surface that finer points would show to be off.
+double resolvedOff(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+  return (1.0 - evidence.share) * std::exp(units.reach * coarseness(evidence));
 }
 
 /// \return the share of the surface that is off, in units of what is known of it.
 double byPrecision(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   const double unit = units.precision + units.precision_per_spacing * coarseness(evidence) +
                       units.precision_per_unknown * evidence.unknown;
-  return std::min(1.0 - evidence.share, units.most_off) / unit;
+  return std::min(resolvedOff(evidence, units), units.most_off) / unit;
 }
 
 /// \return log odds by the share of the surface that is off at twice the tolerance.
@@ -107,7 +116,7 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
               std::sqrt(1.0 - evidence.own_score)};
     default:
       return {1.0,
-              byShare(evidence, units.off + units.off_per_spacing * coarseness(evidence)),
+              byOff(resolvedOff(evidence, units), units.off + units.off_per_spacing * coarseness(evidence)),
               byPrecision(evidence, units),
               std::sqrt(evidence.unknown),
               coarseness(evidence),

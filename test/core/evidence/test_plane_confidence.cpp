@@ -109,6 +109,14 @@ TEST(PlaneConfidence, OfAWholeCloudFollowsTheDefinition) {
   EXPECT_LT(planeConfidence(evidence), 0.5);
 }
 
+TEST(PlaneConfidence, WhatIsOffByCoarserPointsIsMoreOfTheSurface) {
+  PlaneEvidence fine = evidenceOf(0.98, 0.01, 0.05, false, false), coarse = fine;
+  fine.share = fine.double_share = coarse.share = coarse.double_share = 0.97;
+  coarse.spacing = 0.04;
+  EXPECT_LT(planeConfidence(coarse), planeConfidence(fine));
+  EXPECT_GT(logOddsTerms(coarse)[1], logOddsTerms(fine)[1]);
+}
+
 TEST(PlaneConfidence, APlaneThatNothingSpeaksForIsNoSymmetry) {
   for (const auto& [name, good] : regimes()) {
     PlaneEvidence evidence = good;

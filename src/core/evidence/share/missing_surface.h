@@ -15,7 +15,8 @@ namespace pcl_symmetry {
 /// How well an open border explains that a sample has no counterpart under a plane.
 ///
 /// Neighbouring samples without counterpart form regions. A region is explained as far as its edge runs along open
-/// borders, at the samples themselves or at their reflections.
+/// borders, at the samples themselves or at their reflections, more than chance would have it: short edges may do so by
+/// chance, and so may those of a region all of whose samples lie near borders.
 /// \param matched N values, 1 where the reflection of the sample lies on the surface.
 /// \param closest N indices of the samples closest to the reflections; -1: none is near.
 /// \param geometry of the samples.
