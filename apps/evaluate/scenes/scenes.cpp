@@ -46,8 +46,8 @@ constexpr double kRightPose = 0.05;
 // Metres that an object may seem to reach into the table. chosen: three deviations of the depth at 1 m; half takes
 // noise for a contradiction, twice lets reflections sink into the table.
 constexpr double kTableMargin = 0.004;
-// Greatest lead over another model that counts. derived: as in the confidence of the library, which leaves out models of
-// the same shape; here each model counts, as hardly two are.
+// Greatest lead over another model that counts. derived: as in the confidence of the library, which leaves out models
+// of the same shape; here each model counts, as hardly two are.
 constexpr double kMostLead = 0.3;
 // Points of a model in the database. chosen: as many as in `recognition`.
 constexpr int kModelPoints = 20'000;
