@@ -44,6 +44,19 @@ protected:
     options.num_views = 2;
     return options;
   }
+  static DatabaseOptions fewViews() {
+    DatabaseOptions options;
+    options.num_views = 20;
+    options.num_references = 20;
+    return options;
+  }
+  /// \return a file with a model of each kind.
+  std::string filled(const DatabaseOptions& options) const {
+    const std::string file = folder_ + "/few.db";
+    SymmetryDatabase database(file, options);
+    fill(database);
+    return file;
+  }
   static Cloud cube() { return rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 1); }
 
   const std::string folder_ =
@@ -218,14 +231,8 @@ void fillWithCopies(const std::string& from, const std::string& to, int count) {
 }
 
 TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreCompared) {
-  DatabaseOptions options;
-  options.num_views = 20;
-  options.num_references = 20;
-  const std::string few = folder_ + "/few.db";
-  {
-    SymmetryDatabase database(few, options);
-    fill(database);
-  }
+  const DatabaseOptions options = fewViews();
+  const std::string few = filled(options);
   fillWithCopies(few, file_, 52);
   RecognitionOptions recognition = optionsForRandomPoints();
   recognition.num_candidates = 2;
@@ -247,14 +254,8 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
 }
 
 TEST_F(SymmetryDatabaseTest, TriesMoreModelsWhereNoneOfTheFirstIsAccepted) {
-  DatabaseOptions options;
-  options.num_views = 20;
-  options.num_references = 20;
-  const std::string few = folder_ + "/few.db";
-  {
-    SymmetryDatabase database(few, options);
-    fill(database);
-  }
+  const DatabaseOptions options = fewViews();
+  const std::string few = filled(options);
   {
     detail::ModelStore source(few, 10.0, ""), target(file_, 10.0, "");
     const auto models = source.models();                  // beam, cube, plate, post
