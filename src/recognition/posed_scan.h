@@ -16,7 +16,7 @@ namespace pcl_symmetry::detail {
 
 /// A model that a scan was brought to.
 struct PosedModel {
-  RecognizedModel model;  ///< its confidence is 0
+  RecognizedModel model;  ///< its confidence is 0 until all models are judged together
   std::shared_ptr<const PosedSurface> surface;
   Eigen::Isometry3d T_surface_scan;  ///< as T_model_scan, in radii about the centers of both
 };
@@ -48,8 +48,8 @@ public:
   /// \return these models, in any order.
   std::vector<PosedModel> refined(int num_refined);
 
-  /// How well a scan fits a model: by its distances from the surface between the points, so that it does not count how
-  /// densely the model was sampled.
+  /// Judges a pose that was found elsewhere, as refined() does: by the distances of the scan from the surface between
+  /// the points of the model, so that it does not count how densely the model was sampled.
   /// \param points of the model, 3 x M, finite, units of the scan.
   PosedModel judged(const std::string& name, const Points& points, const Eigen::Isometry3d& T_model_scan) const;
 

@@ -49,16 +49,16 @@ struct EvidenceUnits {
   /// The same of the share of scans within twice the tolerance. chosen: among 0.0025, 0.005 and 0.01 by
   /// cross-validation over the models of fold 0: 0.193, 0.192 and 0.192 nats a plane.
   double double_off = 0.005;
+  /// How exactly the share is known: twice the errors of the share that is off, less where much says nothing; and from
+  /// where on it does not matter. chosen: with half of them nearly symmetric planes are possible ones, with twice of
+  /// them symmetries are doubted.
+  double precision = 0.01, precision_per_spacing = 0.004, precision_per_unknown = 0.2, most_off = 0.1;
   /// Logarithm of the factor per spacing in tolerances by which finer points of a whole cloud show more of the surface
   /// to be off: samples reach beyond the edges of what is there. chosen: among 0.2, 0.3, 0.43 and 0.6 by
   /// cross-validation over whole and cut clouds of half of the models of fold 0: 0.1340, 0.1319, 0.1294 and 0.1287 nats
   /// a plane, 0.141 without; from 0.43 on clouds that were cut are doubted more, and clouds of 1000 to 3000 points. The
   /// off share of planes with a true one of 0.03 to 0.04 grows by 0.3 to 0.6 per spacing.
   double reach = 0.3;
-  /// How exactly the share is known: twice the above, less where much says nothing; and from where on it does not
-  /// matter. chosen: with half of them nearly symmetric planes are possible ones, with twice of them symmetries are
-  /// doubted.
-  double precision = 0.01, precision_per_spacing = 0.004, precision_per_unknown = 0.2, most_off = 0.1;
   /// Part of D that is lost per share that says nothing. chosen: among 0.4, 0.6 and 0.8 by cross-validation over
   /// the models of fold 0: 0.194, 0.192 and 0.196 nats a plane of scans, 0.145 each of surfaces; 0.213 and 0.148
   /// without.
