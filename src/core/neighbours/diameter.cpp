@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -19,13 +18,12 @@ constexpr int kPointsPerNode = 8;  // points; chosen: half and twice as many shi
 class HalvingTree {
 public:
   explicit HalvingTree(const PointsRef& points)
-      : points_(points), center_(boundingBall(points).center), order_(static_cast<std::size_t>(points.cols())) {
-    std::iota(order_.begin(), order_.end(), 0);
+      : points_(points), center_(boundingBall(points).center), sq_of_hops_(sqDistanceOfHops()), order_(possibleEnds()) {
     build(0, static_cast<int>(order_.size()));
   }
 
   double greatestSqDistance() const {
-    double best = sqDistanceOfHops();
+    double best = sq_of_hops_;
     search(0, 0, best);
     return best;
   }
@@ -91,6 +89,21 @@ private:
     return best;
   }
 
+  /// The points that can be an end of the greatest distance: no point is farther from one of them than its own distance
+  /// from the center and the greatest one together.
+  std::vector<int> possibleEnds() const {
+    constexpr double kSlack = 1e-9;  // derived: as in around()
+    std::vector<double> reaches(static_cast<std::size_t>(points_.cols()));
+    for (std::size_t i = 0; i < reaches.size(); ++i)
+      reaches[i] = (points_.col(static_cast<Eigen::Index>(i)).cast<double>() - center_).norm();
+    const double least =
+        std::sqrt(sq_of_hops_) * (1.0 - kSlack) - *std::max_element(reaches.begin(), reaches.end()) * (1.0 + kSlack);
+    std::vector<int> ends;
+    for (std::size_t i = 0; i < reaches.size(); ++i)
+      if (reaches[i] >= least) ends.push_back(static_cast<int>(i));
+    return ends;
+  }
+
   /// Raises \p best to the greatest squared distance between a point of node \p a and one of node \p b.
   void search(int a, int b, double& best) const {
     const Node &first = nodes_[a], &second = nodes_[b];
@@ -134,7 +147,8 @@ private:
 
   const PointsRef& points_;
   Eigen::Vector3d center_;
-  std::vector<int> order_;
+  double sq_of_hops_;
+  std::vector<int> order_;  ///< of the possible ends
   std::vector<Node> nodes_;
 };
 
