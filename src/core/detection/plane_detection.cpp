@@ -12,6 +12,7 @@
 #include "core/detection/candidates.h"
 #include "core/detection/folds/even_density.h"
 #include "core/detection/folds/fold_spectrum.h"
+#include "core/detection/large/cloud_subset.h"
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_judge.h"
 #include "core/detection/plane_ranking.h"
@@ -38,19 +39,24 @@ void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more)
   std::move(more.begin(), more.end(), std::back_inserter(planes));
 }
 
-/// Gives each copy of a point the support of the point.
-void spreadSupport(SymmetryPlane& plane, const DistinctPoints& distinct) {
-  std::vector<float> support(distinct.index_of.size());
-  for (std::size_t i = 0; i < support.size(); ++i) support[i] = plane.point_support[distinct.index_of[i]];
-  plane.point_support = std::move(support);
-}
-
 /// The normals of the distinct points: where copies differ, that of the last copy.
 Points normalsOf(const DistinctPoints& distinct, const Points& normals) {
   Points result(3, distinct.points.cols());
   for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
     result.col(distinct.index_of[i]) = normals.col(static_cast<Eigen::Index>(i));
   return result;
+}
+
+/// What detect(points, normals) finds by the points that stand for a cloud, as the answer of the whole cloud.
+template <typename Detect>
+Detection bySubset(const CloudSubset& subset, const PointsRef& points, const Points* normals, int num_threads,
+                   const Detect& detect) {
+  const Points kept_normals = normals ? pointsAt(*normals, subset.kept) : Points();
+  Detection detection = detect(subset.points, normals ? &kept_normals : nullptr);
+  Stopwatch watch;
+  if (!detection.planes.empty() || detection.best) spreadSupport(detection, subset.nearTo(points, num_threads));
+  detection.timing_ms.emplace_back("support_of_all", watch.lap());
+  return detection;
 }
 
 /// Finds the axes of turns of a scan, and brings axes of revolution and planes in line with them.
@@ -93,8 +99,18 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
                        const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search,
                        const Visibility* visibility, const Points* normals) {
   options.validate();
+  if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
   if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
   Stopwatch watch;
+  if (const std::optional<CloudSubset> subset = make_search ? std::nullopt : subsetOf(points, options)) {
+    const double subset_ms = watch.lap();
+    Detection detection =
+        bySubset(*subset, points, normals, options.num_threads,
+                 [&](const Points& p, const Points* n) { return detectPlanes(p, options, nullptr, visibility, n); });
+    detection.map.center_of_mass = centerOfMass(points);
+    detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
+    return detection;
+  }
   const GaussianEdt edt(points, options.edt);
   const double edt_ms = watch.lap();
   std::vector<float> free_space;
@@ -214,6 +230,10 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   options.validate();
   if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
   if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
+  if (const std::optional<CloudSubset> subset = search ? std::nullopt : subsetOf(points, options))
+    return bySubset(*subset, points, normals, options.num_threads, [&](const Points& p, const Points* n) {
+      return refineMaxima(p, edt, map, options, nullptr, visibility, n);
+    });
   Stopwatch watch;
   const DistinctPoints distinct(points);
   const bool repeated = distinct.points.cols() < points.cols();
@@ -226,8 +246,7 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
                             ? planesOfEven(cloud, distinct.points, kept, map, options, watch)
                             : planesOf(cloud, map, options, watch);
   if (!repeated) return detection;
-  for (SymmetryPlane& plane : detection.planes) spreadSupport(plane, distinct);
-  if (detection.best) spreadSupport(*detection.best, distinct);
+  spreadSupport(detection, distinct.index_of);
   return detection;
 }
 
