@@ -19,6 +19,9 @@ constexpr double kLeastMerit = 0.93;
 // How far below that a candidate may be after the second stage. chosen: few samples blur the merit; smaller values lose
 // symmetries early, larger ones cost time.
 constexpr double kCloseSlack = 0.1;
+// The same after the first stage, of candidates that are refined beside a symmetry. chosen: of a hundred samples twice
+// as much; at half, some symmetries are lost, at twice nothing is left out.
+constexpr double kCoarseSlack = 0.2;
 // Candidates with less merit that go on after the first two stages, best first: symmetries of scans and of clouds with
 // a piece missing, and the best plane of a shape that has no symmetry. chosen: fewer lose some of them, more cost time.
 constexpr std::size_t kKeptCoarsely = 8, kKeptClosely = 4;
@@ -63,12 +66,18 @@ std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidate
 }
 
 std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
-  candidates = refined(std::move(candidates), closeStage());
+  const auto isSymmetry = [](const Candidate& candidate) { return candidate.merit >= kLeastMerit; };
+  const bool all = cloud_.isScan() || options_.approximate;
+  const auto likely = all ? candidates.end()
+                          : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
+                              return candidate.merit >= kLeastMerit - kCoarseSlack;
+                            });
+  std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
   // Beside a symmetry of a whole cloud, the others are of no use.
-  const bool is_whole = std::any_of(candidates.begin(), candidates.end(),
-                                    [](const Candidate& candidate) { return candidate.merit >= kLeastMerit; });
-  const bool others = cloud_.isScan() || options_.approximate || !is_whole;
-  return distinct(std::move(candidates), -1.0, others ? kKeptClosely : 0);
+  if (!all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
+  for (Candidate& other : refined({likely, candidates.end()}, closeStage())) found.push_back(std::move(other));
+  const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
+  return distinct(std::move(found), -1.0, all || !is_whole ? kKeptClosely : 0);
 }
 
 std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
@@ -76,8 +85,21 @@ std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> 
 }
 
 std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates) const {
-  return refined(std::move(candidates), stage(options_.num_refine_samples / rulesOf(cloud_).full_share,
-                                              cloud_.final_sigma, cloud_.final_sigma, kFullIterations));
+  return refined(std::move(candidates), fullStage());
+}
+
+std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) const {
+  std::vector<bool> moved(candidates.size(), false);
+  if (cloud_.isScan()) return moved;
+  const std::vector<Candidate> before = candidates;
+  fit_.climb(candidates, fullStage());
+  for (std::size_t i = 0; i < candidates.size(); ++i) moved[i] = candidates[i].merit != before[i].merit;
+  return moved;
+}
+
+RefinementStage StagedRefinement::fullStage() const {
+  return stage(options_.num_refine_samples / rulesOf(cloud_).full_share, cloud_.final_sigma, cloud_.final_sigma,
+               kFullIterations);
 }
 
 RefinementStage StagedRefinement::closeStage() const {
@@ -93,7 +115,7 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.num_rough_samples = std::min(num_samples, options_.num_refine_samples / rules.rough_share);
   stage.least_merit = rules.settled_merit;
   stage.undo_slides = cloud_.isScan() && final_sigma == sigma;
-  stage.climbs = final_sigma == sigma;
+  stage.climbs = cloud_.isScan() && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
   const bool slides = cloud_.isScan() && num_samples > options_.num_coarse_samples && final_sigma < sigma;
   stage.isp.update = slides ? IspUpdate::PointToPoint : options_.update;

@@ -31,7 +31,13 @@ public:
   /// All samples at the narrowest weights: this stage decides the precision of the planes.
   std::vector<Candidate> full(std::vector<Candidate> candidates) const;
 
+  /// Moves planes of a whole cloud to their place where pairs without a true partner pull them aside.
+  /// \param candidates after full(), those that may be symmetries.
+  /// \return for each whether it moved; of a scan none, whose candidates have climbed in full().
+  std::vector<bool> climb(std::vector<Candidate>& candidates) const;
+
 private:
+  RefinementStage fullStage() const;
   RefinementStage stage(int num_samples, double sigma, double final_sigma, int max_iterations) const;
   std::vector<Candidate> refined(std::vector<Candidate> candidates, const RefinementStage& stage) const;
   std::vector<Candidate> withinCells(const std::vector<Candidate>& candidates, const std::vector<Candidate>& starts,

@@ -35,7 +35,7 @@ struct RefinementStage {
   IspOptions rough_isp;   ///< of the others
   double least_merit;     ///< of candidates that may be symmetries
   bool undo_slides;       ///< of scans, at the narrowest weights
-  bool climbs;            ///< in the last stage, on the merit itself
+  bool climbs;            ///< of scans, in the last stage: see PlaneFit::climb()
 };
 
 /// How well a cloud supports a plane, and the plane nearby that it supports best.
@@ -47,6 +47,10 @@ public:
 
   /// Moves each candidate to the best plane nearby, and updates its merit.
   virtual void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
+
+  /// Moves each candidate that has settled beside its place there, and updates its merit; takes as long as all stages.
+  /// \param stage the last one.
+  virtual void climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
 
   /// The best plane nearby, at the narrowest weights.
   /// \param samples indices of points.

@@ -45,8 +45,17 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
     candidate.iterations += candidate.last.iterations;
     candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
     if (stage.undo_slides) undoSlide(candidate, start, used, stage.isp.final_sigma);
-    if (stage.climbs && candidate.merit >= kLeastClimbing && (cloud_.isScan() || candidate.merit < kAtRest))
-      climb(candidate, used, fewer);
+    if (stage.climbs && candidate.merit >= kLeastClimbing) climbOne(candidate, used, fewer);
+  });
+}
+
+void SurfaceFit::climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
+  const std::vector<int> samples = drawSamples(cloud_.points.cols(), stage.num_samples, options_.seed);
+  const std::vector<int> fewer = drawSamples(cloud_.points.cols(), stage.num_rough_samples, options_.seed);
+  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
+    Candidate& candidate = candidates[i];
+    const bool is_at_rest = !cloud_.isScan() && candidate.merit >= kAtRest;
+    if (candidate.merit >= kLeastClimbing && !is_at_rest) climbOne(candidate, samples, fewer);
   });
 }
 
@@ -65,7 +74,7 @@ void SurfaceFit::undoSlide(Candidate& candidate, const ReflectionPlane& start, c
 
 /// Pairs whose true partners are hidden pull at a plane: it comes to rest beside the one that explains most of what was
 /// seen. From there it climbs on the merit itself, in steps along its three parameters.
-void SurfaceFit::climb(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
+void SurfaceFit::climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
   const auto moved = [](const ReflectionPlane& plane, int parameter, double by) {
     const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal();
     if (parameter == 2) return ReflectionPlane(n, plane.offset() + by);

@@ -17,6 +17,7 @@ public:
   SurfaceFit(const NormalizedCloud& cloud, const PlaneFitOptions& options) : PlaneFit(cloud), options_(options) {}
 
   void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override;
+  void climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const override;
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
                           int max_iterations) const override;
   using PlaneFit::shares;
@@ -29,7 +30,7 @@ public:
 private:
   /// \param samples that the final merit is taken of.
   /// \param fewer samples by which the plane climbs.
-  void climb(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const;
+  void climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const;
   void undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
                  double sigma) const;
 

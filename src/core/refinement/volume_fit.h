@@ -12,6 +12,7 @@ public:
   VolumeFit(const NormalizedCloud& cloud, const PlaneFitOptions& options);
 
   void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override;
+  void climb(std::vector<Candidate>&, const RefinementStage&) const override {}  ///< the density pulls at no plane
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
                           int max_iterations) const override;
   using PlaneFit::shares;
