@@ -17,6 +17,7 @@
 #include "core/detection/plane_judge.h"
 #include "core/detection/plane_ranking.h"
 #include "core/detection/scan_axes/scan_axes.h"
+#include "core/detection/settling/plane_settler.h"
 #include "core/detection/staged_refinement.h"
 #include "core/distance_transform/free_space.h"
 #include "core/geometry/point_samples.h"
@@ -28,11 +29,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-// Confidence of planes of whole clouds that climb. measured: cut clouds of 89 models of fold 0 are decided alike with
-// 0, 0.005 and 0.02; a true plane had 0.0105 before its climb and 0.81 after it. With 0 planes that are none take half
-// of the time of a cloud.
-constexpr double kLeastClimbing = 0.01;
 
 Detection unanswered(std::string reason) {
   Detection detection;
@@ -153,28 +149,6 @@ void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::
 
 namespace {
 
-/// Refines candidates in full and judges them. Those of whole clouds climb only where that may decide.
-std::vector<SymmetryPlane> judgedPlanes(const StagedRefinement& refinement, const PlaneJudge& judge,
-                                        std::vector<Candidate> candidates) {
-  candidates = refinement.full(std::move(candidates));
-  std::vector<SymmetryPlane> planes = judge.judge(candidates);
-  std::vector<Candidate> climbing;
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].confidence < kLeastClimbing) continue;
-    climbing.push_back(std::move(candidates[i]));
-    places.push_back(i);
-  }
-  const std::vector<bool> moved = refinement.climb(climbing);
-  std::vector<Candidate> again;
-  for (std::size_t k = 0; k < moved.size(); ++k)
-    if (moved[k]) again.push_back(std::move(climbing[k]));
-  std::vector<SymmetryPlane> judged_again = judge.judge(again);
-  for (std::size_t k = 0, next = 0; k < moved.size(); ++k)
-    if (moved[k]) planes[places[k]] = std::move(judged_again[next++]);
-  return planes;
-}
-
 /// Planes of a cloud, from the maxima of its map to the list.
 Detection planesOf(const NormalizedCloud& cloud, const SymmetryMap& map, const DetectionOptions& options,
                    Stopwatch& watch) {
@@ -184,6 +158,7 @@ Detection planesOf(const NormalizedCloud& cloud, const SymmetryMap& map, const D
       cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
   const StagedRefinement refinement(cloud, *fit, options);
   const PlaneJudge judge(cloud, *fit, options);
+  PlaneSettler settler(refinement, judge, !options.approximate && !cloud.isScan() && !cloud.isVolume());
   timed("surface");
 
   std::vector<Candidate> candidates = gatherCandidates(cloud, map, options);
@@ -192,12 +167,12 @@ Detection planesOf(const NormalizedCloud& cloud, const SymmetryMap& map, const D
   timed("coarse_refinement");
   candidates = refinement.close(std::move(candidates));
   timed("close_refinement");
-  std::vector<SymmetryPlane> planes = judgedPlanes(refinement, judge, std::move(candidates));
+  std::vector<SymmetryPlane> planes = settler.planes(std::move(candidates));
   timed("full_refinement");
 
   GroupClosure closure(cloud, {options.merge_angle, options.merge_offset});
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
-    append(planes, judgedPlanes(refinement, judge, std::move(candidates)));
+    append(planes, settler.planes(std::move(candidates)));
   PlanesAndPolygon completed = withPolygon(judge.preferringWhole(std::move(planes)), cloud, judge, options);
   planes = std::move(completed.planes);
   timed("closure");

@@ -49,6 +49,13 @@ public:
   /// The same with the evidence.
   std::vector<JudgedPlane> judgeWithEvidence(const std::vector<Candidate>& candidates) const;
 
+  /// Whether a plane that was judged explains all of a whole cloud, so that nothing of it is missing.
+  bool explainsAll(const SymmetryPlane& plane) const;
+
+  /// A look at some points, where nothing is missing: whether too many of them are off for a possible symmetry.
+  /// \param plane normalised frame, from the second stage of refinement on.
+  bool isHopeless(const ReflectionPlane& plane) const;
+
   /// SymmetryPlane::deviation of a plane that maps many points far from the surface.
   /// \param plane input frame.
   /// \return input units.
