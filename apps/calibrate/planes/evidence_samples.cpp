@@ -77,6 +77,7 @@ std::vector<JudgedPlane> judgedCandidates(const Points& points, const Visibility
   const StagedRefinement refinement(cloud, *fit, options);
   std::vector<Candidate> candidates =
       refinement.full(refinement.close(refinement.coarse(gatherCandidates(cloud, map, options), grid)));
+  refinement.climb(candidates);
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
   const PlaneTolerance same{options.merge_angle, options.merge_offset};
