@@ -21,7 +21,8 @@ constexpr std::size_t kDensePerCell = 8;
 // slots along a cell; chosen: thinning adds up to sqrt(3) / 4 cells to a distance; half adds twice as much, twice keeps
 // eight times as many points
 constexpr int kSlotsPerCell = 4;
-constexpr int kVectorWidth = 8;  // derived: floats in an AVX2 register
+constexpr double kOfInterpolation = 1.0 / 12.0;  // derived: a value between cells is a mean over a box of one cell
+constexpr int kVectorWidth = 8;                  // derived: floats in an AVX2 register
 
 /// A float clamped to [low, high], as an integer; rounded towards zero.
 int clampedInt(float value, int low, int high) {
@@ -137,7 +138,7 @@ GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& opti
   chooseWidth(points, options.sigma);
   origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
   computeValues(points, options.num_threads);
-  interpolation_ = sharpened(1.0 / 12.0, options.num_threads);
+  interpolation_ = sharpened(kOfInterpolation, options.num_threads);
 }
 
 void GaussianEdt::chooseWidth(const PointsRef& points, double sigma) {
@@ -200,6 +201,7 @@ Eigen::Vector3d GaussianEdt::cellCenter(std::size_t index) const {
 std::vector<float> GaussianEdt::sharpened(double c, int num_threads) const {
   const int n = num_cells_;
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;
+  if (c == kOfInterpolation && !interpolation_.empty()) return interpolation_;
   std::vector<float> result(values_);
   parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
     for (int y = 1; y + 1 < n; ++y) {

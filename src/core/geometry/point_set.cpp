@@ -1,27 +1,37 @@
 #include "pcl_symmetry/core/geometry/point_set.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
+
+#include "core/base/simd.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// The point farthest from \p center among every \p stride-th point.
-/// \return its index and its distance.
-std::pair<Eigen::Index, double> farthest(const PointsRef& points, const Eigen::Vector3d& center, Eigen::Index stride) {
+/// \return the greatest distance of a point from \p center.
+double farthestFrom(const PointsRef& points, const Eigen::Vector3d& center) {
   const Eigen::Vector3d c = center;
-  Eigen::Index index = 0;
-  double sq_largest = -1.0;
-  for (Eigen::Index i = 0; i < points.cols(); i += stride) {
+  double sq_largest = 0.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const double dx = points(0, i) - c.x(), dy = points(1, i) - c.y(), dz = points(2, i) - c.z();
-    const double sq_distance = dx * dx + dy * dy + dz * dz;
-    if (sq_distance > sq_largest) {
-      sq_largest = sq_distance;
-      index = i;
-    }
+    sq_largest = std::max(sq_largest, dx * dx + dy * dy + dz * dz);
   }
-  return {index, std::sqrt(std::max(0.0, sq_largest))};
+  return std::sqrt(sq_largest);
+}
+
+/// Squared distances of some points from a center, coordinate by coordinate.
+PCL_SYMMETRY_MULTIVERSION
+void sqDistancesFrom(const double* center, const double* x, const double* y, const double* z, std::size_t size,
+                     double* sq_distances) {
+  const double cx = center[0], cy = center[1], cz = center[2];
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < size; ++i) {
+    const double dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
+    sq_distances[i] = dx * dx + dy * dy + dz * dz;
+  }
 }
 
 }  // namespace
@@ -36,11 +46,18 @@ BoundingBall boundingBall(const PointsRef& points) {
   constexpr int kNumIterations = 60;
   const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kNumProbed);
   ball.center = centerOfMass(points);
+  std::array<std::vector<double>, 3> probed;
+  for (Eigen::Index i = 0; i < points.cols(); i += stride)
+    for (int axis = 0; axis < 3; ++axis) probed[axis].push_back(points(axis, i));
+  std::vector<double> sq_distances(probed[0].size());
   for (int i = 1; i <= kNumIterations; ++i) {
-    const auto [index, distance] = farthest(points, ball.center, stride);
-    ball.center += (points.col(index).cast<double>() - ball.center) / (i + 1.0);
+    sqDistancesFrom(ball.center.data(), probed[0].data(), probed[1].data(), probed[2].data(), sq_distances.size(),
+                    sq_distances.data());
+    const auto index = std::max_element(sq_distances.begin(), sq_distances.end()) - sq_distances.begin();
+    const Eigen::Vector3d farthest_point(probed[0][index], probed[1][index], probed[2][index]);
+    ball.center += (farthest_point - ball.center) / (i + 1.0);
   }
-  ball.radius = farthest(points, ball.center, 1).second;
+  ball.radius = farthestFrom(points, ball.center);
   return ball;
 }
 

@@ -21,6 +21,7 @@ constexpr double kSurfaceAllowance = 0.015;
 constexpr double kFirstClimb = 0.02, kLastClimb = 0.0025;
 // Steps of a climb up, of all lengths. chosen: far planes are other planes; most take fewer than ten.
 constexpr int kMostClimbs = 24;
+constexpr int kClimbSamples = 500;  // by which planes of whole clouds climb. chosen: as many as those of scans take
 // Merit that a climb has to gain. chosen: what few samples make of a plane at rest; at 0, good planes leave their place
 // by 0.1 degrees, at twice, some planes stay beside their place.
 constexpr double kLeastGain = 0.005;
@@ -51,7 +52,8 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
 
 void SurfaceFit::climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
   const std::vector<int> samples = drawSamples(cloud_.points.cols(), stage.num_samples, options_.seed);
-  const std::vector<int> fewer = drawSamples(cloud_.points.cols(), stage.num_rough_samples, options_.seed);
+  const std::vector<int> fewer =
+      drawSamples(cloud_.points.cols(), std::min(stage.num_rough_samples, kClimbSamples), options_.seed);
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
     const bool is_at_rest = !cloud_.isScan() && candidate.merit >= kAtRest;
