@@ -16,28 +16,19 @@
 #include "pcl_symmetry/core/frame/symmetry_frame.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "pcl_symmetry/core/registration/symmetric_completion.h"
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
 #include "pcl_symmetry/core/segmentation/surface_segmentation.h"
 #include "pcl_symmetry/core/transform/planar_transform.h"
 #include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
 #include "python/input_points.h"
+#include "python/motions.h"
 #include "python/plane_results.h"
+#include "python/rotations.h"
 
 namespace py = pybind11;
 
 namespace pcl_symmetry::python {
 
 namespace {
-
-using RowMajor4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-
-/// The motions as one (K, 4, 4) array.
-py::array_t<double> stacked(const std::vector<Eigen::Isometry3d>& motions) {
-  py::array_t<double> result({static_cast<py::ssize_t>(motions.size()), py::ssize_t{4}, py::ssize_t{4}});
-  for (std::size_t i = 0; i < motions.size(); ++i)
-    Eigen::Map<RowMajor4>(result.mutable_data() + 16 * i) = motions[i].matrix();
-  return result;
-}
 
 /// Points as rows.
 py::array_t<float> rowsOf(const PointsRef& points) {
@@ -92,15 +83,6 @@ SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::si
   options.seed = seed;
   options.num_threads = options.edt.num_threads = threads;
   return symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
-}
-
-ObjectSymmetries rotations(const AnyArray& points, std::uint64_t seed, int threads) {
-  const InputPoints input("points", points, 0, seed);
-  const py::gil_scoped_release release;
-  ObjectSymmetryOptions options;
-  options.seed = seed;
-  options.num_threads = threads;
-  return objectSymmetries(input.points(), options);
 }
 
 /// \return the added points, and the rows that they are the reflections of.
@@ -232,24 +214,6 @@ void addFrame(py::module_& module) {
           "list of Turn, of scans from one side, most confident first")
       .def_readonly("probable", &SymmetryFrame::probable,
                     "list of `ProbableFrame`: this frame, then others by falling probability");
-  py::class_<ObjectSymmetries>(module, "Rotations", "The rotations that map a shape onto itself.")
-      .def_property_readonly("name", &ObjectSymmetries::name, "after Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3")
-      .def_readonly("fold", &ObjectSymmetries::fold, "order of the main axis; 0 where it is one of revolution")
-      .def_readonly("center", &ObjectSymmetries::center, "(3,) point that all axes pass through")
-      .def_property_readonly(
-          "discrete", [](const ObjectSymmetries& s) { return stacked(s.discrete); },
-          "(K, 4, 4) motions of the input frame, without the identity")
-      .def_property_readonly(
-          "continuous",
-          [](const ObjectSymmetries& s) {
-            std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> axes;
-            for (const ContinuousSymmetry& axis : s.continuous) axes.emplace_back(axis.offset, axis.axis);
-            return axes;
-          },
-          "list of (point, direction) of axes of revolution")
-      .def_readonly("support", &ObjectSymmetries::support, "share of the surface that is mapped onto the surface")
-      .def_readonly("confidence", &ObjectSymmetries::confidence,
-                    "probability that the whole surface, not its points alone, keeps to the limits");
 }
 
 void addMap(py::module_& module) {
@@ -322,9 +286,6 @@ void addShapeFunctions(py::module_& module) {
   module.def("frame", &frame, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
              py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0,
              "Canonical frame of a cloud (Section 5.1). Parameters as in planes(). Returns Frame.");
-  module.def("rotations", &rotations, py::arg("points"), py::kw_only(), py::arg("seed") = 1, py::arg("threads") = 0,
-             "The group of rotations that map a whole object onto itself (Section 6). Returns Rotations.\n"
-             "Raises ValueError for fewer than 20 distinct points, and for points on a line.");
   module.def("segment", &segment, py::arg("points"), py::arg("faces") = py::none(), py::kw_only(), py::arg("parts") = 0,
              py::arg("progress") = py::none(), py::arg("seed") = 1, py::arg("threads") = 0,
              "Cuts a surface into parts by its symmetries (Section 5.3).\n\n"
@@ -348,6 +309,7 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   addMap(module);
   addPlaneFunctions(module);
   addShapeFunctions(module);
+  addRotations(module);
   module.attr("__version__") = PCL_SYMMETRY_VERSION;
 }
 

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <sstream>
-#include <string>
 
 #include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
 
@@ -29,13 +27,6 @@ const char* nameOf(PlaneKind kind) {
       return "local";
   }
   return "";
-}
-
-std::string textOf(const SymmetryPlane& plane) {
-  std::ostringstream text;
-  text << "Plane(" << nameOf(plane.kind) << ", normal=[" << plane.normal().transpose() << "], offset=" << plane.offset()
-       << ", confidence=" << plane.confidence << ", share=" << plane.share << ")";
-  return text.str();
 }
 
 void addPlane(py::module_& module) {
@@ -67,8 +58,7 @@ void addPlane(py::module_& module) {
       .def_readonly("deviation", &SymmetryPlane::deviation,
                     "97 % of the reflected points stay within this distance of the surface, input units")
       .def_readonly("seen", &SymmetryPlane::seen, "share of the points whose reflection the cloud could show")
-      .def_readonly("residual", &SymmetryPlane::residual, "root mean square distance of reflected points, input units")
-      .def("__repr__", &textOf);
+      .def_readonly("residual", &SymmetryPlane::residual, "root mean square distance of reflected points, input units");
 }
 
 template <typename Symmetry>
@@ -138,16 +128,10 @@ void addPlaneResults(py::module_& module) {
       .def("point_support", &PlaneSearch::pointSupport, py::arg("index"),
            "(N,) support for a plane at each row of the input, in [0, 1]; NaN for rows that were not used")
       .def("__len__", [](const PlaneSearch& s) { return s.found.planes.size(); })
-      .def("__getitem__",
-           [](const PlaneSearch& s, py::ssize_t i) {
-             const auto size = static_cast<py::ssize_t>(s.found.planes.size());
-             if (i < -size || i >= size) throw py::index_error("no such plane");
-             return s.found.planes[static_cast<std::size_t>(i < 0 ? i + size : i)];
-           })
-      .def("__repr__", [](const PlaneSearch& s) {
-        std::string text = "Planes([";
-        for (const SymmetryPlane& plane : s.found.planes) text += "\n  " + textOf(plane) + ",";
-        return text + (s.found.planes.empty() ? "])" : "\n])");
+      .def("__getitem__", [](const PlaneSearch& s, py::ssize_t i) {
+        const auto size = static_cast<py::ssize_t>(s.found.planes.size());
+        if (i < -size || i >= size) throw py::index_error("no such plane");
+        return s.found.planes[static_cast<std::size_t>(i < 0 ? i + size : i)];
       });
 }
 

@@ -8,6 +8,7 @@
 
 #include <exception>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "pcl_symmetry/recognition/symmetry_database.h"
 #include "pcl_symmetry/registration/symmetry_registration.h"
 #include "python/input_points.h"
+#include "python/motions.h"
 
 namespace py = pybind11;
 
@@ -23,29 +25,21 @@ namespace pcl_symmetry::python {
 
 namespace {
 
-using RowMajor4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 using Cloud = SymmetryDatabase::Cloud;
 
-Eigen::Isometry3d motionOf(const RowMajor4& matrix) {
-  Eigen::Isometry3d motion;
-  motion.matrix() = matrix;
-  if (!motion.linear().isUnitary(1e-6) || motion.linear().determinant() < 0.0 ||
-      !matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1)))
-    throw std::invalid_argument("guess = another matrix, must be a rotation and a translation, (4, 4)");
-  return motion;
-}
-
 CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target, const RowMajor4& guess,
+                                 const std::optional<std::pair<double, double>>& around,
                                  const py::object& source_viewpoint, const py::object& target_viewpoint,
                                  std::uint64_t seed, int threads) {
   const InputPoints source_input("source", source, 0, seed), target_input("target", target, 0, seed);
   const std::optional<Visibility> source_seen = seenFrom(source_input.points(), source_viewpoint);
   const std::optional<Visibility> target_seen = seenFrom(target_input.points(), target_viewpoint);
-  const Eigen::Isometry3d T_target_source = motionOf(guess);
+  const Eigen::Isometry3d T_target_source = motionOf("guess", guess);
   const py::gil_scoped_release release;
   CloudRegistrationOptions options;
   options.seed = seed;
   options.num_threads = threads;
+  if (around) options.around = PoseNeighbourhood{around->first, around->second};
   return registerClouds(source_input.points(), source_seen, target_input.points(), target_seen, T_target_source,
                         options);
 }
@@ -99,13 +93,20 @@ void addRegistration(py::module_& module) {
               poses.emplace_back(RowMajor4(pose.T_target_source.matrix()), pose.score);
             return poses;
           },
-          "list of (transform, score), best first: poses that symmetry makes equal have like merits");
+          "list of (transform, score), best first: poses that symmetry makes equal have like merits")
+      .def_property_readonly(
+          "covariance", [](const CloudRegistration& r) { return r.covariance; },
+          "(6, 6) of the small turn, radians, and way, input units, that the pose is off in the frame of the target: "
+          "of "
+          "noise and sampling alone; None where no pose was found");
   module.def(
       "register", &registerPoints, py::arg("source"), py::arg("target"), py::kw_only(),
-      py::arg("guess") = RowMajor4(RowMajor4::Identity()), py::arg("source_viewpoint") = "auto",
-      py::arg("target_viewpoint") = "auto", py::arg("seed") = 1, py::arg("threads") = 0,
+      py::arg("guess") = RowMajor4(RowMajor4::Identity()), py::arg("around") = py::none(),
+      py::arg("source_viewpoint") = "auto", py::arg("target_viewpoint") = "auto", py::arg("seed") = 1,
+      py::arg("threads") = 0,
       "The pose of a scan, or a whole object, relative to another cloud of it, from any start (Section 5.1).\n\n"
       "source, target: (N, 3) and (M, 3), same units. guess: (4, 4), tried beside many other poses.\n"
+      "around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.\n"
       "source_viewpoint, target_viewpoint: as in planes().\n"
       "Returns Registration; poses of a wrong object have a merit below 0.32, those of the right one 0.5 or more.");
 }
@@ -161,16 +162,21 @@ void addDatabase(py::module_& module) {
           "The models most like a cloud, in any pose and size: list of Match, nearest first.")
       .def(
           "recognize",
-          [](const SymmetryDatabase& database, const AnyArray& points, const py::object& viewpoint, int threads) {
+          [](const SymmetryDatabase& database, const AnyArray& points, const py::object& viewpoint,
+             double min_confidence, int threads) {
             const Cloud cloud = cloudOf("points", points);
             const Viewpoint from = viewpointOf(viewpoint);
             RecognitionOptions options;
+            options.min_confidence = min_confidence;
             options.num_threads = threads;
             const py::gil_scoped_release release;
             return database.recognize(cloud, options, from);
           },
-          py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto", py::arg("threads") = 0,
-          "The model that a scan shows, in its own size: list of Recognized, best first; empty for an unknown object.");
+          py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
+          py::arg("min_confidence") = RecognitionOptions().min_confidence, py::arg("threads") = 0,
+          "The model that a scan shows, in its own size: list of Recognized, best first; empty for an unknown "
+          "object.\n\n"
+          "min_confidence: least probability of a model that is accepted, in [0, 1].");
 }
 
 }  // namespace

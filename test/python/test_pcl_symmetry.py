@@ -148,6 +148,37 @@ class OtherFunctions(unittest.TestCase):
         rotations = pcl_symmetry.rotations(box())
         self.assertEqual(rotations.name, "D2")
         self.assertEqual(rotations.discrete.shape, (3, 4, 4))
+        self.assertAlmostEqual(rotations.tolerance, 0.01 * np.linalg.norm([1, 0.7, 0.4]), delta=2e-4)
+
+    def test_rotations_keep_to_the_tolerance_that_is_asked_for(self):
+        nearly_square = box((1.0, 0.96, 0.4))
+        self.assertEqual(pcl_symmetry.rotations(nearly_square, tolerance=0.005).name, "D2")
+        self.assertEqual(pcl_symmetry.rotations(nearly_square, absolute_tolerance=0.05).name, "D4")
+        with self.assertRaisesRegex(ValueError, "tolerance"):
+            pcl_symmetry.rotations(nearly_square, tolerance=2.0)
+
+    def test_poses_under_the_symmetries_of_a_box(self):
+        symmetries = pcl_symmetry.rotations(box())
+        pose, corners = motion(), box_mesh()[0] * (0.5, 0.7, 0.4)
+        same = symmetries.equivalents(pose)
+        self.assertEqual(same.shape, (4, 4, 4))
+        np.testing.assert_allclose(same[0], pose, atol=1e-12)
+        for other in same:
+            self.assertLess(symmetries.mssd(other, pose, corners), 1e-6)
+            np.testing.assert_allclose(symmetries.canonical(other), symmetries.canonical(pose), atol=1e-9)
+            np.testing.assert_allclose(symmetries.closest_to(other, pose), pose, atol=1e-9)
+        shifted = pose + np.array([[0, 0, 0, 0.1], [0] * 4, [0] * 4, [0] * 4])
+        self.assertAlmostEqual(symmetries.mssd(shifted, pose, corners), 0.1, places=6)
+        with self.assertRaisesRegex(ValueError, "truth"):
+            symmetries.mssd(pose, np.ones((4, 4)), corners)
+
+    def test_results_print_what_tells_most(self):
+        found = pcl_symmetry.planes(box())
+        self.assertRegex(repr(found), r"(?s)^Planes\(\[\n  Plane\(kind='symmetry', normal=\[.*confidence=0\.9.*\),\n\]\)$")
+        self.assertEqual(repr(pcl_symmetry.ReflectionPlane((0, 0, 2), 1)), "ReflectionPlane(normal=[0, 0, 1], offset=0.5)")
+        self.assertRegex(repr(pcl_symmetry.frame(box())), r"^Frame\(center=\[.*axes=\[\[.*revolution_axis=-1\)$")
+        self.assertRegex(repr(pcl_symmetry.rotations(box())), r"^Rotations\(name='D2', center=.*confidence=")
+        self.assertRegex(repr(pcl_symmetry.viewpoints(list(found))[0]), r"^View\(direction=\[.*score=")
 
     def test_half_a_box_is_completed(self):
         points = box()
@@ -224,6 +255,15 @@ class WithPCL(unittest.TestCase):
         np.testing.assert_array_equal(found.poses[0][0], found.transform)
         self.assertEqual(found.poses[0][1].merit, found.score.merit)
         self.assertAlmostEqual(found.score.merit, found.score.support - found.score.conflict / 2)
+        self.assertEqual(found.covariance.shape, (6, 6))
+        self.assertTrue((np.linalg.eigvalsh(found.covariance) > 0).all())
+        self.assertRegex(repr(found), r"^Registration\(transform=\[\[.*score=PoseScore\(support=")
+        tracked = pcl_symmetry.register(
+            source, target, guess=truth, around=(0.2, 0.1), source_viewpoint=None, target_viewpoint=None
+        )
+        self.assertLess(np.abs(tracked.transform - truth).max(), 0.02)
+        with self.assertRaisesRegex(ValueError, "around"):
+            pcl_symmetry.register(source, target, around=(-1, 0.1))
         with self.assertRaisesRegex(ValueError, "guess"):
             pcl_symmetry.register(source, target, guess=np.ones((4, 4)))
         with self.assertRaisesRegex(ValueError, "source"):
@@ -245,6 +285,9 @@ class WithPCL(unittest.TestCase):
             self.assertEqual(sorted(match.distance for match in matches), [match.distance for match in matches])
             recognized = database.recognize(seen, viewpoint=None)
             self.assertEqual(recognized[0].name, "lamp")
+            self.assertRegex(repr(recognized[0]), r"^Recognized\(name='lamp', confidence=")
+            self.assertEqual(repr(database), "Database(models=3)")
+            self.assertEqual(database.recognize(seen, viewpoint=None, min_confidence=1.0), [])
             self.assertLess(np.abs(recognized[0].transform @ truth - np.eye(4)).max(), 0.05)
             self.assertEqual(database.cloud("box").shape[1], 3)
             database.remove("plate")

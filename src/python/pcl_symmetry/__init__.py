@@ -55,6 +55,43 @@ __all__ = [
     "viewpoints",
 ]
 
+
+def _text_of(value):
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, list):
+        return "[" + ", ".join(_text_of(each) for each in value) + "]"
+    return f"{value:.4g}" if isinstance(value, float) else repr(value)
+
+
+def _show(**members):
+    """Gives classes, by their names, a text with the members that tell most."""
+    for kind, names in members.items():
+
+        def text(self, names=tuple(names.split())):
+            shown = (f"{name}={_text_of(getattr(self, name))}" for name in names)
+            return f"{type(self).__name__}({', '.join(shown)})"
+
+        globals()[kind].__repr__ = text
+
+
+def _text_of_planes(found):
+    return "Planes([" + "".join(f"\n  {plane!r}," for plane in found) + ("\n])" if len(found) else "])")
+
+
+_show(
+    ReflectionPlane="normal offset",
+    Plane="kind normal offset confidence share",
+    Axis="point direction confidence",
+    Turn="point direction fold confidence",
+    Center="point confidence",
+    View="direction score",
+    Frame="center axes revolution_axis",
+    ProbableFrame="center axes probability",
+    Rotations="name center support confidence",
+    Map="sigma",
+)
+Planes.__repr__ = _text_of_planes
+
 # What needs the libraries of PCL, which take longer to load, is loaded when it is first used. It is missing where the library
 # was built without PCL.
 _WITH_PCL = ("Database", "Match", "PoseScore", "Recognized", "Registration", "register")
@@ -67,4 +104,11 @@ def __getattr__(name):
 
     for each in _WITH_PCL:
         globals()[each] = getattr(_recognition, each)
+    _show(
+        Match="name distance",
+        PoseScore="support conflict merit",
+        Recognized="name confidence transform",
+        Registration="transform score",
+    )
+    globals()["Database"].__repr__ = lambda self: f"Database(models={len(self)})"
     return globals()[name]
