@@ -150,8 +150,9 @@ void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::
 namespace {
 
 /// Planes of a cloud, from the maxima of its map to the list.
-Detection planesOf(const NormalizedCloud& cloud, const SymmetryMap& map, const DetectionOptions& options,
-                   Stopwatch& watch) {
+/// \param all the points of the cloud and those that were left out to make it evenly dense, normalised frame.
+Detection planesOf(const NormalizedCloud& cloud, const Points& all, const SymmetryMap& map,
+                   const DetectionOptions& options, Stopwatch& watch) {
   Detection detection;
   const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(
@@ -173,11 +174,11 @@ Detection planesOf(const NormalizedCloud& cloud, const SymmetryMap& map, const D
   GroupClosure closure(cloud, {options.merge_angle, options.merge_offset});
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
     append(planes, settler.planes(std::move(candidates)));
-  PlanesAndPolygon completed = withPolygon(judge.preferringWhole(std::move(planes)), cloud, judge, options);
+  PlanesAndPolygon completed = withPolygon(judge.preferringWhole(std::move(planes)), cloud, all, judge, options);
   planes = std::move(completed.planes);
   timed("closure");
   if (options.families) {
-    PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, *fit, judge, options);
+    PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, judge, options);
     planes = std::move(found.planes);
     detection.axes = std::move(found.axes);
     detection.centers = std::move(found.centers);
@@ -213,7 +214,7 @@ Detection planesOfEven(const NormalizedCloud& cloud, const Points& input, const 
   const Points even_points = pointsAt(input, kept);
   const GaussianEdt edt(even_points, edt_options);
   const NormalizedCloud even(even_points, edt, nullptr, nullptr, options.num_threads);
-  Detection detection = planesOf(even, map, options, watch);
+  Detection detection = planesOf(even, cloud.points, map, options, watch);
   const SurfaceFit all(
       cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
   const auto complete = [&](SymmetryPlane& plane) {
@@ -246,7 +247,7 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   const std::vector<int> kept = cloud.isVolume() ? evenlyDense(cloud, options.seed) : allOf(cloud.points.cols());
   Detection detection = static_cast<Eigen::Index>(kept.size()) < cloud.points.cols()
                             ? planesOfEven(cloud, distinct.points, kept, map, options, watch)
-                            : planesOf(cloud, map, options, watch);
+                            : planesOf(cloud, cloud.points, map, options, watch);
   if (!repeated) return detection;
   spreadSupport(detection, distinct.index_of);
   return detection;

@@ -258,8 +258,8 @@ Line3d lineThrough(const Points& points) {
 
 }  // namespace
 
-PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const PlaneFit& fit,
-                                  const PlaneJudge& judge, const DetectionOptions& options) {
+PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
+                                  const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options) {
   PlanesAndFamilies found;
   found.planes = std::move(planes);
   const std::vector<ReflectionPlane> symmetries =
@@ -303,7 +303,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   }
   for (const AxisFamily& family : findAxes(symmetries, test, guesses.axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
-    if (cloud.isVolume() && latticeBySpectrum(cloud, family.line, options.num_threads)) continue;
+    if (cloud.isVolume() && latticeBySpectrum(cloud, all, family.line, options.num_threads)) continue;
     const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
     // Nothing bounded turns about two parallel lines, but a thin disc seems to within the tolerance: the best is the

@@ -74,8 +74,9 @@ struct PlanesAndFamilies {
 
 /// Finds the families that symmetries belong to, and takes their planes away. A line has its axis.
 /// \param planes input frame.
-PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const PlaneFit& fit,
-                                  const PlaneJudge& judge, const DetectionOptions& options);
+/// \param all the points of the cloud and those that were left out to make it evenly dense, normalised frame.
+PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
+                                  const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options);
 
 /// \param planes,axes input frame.
 /// \return the planes that contain no axis.

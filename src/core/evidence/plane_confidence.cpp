@@ -72,7 +72,8 @@ double byUnexplainedLoss(const PlaneEvidence& evidence, const EvidenceUnits& uni
 
 /// \return log odds by what D loses beyond what noise explains.
 double byExcess(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  return std::log(std::max(0.0, evidence.own_score - evidence.score) / units.excess + 1.0);
+  const double excess = evidence.own_score - evidence.score - units.least_excess;
+  return std::log(std::max(0.0, excess) / units.excess + 1.0);
 }
 
 /// \return log odds by the overlap of densities that is lost.

@@ -160,7 +160,7 @@ TEST(FoldSpectrum, ToldFromARoundBody) {
     const GaussianEdt edt(points);
     const NormalizedCloud cloud(points, edt, nullptr, nullptr, 1);
     const Eigen::Vector3d middle = (Eigen::Vector3d(0.0, 0.0, 0.3) - cloud.center) / cloud.scale;
-    const auto lattice = latticeBySpectrum(cloud, Line3d(middle, Eigen::Vector3d::UnitZ()), 1);
+    const auto lattice = latticeBySpectrum(cloud, cloud.points, Line3d(middle, Eigen::Vector3d::UnitZ()), 1);
     return lattice ? lattice->fold : 0;
   };
   for (const int n : {3, 7, 16}) EXPECT_EQ(foldOf(wheel(n, 0.1, 0.04, false, 6)), n);

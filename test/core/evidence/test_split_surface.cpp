@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "core/evidence/share/surface_distance.h"
+#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -51,6 +53,31 @@ TEST(SplitSurface, OwnScoreFallsWithNoise) {
     EXPECT_LT(score, before);
     EXPECT_GT(score, 0.8);
     before = score;
+  }
+}
+
+/// D of a true plane is what the halves and quarters of the cloud make expect.
+TEST(SplitSurface, OwnScoreIsThatOfATruePlane) {
+  for (const double noise : {0.04, 0.08}) {
+    SCOPED_TRACE(noise);
+    const Points points = noisyBox(noise);
+    const BoundingBall ball{Eigen::Vector3d::Zero(), 1.5};
+    const double own = SplitSurface(points, 1, 1).ownScore(64, 0.1, ball, 1);
+    GaussianEdtOptions options;
+    options.sigma = 0.1;
+    options.radius = ball.radius;
+    const auto scoreOf = [&](const ReflectionPlane& plane) {
+      Points reflected = points;
+      for (Eigen::Index i = 0; i < points.cols(); ++i)
+        reflected.col(i) = plane.reflect(points.col(i).cast<double>()).cast<float>();
+      const GaussianEdt a(points, options), b(reflected, options);
+      return std::inner_product(a.values().begin(), a.values().end(), b.values().begin(), 0.0) /
+             std::sqrt(a.sqNorm() * b.sqNorm());
+    };
+    // derived: three times the deviation of D of true planes (evidence/README.md).
+    for (const int axis : {0, 1, 2})
+      EXPECT_NEAR(scoreOf({Eigen::Vector3d::Unit(axis), 0.0}), own, 0.006) << axis;
+    EXPECT_LT(scoreOf({Eigen::Vector3d::UnitX(), 0.1}), own - 0.02) << "a plane that maps one side 0.2 away";
   }
 }
 

@@ -8,12 +8,14 @@
 
 namespace pcl_symmetry {
 
-/// The regular polygon about a line that a noisy cloud has: how well planes through the line reflect the cloud, by
-/// their angle, has one strong frequency. It is the sum over all planes, and finds folds that no single plane shows.
+/// The regular polygon about a line that a noisy cloud has: the density of points in rings about the line, by their
+/// angle, has one strong frequency. It is the sum over all points, and finds folds that no single plane shows.
+/// \param all the points of the cloud and those that were left out to make it evenly dense, normalised frame.
 /// \param line normalised frame.
 /// \param num_threads 0 = one per core.
 /// \return none where no frequency stands out: nothing turns the cloud into itself, or everything does.
-std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Line3d& line, int num_threads);
+std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Points& all, const Line3d& line,
+                                              int num_threads);
 
 struct PlanesAndPolygon {
   std::vector<SymmetryPlane> planes;    ///< input frame
@@ -23,7 +25,8 @@ struct PlanesAndPolygon {
 /// Judges the planes of a polygon together, as they are symmetries together or not at all. Only of noisy clouds: where
 /// points resolve a surface, each plane is judged well enough alone.
 /// \param planes found before, input frame.
-PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const PlaneJudge& judge,
-                             const DetectionOptions& options);
+/// \param all as above.
+PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
+                             const PlaneJudge& judge, const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

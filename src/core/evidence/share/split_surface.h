@@ -28,7 +28,8 @@ public:
   std::vector<float> reflectedDistances(const ReflectionPlane& plane) const;
 
   /// What sampling and noise leave of D of equation 2 for a true plane: f of all points and f of their reflections
-  /// differ by noise alone. derived: the halves differ by noise of twice the variance, so that they lose twice as much.
+  /// differ by noise alone. Halves of the points differ by noise, too, but they are half as dense, and quarters are
+  /// half as dense as halves: what D loses falls by the same factor with each doubling of the points.
   /// \param num_cells,sigma of the distance transform that D is computed from; sigma in units of the points.
   /// \param ball that it covers, frame of the points.
   /// \return in [0.5, 1].
@@ -37,6 +38,7 @@ public:
 private:
   std::vector<float> distances(const Points& points) const;
 
+  std::uint64_t seed_;
   Points first_, second_;
   ClosestPointSearch::Ptr search_;         ///< of the second half
   std::optional<SurfaceSamples> samples_;  ///< the second half
