@@ -25,7 +25,7 @@ std::vector<SymmetryPlane> PlaneSettler::planes(std::vector<Candidate> candidate
   // Nothing is missing then that could excuse what others leave off.
   if (looks_ && explained_)
     candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                    [&](const Candidate& other) { return judge_.isHopeless(other.plane); }),
+                                    [&](const Candidate& other) { return judge_.isHopeless(other); }),
                      candidates.end());
   std::vector<SymmetryPlane> others = judged(std::move(candidates));
   note(others);
