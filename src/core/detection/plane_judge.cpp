@@ -222,10 +222,10 @@ bool PlaneJudge::explainsAll(const SymmetryPlane& plane) const {
   return !cloud_.isScan() && plane.kind == PlaneKind::Symmetry && 1.0 - plane.seen <= kNothingMissing;
 }
 
-bool PlaneJudge::isHopeless(const ReflectionPlane& plane) const {
-  if (cloud_.isScan() || cloud_.isVolume()) return false;
+bool PlaneJudge::isHopeless(const Candidate& candidate) const {
+  if (cloud_.isScan() || cloud_.isVolume() || candidate.merit >= kHopelessShare) return false;
   const std::vector<int> samples = drawSamples(cloud_.points.cols(), kLookSamples, options_.seed);
-  const Reflected some = reflected(plane, samples, fit_.matches(plane, samples));
+  const Reflected some = reflected(candidate.plane, samples, fit_.matches(candidate.plane, samples));
   const double share = std::min(1.0, shareWithin(some.distances, tolerance_) / own_shares_[0]);
   const double error = std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()));
   return share + kLookErrors * error < kHopelessShare;

@@ -53,8 +53,8 @@ public:
   bool explainsAll(const SymmetryPlane& plane) const;
 
   /// A look at some points, where nothing is missing: whether too many of them are off for a possible symmetry.
-  /// \param plane normalised frame, from the second stage of refinement on.
-  bool isHopeless(const ReflectionPlane& plane) const;
+  /// \param candidate from the second stage of refinement on.
+  bool isHopeless(const Candidate& candidate) const;
 
   /// SymmetryPlane::deviation of a plane that maps many points far from the surface.
   /// \param plane input frame.

@@ -50,7 +50,7 @@ struct SymmetryPlane : ReflectionPlane {
   /// scans and where a piece of the surface is missing.
   double seen = 1.0;
   /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
-  /// of a surface are to each other, falling to 0 beyond.
+  /// of a surface are to each other, falling to 0 beyond. Of large clouds, points take that of one near them.
   std::vector<float> point_support;
   int iterations = 0;      ///< of Iterative Symmetric Points, in all stages
   bool converged = false;  ///< the plane stood still
@@ -154,8 +154,8 @@ struct Detection {
 };
 
 /// From points to planes: transform, maxima, refinement (Sections 4.1 to 4.4).
-/// \param points 3 x N, finite, input units. Fewer than 20 distinct points, points at one place and points on one line
-/// give an empty result with a reason.
+/// \param points 3 x N, finite, input units. Fewer than 20 distinct points, at one place or on one line give an empty
+/// result with a reason. Of more than 20 000, as many decide as the tolerance needs, unless make_search is given.
 /// \param make_search makes the search of refineMaxima() for the distance transform of these points; null = a k-d tree.
 /// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
 /// \param normals of the points, 3 x N, of any length and sign; one that is zero or not finite is estimated from the
