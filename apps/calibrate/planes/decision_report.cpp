@@ -83,7 +83,7 @@ const std::vector<std::pair<const char*, double EvidenceUnits::*>>& unitNames() 
       {"excess", &EvidenceUnits::excess},
       {"lost_overlap", &EvidenceUnits::lost_overlap},
       {"least_excess", &EvidenceUnits::least_excess},
-      {"most_noise", &EvidenceUnits::most_noise}};
+      {"noise", &EvidenceUnits::noise}};
   return names;
 }
 
