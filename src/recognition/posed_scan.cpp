@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/constants.h"
+#include "core/geometry/principal_axes.h"
 #include "core/registration/pose_scoring.h"
 
 namespace pcl_symmetry::detail {
@@ -24,6 +26,11 @@ constexpr int kComparedPoints = 500;
 // Radii, width of the Gaussian of that comparison. derived: twice the least width, as each of the two was brought to
 // the scan by itself.
 constexpr double kSameSurface = 2.0 * kLeastWidth;
+
+// Turns about each principal axis that are tried. measured: of 119 objects of scenes of fold 0 that are hidden by 30 to
+// 70 %, with the noise of a depth camera, 103 have the right pose with 12 and 100 without. chosen: at half,
+// poses start 30 degrees from the true one, twice takes twice the time.
+constexpr int kTurns = 12;
 
 }  // namespace
 
@@ -62,14 +69,37 @@ std::vector<PosedModel> PosedScan::refined(int num_refined) {
   std::vector<PosedModel> found;
   for (const SearchedModel& model : models_) {
     if (found.size() == static_cast<std::size_t>(num_refined)) break;
-    const auto surface =
-        std::make_shared<const PosedSurface>(surfaceOf(model.read(), model.frames.target_center, std::nullopt));
-    const Eigen::Isometry3d pose =
-        refinePoses(surface_, *surface, RefinementTarget(*surface), model.poses, options_).front().T_model_scan;
-    found.push_back({{model.name, model.frames.toInput(pose), scoreOf(*surface, pose), 0.0}, surface, pose});
+    found.push_back(refined(model, std::make_shared<const PosedSurface>(
+                                       surfaceOf(model.read(), model.frames.target_center, std::nullopt))));
   }
   models_.clear();
   return found;
+}
+
+PosedModel PosedScan::refined(const SearchedModel& model, std::shared_ptr<const PosedSurface> surface) const {
+  const Eigen::Isometry3d pose =
+      refinePoses(surface_, *surface, RefinementTarget(*surface), model.poses, options_).front().T_model_scan;
+  return {{model.name, model.frames.toInput(pose), scoreOf(*surface, pose), 0.0}, surface, pose, model.frames};
+}
+
+PosedModel PosedScan::turned(const PosedModel& found) const {
+  const PrincipalAxes principal = principalAxes(found.surface->points);
+  std::vector<Eigen::Isometry3d> hypotheses;
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 1; i < kTurns; ++i) {
+      const Eigen::AngleAxisd turn(2.0 * kPi * i / kTurns, principal.axes.col(k));
+      hypotheses.push_back(Eigen::Translation3d(principal.center) * turn * Eigen::Translation3d(-principal.center) *
+                           found.T_surface_scan);
+    }
+  }
+  PoseSearchOptions search = options_.search;
+  search.num_threads = options_.num_threads;
+  search.num_rotations = 0;
+  const std::vector<RankedPose> poses = searchPoses(surface_, *found.surface, hypotheses, search);
+  if (poses.empty()) return found;
+  PosedModel other = refined({found.model.name, found.frames, poses, nullptr}, found.surface);
+  other.model.confidence = found.model.confidence;
+  return other.model.score.merit() > found.model.score.merit() ? other : found;
 }
 
 PosedModel PosedScan::judged(const std::string& name, const Points& points,
@@ -77,7 +107,7 @@ PosedModel PosedScan::judged(const std::string& name, const Points& points,
   const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
   const auto surface = std::make_shared<const PosedSurface>(surfaceOf(points, frames.target_center, std::nullopt));
   const Eigen::Isometry3d pose = frames.toSearch(T_model_scan);
-  return {{name, T_model_scan, scoreOf(*surface, pose), 0.0}, surface, pose};
+  return {{name, T_model_scan, scoreOf(*surface, pose), 0.0}, surface, pose, frames};
 }
 
 PoseScore PosedScan::scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const {

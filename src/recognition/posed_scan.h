@@ -19,6 +19,7 @@ struct PosedModel {
   RecognizedModel model;  ///< its confidence is 0 until all models are judged together
   std::shared_ptr<const PosedSurface> surface;
   Eigen::Isometry3d T_surface_scan;  ///< as T_model_scan, in radii about the centers of both
+  SearchFrames frames;               ///< of both poses
 };
 
 /// The share of each surface that lies on the other one where a scan puts both, the smaller of the two shares, in
@@ -48,6 +49,11 @@ public:
   /// \return these models, in any order.
   std::vector<PosedModel> refined(int num_refined);
 
+  /// Turns a model about its principal axes: a mug fits nearly as well with its handle elsewhere, and no step leads
+  /// from there to the true pose.
+  /// \return the best pose, with the confidence of the model as it was.
+  PosedModel turned(const PosedModel& found) const;
+
   /// Judges a pose that was found elsewhere, as refined() does: by the distances of the scan from the surface between
   /// the points of the model, so that it does not count how densely the model was sampled.
   /// \param points of the model, 3 x M, finite, units of the scan.
@@ -61,6 +67,7 @@ private:
     PointReader read;
   };
 
+  PosedModel refined(const SearchedModel& model, std::shared_ptr<const PosedSurface> surface) const;
   PoseScore scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const;
   PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, std::optional<Visibility> seen) const;
 

@@ -132,6 +132,8 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   fit(0, first);
   if (first < candidates.size() && (found.empty() || !isAccepted(found.front().model, options)))
     fit(first, candidates.size());
+  // The confidence was fitted to merits before this step.
+  if (!found.empty() && isAccepted(found.front().model, options)) found.front() = scan.turned(found.front());
   return found;
 }
 

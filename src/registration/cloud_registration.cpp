@@ -91,13 +91,28 @@ double angleOf(const Eigen::Isometry3d& motion) {
   return Eigen::AngleAxisd(motion.linear()).angle();
 }
 
+// Share of the angle around a guess by which it is turned about each axis, both ways. measured: of 356 tracks of models
+// of the Princeton Shape Benchmark (fold 0 of the training half; noise of 0.5 %, 40 % missing) 343 are right without
+// these turns, 347 with 0.6 and 346 with 0.9.
+constexpr double kTurnShare = 0.6;
+
+/// Turns to try: evenly spread ones that are small enough, of which there are few, and some about each axis.
+std::vector<Eigen::Matrix3d> turnsWithin(double angle, int num_rotations) {
+  std::vector<Eigen::Matrix3d> turns;
+  for (const Eigen::Matrix3d& turn : uniformRotations(num_rotations))
+    if (Eigen::AngleAxisd(turn).angle() <= angle) turns.push_back(turn);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double share : {-kTurnShare, kTurnShare})
+      turns.push_back(Eigen::AngleAxisd(share * angle, Eigen::Vector3d::Unit(axis)).toRotationMatrix());
+  return turns;
+}
+
 /// Poses near a guess to start from: the guess and turns of it, each also where the outline of the scan suggests.
 std::vector<Eigen::Isometry3d> posesAround(const PosedSurface& scan, const PosedSurface& model,
                                            const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options) {
   const PoseStarts starts(scan, model);
   std::vector<Eigen::Isometry3d> poses;
-  for (const Eigen::Matrix3d& turn : uniformRotations(options.search.num_rotations)) {
-    if (Eigen::AngleAxisd(turn).angle() > options.around->angle) continue;
+  for (const Eigen::Matrix3d& turn : turnsWithin(options.around->angle, options.search.num_rotations)) {
     Eigen::Isometry3d pose = guess;
     pose.linear() = turn * guess.linear();
     poses.push_back(pose);

@@ -1,0 +1,52 @@
+#include "recognition/posed_scan.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "core/base/constants.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// The side of a cylinder, and at one side of it a box as a handle, which a sixth of the points show.
+Points mug() {
+  constexpr int kNumPoints = 6000;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  Points points(3, kNumPoints);
+  for (int i = 0; i < kNumPoints; ++i) {
+    const double angle = kPi * uniform(random);
+    points.col(i) << static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), uniform(random);
+    if (i % 6 == 0)
+      points.col(i) << 1.3f + 0.3f * uniform(random), uniform(random) < 0 ? -0.1f : 0.1f, 0.6f * points(2, i);
+  }
+  return points;
+}
+
+double angleOf(const detail::PosedModel& posed) {
+  return Eigen::AngleAxisd(posed.model.T_model_scan.linear()).angle();
+}
+
+}  // namespace
+
+/// From a pose with the handle elsewhere no step leads to the true one, as the cylinder fits in both.
+TEST(PosedScan, TurnsAModelAboutItsAxes) {
+  const Points points = mug();
+  for (const double degrees : {50.0, 120.0, 180.0}) {
+    detail::PosedScan scan(points, std::nullopt, RecognitionOptions::quickRegistration());
+    scan.bringTo("mug", points, {Eigen::Isometry3d(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitZ()))},
+                 [&] { return points; });
+    const std::vector<detail::PosedModel> found = scan.refined(1);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_GT(angleOf(found.front()), 45.0 * kDegree) << degrees;
+    const detail::PosedModel turned = scan.turned(found.front());
+    EXPECT_LT(angleOf(turned), 2.0 * kDegree) << degrees;
+    EXPECT_GT(turned.model.score.support, 0.95) << degrees;
+  }
+}
+
+}  // namespace pcl_symmetry
