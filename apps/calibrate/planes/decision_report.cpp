@@ -81,7 +81,9 @@ const std::vector<std::pair<const char*, double EvidenceUnits::*>>& unitNames() 
       {"least_slipping", &EvidenceUnits::least_slipping},
       {"volume_off", &EvidenceUnits::volume_off},
       {"excess", &EvidenceUnits::excess},
-      {"lost_overlap", &EvidenceUnits::lost_overlap}};
+      {"lost_overlap", &EvidenceUnits::lost_overlap},
+      {"least_excess", &EvidenceUnits::least_excess},
+      {"noise", &EvidenceUnits::noise}};
   return names;
 }
 

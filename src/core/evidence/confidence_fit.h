@@ -18,7 +18,7 @@ struct ConfidenceFit {
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
 inline const ConfidenceFit kConfidenceFit{{{{2.471, -1.499, -0.3866, -2.617, -0.2983, -5.798, -3.803},
                                             {0.2694, -0.9311, -0.8381, -10.54, -3.208, -1.119},
-                                            {5.036, -0.7001, -1.569, -0.6926, -19.13}}},
+                                            {4.956, -0.7164, -1.609, -0.6962, -2.396}}},
                                           {{{-6.82, 1.43}, {-18.4, 0.342}, {-21.5, 0.766}}}};
 // clang-format on
 

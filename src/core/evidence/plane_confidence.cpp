@@ -114,7 +114,7 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUn
               further};
     case EvidenceKind::Volume:
       return {1.0, byShare(evidence, units.volume_off), byExcess(evidence, units), byLostOverlap(evidence, units),
-              std::sqrt(1.0 - evidence.own_score)};
+              std::log((1.0 - evidence.own_score) / units.noise + 1.0)};
     default:
       return {1.0,
               byOff(resolvedOff(evidence, units), units.off + units.off_per_spacing * coarseness(evidence)),
