@@ -69,7 +69,7 @@ struct EvidenceUnits {
   double slipping = 0.03, least_slipping = 0.001;
   /// Where points resolve no surface: of the share, of D beyond its error, and of the overlap. chosen: among 0.001 to
   /// 0.01, 0.0005 to 0.004, and 0.003 to 0.03, by cross-validation over models of what calibrate_planes -csv writes:
-  /// all within 0.002 nats a plane, but more than 0.01 of D, which doubts nothing.
+  /// all within 0.002 nats a plane of noisy clouds.
   double volume_off = 0.003, excess = 0.002, lost_overlap = 0.01;
   /// The error of D there. measured: D of the true planes of 20 noisy shapes with folds is 0.001 less than is expected
   /// of it in the mean, with a deviation of 0.002. Cross-validation as above: 0.139, 0.137 and 0.139 nats a plane with
