@@ -92,7 +92,8 @@ struct RecognizedModel {
   /// Probability that the scan shows this model or one of the same shape, in [0, 1]: a logistic function of the merit
   /// and of how far it is ahead of the best model of another shape, fitted to scenes with objects that are not in the
   /// database. The sum over shapes is at most 1. Two models are of the same shape if they share 90 % of their surfaces
-  /// where the scan puts them.
+  /// where the scan puts them. The best model is judged before it is turned about its axes for a better pose, so that
+  /// its score may be higher than its confidence says.
   double confidence = 0.0;
 };
 
