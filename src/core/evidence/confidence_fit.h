@@ -16,10 +16,10 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.471, -1.499, -0.3866, -2.617, -0.2983, -5.798, -3.803},
-                                            {0.2694, -0.9311, -0.8381, -10.54, -3.208, -1.119},
-                                            {4.956, -0.7164, -1.609, -0.6962, -2.396}}},
-                                          {{{-6.82, 1.43}, {-18.4, 0.342}, {-21.5, 0.766}}}};
+inline const ConfidenceFit kConfidenceFit{{{{2.508, -1.439, -0.4066, -2.642, -0.268, -6.166, -3.523},
+                                            {0.2623, -0.9371, -0.8362, -10.52, -3.209, -1.116},
+                                            {4.957, -0.7157, -1.609, -0.6965, -2.396}}},
+                                          {{{-6.98, 1.43}, {-18.4, 0.342}, {-21.5, 0.766}}}};
 // clang-format on
 
 }  // namespace pcl_symmetry
