@@ -7,10 +7,10 @@
 namespace pcl_symmetry {
 
 // Coefficients of turnOddsTerms(), by TurnKind.
-// fitted: symmetries among the turns of each kind: 177 of 219, 70 of 2026, 168 of 345.
+// fitted: symmetries among the turns of each kind: 177 of 219, 68 of 1979, 166 of 350.
 inline const std::array<std::vector<double>, 3> kTurnConfidenceFit{
-    {{2.062, -0.05684, -3.933, -17.04},
-     {-1.648, -0.7303, -1.091, -10.72, -0.7635, -0.9233, -0.7037},
-     {2.813, -1.502, -1.421, -7.243, 11.17, -2.497}}};
+    {{2.072, -0.05091, -3.947, -17.37},
+     {-1.65, -0.8739, -0.7086, -9.721, -0.7114, -0.8031, -0.8247},
+     {3.767, -1.595, -1.418, -7.529, 9.117, -3.358}}};
 
 }  // namespace pcl_symmetry
