@@ -66,6 +66,9 @@ PLYHeader readPLYHeader(const std::string& path, std::string_view text) {
   while (lines.next(line)) {
     if (!isPrintable(line)) reject(path, "PLY header ends before end_header");
     const Words words = split(line);
+    // PCL ends the program where such a line begins with a blank.
+    if (!words.empty() && words[0] == "obj_info" && line.front() != 'o')
+      reject(path, "PLY header line obj_info begins with a blank");
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "format" && words.size() == 3) {
       header.format = words[1];

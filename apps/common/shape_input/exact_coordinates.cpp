@@ -30,7 +30,9 @@ Eigen::Vector3d shiftFor(const std::vector<Eigen::Vector3d>& points) {
   if (!(extent > 0.0) || !std::isfinite(extent) || largest * kFloatSpacing <= kAllowedSpacing * extent)
     return Eigen::Vector3d::Zero();
   const double unit = std::exp2(std::floor(std::log2(extent)));
-  return (box.center() / unit).array().round().matrix() * unit;
+  const Eigen::Vector3d shift = (box.center() / unit).array().round().matrix() * unit;
+  // Extents below the least normal number make no unit that the center could be counted in.
+  return shift.allFinite() ? shift : Eigen::Vector3d::Zero();
 }
 
 pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift) {

@@ -97,6 +97,8 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
        ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "element vertex 1\n" + kPLYVertex,
            "1 2 3\n4 5 6\n"),
        "element vertex stands twice"},
+      {"obj_info.ply", ply("ascii", std::string(" obj_info one\nelement vertex 1\n") + kPLYVertex, "1 2 3\n"),
+       "obj_info begins with a blank"},
       {"empty_element.ply",
        ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "element nothing 2000000000\n", "1 2 3\n"),
        "element nothing has no property"},
@@ -232,6 +234,17 @@ TEST(LoadShape, ReadsDoublesAndNonFinitePoints) {
   EXPECT_FALSE(shape.points->is_dense);
   EXPECT_EQ(shape.cloud.fields.size(), 4u);
   EXPECT_FALSE(shape.mesh);
+}
+
+TEST(LoadShape, ShiftsNothingWhereTheExtentIsNoNormalNumber) {
+  const TemporaryFolder folder;
+  for (const std::string x : {"1e300", "0", "1"}) {
+    const std::string points = x + " 0 0\n" + x + " 5e-324 0\n";
+    const Shape shape =
+        loadShape(folder.write("tiny.pcd", pcd("x y z", "8 8 8", "F F F", 2, 1, 2, "ascii\n" + points)));
+    EXPECT_TRUE(shape.shift.allFinite()) << x;
+    EXPECT_EQ(shape.points->size(), 2u);
+  }
 }
 
 TEST(LoadShape, ReadsPointsOfColumnsAndOfFilesWithoutFaces) {
