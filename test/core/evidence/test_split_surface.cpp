@@ -75,8 +75,7 @@ TEST(SplitSurface, OwnScoreIsThatOfATruePlane) {
              std::sqrt(a.sqNorm() * b.sqNorm());
     };
     // derived: three times the deviation of D of true planes (evidence/README.md).
-    for (const int axis : {0, 1, 2})
-      EXPECT_NEAR(scoreOf({Eigen::Vector3d::Unit(axis), 0.0}), own, 0.006) << axis;
+    for (const int axis : {0, 1, 2}) EXPECT_NEAR(scoreOf({Eigen::Vector3d::Unit(axis), 0.0}), own, 0.006) << axis;
     EXPECT_LT(scoreOf({Eigen::Vector3d::UnitX(), 0.1}), own - 0.02) << "a plane that maps one side 0.2 away";
   }
 }
