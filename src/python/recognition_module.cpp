@@ -96,9 +96,9 @@ void addRegistration(py::module_& module) {
           "list of (transform, score), best first: poses that symmetry makes equal have like merits")
       .def_property_readonly(
           "covariance", [](const CloudRegistration& r) { return r.covariance; },
-          "(6, 6) of the small turn, radians, and way, input units, that the pose is off in the frame of the target: "
-          "of "
-          "noise and sampling alone; None where no pose was found");
+          "(6, 6) of the small turn, radians, and way, input units, by which noise and sampling put the pose off, "
+          "frame\n"
+          "of the target; None where no pose was found");
   module.def(
       "register", &registerPoints, py::arg("source"), py::arg("target"), py::kw_only(),
       py::arg("guess") = RowMajor4(RowMajor4::Identity()), py::arg("around") = py::none(),
