@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <set>
@@ -29,6 +30,7 @@ struct PLYHeader {
   std::string format;
   std::vector<PLYElement> elements;
   std::size_t body = 0;
+  std::int64_t num_columns = 0, num_rows = 0;  ///< of a range image; 0: not given
 };
 
 struct PLYScalar {
@@ -58,6 +60,13 @@ PLYProperty parseProperty(const std::string& path, const Words& words) {
   return {words[2], value.size, value.integer, 0};
 }
 
+/// The numbers are read as PCL reads them, which takes the last of several.
+void readPLYInfo(const Words& words, PLYHeader& header) {
+  if (words.size() < 3) return;
+  if (words[1] == "num_cols") header.num_columns = std::atoi(words[2].c_str());
+  if (words[1] == "num_rows") header.num_rows = std::atoi(words[2].c_str());
+}
+
 PLYHeader readPLYHeader(const std::string& path, std::string_view text) {
   PLYHeader header;
   LineReader lines(text);
@@ -69,6 +78,7 @@ PLYHeader readPLYHeader(const std::string& path, std::string_view text) {
     // PCL ends the program where such a line begins with a blank.
     if (!words.empty() && words[0] == "obj_info" && line.front() != 'o')
       reject(path, "PLY header line obj_info begins with a blank");
+    if (!words.empty() && words[0] == "obj_info") readPLYInfo(words, header);
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "format" && words.size() == 3) {
       header.format = words[1];
@@ -99,6 +109,19 @@ void checkPLYNames(const std::string& path, const PLYHeader& header) {
   }
 }
 
+/// PCL makes as many points as obj_info says, and ends the program where that is fewer than the vertices.
+void checkPLYGrid(const std::string& path, const PLYHeader& header, std::uint64_t num_vertices) {
+  if (header.num_columns == 0 || header.num_rows == 0) return;
+  const std::int64_t num_cells = header.num_columns * header.num_rows;
+  const auto has_all_cells = [&](const PLYElement& element) {
+    return (element.name == "vertex" || element.name == "range_grid") &&
+           element.count == static_cast<std::uint64_t>(num_cells) && element.count >= num_vertices;
+  };
+  if (header.num_columns > 0 && std::any_of(header.elements.begin(), header.elements.end(), has_all_cells)) return;
+  reject(path, "obj_info num_cols x num_rows = " + std::to_string(header.num_columns) + " x " +
+                   std::to_string(header.num_rows) + ", must be the number of vertices or of range_grid");
+}
+
 void checkPLYHeader(const std::string& path, const PLYHeader& header, std::uint64_t available) {
   checkPLYNames(path, header);
   if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian") {
@@ -108,6 +131,7 @@ void checkPLYHeader(const std::string& path, const PLYHeader& header, std::uint6
                                    [](const PLYElement& element) { return element.name == "vertex"; });
   if (vertex == header.elements.end()) reject(path, "has no element vertex");
   if (vertex->count == 0) reject(path, "element vertex = 0, must be > 0");
+  checkPLYGrid(path, header, vertex->count);
   for (const char* name : {"x", "y", "z"}) {
     const auto property = std::find_if(vertex->properties.begin(), vertex->properties.end(),
                                        [&](const PLYProperty& candidate) { return candidate.name == name; });

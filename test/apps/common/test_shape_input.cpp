@@ -99,6 +99,20 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
        "element vertex stands twice"},
       {"obj_info.ply", ply("ascii", std::string(" obj_info one\nelement vertex 1\n") + kPLYVertex, "1 2 3\n"),
        "obj_info begins with a blank"},
+      {"fewer_cells.ply",
+       ply("ascii", std::string("obj_info num_cols 1\nobj_info num_rows 1\nelement vertex 2\n") + kPLYVertex,
+           "1 2 3\n4 5 6\n"),
+       "obj_info num_cols x num_rows = 1 x 1, must be the number of vertices"},
+      {"small_grid.ply",
+       ply("ascii",
+           std::string("obj_info num_cols 1\nobj_info num_rows 1\nelement vertex 2\n") + kPLYVertex +
+               "element range_grid 1\nproperty list uchar int vertex_indices\n",
+           "1 2 3\n4 5 6\n1 0\n"),
+       "obj_info num_cols x num_rows = 1 x 1, must be the number of vertices"},
+      {"more_cells.ply",
+       ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "obj_info num_cols 2\nobj_info num_rows 2\n",
+           "1 2 3\n"),
+       "obj_info num_cols x num_rows = 2 x 2, must be the number of vertices"},
       {"empty_element.ply",
        ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "element nothing 2000000000\n", "1 2 3\n"),
        "element nothing has no property"},
@@ -234,6 +248,18 @@ TEST(LoadShape, ReadsDoublesAndNonFinitePoints) {
   EXPECT_FALSE(shape.points->is_dense);
   EXPECT_EQ(shape.cloud.fields.size(), 4u);
   EXPECT_FALSE(shape.mesh);
+}
+
+TEST(LoadShape, ReadsRangeGrids) {
+  const TemporaryFolder folder;
+  const std::string info = "obj_info num_cols 3\nobj_info num_rows 1\n";
+  const std::string grid = "element range_grid 3\nproperty list uchar int vertex_indices\n";
+  const std::string text = ply("ascii", info + "element vertex 2\n" + kPLYVertex + grid, "1 2 3\n4 5 6\n1 0\n0\n1 1\n");
+  const Shape shape = loadShape(folder.write("grid.ply", text));
+  ASSERT_EQ(shape.points->size(), 3u);
+  EXPECT_EQ((*shape.points)[0].x, 1.0f);
+  EXPECT_FALSE(std::isfinite((*shape.points)[1].x));
+  EXPECT_EQ((*shape.points)[2].x, 4.0f);
 }
 
 TEST(LoadShape, ShiftsNothingWhereTheExtentIsNoNormalNumber) {
