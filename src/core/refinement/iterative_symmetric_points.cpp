@@ -13,6 +13,7 @@
 #include "core/refinement/far_test.h"
 #include "core/refinement/step_equations.h"
 #include "core/refinement/surface_fit.h"
+#include "pcl_symmetry/core/scan/visibility.h"
 
 namespace pcl_symmetry {
 
@@ -27,6 +28,10 @@ constexpr double kLeastStiffness = 1e-3;
 constexpr double kLongestStep = 0.2;
 constexpr double kReach = 3.0;  // sigmas. derived: weights beyond are below exp(-9) = 1.3e-4
 constexpr double kRest = 0.1;   // sigmas. chosen: at half, a few iterations more; at twice, weights narrow on the way
+// Depth behind the surface that was seen, sigmas, over which a pair loses its weight. chosen: of 309 scans of folds 0
+// and 1 the right plane is decided for 290, 288, 286, 284 and 272 with 0.05, 0.1, 0.25, 0.5 and 1, for 260 where hidden
+// pairs keep their weight. Less than the errors of depths would leave only reflections in front of the surface.
+constexpr double kHiddenDepth = 0.1;
 constexpr std::size_t kBlockSize = 1024;  // samples. chosen: large enough that threads start seldom
 
 /// Mean and extent of weighted points.
@@ -153,6 +158,16 @@ Points reflections(const Points& points, const ReflectionPlane& plane) {
   return reflected;
 }
 
+/// Weight of a pair by what the scanner saw where the reflection lies, in [0, 1].
+///
+/// A departure from the paper, whose pairs all pull: half of a scan's partners are hidden, and its closest points to
+/// their places draw a plane away from the symmetry, to where more of what was seen overlaps.
+double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflection, double sigma) {
+  if (!visibility) return 1.0;
+  const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (kHiddenDepth * sigma);
+  return std::exp(-depth * depth);
+}
+
 /// The pairs of samples and closest points to their reflections, before the plane moves.
 struct WeightedPairs {
   Points x, y;
@@ -167,9 +182,11 @@ struct WeightedPairs {
     double sum = 0.0, sq_sum = 0.0;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
       if (step.closest[i] < 0) continue;
+      const Eigen::Vector3d reflection = y.col(i).cast<double>();
       y.col(i) = surface.points.col(step.closest[i]);
       if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
-      weights[i] = std::exp(-step.sq_distances[i] / (sigma * sigma));
+      weights[i] =
+          std::exp(-step.sq_distances[i] / (sigma * sigma)) * seenWeight(surface.visibility, reflection, sigma);
       sum += weights[i];
       sq_sum += weights[i] * step.sq_distances[i];
     }

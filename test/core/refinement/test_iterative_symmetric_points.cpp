@@ -7,6 +7,7 @@
 
 #include "core/normals/surface_normals.h"
 #include "core/refinement/step_equations.h"
+#include "pcl_symmetry/core/scan/visibility.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -242,6 +243,31 @@ TEST(RefineSymmetricPoints, StopsAfterMaxIterations) {
       refineSymmetricPoints(surface.view(), surface.all, disturbed(shape.planes[0], 0.08, 0.1, 2), options);
   EXPECT_EQ(result.iterations, 1);
   EXPECT_FALSE(result.converged);
+}
+
+TEST(IterateSymmetricPoints, ReflectionsBehindWhatWasSeenDoNotPull) {
+  // A camera at (0, 0, -10) looks along z and sees a wall at z = 0, in one pixel that is wide enough for all of it.
+  Visibility::Projection projection = Visibility::Projection::Zero();
+  projection(0, 0) = projection(1, 1) = 0.01;
+  projection(2, 2) = 1.0;
+  projection(2, 3) = 10.0;
+  const Visibility visibility(projection, 1, 1, {10.0f});
+  // The plane x = 0 takes the first point 0.3 behind the third, the second one 0.3 in front of it.
+  const Points points = (Points(3, 3) << -1, -1, 1, 0, 0, 0, 0.3, -0.3, 0).finished();
+  const auto search = makeFlannSearch(points);
+  const Points no_normals(3, 0);
+  IspSurface surface{points, no_normals, *search};
+  const double sigma = 0.5, weight = std::exp(-0.09 / 0.25);
+  const auto weightOf = [&](int sample) {
+    return iterateSymmetricPoints(surface, {sample}, ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0), sigma,
+                                  IspUpdate::PointToPoint)
+        .weight;
+  };
+  EXPECT_NEAR(weightOf(0), weight, 1e-6);
+  EXPECT_NEAR(weightOf(1), weight, 1e-6);
+  surface.visibility = &visibility;
+  EXPECT_LT(weightOf(0), 1e-12);
+  EXPECT_NEAR(weightOf(1), weight, 1e-6);
 }
 
 TEST(IterateSymmetricPoints, ReportsWhatItSaw) {

@@ -33,6 +33,7 @@ struct IspOptions {
 };
 
 class FarTest;
+class Visibility;
 
 /// The surface that reflected samples are matched to.
 struct IspSurface {
@@ -44,6 +45,9 @@ struct IspSurface {
   const std::vector<char>* at_border = nullptr;
   const FarTest* far = nullptr;  ///< spares the search for points that would get no weight; null = search for all
   int num_threads = 1;           ///< for the searches of one iteration; 0 = one per core
+  /// What a scanner saw, in the frame of the points: a reflection behind the surface that was seen has its partner
+  /// there, and not at the closest point. Null: the points show the object from all sides.
+  const Visibility* visibility = nullptr;
 };
 
 /// What one iteration saw and did: everything that a picture of it needs (Figure 7).
