@@ -116,7 +116,6 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.num_rough_samples = std::min(num_samples, options_.num_refine_samples / rules.rough_share);
   stage.least_merit = rules.settled_merit;
   stage.undo_slides = cloud_.isScan() && final_sigma == sigma;
-  stage.climbs = cloud_.isScan() && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
   const bool slides = cloud_.isScan() && num_samples > options_.num_coarse_samples && final_sigma < sigma;
   stage.isp.update = slides ? IspUpdate::PointToPoint : options_.update;

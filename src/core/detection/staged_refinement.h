@@ -33,7 +33,7 @@ public:
 
   /// Moves planes of a whole cloud to their place where pairs without a true partner pull them aside.
   /// \param candidates after full(), those that may be symmetries.
-  /// \return for each whether it moved; of a scan none, whose candidates have climbed in full().
+  /// \return for each whether it moved; of a scan none: its hidden pairs do not pull.
   std::vector<bool> climb(std::vector<Candidate>& candidates) const;
 
 private:

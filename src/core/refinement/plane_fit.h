@@ -35,7 +35,6 @@ struct RefinementStage {
   IspOptions rough_isp;   ///< of the others
   double least_merit;     ///< of candidates that may be symmetries
   bool undo_slides;       ///< of scans, at the narrowest weights
-  bool climbs;            ///< of scans, in the last stage: see PlaneFit::climb()
 };
 
 /// How well a cloud supports a plane, and the plane nearby that it supports best.

@@ -15,17 +15,19 @@ namespace {
 // Share of the surface. chosen: smaller values break families up by sampling noise, larger ones let bodies with a small
 // handle pass for families.
 constexpr double kSurfaceAllowance = 0.015;
-// Steps of a climb: radians, and radii of the offset; the first and the last. chosen: planes of scans that Iterative
-// Symmetric Points leaves are off by up to 0.05; at half of the first, they stay there; half of the last is below their
-// errors.
+// Steps of a climb: radians, and radii of the offset; the first and the last. chosen: planes of cut clouds that
+// Iterative Symmetric Points leaves are off by up to 0.05; at half of the first, they stay there; half of the last is
+// below their errors.
 constexpr double kFirstClimb = 0.02, kLastClimb = 0.0025;
 // Steps of a climb up, of all lengths. chosen: far planes are other planes; most take fewer than ten.
 constexpr int kMostClimbs = 24;
-constexpr int kClimbSamples = 500;  // by which planes of whole clouds climb. chosen: as many as those of scans take
+constexpr int kClimbSamples =
+    500;  // by which planes of whole clouds climb. chosen: more change no decision, and cost time
 // Merit that a climb has to gain. chosen: what few samples make of a plane at rest; at 0, good planes leave their place
 // by 0.1 degrees, at twice, some planes stay beside their place.
 constexpr double kLeastGain = 0.005;
-// Merit of planes that climb. chosen: planes of scans with less are no symmetries; at half, the climbs take longer.
+// Merit of planes that climb. chosen: planes of cut clouds with less are no symmetries; at half, the climbs take
+// longer.
 constexpr double kLeastClimbing = 0.5;
 // Merit of planes of whole clouds that nothing pulls at. chosen: that of a symmetry; planes of clouds that lack a
 // piece, and approximate ones, have less.
@@ -46,7 +48,6 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
     candidate.iterations += candidate.last.iterations;
     candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
     if (stage.undo_slides) undoSlide(candidate, start, used, stage.isp.final_sigma);
-    if (stage.climbs && candidate.merit >= kLeastClimbing) climbOne(candidate, used, fewer);
   });
 }
 
@@ -74,8 +75,9 @@ void SurfaceFit::undoSlide(Candidate& candidate, const ReflectionPlane& start, c
   candidate.last.last = std::move(step);
 }
 
-/// Pairs whose true partners are hidden pull at a plane: it comes to rest beside the one that explains most of what was
-/// seen. From there it climbs on the merit itself, in steps along its three parameters.
+/// Pairs whose true partners were cut off pull at a plane: it comes to rest beside the one that explains most of what
+/// is
+/// there. From there it climbs on the merit itself, in steps along its three parameters.
 void SurfaceFit::climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
   const auto moved = [](const ReflectionPlane& plane, int parameter, double by) {
     const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal();
