@@ -16,10 +16,10 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.508, -1.439, -0.4066, -2.642, -0.268, -6.166, -3.523},
-                                            {0.2623, -0.9371, -0.8362, -10.52, -3.209, -1.116},
-                                            {4.957, -0.7157, -1.609, -0.6965, -2.396}}},
-                                          {{{-6.98, 1.43}, {-18.4, 0.342}, {-21.5, 0.766}}}};
+inline const ConfidenceFit kConfidenceFit{{{{2.508, -1.442, -0.4107, -2.579, -0.2996, -5.813, -3.694},
+                                            {0.3791, -0.9132, -0.7752, -10.85, -3.281, -0.9873},
+                                            {4.957, -0.7157, -1.61, -0.6965, -2.396}}},
+                                          {{{-6.98, 1.43}, {-16.1, 0.358}, {-21.5, 0.766}}}};
 // clang-format on
 
 }  // namespace pcl_symmetry
