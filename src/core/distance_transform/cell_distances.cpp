@@ -12,9 +12,11 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Cells along a side of a block, of its parts and of the bins of points.
-constexpr int kCube = 8, kPart = 4, kBin = 4;
-constexpr int kInSlice = kPart * kPart, kInPart = kPart * kPart * kPart;
+constexpr int kCube = 8;  // cells along a side of a block; chosen: a multiple of a part, whose parts share a list
+constexpr int kPart = 4;  // cells along a side of a part. derived: a slice of a part fills an AVX-512 register
+constexpr int kBin = 4;   // cells along a side of a bin of points; chosen: a block looks at 36 rows of bins
+constexpr int kInSlice = kPart * kPart, kInPart = kInSlice * kPart;  // derived: cells of a slice and of a part
+
 // Cells, and share of squared distances, by which a point has to be farther off to be left out. derived: more than
 // what they are rounded by, about 1e-6 of them.
 constexpr float kSlack = 1e-3f, kSlackShare = 1e-5f;

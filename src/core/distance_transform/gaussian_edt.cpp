@@ -108,14 +108,14 @@ void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
   Points cells = normalizePoints(points, origin_, cell_size_);
   if (static_cast<std::size_t>(cells.cols()) > kDensePerCell * slice_size) cells = thin(cells, n);
   const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_), sq_reach = reach * reach;
-  values_.resize(slice_size * n);
+  filled_.assign(slice_size, {0, 0});
   const CellDistances distances(cells, n, reach);
+  values_.resize(slice_size * n);
   parallelBlocks(distances.numRows(), num_threads,
                  [&](std::size_t row) { distances.fill(static_cast<int>(row), values_.data()); });
   // Section 4.1: f = exp(-dist^2 / sigma^2).
   const double scale = -1.0 / std::pow(sigma_ / cell_size_, 2);
   std::vector<double> sums(n, 0.0), sq_sums(n, 0.0);
-  filled_.assign(slice_size, {0, 0});
   parallelBlocks(n, num_threads, [&](std::size_t slice) {
     double sum = 0.0, sq_sum = 0.0;
     for (std::size_t row = slice * n; row < (slice + 1) * n; ++row) {

@@ -8,8 +8,8 @@
 #include "core/distance_transform/edt_samples.h"
 #include "core/distance_transform/free_space.h"
 #include "core/distance_transform/lookup_table.h"
-#include "core/transform/filled_slabs.h"
-#include "core/transform/line_kernel.h"
+#include "core/transform/lines/filled_slabs.h"
+#include "core/transform/lines/line_kernel.h"
 
 namespace pcl_symmetry {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/transform/line_kernel.h"
+#include "core/transform/lines/line_kernel.h"
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 
 namespace pcl_symmetry {

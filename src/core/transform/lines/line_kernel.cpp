@@ -1,4 +1,4 @@
-#include "core/transform/line_kernel.h"
+#include "core/transform/lines/line_kernel.h"
 
 #include <algorithm>
 #include <cmath>
