@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "core/base/random.h"
-#include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "pcl_symmetry/symmetry_detection.h"
 
 namespace {
 

@@ -14,11 +14,13 @@ template <typename Image>
 double correlation(const GaussianEdt& edt, const Image& image, const Eigen::Vector3d& step) {
   const int n = edt.numCells();
   const float* f = edt.values().data();
+  const GaussianEdt::Range* filled = edt.filledRanges().data();
   double sum = 0.0;
   for (int z = 0; z < n; ++z) {
-    for (int y = 0; y < n; ++y, f += n) {
+    for (int y = 0; y < n; ++y, f += n, ++filled) {
+      if (filled->begin == filled->end) continue;
       const Eigen::Vector3d first = image(Eigen::Vector3d(0.0, y, z));
-      for (int x = 0; x < n; ++x)
+      for (int x = filled->begin; x < filled->end; ++x)
         if (f[x] > 0.0f) sum += f[x] * edt.atCell(first + x * step);
     }
   }

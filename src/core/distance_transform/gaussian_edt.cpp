@@ -8,6 +8,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
+#include "core/distance_transform/cell_distances.h"
 #include "core/distance_transform/gaussian_width.h"
 
 namespace pcl_symmetry {
@@ -22,35 +23,10 @@ constexpr std::size_t kDensePerCell = 8;
 // eight times as many points
 constexpr int kSlotsPerCell = 4;
 constexpr double kOfInterpolation = 1.0 / 12.0;  // derived: a value between cells is a mean over a box of one cell
-constexpr int kVectorWidth = 8;                  // derived: floats in an AVX2 register
 
 /// A float clamped to [low, high], as an integer; rounded towards zero.
 int clampedInt(float value, int low, int high) {
   return static_cast<int>(std::clamp(value, static_cast<float>(low), static_cast<float>(high)));
-}
-
-/// Lowers the squared distances of a slice's cells to those from one point, over a square that covers its reach. All
-/// lengths are in cells.
-PCL_SYMMETRY_MULTIVERSION
-void lowerSlice(float* sq_distances, int num_cells, const Eigen::Vector3f& point, float z, float reach, int width) {
-  const float x = point.x(), y = point.y(), dz = z - point.z(), sq_dz = dz * dz;
-  const float sq_radius = reach * reach - sq_dz;
-  if (sq_radius <= 0.0f) return;
-  const float radius = std::sqrt(sq_radius);
-  const int y_begin = clampedInt(std::ceil(y - radius), 0, num_cells);
-  const int y_end = clampedInt(std::floor(y + radius) + 1.0f, 0, num_cells);
-  const int x_begin = clampedInt(std::ceil(x - reach), 0, num_cells - width);
-  const float dx = static_cast<float>(x_begin) - x;
-  for (int row = y_begin; row < y_end; ++row) {
-    const float dy = static_cast<float>(row) - y;
-    const float sq_row_distance = sq_dz + dy * dy;
-    float* const cells = sq_distances + static_cast<std::ptrdiff_t>(row) * num_cells + x_begin;
-    for (int i = 0; i < width; ++i) {
-      const float d = dx + static_cast<float>(i);
-      const float sq_distance = d * d + sq_row_distance;
-      cells[i] = sq_distance < cells[i] ? sq_distance : cells[i];
-    }
-  }
 }
 
 /// One row of GaussianEdt::sharpened(), without its ends.
@@ -82,34 +58,6 @@ Points thin(const Points& points, int num_cells) {
   kept.conservativeResize(3, num_kept);
   return kept;
 }
-
-/// Points sorted by the slice of cells that contains them, so that a slice is compared with the points near it only.
-class PointsBySlice {
-public:
-  /// \param points in cells.
-  PointsBySlice(const Points& points, int num_cells)
-      : points_(points), num_cells_(num_cells), begin_(num_cells + 3, 0), order_(points.cols()) {
-    for (Eigen::Index i = 0; i < points.cols(); ++i) ++begin_[slot(points(2, i)) + 1];
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    auto next = begin_;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) order_[next[slot(points(2, i))]++] = i;
-  }
-
-  /// Calls visit(point) for all points in the slices that contain z_low to z_high, and perhaps others.
-  template <typename Visit>
-  void visit(float z_low, float z_high, const Visit& visit) const {
-    for (Eigen::Index o = begin_[slot(z_low)]; o < begin_[slot(z_high) + 1]; ++o) visit(points_.col(order_[o]));
-  }
-
-private:
-  /// 0 and num_cells + 1 hold the points below and above the grid.
-  int slot(float z) const { return clampedInt(std::floor(z), -1, num_cells_) + 1; }
-
-  const Points& points_;
-  int num_cells_;
-  std::vector<Eigen::Index> begin_;  // first index of each slot in order_
-  std::vector<Eigen::Index> order_;
-};
 
 }  // namespace
 
@@ -159,30 +107,31 @@ void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;
   Points cells = normalizePoints(points, origin_, cell_size_);
   if (static_cast<std::size_t>(cells.cols()) > kDensePerCell * slice_size) cells = thin(cells, n);
-  const PointsBySlice sorted(cells, n);
   const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_), sq_reach = reach * reach;
-  // Whole vectors: a square of cells takes less time than a disk with loose ends.
-  const int diameter = static_cast<int>(2.0f * reach) + 1;
-  const int width = std::min(n, (diameter + kVectorWidth - 1) / kVectorWidth * kVectorWidth);
+  filled_.assign(slice_size, {0, 0});
+  const CellDistances distances(cells, n, reach);
+  values_.resize(slice_size * n);
+  parallelBlocks(distances.numRows(), num_threads,
+                 [&](std::size_t row) { distances.fill(static_cast<int>(row), values_.data()); });
   // Section 4.1: f = exp(-dist^2 / sigma^2).
   const double scale = -1.0 / std::pow(sigma_ / cell_size_, 2);
-  values_.assign(slice_size * n, sq_reach);
   std::vector<double> sums(n, 0.0), sq_sums(n, 0.0);
   parallelBlocks(n, num_threads, [&](std::size_t slice) {
-    float* const values = values_.data() + slice * slice_size;
-    const float z = static_cast<float>(slice);
-    sorted.visit(z - reach, z + reach,
-                 [&](const Eigen::Vector3f& point) { lowerSlice(values, n, point, z, reach, width); });
     double sum = 0.0, sq_sum = 0.0;
-    for (std::size_t i = 0; i < slice_size; ++i) {
-      if (values[i] >= sq_reach) {
-        values[i] = 0.0f;
-        continue;
+    for (std::size_t row = slice * n; row < (slice + 1) * n; ++row) {
+      float* const values = values_.data() + row * n;
+      Range& filled = filled_[row];
+      for (int x = 0; x < n; ++x) {
+        if (values[x] >= sq_reach) {
+          values[x] = 0.0f;
+          continue;
+        }
+        const double value = std::exp(scale * values[x]);
+        values[x] = static_cast<float>(value);
+        sum += value;
+        sq_sum += value * value;
+        filled = {filled.end == 0 ? x : filled.begin, x + 1};
       }
-      const double value = std::exp(scale * values[i]);
-      values[i] = static_cast<float>(value);
-      sum += value;
-      sq_sum += value * value;
     }
     sums[slice] = sum;
     sq_sums[slice] = sq_sum;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/base/simd.h"
@@ -23,15 +25,26 @@ double farthestFrom(const PointsRef& points, const Eigen::Vector3d& center) {
 }
 
 /// Squared distances of some points from a center, coordinate by coordinate.
+/// \return the greatest.
 PCL_SYMMETRY_MULTIVERSION
-void sqDistancesFrom(const double* center, const double* x, const double* y, const double* z, std::size_t size,
-                     double* sq_distances) {
+double sqDistancesFrom(const double* center, const double* x, const double* y, const double* z, std::size_t size,
+                       double* sq_distances) {
   const double cx = center[0], cy = center[1], cz = center[2];
 #pragma GCC ivdep
   for (std::size_t i = 0; i < size; ++i) {
     const double dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
     sq_distances[i] = dx * dx + dy * dy + dz * dz;
   }
+  // Bits of numbers >= 0 are in the order of their values, and the greatest of integers takes no branch.
+  std::int64_t greatest = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    std::int64_t bits;
+    std::memcpy(&bits, sq_distances + i, sizeof bits);
+    greatest = std::max(greatest, bits);
+  }
+  double sq_greatest;
+  std::memcpy(&sq_greatest, &greatest, sizeof greatest);
+  return sq_greatest;
 }
 
 }  // namespace
@@ -51,9 +64,9 @@ BoundingBall boundingBall(const PointsRef& points) {
     for (int axis = 0; axis < 3; ++axis) probed[axis].push_back(points(axis, i));
   std::vector<double> sq_distances(probed[0].size());
   for (int i = 1; i <= kNumIterations; ++i) {
-    sqDistancesFrom(ball.center.data(), probed[0].data(), probed[1].data(), probed[2].data(), sq_distances.size(),
-                    sq_distances.data());
-    const auto index = std::max_element(sq_distances.begin(), sq_distances.end()) - sq_distances.begin();
+    const double sq_greatest = sqDistancesFrom(ball.center.data(), probed[0].data(), probed[1].data(), probed[2].data(),
+                                               sq_distances.size(), sq_distances.data());
+    const auto index = std::find(sq_distances.begin(), sq_distances.end(), sq_greatest) - sq_distances.begin();
     const Eigen::Vector3d farthest_point(probed[0][index], probed[1][index], probed[2][index]);
     ball.center += (farthest_point - ball.center) / (i + 1.0);
   }

@@ -8,7 +8,8 @@
 #include "core/distance_transform/edt_samples.h"
 #include "core/distance_transform/free_space.h"
 #include "core/distance_transform/lookup_table.h"
-#include "core/transform/line_kernel.h"
+#include "core/transform/lines/filled_slabs.h"
+#include "core/transform/lines/line_kernel.h"
 
 namespace pcl_symmetry {
 
@@ -16,8 +17,6 @@ namespace {
 
 // directions; chosen: 64 x 64 directions make 128 blocks. Half sets up arrays more often, twice leaves threads idle.
 constexpr std::size_t kSampledPerBlock = 32;
-// samples set up at a time; chosen: their lines stay in the first cache (20 kB), and sums of bytes fit in 32 bits
-constexpr int kChunk = 1024;
 
 /// Points, the coordinates along each axis side by side.
 using CoordinateRows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
@@ -50,16 +49,20 @@ struct GridInCells {
 /// Sums of the table's functions over reflected samples, for all planes of one direction.
 class DirectionSums {
 public:
-  DirectionSums(const CoordinateRows& points, const LookupTable& table, LineKernel accumulate, int num_radius)
+  /// \param slabs null = lines end at the ball alone.
+  DirectionSums(const CoordinateRows& points, const FilledSlabs* slabs, const LookupTable& table, LineKernel accumulate,
+                int num_radius)
       : points_(points),
+        slabs_(slabs),
         table_(table),
         accumulate_(accumulate),
         chunk_sums_(table.numFunctions(), std::vector<std::int32_t>(num_radius + 2 * kLineLanes)),
-        storage_(5 * kChunk),
+        storage_(5 * kMostLines),
         totals_(table.numFunctions(), std::vector<double>(num_radius)) {
     for (auto& sums : chunk_sums_) sums_of_.push_back(sums.data());
     std::int32_t* const data = storage_.data();
-    lines_ = {data, data + kChunk, data + 2 * kChunk, data + 3 * kChunk, data + 4 * kChunk, 0, {}};
+    lines_ = {data, data + kMostLines, data + 2 * kMostLines, data + 3 * kMostLines, data + 4 * kMostLines, 0,
+              {},   num_radius};
   }
 
   /// \return for each function of the table one sum per plane.
@@ -70,9 +73,10 @@ public:
       lines_.step[axis] = static_cast<std::int32_t>(std::lround(2.0f * planes.step * planes.normal[axis] * one));
     for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
     const int num_samples = static_cast<int>(points_.cols());
-    for (int first = 0; first < num_samples; first += kChunk) {
-      lines_.size = std::min(kChunk, num_samples - first);
-      setUpLines({&points_(0, first), &points_(1, first), &points_(2, first)}, planes, cube, lines_);
+    for (int first = 0; first < num_samples; first += kMostLines) {
+      lines_.size = std::min(kMostLines, num_samples - first);
+      const SlabsOfSamples slabs = slabs_ ? slabs_->from(first) : SlabsOfSamples{};
+      setUpLines({&points_(0, first), &points_(1, first), &points_(2, first)}, planes, cube, slabs, lines_);
       for (auto& sums : chunk_sums_) std::fill(sums.begin(), sums.end(), 0);
       accumulate_(lines_, table_.data(), table_.bits(), sums_of_.data());
       for (std::size_t g = 0; g < totals_.size(); ++g)
@@ -83,6 +87,7 @@ public:
 
 private:
   const CoordinateRows& points_;
+  const FilledSlabs* slabs_;
   const LookupTable& table_;
   LineKernel accumulate_;
   std::vector<std::vector<std::int32_t>> chunk_sums_;
@@ -93,17 +98,20 @@ private:
 };
 
 /// D(gamma) = (S / |f|^2) mean g(gamma x_i) at every bin, for each function g of the table.
+/// \param of_f_alone the table holds f and nothing else.
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
-                                            const SampledTransformOptions& options, const LookupTable& table) {
+                                            const SampledTransformOptions& options, const LookupTable& table,
+                                            bool of_f_alone) {
   options.validate();
   const CoordinateRows points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
   const LineKernel accumulate = lineKernel(options.simd, table.numFunctions());
+  const FilledSlabs slabs(edt, points);
   const GridInCells bins(edt, grid, table);
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const int num_radius = grid.numRadius();
   std::vector<std::vector<float>> means(table.numFunctions(), std::vector<float>(grid.size()));
   const auto run = [&](std::size_t begin, std::size_t end) {
-    DirectionSums sums(points, table, accumulate, num_radius);
+    DirectionSums sums(points, of_f_alone ? &slabs : nullptr, table, accumulate, num_radius);
     for (std::size_t direction = begin; direction < end; ++direction) {
       const auto& totals = sums.over(bins.planes(direction), bins.cube);
       for (std::size_t g = 0; g < means.size(); ++g)
@@ -134,7 +142,7 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
   std::vector<std::vector<float>> functions{edt.sharpened(1.0 / 12.0, options.num_threads)};
   if (!free_space.empty()) functions.push_back(checkedFreeSpace(edt, free_space));
   const LookupTable table(functions, edt.numCells(), options.num_threads);
-  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, table);
+  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, table, free_space.empty());
   SymmetryMap map;
   map.grid = grid;
   map.values = std::move(means[0]);
@@ -148,7 +156,7 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
 std::vector<float> freeOverlap(const GaussianEdt& edt, const PlaneGrid& grid, const std::vector<float>& free_space,
                                const SampledTransformOptions& options) {
   const LookupTable table({checkedFreeSpace(edt, free_space)}, edt.numCells(), options.num_threads);
-  return std::move(sampleMeans(edt, grid, options, table)[0]);
+  return std::move(sampleMeans(edt, grid, options, table, false)[0]);
 }
 
 void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap) {

@@ -11,9 +11,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-// samples set up at a time; chosen: their lines stay in the first cache (20 kB), and sums of bytes fit in 32 bits
-constexpr int kLinesAtATime = 1024;
-
 /// Fills lines that run along start + moved + k * step, within the ball of the cube.
 /// \param moved 3 x lines.size.
 PCL_SYMMETRY_MULTIVERSION
@@ -47,7 +44,7 @@ MovedLines::MovedLines(const GaussianEdt& edt, const LookupTable& table, LineKer
     : table_(table),
       accumulate_(accumulate),
       sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + 2 * kLineLanes)),
-      storage_(5 * kLinesAtATime) {
+      storage_(5 * kMostLines) {
   const double middle = 0.5 * (edt.numCells() - 1);
   cube_.middle = static_cast<float>(middle);
   cube_.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
@@ -59,16 +56,15 @@ void MovedLines::add(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start
                      int begin, int end, std::vector<std::vector<double>>& totals) {
   const float one = static_cast<float>(1 << LookupTable::kFractionBits);
   std::int32_t* const data = storage_.data();
-  Lines lines{
-      data, data + kLinesAtATime, data + 2 * kLinesAtATime, data + 3 * kLinesAtATime, data + 4 * kLinesAtATime, 0, {}};
+  Lines lines{data, data + kMostLines, data + 2 * kMostLines, data + 3 * kMostLines, data + 4 * kMostLines, 0, {}, end};
   Eigen::Vector3f rounded;
   for (int axis = 0; axis < 3; ++axis) {
     lines.step[axis] = static_cast<std::int32_t>(std::lround(step[axis] * one));
     rounded[axis] = static_cast<float>(lines.step[axis]) / one;
   }
   const int num_samples = static_cast<int>(moved.cols());
-  for (int first = 0; first < num_samples; first += kLinesAtATime) {
-    lines.size = std::min(kLinesAtATime, num_samples - first);
+  for (int first = 0; first < num_samples; first += kMostLines) {
+    lines.size = std::min(kMostLines, num_samples - first);
     setUpMoved(moved.data() + 3 * first, start.data(), rounded.data(), static_cast<float>(begin),
                static_cast<float>(end), cube_, lines);
     for (auto& sums : sums_) std::fill(sums.begin(), sums.end(), 0);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/distance_transform/lookup_table.h"
-#include "core/transform/line_kernel.h"
+#include "core/transform/lines/line_kernel.h"
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 

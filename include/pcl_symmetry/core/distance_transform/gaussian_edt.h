@@ -44,6 +44,12 @@ public:
 
   /// \return num_cells^3 values of f in [0, 1] at the cell centers, x fastest.
   const std::vector<float>& values() const { return values_; }
+  /// Cells of a row along x: [begin, end).
+  struct Range {
+    int begin, end;
+  };
+  /// \return num_cells^2 ranges, y fastest: f is 0 in all other cells of a row.
+  const std::vector<Range>& filledRanges() const { return filled_; }
   /// \param index of a cell, as in values().
   /// \return its center, input frame.
   Eigen::Vector3d cellCenter(std::size_t index) const;
@@ -91,6 +97,7 @@ private:
   double radius_ = 0.0;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   std::vector<float> values_;
+  std::vector<Range> filled_;
   std::vector<float> interpolation_;
   double sum_ = 0.0;
   double sq_norm_ = 0.0;

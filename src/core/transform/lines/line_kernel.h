@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "pcl_symmetry/core/transform/planar_transform.h"
@@ -9,6 +10,10 @@ namespace pcl_symmetry {
 /// Lanes of the widest kernel; arrays of results are padded by twice as many. derived: 32-bit integers in an AVX-512
 /// register.
 constexpr int kLineLanes = 16;
+
+/// Lines that a kernel adds up at a time, at most. chosen: they stay in the first cache (30 kB), and sums of bytes fit
+/// in 32 bits.
+constexpr int kMostLines = 1024;
 
 /// Equally spaced planes of one normal: n.x = offset + k * step for k in [0, count).
 struct ParallelPlanes {
@@ -33,8 +38,9 @@ struct Lines {
   std::int32_t* z;        ///< start of each line
   std::int32_t* k_begin;  ///< of each line
   std::int32_t* k_end;    ///< of each line
-  int size;               ///< number of lines
+  int size;               ///< number of lines, <= kMostLines
   std::int32_t step[3];   ///< of all lines
+  int count;              ///< of points of a line: none has a k_end beyond it
 };
 
 /// Coordinates of samples, each in an array of its own: vectors of several samples are loaded at once.
@@ -42,10 +48,20 @@ struct SampleCoordinates {
   const float *x, *y, *z;
 };
 
+/// Slabs that hold all that is not 0 in a table, as samples see them: low <= axis . (x - sample) <= high for each.
+struct SlabsOfSamples {
+  const float* axes;        ///< three numbers of each slab
+  const float *low, *high;  ///< one of each sample, slab by slab, cells
+  std::ptrdiff_t stride;    ///< from one slab to the next
+  int count;                ///< of slabs
+};
+
 /// Fills the lines that the images of points run along when the points are reflected in parallel planes.
 /// \param points lines.size of them, in cells from the first cell center.
-/// \param[out] lines size is given; all but step are filled.
-void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines);
+/// \param slabs beyond which lines end, as nothing is added there.
+/// \param[out] lines size is given; all but step and count are filled.
+void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube,
+                const SlabsOfSamples& slabs, Lines& lines);
 
 /// sums[g][k] += sum over lines of function g of the table at point k. The sums are integers, so that every kernel
 /// gives the same bytes.

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "core/transform/lines/line_kernel.h"
+#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+
+namespace pcl_symmetry {
+
+/// Slabs around the cells in which f is not 0, along the thirteen directions to the neighbours of a cell: images of
+/// samples beyond one of them need no look-up. Most shapes fill a small part of their ball.
+class FilledSlabs {
+public:
+  /// \param samples 3 x N, in cells from the center of cell (0, 0, 0).
+  FilledSlabs(const GaussianEdt& edt, const Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>& samples);
+
+  /// As the samples from one on see them.
+  SlabsOfSamples from(Eigen::Index first) const {
+    return {axes_.data(), low_.data() + first, high_.data() + first, low_.rows(), static_cast<int>(axes_.cols())};
+  }
+
+private:
+  Eigen::Matrix3Xf axes_;
+  Eigen::MatrixXf low_, high_;  ///< a row for each sample
+};
+
+}  // namespace pcl_symmetry
