@@ -4,10 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <vector>
 
-#include "core/scan/single_view.h"
 #include "shapes/scans.h"
 
 namespace {
@@ -36,43 +33,6 @@ TEST(InferView, FindsTheViewpointOfAScanInAnyPose) {
       EXPECT_LT(angleBetween(view->position - center, pose * viewpoint - center), 15.0) << seed;
       EXPECT_LT((view->seen.viewpoint() - view->position).norm(), 1e-9) << seed;
     }
-  }
-}
-
-/// Rays from (0, 0, -6), evenly over the picture, to the nearest of 60 balls of radius 0.15 in a cube: a bush.
-Points scanOfBalls(std::uint64_t seed) {
-  RandomStream random(seed);
-  Eigen::Matrix3Xd centers(3, 60);
-  for (Eigen::Index i = 0; i < centers.size(); ++i) centers.data()[i] = symmetric(random);
-  const Eigen::Vector3d eye(0.0, 0.0, -6.0);
-  constexpr int kPixels = 200;
-  std::vector<Eigen::Vector3f> hits;
-  for (int pixel = 0; pixel < kPixels * kPixels; ++pixel) {
-    const Eigen::Vector3d ray =
-        Eigen::Vector3d(0.5 * (pixel % kPixels) / kPixels - 0.25, 0.5 * (pixel / kPixels) / kPixels - 0.25, 1.0)
-            .normalized();
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const auto& center : centers.colwise()) {
-      const double along = ray.dot(center - eye);
-      const double sq_half = 0.15 * 0.15 - (eye + along * ray - center).squaredNorm();
-      if (sq_half > 0.0) nearest = std::min(nearest, along - std::sqrt(sq_half));
-    }
-    if (std::isfinite(nearest)) hits.push_back((eye + nearest * ray).cast<float>());
-  }
-  Points points(3, static_cast<Eigen::Index>(hits.size()));
-  for (std::size_t i = 0; i < hits.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = hits[i];
-  return points;
-}
-
-TEST(InferView, FindsTheViewpointOfABushWhosePartsLieBehindEachOther) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const Points points = scanOfBalls(seed);
-    // More than other clouds may have: only the density tells.
-    ASSERT_GT(layeredShare(points, {0.0, 0.0, -6.0}), 0.15) << seed;
-    const auto view = inferView(points, kElsewhere);
-    ASSERT_TRUE(view) << seed;
-    const Eigen::Vector3d center = boundingBall(points).center;
-    EXPECT_LT(angleBetween(view->position - center, Eigen::Vector3d(0.0, 0.0, -6.0) - center), 5.0) << seed;
   }
 }
 
