@@ -105,7 +105,8 @@ CommandLine commandLine(EvaluateScenesOptions& o) {
       .number("min_confidence", o.operating_point.min_confidence, Range::closed(0, 1),
               "least confidence of an answer that decides")
       .text("export", "DIR", o.export_folder,
-            "write every scene as PCD with the field object, ground_truth.json with poses and planes, and with -leave_out "
+            "write every scene as PCD with the field object, ground_truth.json with poses and planes, and with "
+            "-leave_out "
             "the database, models.db")
       .text("csv", "FILE", o.csv, "a row for each object")
       .text("curve", "FILE", o.curve, "CSV of what is recognized by the least confidence that is asked for")
