@@ -79,8 +79,11 @@ SymmetryScene makeScene(const SceneToolOptions& options) {
   scene.setOptions(used);
   if (options.database_path) {
     checkReadableFile(*options.database_path);
-    scene.setDatabase(namingFile(*options.database_path,
-                                 [&] { return std::make_shared<const SymmetryDatabase>(*options.database_path); }));
+    DatabaseOptions database;
+    database.num_threads = options.common.threads;
+    scene.setDatabase(namingFile(*options.database_path, [&] {
+      return std::make_shared<const SymmetryDatabase>(*options.database_path, database);
+    }));
   }
   return scene;
 }

@@ -27,6 +27,11 @@ constexpr int kComparedPoints = 500;
 // the scan by itself.
 constexpr double kSameSurface = 2.0 * kLeastWidth;
 
+// Merit behind the best model at which models are not refined, and models that are refined all the same: the confidence
+// needs a second one. measured: of 304 models of 76 objects of scenes of fold 0, with the noise of a depth camera, 198
+// are refined, and the same models win; with 0.1 and one model at least, 136, and confidences of two objects change.
+constexpr double kHopeless = 0.15;
+constexpr std::size_t kLeastRefined = 2;
 // Turns about each principal axis that are tried. measured: of 119 objects of scenes of fold 0 that are hidden by 30 to
 // 70 %, with the noise of a depth camera, 103 have the right pose with 12 and 100 without. chosen: at half,
 // poses start 30 degrees from the true one, twice takes twice the time.
@@ -63,12 +68,13 @@ void PosedScan::bringTo(const std::string& name, const Points& points, const std
 }
 
 std::vector<PosedModel> PosedScan::refined(int num_refined) {
-  std::stable_sort(models_.begin(), models_.end(), [](const SearchedModel& a, const SearchedModel& b) {
-    return a.poses.front().score.merit() > b.poses.front().score.merit();
-  });
+  const auto merit = [](const SearchedModel& model) { return model.poses.front().score.merit(); };
+  std::stable_sort(models_.begin(), models_.end(),
+                   [&](const SearchedModel& a, const SearchedModel& b) { return merit(a) > merit(b); });
   std::vector<PosedModel> found;
   for (const SearchedModel& model : models_) {
     if (found.size() == static_cast<std::size_t>(num_refined)) break;
+    if (found.size() >= kLeastRefined && merit(model) < merit(models_.front()) - kHopeless) break;
     found.push_back(refined(model, std::make_shared<const PosedSurface>(
                                        surfaceOf(model.read(), model.frames.target_center, std::nullopt))));
   }

@@ -45,7 +45,8 @@ public:
   void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses,
                PointReader read);
 
-  /// Refines and judges the poses of the \p num_refined models with the best ones, and forgets all models.
+  /// Refines and judges the poses of the models with the best ones, at most \p num_refined, and forgets all models.
+  /// Models far behind the best one are left out, but for one.
   /// \return these models, in any order.
   std::vector<PosedModel> refined(int num_refined);
 

@@ -195,6 +195,11 @@ void RecognitionOptions::validate() const {
   registration.validate();
 }
 
+void SymmetryDatabase::prepare() const {
+  parts_->pairs();
+  parts_->views();
+}
+
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
                                         const Viewpoint& viewpoint) const {
   const Points points = detail::finitePoints(scan, parts_->options.max_points);

@@ -6,11 +6,13 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "scene/object_feet.h"
 #include "scene/scene_parts.h"
+#include "scene/support_bulge.h"
 
 namespace pcl_symmetry {
 
@@ -56,6 +58,7 @@ std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const 
   return object.planes.front();
 }
 
+/// Of one object.
 class ObjectAnalysis {
 public:
   /// \param found has what the sensor saw and the supporting planes.
@@ -142,11 +145,30 @@ private:
 
   const Cloud::ConstPtr& scene_;
   const SceneAnalysis& found_;
-  SeenSpace::ConstPtr seen_;  // for the object that is analysed
+  SeenSpace::ConstPtr seen_;  // for the object
   const double spacing_;
   const SceneOptions& options_;
   const SymmetryDatabase* database_;
 };
+
+/// \param spacing of the points, input units.
+/// \return the objects of the clusters, in their order. Where there are no fewer clusters than threads, each has one.
+std::vector<SceneObject> analyseObjects(const Cloud::ConstPtr& scene, const std::vector<pcl::Indices>& clusters,
+                                        const SceneAnalysis& found, double spacing, const SceneOptions& options,
+                                        const SymmetryDatabase* database) {
+  SceneOptions of_object = options;
+  int num_at_once = 1;
+  if (const int num_threads = resolveNumThreads(options.num_threads);
+      clusters.size() >= static_cast<std::size_t>(num_threads)) {
+    num_at_once = num_threads;
+    of_object.num_threads = of_object.recognition.num_threads = 1;
+  }
+  std::vector<SceneObject> objects(clusters.size());
+  parallelBlocks(clusters.size(), num_at_once, [&](std::size_t k) {
+    objects[k] = ObjectAnalysis(scene, found, spacing, of_object, database).analyse(clusters[k]);
+  });
+  return objects;
+}
 
 }  // namespace
 
@@ -201,9 +223,16 @@ SceneAnalysis SymmetryScene::compute() const {
   std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
                                                             analysis.cluster_distance, options_.min_points);
   detail::returnFeet(frame, analysis.supports, clusters, scale.spacing, analysis.cluster_distance);
+  const auto is_bulge = [&](const pcl::Indices& cluster) {
+    return detail::isBulge(*frame, cluster, analysis.supports, options_.detection.tolerance, analysis.cluster_distance);
+  };
+  clusters.erase(std::remove_if(clusters.begin(), clusters.end(), is_bulge), clusters.end());
   timed("clusters");
-  ObjectAnalysis objects(frame, analysis, scale.spacing, options_, database_.get());
-  for (const pcl::Indices& cluster : clusters) analysis.objects.push_back(objects.analyse(cluster));
+  if (database_ && !clusters.empty() && viewpoint) {
+    database_->prepare();
+    timed("database");
+  }
+  analysis.objects = analyseObjects(frame, clusters, analysis, scale.spacing, options_, database_.get());
   timed("objects");
   return analysis;
 }

@@ -23,6 +23,8 @@ public:
 
   const SymmetryDatabase& operator*() const { return *database_; }
   const SymmetryDatabase* operator->() const { return &*database_; }
+  /// The copy of this process.
+  const std::string& path() const { return path_; }
   /// Name and reason of models that could not be used; on the first process.
   const std::vector<std::pair<std::string, std::string>>& failures() const { return report_.failures; }
 

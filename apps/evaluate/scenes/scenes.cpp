@@ -105,7 +105,9 @@ CommandLine commandLine(EvaluateScenesOptions& o) {
       .number("min_confidence", o.operating_point.min_confidence, Range::closed(0, 1),
               "least confidence of an answer that decides")
       .text("export", "DIR", o.export_folder,
-            "write every scene as PCD with the field object, and ground_truth.json with poses and planes")
+            "write every scene as PCD with the field object, ground_truth.json with poses and planes, and with "
+            "-leave_out "
+            "the database, models.db")
       .text("csv", "FILE", o.csv, "a row for each object")
       .text("curve", "FILE", o.curve, "CSV of what is recognized by the least confidence that is asked for")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
@@ -150,6 +152,7 @@ public:
     load();
     if (options_.leave_out > 0) build();
     if (options_.export_folder) makeFolder(*options_.export_folder);
+    if (options_.export_folder && database_ && work_.isFirst()) exportDatabase();
     if (options_.most_in_band > 0) choose();
     Step step(console_, "Looking at " + std::to_string(options_.num_scenes) + " scenes");
     const auto evaluated = rowsOfItems<SceneResult>(
@@ -214,6 +217,12 @@ private:
     database_.emplace(inputs, database, work_, [&](double share) { step.progress(share); });
     for (const auto& [name, reason] : database_->failures()) throw InputError(name + ": " + reason);
     step.done(std::to_string((*database_)->size()) + " models");
+  }
+
+  void exportDatabase() const {
+    const boost::filesystem::path path = boost::filesystem::path(*options_.export_folder) / "models.db";
+    boost::filesystem::remove(path);
+    SymmetryDatabase(path.string()).importFrom(database_->path());
   }
 
   std::vector<std::string> namesOfScenes(const std::string& what) const {

@@ -219,6 +219,11 @@ public:
   /// \throws pcl::IOException naming file and reason.
   std::vector<ModelMatch> match(const Cloud& cloud, int num_nearest = 10, const Viewpoint& viewpoint = {}) const;
 
+  /// Makes what recognize() needs for scans from a viewpoint, which the first one does otherwise: once, on all threads
+  /// of DatabaseOptions. A call after a change makes what is new.
+  /// \throws pcl::IOException naming file and reason.
+  void prepare() const;
+
   /// The models that a scan can show, in the unit of the models. Candidates look like the scan from some side; without
   /// a viewpoint, candidates are of like shape.
   /// \param scan at least two different finite points.

@@ -43,7 +43,8 @@ Matches match(const PosedSurface& from, const PosedSurface& to, const Eigen::Iso
     std::vector<float> sq_distances;
     to.search->search(matches.places, 1, matches.closest, sq_distances);
   } else {
-    for (Eigen::Index i = 0; i < size; ++i) matches.closest[i] = to.grid.closest(matches.places.col(i));
+    const ClosestPointGrid& grid = to.grid->of(to.points);
+    for (Eigen::Index i = 0; i < size; ++i) matches.closest[i] = grid.closest(matches.places.col(i));
   }
   return matches;
 }

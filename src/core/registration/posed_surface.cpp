@@ -18,6 +18,8 @@ constexpr double kRoughShare = 0.15;
 // edges.
 constexpr int kNumRoughNeighbours = 32;
 
+// Cells along each side of the grid. chosen: half gives wrong neighbours, twice takes eight times the time.
+constexpr int kCells = 48;
 // Cells along each side of the grid of few points. chosen: as wide as a thousand points of a surface are apart; half
 // gives wrong neighbours, twice takes eight times the memory.
 constexpr int kFewCells = 24;
@@ -32,12 +34,17 @@ std::vector<int> randomOrder(int size, std::uint64_t seed) {
 
 }  // namespace
 
+const ClosestPointGrid& LateGrid::of(const PointsRef& points) {
+  std::call_once(made_, [&] { grid_.emplace(points, num_cells_); });
+  return *grid_;
+}
+
 PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> seen_space, std::uint64_t seed,
                            int num_threads)
     : points(input),
       order(randomOrder(static_cast<int>(input.cols()), seed)),
       seen(std::move(seen_space)),
-      grid(input),
+      grid(std::make_shared<LateGrid>(kCells)),
       search(makeTreeSearch(input)) {
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, num_threads);
   const double typical = median(geometry.spacing);
@@ -53,7 +60,7 @@ PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normal
       normals(known_normals),
       order(static_cast<std::size_t>(input.cols())),
       seen(std::move(seen_space)),
-      grid(input, kFewCells),
+      grid(std::make_shared<LateGrid>(kFewCells)),
       search(makeTreeSearch(input)) {
   std::iota(order.begin(), order.end(), 0);
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, 1);

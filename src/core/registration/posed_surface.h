@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -11,6 +13,21 @@
 
 namespace pcl_symmetry {
 
+/// A grid of closest points that is made when it is first asked for: a surface that is judged exactly needs none. May
+/// be asked by several threads at once.
+class LateGrid {
+public:
+  explicit LateGrid(int num_cells) : num_cells_(num_cells) {}
+
+  /// \param points the same each time, 3 x N, finite, N >= 1.
+  const ClosestPointGrid& of(const PointsRef& points);
+
+private:
+  int num_cells_;
+  std::once_flag made_;
+  std::optional<ClosestPointGrid> grid_;
+};
+
 /// One of two clouds that are brought together, with everything that judging a pose needs.
 struct PosedSurface {
   Points points;                   ///< 3 x N
@@ -19,7 +36,7 @@ struct PosedSurface {
   std::vector<int> order;          ///< N, the points in random order: the first k are an even sample of the surface
   double accuracy = 0.0;           ///< distance within which samples of one surface meet: their spacing and their noise
   std::optional<Visibility> seen;  ///< what the scanner saw; nothing = the cloud shows its object from all sides
-  ClosestPointGrid grid;
+  std::shared_ptr<LateGrid> grid;  ///< shared by copies of the surface
   ClosestPointSearch::Ptr search;
 
   /// \param points 3 x N, finite, N >= 1.

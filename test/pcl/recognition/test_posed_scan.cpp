@@ -49,4 +49,18 @@ TEST(PosedScan, TurnsAModelAboutItsAxes) {
   }
 }
 
+/// All but the best two: the confidence needs a second one.
+TEST(PosedScan, RefinesNoModelsFarBehindTheBest) {
+  const Points points = mug();
+  Points flat = points;
+  flat.row(0) *= 0.2f;
+  detail::PosedScan scan(points, std::nullopt, RecognitionOptions::quickRegistration());
+  for (const char* name : {"flat 1", "flat 2", "flat 3"})
+    scan.bringTo(name, flat, {Eigen::Isometry3d::Identity()}, [&] { return flat; });
+  scan.bringTo("mug", points, {Eigen::Isometry3d::Identity()}, [&] { return points; });
+  const std::vector<detail::PosedModel> found = scan.refined(4);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].model.name, "mug");
+}
+
 }  // namespace pcl_symmetry

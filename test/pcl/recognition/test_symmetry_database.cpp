@@ -135,6 +135,22 @@ TEST_F(SymmetryDatabaseTest, RecognizesAViewWithItsPose) {
   EXPECT_TRUE(database.recognize(seenFrom(ball(), {0.0f, 0.0f, 6.0f}), optionsForRandomPoints()).empty());
 }
 
+TEST_F(SymmetryDatabaseTest, PreparedOnesRecognizeTheSame) {
+  SymmetryDatabase database(":memory:"), prepared(":memory:");
+  fill(database);
+  prepared.prepare();  // nothing is there yet
+  fill(prepared);
+  prepared.prepare();
+  const Cloud view = seenFrom(rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const auto expected = database.recognize(view, optionsForRandomPoints());
+  const auto found = prepared.recognize(view, optionsForRandomPoints());
+  ASSERT_FALSE(expected.empty());
+  ASSERT_EQ(found.size(), expected.size());
+  EXPECT_EQ(found[0].name, expected[0].name);
+  EXPECT_EQ(found[0].confidence, expected[0].confidence);
+  EXPECT_EQ(found[0].T_model_scan.matrix(), expected[0].T_model_scan.matrix());
+}
+
 /// An object, and a wall that hides one side of it from a scanner.
 struct HalfHidden {
   Cloud scene;

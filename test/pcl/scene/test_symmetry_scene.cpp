@@ -198,6 +198,47 @@ TEST(SymmetryScene, TheTableAloneIsNoObject) {
   EXPECT_TRUE(scene.objects.empty());
 }
 
+TEST(SymmetryScene, BulgesOfTheTableAreNoObjects) {
+  // 45 mm high, as stereo cameras measure walls in waves; more than three times what belongs to the plane.
+  const Cloud::Ptr scene = organized(twoBoxes().scan);
+  for (const int i : twoBoxes().pixelsOf(0)) {
+    pcl::PointXYZ& point = (*scene)[static_cast<std::size_t>(i)];
+    const double sq_distance = std::pow(point.x + 0.2, 2) + std::pow(point.y + 0.35, 2);
+    point.z += static_cast<float>(0.045 * std::exp(-sq_distance / (0.15 * 0.15)));
+  }
+  const SceneAnalysis found = analysed(scene);
+  EXPECT_EQ(found.supports.size(), 1u);
+  EXPECT_EQ(found.objects.size(), 2u) << "the boxes";
+}
+
+TEST(SymmetryScene, AnyNumberOfThreadsGivesTheSameObjects) {
+  const auto with = [](int num_threads) {
+    SymmetryScene scene;
+    SceneOptions options;
+    options.max_points = 1000;
+    options.num_threads = num_threads;
+    scene.setOptions(options);
+    scene.setInputCloud(organized(twoBoxes().scan));
+    return scene.compute();
+  };
+  const SceneAnalysis one = with(1);
+  ASSERT_EQ(one.objects.size(), 2u);
+  for (const int num_threads : {2, 3}) {  // with 3, one object after the other
+    const SceneAnalysis many = with(num_threads);
+    ASSERT_EQ(many.objects.size(), one.objects.size());
+    for (std::size_t k = 0; k < one.objects.size(); ++k) {
+      const SceneObject &a = one.objects[k], &b = many.objects[k];
+      EXPECT_EQ(a.indices, b.indices);
+      EXPECT_EQ(a.added.size(), b.added.size());
+      ASSERT_EQ(a.planes.size(), b.planes.size());
+      for (std::size_t i = 0; i < a.planes.size(); ++i) {
+        EXPECT_EQ(a.planes[i].coefficients(), b.planes[i].coefficients());
+        EXPECT_EQ(a.planes[i].confidence, b.planes[i].confidence);
+      }
+    }
+  }
+}
+
 TEST(SymmetryScene, ALargeBoxIsNoTable) {
   // Its front is more than half of the picture; what lies behind the front is the rest of the box.
   const test::Scan box = test::scan(test::blockBox(), {0.8, -2.5, 1.2}, 0.0, 160, 120);

@@ -24,6 +24,8 @@ constexpr int kAngles = 12, kOtherAngles = 6;
 constexpr double kLeastDistance = 0.2;
 // Turns about a normal that are told apart. chosen: 22.5 degrees; half mixes poses up, twice spreads their votes.
 constexpr int kTurns = 16;
+constexpr int kTurnBits = 8;                                // derived: a turn is stored in 1/256
+constexpr std::uint32_t kTurnMask = (1u << kTurnBits) - 1;  // derived: see above
 // Points of a scan that vote, each with all others. chosen: half misses poses, twice takes twice the time.
 constexpr int kReferences = 30;
 // Poses of one shape that a point of the scan votes for. chosen: half loses that of the true place among those that
@@ -35,7 +37,7 @@ constexpr double kSameAngle = 0.4, kSamePlace = 0.15;
 // Weight of a pair that as many points have as the mean of all, and greatest weight. chosen: weights fall with the root
 // of their number; all weights alike give the votes to flat shapes.
 constexpr double kMeanWeight = 8.0, kMostWeight = 64.0;
-constexpr int kMostVotes = std::numeric_limits<std::uint16_t>::max();  // derived: they are counted in 16 bits
+constexpr int kMostVotes = std::numeric_limits<std::int16_t>::max();  // derived: they are counted in 16 bits
 
 int angleStep(double cosine, int num_steps, double range) {
   const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
@@ -142,20 +144,17 @@ void PointPairIndex::fillKeys(int num_threads) {
     weights_[key] = static_cast<std::uint8_t>(std::clamp(kMeanWeight * std::sqrt(share), 1.0, kMostWeight));
     ends[key] = key_begins_[key];
   }
-  pair_points_.resize(key_begins_.back());
-  pair_turns_.resize(key_begins_.back());
+  pairs_.resize(key_begins_.back());
   for (const auto& of_shape : pairs) {
     for (const KeyedPair& pair : of_shape) {
       const std::uint32_t at = ends[static_cast<std::size_t>(pair.key)]++;
-      pair_points_[at] = static_cast<std::uint32_t>(pair.point);
-      pair_turns_[at] = pair.turn;
+      pairs_[at] = static_cast<std::uint32_t>(pair.point) << kTurnBits | pair.turn;
     }
   }
 }
 
 /// Votes of one point of the scan: for each point of the shapes that it may be, and each turn about its normal.
-void PointPairIndex::count(const SurfacePoints& scan, int reference, int sign,
-                           std::vector<std::uint16_t>& votes) const {
+void PointPairIndex::count(const SurfacePoints& scan, int reference, int sign, std::vector<std::int16_t>& votes) const {
   votes.assign(static_cast<std::size_t>(points_.cols()) * kTurns, 0);
   const Eigen::Matrix3d frame = frameOf(sign * scan.normals.col(reference).cast<double>().normalized());
   const Eigen::Vector3d first = scan.points.col(reference).cast<double>();
@@ -169,11 +168,11 @@ void PointPairIndex::count(const SurfacePoints& scan, int reference, int sign,
          ++d) {
       for (int a = std::max(0, angle); a <= std::min(angle + 1, kAngles - 1); ++a) {
         const auto key = static_cast<std::size_t>(keyOf(d, a, pair.other_angle, pair.between));
-        const std::uint16_t weight = weights_[key];
+        const int weight = weights_[key];
         for (std::uint32_t at = key_begins_[key]; at < key_begins_[key + 1]; ++at) {
-          const auto turn = static_cast<std::uint8_t>(pair_turns_[at] - pair.turn);
-          std::uint16_t& vote = votes[pair_points_[at] * kTurns + turn / (256 / kTurns)];
-          vote = static_cast<std::uint16_t>(std::min(kMostVotes, vote + weight));
+          const std::uint32_t point = pairs_[at] >> kTurnBits, turn = (pairs_[at] - pair.turn) & kTurnMask;
+          std::int16_t& vote = votes[point * kTurns + turn / (256 / kTurns)];
+          vote = static_cast<std::int16_t>(std::min(kMostVotes, vote + weight));
         }
       }
     }
@@ -182,7 +181,7 @@ void PointPairIndex::count(const SurfacePoints& scan, int reference, int sign,
 
 /// The poses of each shape that a point of the scan gave most votes.
 void PointPairIndex::collect(const SurfacePoints& scan, int reference, int sign, const Eigen::Vector3d& center,
-                             const std::vector<std::uint16_t>& votes, std::vector<std::vector<Vote>>& poses) const {
+                             const std::vector<std::int16_t>& votes, std::vector<std::vector<Vote>>& poses) const {
   struct Peak {
     int weight, point, turn;
   };
@@ -191,7 +190,10 @@ void PointPairIndex::collect(const SurfacePoints& scan, int reference, int sign,
   for (std::size_t k = 0; k < radii_.size(); ++k) {
     std::array<Peak, kPosesOfPoint> best{};
     for (int i = begins_[k]; i < begins_[k + 1]; ++i) {
-      const std::uint16_t* of_point = votes.data() + static_cast<std::size_t>(i) * kTurns;
+      const std::int16_t* of_point = votes.data() + static_cast<std::size_t>(i) * kTurns;
+      std::int16_t most = 0;
+      for (int t = 0; t < kTurns; ++t) most = std::max(most, of_point[t]);
+      if (2 * most <= best.back().weight) continue;  // also with the next turn
       Peak peak{0, i, 0};
       for (int t = 0; t < kTurns; ++t) {
         const int weight = of_point[t] + of_point[(t + 1) % kTurns];
@@ -259,7 +261,7 @@ std::vector<ShapeOfPairs> PointPairIndex::nearest(const SurfacePoints& scan, con
   // By point of the scan and sign of its normal: the poses of each shape.
   std::vector<std::vector<std::vector<Vote>>> poses(2 * num_references);
   parallelBlocks(poses.size(), options.num_threads, [&](std::size_t i) {
-    std::vector<std::uint16_t> votes;
+    std::vector<std::int16_t> votes;
     poses[i].resize(radii_.size());
     const int reference = static_cast<int>(i / 2), sign = i % 2 == 0 ? 1 : -1;
     count(scan, reference, sign, votes);

@@ -60,9 +60,9 @@ private:
 
   std::vector<KeyedPair> pairsOf(std::size_t shape) const;
   void fillKeys(int num_threads);
-  void count(const SurfacePoints& scan, int reference, int sign, std::vector<std::uint16_t>& votes) const;
+  void count(const SurfacePoints& scan, int reference, int sign, std::vector<std::int16_t>& votes) const;
   void collect(const SurfacePoints& scan, int reference, int sign, const Eigen::Vector3d& center,
-               const std::vector<std::uint16_t>& votes, std::vector<std::vector<Vote>>& poses) const;
+               const std::vector<std::int16_t>& votes, std::vector<std::vector<Vote>>& poses) const;
   ShapeOfPairs clustered(int shape, std::vector<Vote> votes, const Eigen::Vector3d& center, int num_poses) const;
   int keyOf(int distance, int angle, int other_angle, int between) const;
 
@@ -71,10 +71,10 @@ private:
   std::vector<int> begins_ = {0};
   std::vector<double> radii_;  // of the shapes
   int first_distance_ = 0, num_distances_ = 0;
-  // Pairs of all shapes by their keys: first point, and turn of the second one about the normal of the first.
+  // Pairs of all shapes by their keys: the first point, and in the last 8 bits the turn of the second one about the
+  // normal of the first.
   std::vector<std::uint32_t> key_begins_;
-  std::vector<std::uint32_t> pair_points_;
-  std::vector<std::uint8_t> pair_turns_;
+  std::vector<std::uint32_t> pairs_;
   std::vector<std::uint8_t> weights_;  // of the keys
 };
 
