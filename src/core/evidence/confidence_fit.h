@@ -16,10 +16,10 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.508, -1.442, -0.4107, -2.579, -0.2996, -5.813, -3.694},
-                                            {0.3791, -0.9132, -0.7752, -10.85, -3.281, -0.9873},
+inline const ConfidenceFit kConfidenceFit{{{{2.428, -1.516, -0.3932, -2.661, -0.2823, -5.874, -3.79},
+                                            {0.3866, -0.9296, -0.7645, -10.79, -3.278, -1.001},
                                             {4.957, -0.7157, -1.61, -0.6965, -2.396}}},
-                                          {{{-6.98, 1.43}, {-16.1, 0.358}, {-21.5, 0.766}}}};
+                                          {{{-6.9, 1.4}, {-15.9, 0.358}, {-21.5, 0.766}}}};
 // clang-format on
 
 }  // namespace pcl_symmetry
