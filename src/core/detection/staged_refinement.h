@@ -33,7 +33,7 @@ public:
 
   /// Moves planes of a whole cloud to their place where pairs without a true partner pull them aside.
   /// \param candidates after full(), those that may be symmetries.
-  /// \return for each whether it moved; of a scan none: its hidden pairs do not pull.
+  /// \return for each whether it moved; of a scan none: those of noisy ones have climbed in full().
   std::vector<bool> climb(std::vector<Candidate>& candidates) const;
 
 private:

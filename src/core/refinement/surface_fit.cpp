@@ -29,6 +29,10 @@ constexpr double kLeastGain = 0.005;
 // Merit of planes that climb. chosen: planes of cut clouds with less are no symmetries; at half, the climbs take
 // longer.
 constexpr double kLeastClimbing = 0.5;
+// Roughness, spacings, from which planes of scans climb. chosen: exact scans have less, and their planes are as near
+// without a climb; noise hides what lies behind the surface by its own depth, so that it pulls. With a climb for all,
+// of 441 scans without noise 401 in place of 398 are right, but 67 in place of 56 have a false plane, too.
+constexpr double kNoisyDepth = 0.1;
 // Merit of planes of whole clouds that nothing pulls at. chosen: that of a symmetry; planes of clouds that lack a
 // piece, and approximate ones, have less.
 constexpr double kAtRest = 0.93;
@@ -47,7 +51,9 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
     candidate.plane = candidate.last.plane;
     candidate.iterations += candidate.last.iterations;
     candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
-    if (stage.undo_slides) undoSlide(candidate, start, used, stage.isp.final_sigma);
+    if (!stage.undo_slides) return;
+    undoSlide(candidate, start, used, stage.isp.final_sigma);
+    if (cloud_.roughness > kNoisyDepth && candidate.merit >= kLeastClimbing) climbOne(candidate, used, fewer);
   });
 }
 

@@ -46,7 +46,8 @@ public:
   const std::vector<float>& values() const { return values_; }
   /// Cells of a row along x: [begin, end).
   struct Range {
-    int begin, end;
+    int begin;  ///< the first cell
+    int end;    ///< the one after the last
   };
   /// \return num_cells^2 ranges, y fastest: f is 0 in all other cells of a row.
   const std::vector<Range>& filledRanges() const { return filled_; }
