@@ -16,8 +16,8 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.428, -1.516, -0.3932, -2.661, -0.2823, -5.874, -3.79},
-                                            {0.3866, -0.9296, -0.7645, -10.79, -3.278, -1.001},
+inline const ConfidenceFit kConfidenceFit{{{{2.427, -1.518, -0.3928, -2.671, -0.2825, -5.87, -3.779},
+                                            {0.3545, -0.9549, -0.7495, -10.48, -3.267, -1.01},
                                             {4.957, -0.7157, -1.61, -0.6965, -2.396}}},
                                           {{{-6.9, 1.4}, {-15.9, 0.358}, {-21.5, 0.766}}}};
 // clang-format on
