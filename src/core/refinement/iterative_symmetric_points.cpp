@@ -28,7 +28,7 @@ constexpr double kLeastStiffness = 1e-3;
 constexpr double kLongestStep = 0.2;
 constexpr double kReach = 3.0;  // sigmas. derived: weights beyond are below exp(-9) = 1.3e-4
 constexpr double kRest = 0.1;   // sigmas. chosen: at half, a few iterations more; at twice, weights narrow on the way
-// Depth behind the surface that was seen, sigmas, over which a pair loses its weight. chosen: of 309 scans of folds 0
+// Depth behind the surface that was seen, sigmas, over which a pair loses its weight. chosen: of 310 scans of folds 0
 // and 1 the right plane is decided for 290, 288, 286, 284 and 272 with 0.05, 0.1, 0.25, 0.5 and 1, for 260 where hidden
 // pairs keep their weight. Less than the errors of depths would leave only reflections in front of the surface.
 constexpr double kHiddenDepth = 0.1;
