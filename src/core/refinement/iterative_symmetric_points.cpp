@@ -160,8 +160,8 @@ Points reflections(const Points& points, const ReflectionPlane& plane) {
 
 /// Weight of a pair by what the scanner saw where the reflection lies, in [0, 1].
 ///
-/// A departure from the paper, whose pairs all pull: half of a scan's partners are hidden, and its closest points to
-/// their places draw a plane away from the symmetry, to where more of what was seen overlaps.
+/// A departure from the paper, whose pairs all pull: many partners of a scan's points are hidden. The closest points,
+/// taken in their place, draw a plane away from the symmetry, to where more of what was seen overlaps.
 double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflection, double sigma) {
   if (!visibility) return 1.0;
   const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (kHiddenDepth * sigma);
