@@ -7,8 +7,8 @@
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
 #include "core/detection/parts/part_search.h"
+#include "core/evidence/missing/missing_surface.h"
 #include "core/evidence/plane_support.h"
-#include "core/evidence/share/missing_surface.h"
 #include "core/evidence/share/plane_stiffness.h"
 #include "core/evidence/share/surface_distance.h"
 #include "core/geometry/point_samples.h"
@@ -161,7 +161,8 @@ std::vector<float> PlaneJudge::unknownMatches(const Reflected& reflected, const 
   const std::vector<char>& open = borders();
   const auto trust = static_cast<float>(held * border_trust_);
   if (trust <= 0.0f) return unknown;
-  unknown = missingCounterparts(matched, step.closest, cloud_.geometry, open);
+  unknown = missingCounterparts({cloud_.points, cloud_.geometry, open, cloud_.spacing}, matched, step.closest,
+                                reflected.points);
   for (std::size_t i = 0; i < size; ++i)
     if (!matched[i] && isCutOff(reflected.points.col(static_cast<Eigen::Index>(i)))) unknown[i] = 1.0f;
   for (float& value : unknown) value *= trust;

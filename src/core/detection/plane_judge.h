@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/evidence/share/cut_planes.h"
+#include "core/evidence/missing/cut_planes.h"
 #include "core/evidence/share/split_surface.h"
 #include "core/neighbours/thin_shape.h"
 #include "core/refinement/plane_fit.h"

@@ -1,5 +1,5 @@
 /// Planes at which clouds were cut off.
-#include "core/evidence/share/cut_planes.h"
+#include "core/evidence/missing/cut_planes.h"
 
 #include <gtest/gtest.h>
 

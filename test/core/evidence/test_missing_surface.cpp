@@ -1,4 +1,4 @@
-#include "core/evidence/share/missing_surface.h"
+#include "core/evidence/missing/missing_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,9 @@ std::pair<double, double> matchedAndMissing(const Surface& surface, const Reflec
   surface.search->search(reflected, 1, closest, sq_distances);
   std::vector<char> matched(closest.size());
   for (std::size_t i = 0; i < matched.size(); ++i) matched[i] = sq_distances[i] < 0.05 * 0.05;
-  const std::vector<float> missing = missingCounterparts(matched, closest, surface.geometry, surface.borders);
+  const double spacing = std::sqrt(4.0 * kPi / 8000.0);
+  const std::vector<float> missing =
+      missingCounterparts({surface.points, surface.geometry, surface.borders, spacing}, matched, closest, reflected);
   const double count = static_cast<double>(matched.size());
   return {std::accumulate(matched.begin(), matched.end(), 0.0) / count,
           std::accumulate(missing.begin(), missing.end(), 0.0) / count};
@@ -96,6 +98,25 @@ TEST(MissingCounterparts, ExplainWhatWasCutOff) {
   const Surface cut(cap(0.3));
   const auto [matched, missing] = matchedAndMissing(cut, ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
   EXPECT_NEAR(matched, 0.6 / 1.3, 0.06);  // the zone from -0.3 to 0.3, by area, and the tolerance beyond it
+  EXPECT_NEAR(matched + missing, 1.0, 0.03);
+}
+
+TEST(MissingCounterparts, ExplainAPartWithoutAnEdge) {
+  // Two spheres, and nothing between them. x = 0 maps a third one, at the left, to where the cloud was cut off.
+  const Points ball = cap(2.0);
+  Points points(3, 0);
+  const auto add = [&](double x, bool is_cut) {
+    for (Eigen::Index i = 0; i < ball.cols(); ++i) {
+      if (is_cut && ball(0, i) > 0.2f) continue;
+      points.conservativeResize(3, points.cols() + 1);
+      points.col(points.cols() - 1) = ball.col(i) + Eigen::Vector3f(static_cast<float>(x), 0.0f, 0.0f);
+    }
+  };
+  add(1.2, true);
+  add(-1.2, false);
+  add(-4.0, false);
+  const auto [matched, missing] = matchedAndMissing(Surface(points), ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
+  EXPECT_LT(matched, 0.6);
   EXPECT_NEAR(matched + missing, 1.0, 0.03);
 }
 

@@ -1,4 +1,4 @@
-#include "core/evidence/share/cut_planes.h"
+#include "core/evidence/missing/cut_planes.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
