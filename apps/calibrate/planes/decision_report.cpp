@@ -79,6 +79,7 @@ const std::vector<std::pair<const char*, double EvidenceUnits::*>>& unitNames() 
       {"hidden_loss", &EvidenceUnits::hidden_loss},
       {"slipping", &EvidenceUnits::slipping},
       {"least_slipping", &EvidenceUnits::least_slipping},
+      {"slipping_seen", &EvidenceUnits::slipping_seen},
       {"volume_off", &EvidenceUnits::volume_off},
       {"excess", &EvidenceUnits::excess},
       {"lost_overlap", &EvidenceUnits::lost_overlap},

@@ -118,6 +118,9 @@ private:
   std::vector<float> unknownMatches(const Reflected& reflected, const IspStep& step, const std::vector<char>& matched,
                                     double offset_stiffness, double rim) const;
   Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step, double rim) const;
+  /// The distances of those whose place says something: of scans without what the plane leaves in place.
+  std::vector<float> movedOnly(const std::vector<float>& distances, const ReflectionPlane& plane,
+                               const Points& reflected) const;
   PlaneEvidence evidence(const PlaneShares& shares, const Agreement& agreement, double score) const;
   JudgedPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
                      const std::vector<int>& samples) const;

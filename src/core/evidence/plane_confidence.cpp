@@ -59,10 +59,10 @@ double byDoubleShare(const PlaneEvidence& evidence, const EvidenceUnits& units) 
   return std::log((1.0 - evidence.double_share + units.double_off) / (kOffAtEvenOdds + units.double_off));
 }
 
-/// \return log odds by how easily the plane slips along what it matches, where something is hidden, >= 0.
+/// \return log odds by how easily the plane slips along what it matches, more where much is hidden, >= 0.
 double bySlipping(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   const double slips = std::max(0.0, std::log(units.slipping / (evidence.hold + units.least_slipping)));
-  return std::sqrt(evidence.unknown) * slips;
+  return (units.slipping_seen + evidence.unknown) * slips;
 }
 
 /// \return what D loses beyond what the hidden or missing part explains.

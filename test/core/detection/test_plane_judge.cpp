@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "pcl_symmetry/core/detection/plane_detection.h"
 #include "shapes/shapes.h"
@@ -113,6 +115,50 @@ TEST(PlaneJudge, ACutAsymmetricCloudHasNone) {
     const Points rest = cut(scaleneTetrahedron(10'000, 2).cloud(), share, Eigen::Vector3f(0.3f, 0.8f, 0.52f));
     for (const SymmetryPlane& plane : detectPlanes(rest).planes) EXPECT_NE(plane.kind, PlaneKind::Symmetry) << share;
   }
+}
+
+TEST(PlaneJudge, ATipThatWasCutOffAThinPartIsMissed) {
+  // Two wings as thin as the spacing on a box, the tip of one of them cut off: x = 0 is a plane still.
+  Points points(3, 10'000);
+  RandomStream random(6);
+  Eigen::Index size = 0;
+  const Points body = box({0.4, 1.0, 0.4}, 6000, Sampling::Random, 7).cloud();
+  for (Eigen::Index i = 0; i < body.cols(); ++i) points.col(size++) = body.col(i);
+  while (size < points.cols()) {
+    const double x = 1.6 * symmetric(random), y = 0.4 * symmetric(random), side = random.uniform() < 0.5 ? -1.0 : 1.0;
+    if (std::abs(x) > 0.4) points.col(size++) = Eigen::Vector3d(x, y - 0.3 * std::abs(x), 0.01 * side).cast<float>();
+  }
+  const Points rest = cut(points, 0.05, Eigen::Vector3f::UnitX());
+  const SymmetryPlane* plane = planeAcrossX(detectPlanes(rest));
+  ASSERT_NE(plane, nullptr);
+  EXPECT_EQ(plane->kind, PlaneKind::Symmetry);
+  EXPECT_LT(plane->seen, 0.97);
+}
+
+TEST(PlaneJudge, OfAScanWhatStaysInPlaceSaysNothing) {
+  // A wall with a block on it, seen from the front. The plane of the wall maps the wall onto itself, and the block to
+  // where the wall hides all.
+  Points points(3, 5000);
+  RandomStream random(8);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const double x = symmetric(random), y = symmetric(random);
+    const bool is_block = std::abs(x) < 0.4 && y > -0.1 && y < 0.5;
+    points.col(i) = Eigen::Vector3d(x, y, is_block ? 0.3 : 0.0).cast<float>();
+  }
+  const std::optional<Visibility> seen = Visibility::fromPoints(points, Eigen::Vector3d(0.0, 0.0, 6.0));
+  ASSERT_TRUE(seen.has_value());
+  const DetectionOptions options;
+  const GaussianEdt edt(points, options.edt);
+  const NormalizedCloud cloud(points, edt, nullptr, &*seen, 1);
+  const std::unique_ptr<PlaneFit> fit = makePlaneFit(
+      cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
+  std::vector<Candidate> candidates(2);
+  candidates[0].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
+  candidates[1].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
+  const std::vector<JudgedPlane> judged = PlaneJudge(cloud, *fit, options).judgeWithEvidence(candidates);
+  EXPECT_LT(judged[0].evidence.share, 0.1);
+  EXPECT_LT(judged[0].plane.confidence, 0.1);
+  EXPECT_GT(judged[1].evidence.share, 0.97);
 }
 
 TEST(PlaneJudge, AConeWithAFewFoldsIsNotRound) {
