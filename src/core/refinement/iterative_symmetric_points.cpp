@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -118,20 +119,24 @@ IspStep matchReflections(const IspSurface& surface, const Points& reflected, dou
       surface.search.searchWithin(reflected, sq_reach, step.closest, step.sq_distances);
       return;
     }
-    std::vector<Eigen::Index> near;
-    near.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i)
-      if (!surface.far || !(*surface.far)(reflected.col(i).cast<double>(), bound)) near.push_back(i);
+    const auto some = reflected.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+    std::vector<Eigen::Index> near;  // from begin on
+    if (surface.far) {
+      near = surface.far->nearOf(some, bound);
+    } else {
+      near.resize(end - begin);
+      std::iota(near.begin(), near.end(), Eigen::Index{0});
+    }
     Points queries(3, near.size());
-    for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = reflected.col(near[i]);
+    for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = some.col(near[i]);
     std::vector<int> closest(near.size(), -1);
     std::vector<float> sq_distances;
     if (guesses)
-      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[near[i]];
+      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[begin + near[i]];
     surface.search.searchWithin(queries, sq_reach, closest, sq_distances);
     for (std::size_t i = 0; i < near.size(); ++i) {
-      step.closest[near[i]] = closest[i];
-      step.sq_distances[near[i]] = sq_distances[i];
+      step.closest[begin + near[i]] = closest[i];
+      step.sq_distances[begin + near[i]] = sq_distances[i];
     }
   });
   return step;
