@@ -1,5 +1,6 @@
 #include "core/refinement/step_equations.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/simd.h"
@@ -14,11 +15,8 @@ struct StepFrame {
   double extent, offset;
 };
 
-/// Slope and value of the residual of each pair of a block, and its weight.
-struct StepTerms {
-  PairBlock::Coordinates slopes;
-  double residuals[PairBlock::kMost], weights[PairBlock::kMost];
-};
+/// Places of the sums, the matrix column by column.
+enum Sum { kH00, kH10, kH20, kH01, kH11, kH21, kH02, kH12, kH22, kG0, kG1, kG2 };
 
 StepFrame frameOf(const StepEquations& equations) {
   StepFrame frame{{}, {}, {}, {}, equations.extent, equations.offset};
@@ -32,7 +30,7 @@ StepFrame frameOf(const StepEquations& equations) {
 }
 
 PCL_SYMMETRY_MULTIVERSION
-void pointToPlaneTerms(const PairBlock& pairs, const StepFrame& frame, StepTerms& terms) {
+void pointToPlaneTerms(const PairBlock& pairs, const StepFrame& frame, double (*terms)[PairBlock::kMost]) {
   const double n0 = frame.n[0], n1 = frame.n[1], n2 = frame.n[2];
   const double u0 = frame.u[0], u1 = frame.u[1], u2 = frame.u[2];
   const double v0 = frame.v[0], v1 = frame.v[1], v2 = frame.v[2];
@@ -57,12 +55,60 @@ void pointToPlaneTerms(const PairBlock& pairs, const StepFrame& frame, StepTerms
     const double m_u = m0 * u0 + m1 * u1 + m2 * u2, m_v = m0 * v0 + m1 * v1 + m2 * v2;
     const double u_p = u0 * p0 + u1 * p1 + u2 * p2, v_p = v0 * p0 + v1 * p1 + v2 * p2;
     const double twice_height = 2.0 * height;
-    terms.slopes[0][i] = -2.0 * (u_p * m_n + height * m_u);
-    terms.slopes[1][i] = -2.0 * (v_p * m_n + height * m_v);
-    terms.slopes[2][i] = twice_extent * m_n;
-    terms.residuals[i] =
-        m0 * (p0 - twice_height * n0 - q0) + m1 * (p1 - twice_height * n1 - q1) + m2 * (p2 - twice_height * n2 - q2);
-    terms.weights[i] = pairs.weights[i] * cosine * cosine;
+    const double g0 = -2.0 * (u_p * m_n + height * m_u), g1 = -2.0 * (v_p * m_n + height * m_v),
+                 g2 = twice_extent * m_n;
+    const double weight = pairs.weights[i] * cosine * cosine;
+    const double residual = weight * (m0 * (p0 - twice_height * n0 - q0) + m1 * (p1 - twice_height * n1 - q1) +
+                                      m2 * (p2 - twice_height * n2 - q2));
+    const double w0 = weight * g0, w1 = weight * g1;
+    terms[kH00][i] = w0 * g0;
+    terms[kH10][i] = w0 * g1;
+    terms[kH20][i] = w0 * g2;
+    terms[kH11][i] = w1 * g1;
+    terms[kH21][i] = w1 * g2;
+    terms[kH22][i] = weight * g2 * g2;
+    terms[kG0][i] = residual * g0;
+    terms[kG1][i] = residual * g1;
+    terms[kG2][i] = residual * g2;
+    terms[kH01][i] = terms[kH02][i] = terms[kH12][i] = 0.0;
+  }
+}
+
+PCL_SYMMETRY_MULTIVERSION
+void pointToPointTerms(const PairBlock& pairs, const StepFrame& frame, double (*terms)[PairBlock::kMost]) {
+  const double n0 = frame.n[0], n1 = frame.n[1], n2 = frame.n[2];
+  const double u0 = frame.u[0], u1 = frame.u[1], u2 = frame.u[2];
+  const double v0 = frame.v[0], v1 = frame.v[1], v2 = frame.v[2];
+  const double c0 = frame.middle[0], c1 = frame.middle[1], c2 = frame.middle[2];
+  const double offset = frame.offset, twice_extent = 2.0 * frame.extent;
+  const double w0 = twice_extent * n0, w1 = twice_extent * n1, w2 = twice_extent * n2;
+#pragma GCC ivdep
+  for (int i = 0; i < pairs.size; ++i) {
+    const double p0 = pairs.x[0][i] - c0, p1 = pairs.x[1][i] - c1, p2 = pairs.x[2][i] - c2;
+    const double q0 = pairs.y[0][i] - c0, q1 = pairs.y[1][i] - c1, q2 = pairs.y[2][i] - c2;
+    const double height = n0 * p0 + n1 * p1 + n2 * p2 - offset, weight = pairs.weights[i];
+    const double u_p = u0 * p0 + u1 * p1 + u2 * p2, v_p = v0 * p0 + v1 * p1 + v2 * p2;
+    // Slopes of the reflected point: a column for each unknown, the last one is w.
+    const double a0 = -2.0 * (u_p * n0 + height * u0), a1 = -2.0 * (u_p * n1 + height * u1),
+                 a2 = -2.0 * (u_p * n2 + height * u2);
+    const double b0 = -2.0 * (v_p * n0 + height * v0), b1 = -2.0 * (v_p * n1 + height * v1),
+                 b2 = -2.0 * (v_p * n2 + height * v2);
+    const double d0 = p0 - 2.0 * height * n0 - q0, d1 = p1 - 2.0 * height * n1 - q1, d2 = p2 - 2.0 * height * n2 - q2;
+    const double wa0 = weight * a0, wa1 = weight * a1, wa2 = weight * a2;
+    const double wb0 = weight * b0, wb1 = weight * b1, wb2 = weight * b2;
+    const double ww0 = weight * w0, ww1 = weight * w1, ww2 = weight * w2;
+    terms[kH00][i] = wa0 * a0 + wa1 * a1 + wa2 * a2;
+    terms[kH10][i] = wb0 * a0 + wb1 * a1 + wb2 * a2;
+    terms[kH20][i] = ww0 * a0 + ww1 * a1 + ww2 * a2;
+    terms[kH01][i] = wa0 * b0 + wa1 * b1 + wa2 * b2;
+    terms[kH11][i] = wb0 * b0 + wb1 * b1 + wb2 * b2;
+    terms[kH21][i] = ww0 * b0 + ww1 * b1 + ww2 * b2;
+    terms[kH02][i] = wa0 * w0 + wa1 * w1 + wa2 * w2;
+    terms[kH12][i] = wb0 * w0 + wb1 * w1 + wb2 * w2;
+    terms[kH22][i] = ww0 * w0 + ww1 * w1 + ww2 * w2;
+    terms[kG0][i] = wa0 * d0 + wa1 * d1 + wa2 * d2;
+    terms[kG1][i] = wb0 * d0 + wb1 * d1 + wb2 * d2;
+    terms[kG2][i] = ww0 * d0 + ww1 * d1 + ww2 * d2;
   }
 }
 
@@ -77,46 +123,24 @@ StepEquations::StepEquations(const ReflectionPlane& plane, const Eigen::Vector3d
       extent(extent_of_samples),
       offset(plane.offset() - n.dot(middle)) {}
 
-void StepEquations::addPointToPlane(const PairBlock& pairs) {
-  StepTerms terms;
-  pointToPlaneTerms(pairs, frameOf(*this), terms);
-  double h00 = h(0, 0), h10 = h(1, 0), h20 = h(2, 0), h11 = h(1, 1), h21 = h(2, 1), h22 = h(2, 2);
-  double g0 = g[0], g1 = g[1], g2 = g[2];
-  for (int i = 0; i < pairs.size; ++i) {
-    const double s0 = terms.slopes[0][i], s1 = terms.slopes[1][i], s2 = terms.slopes[2][i];
-    const double weight = terms.weights[i], residual = weight * terms.residuals[i];
-    const double w0 = weight * s0, w1 = weight * s1;
-    h00 += w0 * s0;
-    h10 += w0 * s1;
-    h20 += w0 * s2;
-    h11 += w1 * s1;
-    h21 += w1 * s2;
-    h22 += weight * s2 * s2;
-    g0 += residual * s0;
-    g1 += residual * s1;
-    g2 += residual * s2;
-  }
-  h(0, 0) = h00;
-  h(1, 0) = h10;
-  h(2, 0) = h20;
-  h(1, 1) = h11;
-  h(2, 1) = h21;
-  h(2, 2) = h22;
-  g = {g0, g1, g2};
+void StepEquations::pointToPlane(const PairBlock& pairs, StepTerms& terms) const {
+  terms.size = pairs.size;
+  pointToPlaneTerms(pairs, frameOf(*this), terms.values);
 }
 
-void StepEquations::addPointToPoint(const PairBlock& pairs) {
-  for (int i = 0; i < pairs.size; ++i) {
-    const Eigen::Vector3d p = Eigen::Vector3d(pairs.x[0][i], pairs.x[1][i], pairs.x[2][i]) - middle;
-    const Eigen::Vector3d q = Eigen::Vector3d(pairs.y[0][i], pairs.y[1][i], pairs.y[2][i]) - middle;
-    const double height = n.dot(p) - offset, weight = pairs.weights[i];
-    Eigen::Matrix3d slopes;  // of the reflected point
-    slopes.col(0) = -2.0 * (u.dot(p) * n + height * u);
-    slopes.col(1) = -2.0 * (v.dot(p) * n + height * v);
-    slopes.col(2) = 2.0 * extent * n;
-    h += weight * slopes.transpose() * slopes;
-    g += weight * slopes.transpose() * (p - 2.0 * height * n - q);
-  }
+void StepEquations::pointToPoint(const PairBlock& pairs, StepTerms& terms) const {
+  terms.size = pairs.size;
+  pointToPointTerms(pairs, frameOf(*this), terms.values);
+}
+
+void StepEquations::add(const StepTerms& terms) {
+  double sums[StepTerms::kSums];
+  std::copy_n(h.data(), 9, sums);
+  std::copy_n(g.data(), 3, sums + kG0);
+  for (int i = 0; i < terms.size; ++i)
+    for (int k = 0; k < StepTerms::kSums; ++k) sums[k] += terms.values[k][i];
+  std::copy_n(sums, 9, h.data());
+  std::copy_n(sums + kG0, 3, g.data());
 }
 
 ReflectionPlane StepEquations::moved(const Eigen::Vector3d& step) const {
