@@ -59,7 +59,7 @@ private:
     std::vector<WideTree::Pending> wide;
   };
 
-  Box divide(std::vector<Entry>& entries, int begin, int end, Box box, int depth);
+  Box divide(std::vector<Entry>& entries, std::vector<int>& places, int begin, int end, Box box, int depth);
   static float sqDistance(const Node& node, const Eigen::Vector3f& query);
   template <typename Result>
   void visit(const Eigen::Vector3f& query, std::vector<Pending>& pending, Result& result) const;
