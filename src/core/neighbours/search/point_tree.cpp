@@ -274,8 +274,10 @@ void PointTree::closestByWalks(const PointsRef& queries, const int* guesses, std
   for (std::size_t i = 0; i < matches.size(); ++i)
     seen[i] = guesses[i] >= 0 ? guesses[i] : lists_->start(queries.col(static_cast<Eigen::Index>(i)));
   lists_->walk(queries, seen.data(), sq_seen.data(), is_closest.data());
-  std::vector<int> open;
-  std::vector<WideTree::Closest> found;
+  std::vector<int>& open = storage.open;
+  std::vector<WideTree::Closest>& found = storage.found;
+  open.clear();
+  found.clear();
   for (std::size_t i = 0; i < matches.size(); ++i) {
     Match& match = matches[i];
     if (is_closest[i] != 0) {
@@ -289,7 +291,7 @@ void PointTree::closestByWalks(const PointsRef& queries, const int* guesses, std
     found.push_back({match.sq_distance});
   }
   const Points asked = pointsAt(queries, open);
-  wide_->findClosestOfMany(ordered_, asked, found);
+  wide_->findClosestOfMany(ordered_, asked, found, storage.many);
   for (std::size_t k = 0; k < open.size(); ++k) {
     Match& match = matches[static_cast<std::size_t>(open[k])];
     match = closest(asked.col(static_cast<Eigen::Index>(k)), match, found[k], storage);
@@ -297,8 +299,10 @@ void PointTree::closestByWalks(const PointsRef& queries, const int* guesses, std
 }
 
 PointTree::Storage PointTree::storage() const {
-  return {std::vector<Pending>(static_cast<std::size_t>(depth_)),
-          wide_ ? wide_->storage() : std::vector<WideTree::Pending>()};
+  Storage storage;
+  storage.pending.resize(static_cast<std::size_t>(depth_));
+  if (wide_) storage.wide = wide_->pending();
+  return storage;
 }
 
 void PointTree::search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
@@ -348,7 +352,7 @@ void PointTree::nearestOfMany(const PointsRef& queries, int num_neighbours, int*
     if (num_before > 0) {
       const auto sq_limit = static_cast<float>(margin * sum / static_cast<double>(num_before));
       is_open = wide_->findNearestOfMany(ordered_, some, std::vector<WideTree::Closest>(size, {sq_limit}),
-                                         num_neighbours, found, sq_found);
+                                         num_neighbours, found, sq_found, storage.many);
     }
     sum = 0.0;
     for (std::size_t i = 0; i < size; ++i) {

@@ -57,6 +57,9 @@ private:
   struct Storage {
     std::vector<Pending> pending;
     std::vector<WideTree::Pending> wide;
+    WideTree::Storage many;
+    std::vector<int> open;  ///< queries that the lists do not decide
+    std::vector<WideTree::Closest> found;
   };
 
   Box divide(std::vector<Entry>& entries, std::vector<int>& places, int begin, int end, Box box, int depth);
