@@ -11,7 +11,7 @@ constexpr float kSlack = 0.01f;
 
 /// The directions from a cell to its neighbours, one of each pair.
 Eigen::Matrix3Xf directionsToNeighbours() {
-  Eigen::Matrix3Xf axes(3, 13);
+  Eigen::Matrix3Xf axes(3, kMostSlabs);
   int count = 0;
   for (int code = 14; code < 27; ++code)
     axes.col(count++) = Eigen::Vector3f(static_cast<float>(code % 3 - 1), static_cast<float>(code / 3 % 3 - 1),
@@ -25,9 +25,8 @@ FilledSlabs::FilledSlabs(const GaussianEdt& edt,
                          const Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>& samples)
     : axes_(directionsToNeighbours()) {
   constexpr float kFar = 1e6f;  // derived: farther than every cell
-  constexpr int kAxes = 13;     // derived: pairs of the 26 neighbours of a cell
-  using OfAxes = Eigen::Matrix<float, kAxes, 1>;
-  const Eigen::Matrix<float, kAxes, 3> axes = axes_.transpose();
+  using OfAxes = Eigen::Matrix<float, kMostSlabs, 1>;
+  const Eigen::Matrix<float, kMostSlabs, 3> axes = axes_.transpose();
   OfAxes low = OfAxes::Constant(kFar), high = -low;
   const int n = edt.numCells();
   for (int row = 0; row < n * n; ++row) {
