@@ -120,7 +120,7 @@ public:
   std::vector<int> nearest() && { return std::move(nearest_); }
 
 private:
-  static constexpr float kUnknown = std::numeric_limits<float>::infinity();
+  static constexpr float kUnknown = std::numeric_limits<float>::infinity();  // derived: farther than every point
 
   std::size_t numCells() const { return static_cast<std::size_t>(n_) * n_ * n_; }
   CellRow rowOf(int y, int z) {

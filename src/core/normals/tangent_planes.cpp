@@ -12,8 +12,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kMost = TangentPlanes::kMost;
-constexpr float kEpsilon = std::numeric_limits<float>::epsilon();
+constexpr int kMost = TangentPlanes::kMost;                        // derived: the room of the result
+constexpr float kEpsilon = std::numeric_limits<float>::epsilon();  // derived: as Eigen takes it
 
 /// Symmetric matrices of three rows, element by element: m00, m10, m20, m11, m21, m22.
 using Matrices = float[6][kMost];
@@ -76,7 +76,7 @@ void addUp(const float* points, const float* places, const int* neighbours, int 
 
 PCL_SYMMETRY_MULTIVERSION
 void prepareRoots(const Matrices& m, int size, DirectSolutions& solutions) {
-  constexpr float kThird = 1.0f / 3.0f;
+  constexpr float kThird = 1.0f / 3.0f;  // derived: as Eigen takes it
   Matrices& scaled = solutions.scaled;
   float *const third_trace = solutions.third_trace, *const rho = solutions.rho, *const root_q = solutions.root_q,
                *const halves = solutions.half_b;

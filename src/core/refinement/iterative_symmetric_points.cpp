@@ -11,8 +11,8 @@
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/far_test.h"
-#include "core/refinement/step_equations.h"
+#include "core/refinement/steps/far_test.h"
+#include "core/refinement/steps/step_equations.h"
 #include "core/refinement/surface_fit.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 

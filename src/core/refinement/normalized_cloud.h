@@ -5,7 +5,7 @@
 
 #include "core/evidence/share/surface_samples.h"
 #include "core/neighbours/closest_point_grid.h"
-#include "core/refinement/far_test.h"
+#include "core/refinement/steps/far_test.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 

@@ -22,42 +22,17 @@ namespace {
 /// Numbers that are worked out side by side.
 typedef float FloatLanes __attribute__((vector_size(4 * kLineLanes)));
 
-}  // namespace
-
-PCL_SYMMETRY_MULTIVERSION
-void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube,
-                const SlabsOfSamples& slabs, Lines& lines) {
-  const float nx = planes.normal[0], ny = planes.normal[1], nz = planes.normal[2];
-  const float offset = planes.offset, inverse_step = 1.0f / planes.step, last = static_cast<float>(planes.count);
-  const float middle = cube.middle, sq_clip = cube.sq_clip, to_table = cube.to_table;
-  const float one = static_cast<float>(1 << LookupTable::kFractionBits);
-  std::int32_t *const lx = lines.x, *const ly = lines.y, *const lz = lines.z;
-  std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
-  const float *const px = points.x, *const py = points.y, *const pz = points.z;
-  const int size = lines.size;
-  // Places along the normal, from that of the sample; the image of a sample in the plane at r is at 2 (r - along).
-  float along_of[kMostLines], first[kMostLines], behind[kMostLines];
-#pragma GCC ivdep
-  for (int i = 0; i < size; ++i) {
-    const float x = px[i] - middle, y = py[i] - middle, z = pz[i] - middle;
-    const float along = nx * x + ny * y + nz * z;
-    const float shift = 2.0f * (offset - along);
-    lx[i] = static_cast<std::int32_t>((x + shift * nx + to_table) * one);
-    ly[i] = static_cast<std::int32_t>((y + shift * ny + to_table) * one);
-    lz[i] = static_cast<std::int32_t>((z + shift * nz + to_table) * one);
-    // The reflected point lies at 2 r - along on the line through x: inside the ball while |2 r - along| <= chord.
-    const float sq_chord = sq_clip - (x * x + y * y + z * z - along * along);
-    const float chord = std::sqrt(std::max(0.0f, sq_chord));
-    along_of[i] = along;
-    first[i] = 0.5f * (along - chord);
-    behind[i] = sq_chord > 0.0f ? 0.5f * (along + chord) : first[i] - 2.0f * planes.step;
-  }
+/// Cuts lines off where they leave slabs, which are given as setUpLines() has them.
+/// \param along_of places of the samples along the normal.
+/// \param[in,out] first,behind ends of the lines along it.
+[[gnu::always_inline]] inline void cutAtSlabs(const SlabsOfSamples& slabs, const float* normal, const float* along_of,
+                                              int size, float* first, float* behind) {
   float halves[kMostSlabs];
   const float *entries[kMostSlabs], *exits[kMostSlabs];
   int num_slabs = 0;
   for (int s = 0; s < slabs.count; ++s) {
     const float* const axis = slabs.axes + 3 * s;
-    const float slope = nx * axis[0] + ny * axis[1] + nz * axis[2];
+    const float slope = normal[0] * axis[0] + normal[1] * axis[1] + normal[2] * axis[2];
     constexpr float kLeastSlope = 1e-3f;  // chosen: a line along a slab leaves it farther away than the ball
     if (std::abs(slope) < kLeastSlope) continue;
     const float *const low = slabs.low + slabs.stride * s, *const high = slabs.high + slabs.stride * s;
@@ -89,6 +64,39 @@ void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, c
       first[cut] = std::max(first[cut], along_of[cut] + halves[s] * entries[s][cut]);
       behind[cut] = std::min(behind[cut], along_of[cut] + halves[s] * exits[s][cut]);
     }
+}
+
+}  // namespace
+
+PCL_SYMMETRY_MULTIVERSION
+void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube,
+                const SlabsOfSamples& slabs, Lines& lines) {
+  const float nx = planes.normal[0], ny = planes.normal[1], nz = planes.normal[2];
+  const float offset = planes.offset, inverse_step = 1.0f / planes.step, last = static_cast<float>(planes.count);
+  const float middle = cube.middle, sq_clip = cube.sq_clip, to_table = cube.to_table;
+  const float one = static_cast<float>(1 << LookupTable::kFractionBits);
+  std::int32_t *const lx = lines.x, *const ly = lines.y, *const lz = lines.z;
+  std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
+  const float *const px = points.x, *const py = points.y, *const pz = points.z;
+  const int size = lines.size;
+  // Places along the normal, from that of the sample; the image of a sample in the plane at r is at 2 (r - along).
+  float along_of[kMostLines], first[kMostLines], behind[kMostLines];
+#pragma GCC ivdep
+  for (int i = 0; i < size; ++i) {
+    const float x = px[i] - middle, y = py[i] - middle, z = pz[i] - middle;
+    const float along = nx * x + ny * y + nz * z;
+    const float shift = 2.0f * (offset - along);
+    lx[i] = static_cast<std::int32_t>((x + shift * nx + to_table) * one);
+    ly[i] = static_cast<std::int32_t>((y + shift * ny + to_table) * one);
+    lz[i] = static_cast<std::int32_t>((z + shift * nz + to_table) * one);
+    // The reflected point lies at 2 r - along on the line through x: inside the ball while |2 r - along| <= chord.
+    const float sq_chord = sq_clip - (x * x + y * y + z * z - along * along);
+    const float chord = std::sqrt(std::max(0.0f, sq_chord));
+    along_of[i] = along;
+    first[i] = 0.5f * (along - chord);
+    behind[i] = sq_chord > 0.0f ? 0.5f * (along + chord) : first[i] - 2.0f * planes.step;
+  }
+  cutAtSlabs(slabs, planes.normal, along_of, size, first, behind);
 #pragma GCC ivdep
   for (int i = 0; i < size; ++i) {
     const float begin = std::ceil((first[i] - offset) * inverse_step);

@@ -1,4 +1,4 @@
-#include "core/refinement/far_test.h"
+#include "core/refinement/steps/far_test.h"
 
 #include <array>
 

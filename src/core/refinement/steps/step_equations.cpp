@@ -1,4 +1,4 @@
-#include "core/refinement/step_equations.h"
+#include "core/refinement/steps/step_equations.h"
 
 #include <algorithm>
 #include <cmath>
