@@ -113,7 +113,7 @@ void findImages(const double* points, int size, const PixelFrame& frame, Images&
     image_x[i] = ix;
     image_y[i] = iy;
     image_z[i] = iz;
-    is_free[i] = (iz > 0.0) & (behind < 0.0) ? 1 : 0;
+    is_free[i] = ((iz > 0.0) & (behind < 0.0)) ? 1 : 0;
   }
 }
 
