@@ -63,6 +63,7 @@ constexpr double kLeastTelling = 1e-3;  // chosen: any small share; avoids a div
 constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
 // Tolerances at which the share is measured. derived: see PlaneEvidence.
 constexpr std::array<double, 2> kTolerances{1.0, 2.0};
+constexpr std::size_t kReflectedBlock = 1024;  // samples. chosen: large enough that threads start seldom
 
 std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
   std::array<double, 2> shares{};
@@ -125,11 +126,18 @@ std::vector<JudgedPlane> PlaneJudge::judgeWithEvidence(const std::vector<Candida
 
 PlaneJudge::Reflected PlaneJudge::reflected(const ReflectionPlane& plane, const std::vector<int>& samples,
                                             const IspStep& step) const {
-  Reflected result{Points(3, static_cast<Eigen::Index>(samples.size())), {}};
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    result.points.col(static_cast<Eigen::Index>(i)) =
-        plane.reflect(cloud_.points.col(samples[i]).cast<double>()).cast<float>();
-  result.distances = surfaceDistances(result.points, step.closest, cloud_.samples);
+  Reflected result{Points(3, static_cast<Eigen::Index>(samples.size())), std::vector<float>(samples.size())};
+  parallelRanges(samples.size(), kReflectedBlock, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
+    Points some(3, size);
+    for (Eigen::Index i = 0; i < size; ++i)
+      some.col(i) =
+          plane.reflect(cloud_.points.col(samples[static_cast<std::size_t>(first + i)]).cast<double>()).cast<float>();
+    const std::vector<int> closest(step.closest.begin() + first, step.closest.begin() + first + size);
+    const std::vector<float> distances = surfaceDistances(some, closest, cloud_.samples);
+    std::copy(distances.begin(), distances.end(), result.distances.begin() + first);
+    result.points.middleCols(first, size) = some;
+  });
   return result;
 }
 

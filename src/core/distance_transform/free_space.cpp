@@ -9,8 +9,13 @@ std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility& visibilit
   const std::vector<float>& f = edt.values();
   std::vector<float> free(f.size(), 0.0f);
   parallelBlocks(n, num_threads, [&](std::size_t slice) {
-    for (std::size_t i = slice * n * n; i < (slice + 1) * n * n; ++i)
-      if (visibility.depthBehind(edt.cellCenter(i)) < 0.0) free[i] = 1.0f - f[i];
+    Eigen::Matrix3Xd centers(3, static_cast<Eigen::Index>(n));
+    for (std::size_t first = slice * n * n; first < (slice + 1) * n * n; first += n) {
+      for (std::size_t x = 0; x < n; ++x) centers.col(static_cast<Eigen::Index>(x)) = edt.cellCenter(first + x);
+      const std::vector<char> is_free = visibility.areFree(centers);
+      for (std::size_t x = 0; x < n; ++x)
+        if (is_free[x] != 0) free[first + x] = 1.0f - f[first + x];
+    }
   });
   return free;
 }

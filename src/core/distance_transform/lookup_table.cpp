@@ -17,7 +17,7 @@ void quantizeRow(const float* values, int num_cells, int stride, std::uint8_t* o
 
 }  // namespace
 
-LookupTable::LookupTable(const std::vector<std::vector<float>>& functions, int num_cells, int num_threads)
+LookupTable::LookupTable(const std::vector<const float*>& functions, int num_cells, int num_threads)
     : num_functions_(static_cast<int>(functions.size())) {
   const int n = num_cells;
   if (n == 0) return;
@@ -29,7 +29,7 @@ LookupTable::LookupTable(const std::vector<std::vector<float>>& functions, int n
     for (int y = 1; y + 1 < n; ++y) {
       const std::size_t cell = ((slice + 1 + padding_) * side + (y + padding_)) * side + padding_;
       for (int g = 0; g < num_functions_; ++g)
-        quantizeRow(functions[g].data() + ((slice + 1) * n + y) * n, n, num_functions_,
+        quantizeRow(functions[g] + ((slice + 1) * n + y) * n, n, num_functions_,
                     table_.data() + num_functions_ * cell + g);
     }
   });

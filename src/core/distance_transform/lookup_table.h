@@ -23,7 +23,7 @@ public:
   /// for the blur of the look-ups.
   /// \param num_cells cells along each side.
   /// \param num_threads 0 = one per core.
-  LookupTable(const std::vector<std::vector<float>>& functions, int num_cells, int num_threads);
+  LookupTable(const std::vector<const float*>& functions, int num_cells, int num_threads);
 
   /// \return n of the 2^n cells along each side of the table.
   int bits() const { return bits_; }

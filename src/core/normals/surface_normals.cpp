@@ -1,11 +1,11 @@
 #include "core/normals/surface_normals.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/normals/tangent_planes.h"
 
 namespace pcl_symmetry {
 
@@ -17,34 +17,6 @@ constexpr std::size_t kBlockSize = 512;  // points; chosen: smaller blocks cost 
 // derived: eight neighbours all around have 0.25 by chance, half a disc has 4 / (3 pi) = 0.42; chosen between them:
 // less takes samples inside for borders, more misses borders.
 constexpr double kBorderOffset = 0.38;
-
-/// The plane fitted to the neighbours of a point.
-struct TangentPlane {
-  Eigen::Vector3f normal;
-  Eigen::Vector3f offset_sum;  ///< sum of the neighbours' offsets from the point
-  float roughness;             ///< root mean square distance of the neighbours from the plane
-};
-
-TangentPlane fitTangentPlane(const Points& points, const Eigen::Vector3f& point, const int* neighbours, int count) {
-  TangentPlane plane;
-  plane.offset_sum.setZero();
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  for (int k = 0; k < count; ++k) {
-    const Eigen::Vector3f d = points.col(neighbours[k]) - point;
-    plane.offset_sum += d;
-    squares += d * d.transpose();
-  }
-  const Eigen::Matrix3f covariance =
-      squares - plane.offset_sum * plane.offset_sum.transpose() / static_cast<float>(count);
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(covariance);
-  const Eigen::Vector3f normal = solver.eigenvectors().col(0);
-  const bool usable = normal.allFinite() && std::abs(normal.squaredNorm() - 1.0f) < 0.1f;
-  plane.normal = usable ? normal : Eigen::Vector3f(Eigen::Vector3f::UnitZ());
-  const float sq_residual = usable ? normal.dot(covariance * normal) : covariance.trace();
-  plane.roughness = std::sqrt(std::max(0.0f, sq_residual) / static_cast<float>(std::max(1, count - 3)));
-  return plane;
-}
 
 /// Number of points to search for: the neighbours and the point itself, as far as there are any.
 int numToSearch(Eigen::Index size, int num_neighbours) {
@@ -81,15 +53,20 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
     if (neighbours)
       std::copy(indices.begin(), indices.end(),
                 neighbours->indices.begin() + static_cast<std::ptrdiff_t>(begin) * count);
+    TangentPlanes planes;
     for (std::size_t i = begin; i < end; ++i) {
       const int* nearest = indices.data() + (i - begin) * count;
+      const std::size_t place = (i - begin) % TangentPlanes::kMost;
+      if (place == 0)
+        planes.fit(points, points.middleCols(i, std::min<std::size_t>(TangentPlanes::kMost, end - i)), nearest, count);
       geometry.nearest[i] = witnessesOf(static_cast<int>(i), nearest, count);
-      const TangentPlane plane = fitTangentPlane(points, points.col(i), nearest, count);
-      geometry.normals.col(i) = plane.normal;
-      geometry.roughness[i] = plane.roughness;
+      geometry.normals.col(i) << planes.normal[0][place], planes.normal[1][place], planes.normal[2][place];
+      geometry.roughness[i] = planes.roughness[place];
+      const Eigen::Vector3f offset_sum(planes.offset_sum[0][place], planes.offset_sum[1][place],
+                                       planes.offset_sum[2][place]);
       const double sq_radius = sq_distances[(i - begin) * count + count - 1];
       if (neighbours) neighbours->sq_reach[i] = static_cast<float>(sq_radius);
-      const double offset = plane.offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
+      const double offset = offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
       geometry.at_border[i] = offset > kBorderOffset * std::sqrt(sq_radius) ? 1 : 0;
       geometry.spacing[i] = static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
     }
@@ -104,8 +81,12 @@ std::vector<float> localRoughness(const Points& points, const ClosestPointSearch
   std::vector<float> sq_distances;
   search.search(places, count, indices, sq_distances);
   std::vector<float> roughness(static_cast<std::size_t>(places.cols()));
-  for (Eigen::Index i = 0; i < places.cols(); ++i)
-    roughness[i] = fitTangentPlane(points, places.col(i), indices.data() + i * count, count).roughness;
+  TangentPlanes planes;
+  for (Eigen::Index begin = 0; begin < places.cols(); begin += TangentPlanes::kMost) {
+    const auto size = std::min<Eigen::Index>(TangentPlanes::kMost, places.cols() - begin);
+    planes.fit(points, places.middleCols(begin, size), indices.data() + begin * count, count);
+    std::copy_n(planes.roughness, size, roughness.begin() + begin);
+  }
   return roughness;
 }
 

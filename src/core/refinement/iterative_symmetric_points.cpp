@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/far_test.h"
-#include "core/refinement/step_equations.h"
+#include "core/refinement/steps/far_test.h"
+#include "core/refinement/steps/step_equations.h"
 #include "core/refinement/surface_fit.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 
@@ -59,12 +60,13 @@ void put(const Column& from, PairBlock::Coordinates& to, int place) {
   for (int k = 0; k < 3; ++k) to[k][place] = static_cast<double>(from[k]);
 }
 
-/// Calls use(block) for all pairs with a weight, in their order.
+/// Calls use(block) for all pairs of a range with a weight, in their order.
 /// \param fill fill(i, block, place) writes the points and normals of pair i to a place of a block.
 template <typename Fill, typename Use>
-void forBlocks(const std::vector<double>& weights, const Fill& fill, const Use& use) {
+void forBlocks(const std::vector<double>& weights, std::size_t begin, std::size_t end, const Fill& fill,
+               const Use& use) {
   PairBlock block;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     if (weights[i] == 0.0) continue;
     block.weights[block.size] = weights[i];
     fill(static_cast<Eigen::Index>(i), block, block.size++);
@@ -75,14 +77,38 @@ void forBlocks(const std::vector<double>& weights, const Fill& fill, const Use& 
   if (block.size > 0) use(block);
 }
 
+/// Adds the terms of all pairs with a weight, in their order.
+/// \param terms_of terms_of(block, terms) works out what the pairs of a block add.
+template <typename Fill, typename TermsOf>
+void addAll(StepEquations& equations, const std::vector<double>& weights, int num_threads, const Fill& fill,
+            const TermsOf& terms_of) {
+  StepTerms terms;
+  if (weights.size() <= kBlockSize || resolveNumThreads(num_threads) == 1) {
+    forBlocks(weights, 0, weights.size(), fill, [&](const PairBlock& block) {
+      terms_of(block, terms);
+      equations.add(terms);
+    });
+    return;
+  }
+  std::vector<std::vector<StepTerms>> of_ranges((weights.size() + kBlockSize - 1) / kBlockSize);
+  parallelRanges(weights.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<StepTerms>& own = of_ranges[begin / kBlockSize];
+    own.reserve(kBlockSize / PairBlock::kMost);
+    forBlocks(weights, begin, end, fill, [&](const PairBlock& block) { terms_of(block, own.emplace_back()); });
+  });
+  for (const std::vector<StepTerms>& of_range : of_ranges)
+    for (const StepTerms& some : of_range) equations.add(some);
+}
+
 /// stepReflectionPlane() of pairs that \p fill writes, see forBlocks().
 template <typename Fill>
 ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weights, const ReflectionPlane& plane,
-                             const Fill& fill) {
+                             int num_threads, const Fill& fill) {
   const WeightedExtent samples(x, weights);
   if (!(samples.extent > 0.0)) return plane;
   StepEquations across(plane, samples.middle, samples.extent);
-  forBlocks(weights, fill, [&](const PairBlock& block) { across.addPointToPlane(block); });
+  addAll(across, weights, num_threads, fill,
+         [&](const PairBlock& block, StepTerms& terms) { across.pointToPlane(block, terms); });
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
   const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
   int num_soft = 0;
@@ -92,7 +118,8 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
     step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
   if (num_soft > 0) {
     StepEquations whole(plane, samples.middle, samples.extent);
-    forBlocks(weights, fill, [&](const PairBlock& block) { whole.addPointToPoint(block); });
+    addAll(whole, weights, num_threads, fill,
+           [&](const PairBlock& block, StepTerms& terms) { whole.pointToPoint(block, terms); });
     const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
     const Eigen::MatrixXd reduced = soft.transpose() * whole.h * soft;
     step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * whole.g);
@@ -118,20 +145,24 @@ IspStep matchReflections(const IspSurface& surface, const Points& reflected, dou
       surface.search.searchWithin(reflected, sq_reach, step.closest, step.sq_distances);
       return;
     }
-    std::vector<Eigen::Index> near;
-    near.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i)
-      if (!surface.far || !(*surface.far)(reflected.col(i).cast<double>(), bound)) near.push_back(i);
+    const auto some = reflected.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+    std::vector<Eigen::Index> near;  // from begin on
+    if (surface.far) {
+      near = surface.far->nearOf(some, bound);
+    } else {
+      near.resize(end - begin);
+      std::iota(near.begin(), near.end(), Eigen::Index{0});
+    }
     Points queries(3, near.size());
-    for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = reflected.col(near[i]);
+    for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = some.col(near[i]);
     std::vector<int> closest(near.size(), -1);
     std::vector<float> sq_distances;
     if (guesses)
-      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[near[i]];
+      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[begin + near[i]];
     surface.search.searchWithin(queries, sq_reach, closest, sq_distances);
     for (std::size_t i = 0; i < near.size(); ++i) {
-      step.closest[near[i]] = closest[i];
-      step.sq_distances[near[i]] = sq_distances[i];
+      step.closest[begin + near[i]] = closest[i];
+      step.sq_distances[begin + near[i]] = sq_distances[i];
     }
   });
   return step;
@@ -179,14 +210,19 @@ struct WeightedPairs {
       : x(pointsAt(surface.points, samples)), y(reflections(x, plane)), weights(samples.size()) {
     step = matchReflections(surface, y, sigma, guesses);
     step.plane = plane;
+    parallelRanges(samples.size(), kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (step.closest[i] < 0) continue;
+        const Eigen::Vector3d reflection = y.col(i).cast<double>();
+        y.col(i) = surface.points.col(step.closest[i]);
+        if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
+        weights[i] =
+            std::exp(-step.sq_distances[i] / (sigma * sigma)) * seenWeight(surface.visibility, reflection, sigma);
+      }
+    });
     double sum = 0.0, sq_sum = 0.0;
-    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    for (std::size_t i = 0; i < weights.size(); ++i) {
       if (step.closest[i] < 0) continue;
-      const Eigen::Vector3d reflection = y.col(i).cast<double>();
-      y.col(i) = surface.points.col(step.closest[i]);
-      if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
-      weights[i] =
-          std::exp(-step.sq_distances[i] / (sigma * sigma)) * seenWeight(surface.visibility, reflection, sigma);
       sum += weights[i];
       sq_sum += weights[i] * step.sq_distances[i];
     }
@@ -228,7 +264,7 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
 ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
                                     const PointsRef& y_normals, const std::vector<double>& weights,
                                     const ReflectionPlane& plane) {
-  return steppedPlane(x, weights, plane, [&](Eigen::Index i, PairBlock& block, int place) {
+  return steppedPlane(x, weights, plane, 1, [&](Eigen::Index i, PairBlock& block, int place) {
     put(x.col(i), block.x, place);
     put(y.col(i), block.y, place);
     put(x_normals.col(i), block.x_normals, place);
@@ -250,7 +286,7 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
     put(surface.normals.col(samples[i]), block.x_normals, place);
     put(surface.normals.col(step.closest[i]), block.y_normals, place);
   };
-  step.plane = steppedPlane(pairs.x, pairs.weights, plane, fill);
+  step.plane = steppedPlane(pairs.x, pairs.weights, plane, surface.num_threads, fill);
   return std::move(step);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/median.h"
+#include "core/base/parallel.h"
 #include "core/distance_transform/edt_correlation.h"
 #include "core/evidence/plane_support.h"
 #include "core/neighbours/diameter.h"
@@ -23,16 +24,29 @@ constexpr double kVolumeRoughness = 0.36;
 constexpr double kLeastSpacing = 1e-6;   // radii. derived: the rounding of coordinates about 1; avoids a division by 0
 constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supports of surfaces; avoids a division by 0
 
+/// A tree of points, and beside it the grid in which walks along its lists begin.
+std::shared_ptr<PointTree> treeOf(const Points& points, int num_threads, std::optional<ClosestPointGrid>& starts) {
+  std::shared_ptr<PointTree> tree;
+  parallelBlocks(NeighbourLists::isUseful(points.cols()) ? 2 : 1, num_threads, [&](std::size_t part) {
+    if (part == 0)
+      tree = std::make_shared<PointTree>(points);
+    else
+      starts = NeighbourLists::starts(points);
+  });
+  return tree;
+}
+
 /// The geometry of points, whose neighbours a tree uses from then on.
 /// \param search over the points.
 /// \param tree the same search, or null.
+/// \param starts of the lists of the tree; used up.
 /// \param[out] neighbours of the points.
-LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, PointTree* tree, int num_threads,
-                         FoundNeighbours& neighbours) {
+LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, PointTree* tree,
+                         std::optional<ClosestPointGrid>& starts, int num_threads, FoundNeighbours& neighbours) {
   LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbours, num_threads, &neighbours);
   static_assert(kNumSupportNeighbours == NeighbourLists::kNeighbours);
-  if (tree && NeighbourLists::isUseful(points.cols()))
-    tree->use(NeighbourLists(points, neighbours.indices, neighbours.sq_reach));
+  if (tree && starts)
+    tree->use(NeighbourLists(std::move(*starts), points, neighbours.indices, neighbours.sq_reach, num_threads));
   return geometry;
 }
 
@@ -54,9 +68,9 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       center(edt.center()),
       scale(edt.radius()),
       points(normalizePoints(input, center, scale)),
-      tree(input_search ? nullptr : std::make_shared<PointTree>(points)),
+      tree(input_search ? nullptr : treeOf(points, num_threads, starts_)),
       search(input_search ? std::move(input_search) : tree),
-      geometry(withNormals(geometryOf(points, *search, tree.get(), num_threads, neighbours), given_normals)),
+      geometry(withNormals(geometryOf(points, *search, tree.get(), starts_, num_threads, neighbours), given_normals)),
       samples(points, geometry),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),

@@ -4,7 +4,8 @@
 #include <optional>
 
 #include "core/evidence/share/surface_samples.h"
-#include "core/refinement/far_test.h"
+#include "core/neighbours/closest_point_grid.h"
+#include "core/refinement/steps/far_test.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/scan/visibility.h"
 
@@ -31,7 +32,12 @@ struct NormalizedCloud {
   const Eigen::Vector3d center;  ///< of the edt, input units
   const double scale;            ///< radius of the edt, input units
 
-  const Points points;                    ///< 3 x N
+  const Points points;  ///< 3 x N
+
+private:
+  std::optional<ClosestPointGrid> starts_;  // until the lists of the tree take it
+
+public:
   const std::shared_ptr<PointTree> tree;  ///< null: the search is of the caller
   const ClosestPointSearch::Ptr search;
   FoundNeighbours neighbours;  ///< of the points, found together with their geometry

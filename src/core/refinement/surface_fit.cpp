@@ -36,6 +36,7 @@ constexpr double kNoisyDepth = 0.1;
 // Merit of planes of whole clouds that nothing pulls at. chosen: that of a symmetry; planes of clouds that lack a
 // piece, and approximate ones, have less.
 constexpr double kAtRest = 0.93;
+constexpr std::size_t kSharesBlock = 1024;  // samples. chosen: large enough that threads start seldom
 
 }  // namespace
 
@@ -130,16 +131,22 @@ ReflectionPlane SurfaceFit::refined(const ReflectionPlane& plane, const std::vec
 
 PlaneShares SurfaceFit::shares(const ReflectionPlane& plane, const std::vector<int>& samples,
                                const IspStep& step) const {
-  const auto size = static_cast<Eigen::Index>(samples.size());
-  Points reflected(3, size), normals(3, size);
+  PointEvidence evidence{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
   const Eigen::Vector3f n = plane.normal().cast<float>();
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const SurfaceSample& sample = cloud_.samples[samples[i]];
-    reflected.col(i) = plane.reflect(sample.point.cast<double>()).cast<float>();
-    normals.col(i) = sample.normal - 2.0f * n.dot(sample.normal) * n;
-  }
-  PointEvidence evidence =
-      pointEvidence(reflected, normals, step.closest, cloud_.samples, cloud_.isScan() ? &*cloud_.visibility : nullptr);
+  parallelRanges(samples.size(), kSharesBlock, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
+    Points reflected(3, size), normals(3, size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const SurfaceSample& sample = cloud_.samples[samples[static_cast<std::size_t>(first + i)]];
+      reflected.col(i) = plane.reflect(sample.point.cast<double>()).cast<float>();
+      normals.col(i) = sample.normal - 2.0f * n.dot(sample.normal) * n;
+    }
+    const std::vector<int> closest(step.closest.begin() + first, step.closest.begin() + first + size);
+    const PointEvidence some =
+        pointEvidence(reflected, normals, closest, cloud_.samples, cloud_.isScan() ? &*cloud_.visibility : nullptr);
+    std::copy(some.support.begin(), some.support.end(), evidence.support.begin() + first);
+    std::copy(some.conflict.begin(), some.conflict.end(), evidence.conflict.begin() + first);
+  });
   return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence.support)};
 }
 

@@ -248,7 +248,8 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                  const ConvolutionTransformOptions& options) {
   options.validate();
   // 1/24: the look-up of the nearest cell is one box.
-  const LookupTable table({edt.sharpened(1.0 / 24.0, options.num_threads)}, edt.numCells(), options.num_threads);
+  const std::vector<float> f = edt.sharpened(1.0 / 24.0, options.num_threads);
+  const LookupTable table({f.data()}, edt.numCells(), options.num_threads);
   const Lattice lattice(edt, grid, table, options.spacing);
   SymmetryMap map;
   map.grid = grid;

@@ -18,7 +18,9 @@ PlaneGrid::PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Ve
   for (int t = 0; t < num_theta; ++t) {
     const double width = phiStep() * std::sin(theta(t));
     phi_reach_.push_back(std::clamp(static_cast<int>(std::ceil(thetaStep() / width)), 1, num_phi / 2));
+    of_theta_.emplace_back(std::cos(theta(t)), std::sin(theta(t)));
   }
+  for (int p = 0; p < num_phi; ++p) of_phi_.emplace_back(std::cos(phi(p)), std::sin(phi(p)));
 }
 
 double PlaneGrid::thetaStep() const {
@@ -38,8 +40,9 @@ PlaneGrid::Bin PlaneGrid::bin(std::size_t index) const {
 }
 
 Eigen::Vector3d PlaneGrid::normal(int t, int p) const {
-  const double sine = std::sin(theta(t));
-  return {sine * std::cos(phi(p)), sine * std::sin(phi(p)), std::cos(theta(t))};
+  const Eigen::Vector2d& polar = of_theta_[t];
+  const Eigen::Vector2d& around = of_phi_[p];
+  return {polar.y() * around.x(), polar.y() * around.y(), polar.x()};
 }
 
 Eigen::Vector3d PlaneGrid::normal(std::size_t direction) const {

@@ -123,9 +123,9 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
   return means;
 }
 
-std::vector<float> checkedFreeSpace(const GaussianEdt& edt, const std::vector<float>& free_space) {
+const float* checkedFreeSpace(const GaussianEdt& edt, const std::vector<float>& free_space) {
   check(free_space.size() == edt.values().size(), "free_space size", free_space.size(), "one value per cell");
-  return free_space;
+  return free_space.data();
 }
 
 }  // namespace
@@ -138,8 +138,8 @@ void SampledTransformOptions::validate() const {
 
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options,
                              const std::vector<float>& free_space) {
-  // 1/12: a sample's uniform place in its cell and the look-up of the nearest cell are two boxes.
-  std::vector<std::vector<float>> functions{edt.sharpened(1.0 / 12.0, options.num_threads)};
+  // Sharpened by 1/12: a sample's uniform place in its cell and the look-up of the nearest cell are two boxes.
+  std::vector<const float*> functions{edt.interpolation().data()};
   if (!free_space.empty()) functions.push_back(checkedFreeSpace(edt, free_space));
   const LookupTable table(functions, edt.numCells(), options.num_threads);
   std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, table, free_space.empty());

@@ -9,6 +9,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/simd.h"
 #include "core/distance_transform/free_space.h"
 #include "core/transform_axes/axial_turns.h"
 #include "core/transform_axes/moved_lines.h"
@@ -127,6 +128,13 @@ int bestFold(const std::vector<int>& folds, const std::vector<double>& values) {
 
 namespace {
 
+/// sums[k] += weight * totals[k], rounded.
+PCL_SYMMETRY_MULTIVERSION
+void addWeighted(const double* totals, double weight, int begin, int end, float* sums) {
+#pragma GCC ivdep
+  for (int k = begin; k < end; ++k) sums[k] += static_cast<float>(weight * totals[k]);
+}
+
 /// Adds what one turn says about all axes of a direction to D, and to F where the table has free space.
 void addTurn(AxesOfDirection& axes, const AxisGrid& grid, std::size_t direction, const AxialTurn& turn, double scale,
              const Eigen::Matrix3Xf& samples, std::vector<std::vector<std::vector<float>>>& sums) {
@@ -136,10 +144,28 @@ void addTurn(AxesOfDirection& axes, const AxisGrid& grid, std::size_t direction,
       for (std::size_t i = 0; i < turn.weights.size(); ++i) {
         if (turn.weights[i] == 0.0) continue;
         const double weight = scale * turn.weights[i];
-        float* const sum = sums[g][i].data() + row;
-        for (int u = begin; u < end; ++u) sum[u] += static_cast<float>(weight * totals[g][u]);
+        addWeighted(totals[g].data(), weight, begin, end, sums[g][i].data() + row);
       }
   });
+}
+
+/// Writes D of axes, and the greatest of any fold.
+void writeValues(const float* d, std::size_t size, float* values, float* greatest) {
+  for (std::size_t k = 0; k < size; ++k) {
+    values[k] = d[k];
+    greatest[k] = std::max(greatest[k], d[k]);
+  }
+}
+
+/// The same for scans.
+PCL_SYMMETRY_MULTIVERSION
+void writeSeen(const float* d, const float* f, std::size_t size, float* values, float* greatest) {
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < size; ++k) {
+    const auto value = static_cast<float>(seenSymmetry(d[k], f[k]));
+    values[k] = value;
+    greatest[k] = greatest[k] < value ? value : greatest[k];
+  }
 }
 
 }  // namespace
@@ -161,13 +187,14 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
     for (std::size_t direction = begin; direction < end; ++direction) {
       std::vector<std::vector<std::vector<float>>> sums(table.numFunctions(), nothing);
       for (const AxialTurn& turn : turns) addTurn(axes, grid, direction, turn, scale, samples, sums);
-      for (std::size_t i = 0; i < options.folds.size(); ++i)
-        for (std::size_t k = 0; k < per_direction; ++k) {
-          const double d = sums[0][i][k], value = visibility ? seenSymmetry(d, sums[1][i][k]) : d;
-          const std::size_t bin = direction * per_direction + k;
-          map.values[i][bin] = static_cast<float>(value);
-          map.greatest[bin] = std::max(map.greatest[bin], map.values[i][bin]);
-        }
+      for (std::size_t i = 0; i < options.folds.size(); ++i) {
+        float* const values = map.values[i].data() + direction * per_direction;
+        float* const greatest = map.greatest.data() + direction * per_direction;
+        if (visibility)
+          writeSeen(sums[0][i].data(), sums[1][i].data(), per_direction, values, greatest);
+        else
+          writeValues(sums[0][i].data(), per_direction, values, greatest);
+      }
     }
   };
   parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads, run);

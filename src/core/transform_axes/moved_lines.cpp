@@ -75,9 +75,11 @@ void MovedLines::add(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start
 }
 
 LookupTable tableOf(const GaussianEdt& edt, const Visibility* visibility, int num_threads) {
-  // 1/12: a sample's uniform place in its cell and the look-up of the nearest cell are two boxes.
-  std::vector<std::vector<float>> functions{edt.sharpened(1.0 / 12.0, num_threads)};
-  if (visibility) functions.push_back(freeSpace(edt, *visibility, num_threads));
+  // Sharpened by 1/12: a sample's uniform place in its cell and the look-up of the nearest cell are two boxes.
+  std::vector<const float*> functions{edt.interpolation().data()};
+  std::vector<float> free_space;
+  if (visibility) free_space = freeSpace(edt, *visibility, num_threads);
+  if (visibility) functions.push_back(free_space.data());
   return LookupTable(functions, edt.numCells(), num_threads);
 }
 

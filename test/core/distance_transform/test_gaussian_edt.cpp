@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/distance_transform/edt_correlation.h"
 #include "pcl_symmetry/core/neighbours/closest_point_search.h"
 #include "shapes/shapes.h"
 
@@ -295,6 +296,27 @@ TEST(GaussianEdt, RefusesBadOptions) {
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(), "sigma = -1, must be finite and >= 0");
   }
+}
+
+TEST(GaussianEdt, ProductsOfARowAreThoseOfItsCells) {
+  const GaussianEdt edt(asymmetricBlob(500, 2).cloud(), cells(33));
+  RandomStream random(4);
+  const int n = edt.numCells();
+  std::vector<double> products(static_cast<std::size_t>(n));
+  int num_filled = 0;
+  for (int row = 0; row < n * n; ++row) {
+    const GaussianEdt::Range filled = edt.filledRanges()[static_cast<std::size_t>(row)];
+    const float* const f = edt.values().data() + static_cast<std::ptrdiff_t>(row) * n;
+    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * n);
+    const Eigen::Vector3d step(symmetric(random), symmetric(random), symmetric(random));
+    const ImageOfRow image{middle - 0.5 * n * step, step};
+    rowProducts()(edt, f, image, filled, products.data());
+    for (int x = filled.begin; x < filled.end; ++x) {
+      EXPECT_EQ(products[static_cast<std::size_t>(x)], f[x] * edt.atCell(image.first + x * image.step));
+      num_filled += products[static_cast<std::size_t>(x)] > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(num_filled, 100);
 }
 
 }  // namespace

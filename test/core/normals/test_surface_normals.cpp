@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <cmath>
 
 #include "shapes/shapes.h"
@@ -70,6 +72,26 @@ TEST(LocalGeometry, SameBytesForAnyNumberOfThreads) {
     const LocalGeometry many = localGeometry(points, *search, 8, num_threads);
     EXPECT_EQ(many.normals, one.normals);
     EXPECT_EQ(many.spacing, one.spacing);
+  }
+}
+
+TEST(LocalGeometry, FitsTheAxisOfLeastSpread) {
+  const Points points = asymmetricBlob(1000, 8).cloud();
+  const auto search = makeFlannSearch(points);
+  const LocalGeometry geometry = localGeometry(points, *search, 8, 1);
+  std::vector<int> nearest;
+  std::vector<float> sq_distances;
+  search->search(points, 9, nearest, sq_distances);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    Eigen::Matrix3Xd offsets(3, 9);
+    for (int k = 0; k < 9; ++k) offsets.col(k) = points.col(nearest[i * 9 + k]).cast<double>();
+    offsets.colwise() -= offsets.rowwise().mean().eval();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(offsets * offsets.transpose());
+    // Floats round the moments by 1e-6 of the largest: axes of nearly equal moments are free by that.
+    const Eigen::Vector3d normal = geometry.normals.col(i).cast<double>();
+    const double least = solver.eigenvalues()[0], found = normal.dot(offsets * offsets.transpose() * normal);
+    EXPECT_NEAR(found, least, 1e-5 * solver.eigenvalues()[2]) << i;
+    EXPECT_NEAR(geometry.roughness[i], std::sqrt(std::max(0.0, found) / 6.0), 1e-2 * std::sqrt(found) + 1e-4) << i;
   }
 }
 

@@ -351,4 +351,23 @@ TEST(Visibility, SilhouettesAreAsSharpAsTheRaysOfARingAreDense) {
   }
 }
 
+TEST(Visibility, OfManyPointsIsThatOfEach) {
+  const Visibility one = *Visibility::fromPoints(sphereScan(), kViewpoint);
+  const Visibility two = Visibility::together({one, *Visibility::fromPoints(sphereScan(-kViewpoint), -kViewpoint)});
+  RandomStream random(6);
+  Eigen::Matrix3Xd points(3, 500);
+  for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] = 6.0 * symmetric(random);
+  for (const Visibility& visibility :
+       {one, two, one.withSupport(Eigen::Vector4d(0.0, 0.0, 1.0, 1.0), 0.1), one.normalized({1.0, 2.0, 3.0}, 2.0)}) {
+    const std::vector<char> are_free = visibility.areFree(points);
+    int num_free = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      EXPECT_EQ(are_free[static_cast<std::size_t>(i)] != 0, visibility.depthBehind(points.col(i)) < 0.0) << i;
+      num_free += are_free[static_cast<std::size_t>(i)];
+    }
+    EXPECT_GT(num_free, 50);
+    EXPECT_LT(num_free, 500);
+  }
+}
+
 }  // namespace

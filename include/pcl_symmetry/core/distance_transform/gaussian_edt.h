@@ -77,6 +77,9 @@ public:
     return near + t.z() * (far - near);
   }
 
+  /// \return sharpened(1 / 12), between which this function interpolates.
+  const std::vector<float>& interpolation() const { return interpolation_; }
+
   /// Values that undo the blur of look-ups: f - c h^2 Laplace(f), at least 0, with h the size of a cell.
   ///
   /// A look-up of the nearest cell blurs f by a box, which adds h^2 / 24 times the Laplacian to its mean. Trilinear

@@ -77,6 +77,10 @@ public:
   /// where the ray met nothing, +infinity where no ray passed.
   double depthBehind(const Eigen::Vector3d& x) const;
 
+  /// \param points 3 x M, in the frame of the points.
+  /// \return for each whether depthBehind() is negative: M values, 1 in free space.
+  std::vector<char> areFree(const Eigen::Matrix3Xd& points) const;
+
   /// \param points 3 x N, finite, N >= 1.
   /// \param margin input units.
   /// \return share of the points that lie more than the margin behind the surface on their ray. From the viewpoint of a
@@ -111,6 +115,7 @@ private:
       return static_cast<float>((*depths)[static_cast<std::size_t>(v) * width + u] / unit);
     }
     double depthBehind(const Eigen::Vector3d& x) const;
+    void markFree(const Eigen::Matrix3Xd& points, std::vector<char>& is_free) const;
   };
 
   Visibility() = default;

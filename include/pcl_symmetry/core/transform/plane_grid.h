@@ -86,13 +86,16 @@ public:
   bool visitNeighbours(const Bin& bin, const Visit& visit) const {
     const std::size_t self = index(bin);
     for (int dt = -1; dt <= 1; ++dt) {
-      const int reach = phiReach(step(bin, dt, 0, 0)->theta);
+      const Bin beside = *step(bin, dt, 0, 0);
+      const int first = beside.radius > 0 ? beside.radius - 1 : 0;
+      const int last = beside.radius + 1 < num_radius_ ? beside.radius + 1 : beside.radius;
+      const int reach = phiReach(beside.theta);
       for (int i = 0; i <= 2 * reach; ++i) {
-        const int dp = i % 2 ? (i + 1) / 2 : -i / 2;  // 0, 1, -1, 2, -2 ...: the nearest first
-        for (int dk = -1; dk <= 1; ++dk) {
-          const auto to = step(bin, dt, dp, dk);
-          if (to && index(*to) != self && !visit(index(*to))) return false;
-        }
+        const int phi = beside.phi + (i % 2 ? (i + 1) / 2 : -i / 2);  // 0, 1, -1, 2, -2 ... beside: the nearest first
+        const int wrapped = phi < 0 ? phi + num_phi_ : phi < num_phi_ ? phi : phi - num_phi_;
+        const std::size_t row = index({beside.theta, wrapped, 0});
+        for (int k = first; k <= last; ++k)
+          if (row + k != self && !visit(row + k)) return false;
       }
     }
     return true;
@@ -108,6 +111,7 @@ private:
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double radius_ = 0.0;
   std::vector<int> phi_reach_;
+  std::vector<Eigen::Vector2d> of_theta_, of_phi_;  // cosine and sine at the bin centers
 };
 
 }  // namespace pcl_symmetry

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "core/base/constants.h"
@@ -118,13 +117,18 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   options.num_threads = num_threads;
   const AxisGrid grid(kCoarseTheta, kCoarsePhi, kCoarseOffset, edt.center(), edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);
-  std::vector<std::size_t> order(map.greatest.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return map.greatest[a] > map.greatest[b]; });
+  std::vector<std::size_t> bins;  // a heap: the greatest first, of equal ones the one with the least index
+  for (std::size_t i = 0; i < map.greatest.size(); ++i)
+    if (map.greatest[i] > 0.0f) bins.push_back(i);
+  const auto isBehind = [&](std::size_t a, std::size_t b) {
+    return map.greatest[a] < map.greatest[b] || (map.greatest[a] == map.greatest[b] && a > b);
+  };
+  std::make_heap(bins.begin(), bins.end(), isBehind);
   std::vector<AxisStart> starts;
-  for (const std::size_t bin : order) {
-    if (starts.size() == kCoarseMaxima || map.greatest[bin] <= 0.0f) break;
+  while (!bins.empty() && starts.size() < kCoarseMaxima) {
+    const std::size_t bin = bins.front();
+    std::pop_heap(bins.begin(), bins.end(), isBehind);
+    bins.pop_back();
     const Line3d line = grid.axis(grid.bin(bin));
     const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
       return isOne(other.line, line, kCoarseAngle, kCoarseDistance);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
+#include "core/base/parallel.h"
 #include "core/neighbours/search/wide_tree.h"
 
 #if defined(__x86_64__)
@@ -19,6 +21,7 @@ constexpr float kDecidingShare = 0.2499f;
 // Cells along each side of the grid where walks begin. chosen: at half, walks are longer, at twice, the grid takes
 // longer to make than it saves.
 constexpr int kStartCells = 32;
+constexpr std::size_t kFilledPerBlock = 2048;  // lists. chosen: large enough that threads start seldom
 
 }  // namespace
 
@@ -26,26 +29,39 @@ bool NeighbourLists::isUseful(Eigen::Index num_points) {
   return num_points > kNeighbours && num_points <= kMostPoints && WideTree::isSupported();
 }
 
+ClosestPointGrid NeighbourLists::starts(const Points& points) {
+  return ClosestPointGrid(points, kStartCells);
+}
+
 NeighbourLists::NeighbourLists(const Points& points, const std::vector<int>& nearest,
                                const std::vector<float>& sq_reach)
-    : lists_(static_cast<std::size_t>(points.cols())), grid_(points, kStartCells) {
-  for (std::size_t i = 0; i < lists_.size(); ++i) {
-    List& list = lists_[i];
-    const auto own = points.col(static_cast<Eigen::Index>(i));
-    list.own_x = own.x();
-    list.own_y = own.y();
-    list.own_z = own.z();
-    list.most_sq_distance = kDecidingShare * sq_reach[i];
-    // The point itself is among the nearest, unless as many others are at the same place.
-    int count = 0;
-    for (int k = 0; k <= kNeighbours && count < kNeighbours; ++k) {
-      const int j = nearest[i * (kNeighbours + 1) + static_cast<std::size_t>(k)];
-      if (j == static_cast<int>(i)) continue;
-      list.x[count] = points(0, j);
-      list.y[count] = points(1, j);
-      list.z[count] = points(2, j);
-      list.index[count++] = static_cast<std::uint16_t>(j);
-    }
+    : NeighbourLists(starts(points), points, nearest, sq_reach, 1) {}
+
+NeighbourLists::NeighbourLists(ClosestPointGrid starts, const Points& points, const std::vector<int>& nearest,
+                               const std::vector<float>& sq_reach, int num_threads)
+    : lists_(static_cast<std::size_t>(points.cols())), grid_(std::move(starts)) {
+  parallelRanges(lists_.size(), kFilledPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) fill(i, points, nearest, sq_reach[i]);
+  });
+}
+
+/// Fills the list of a point.
+void NeighbourLists::fill(std::size_t i, const Points& points, const std::vector<int>& nearest, float sq_reach) {
+  List& list = lists_[i];
+  const auto own = points.col(static_cast<Eigen::Index>(i));
+  list.own_x = own.x();
+  list.own_y = own.y();
+  list.own_z = own.z();
+  list.most_sq_distance = kDecidingShare * sq_reach;
+  // The point itself is among the nearest, unless as many others are at the same place.
+  int count = 0;
+  for (int k = 0; k <= kNeighbours && count < kNeighbours; ++k) {
+    const int j = nearest[i * (kNeighbours + 1) + static_cast<std::size_t>(k)];
+    if (j == static_cast<int>(i)) continue;
+    list.x[count] = points(0, j);
+    list.y[count] = points(1, j);
+    list.z[count] = points(2, j);
+    list.index[count++] = static_cast<std::uint16_t>(j);
   }
 }
 

@@ -25,11 +25,21 @@ public:
   /// Whether there are lists for \p num_points points: enough, not too many, and the instructions for them.
   static bool isUseful(Eigen::Index num_points);
 
+  /// The grid in which walks without a guess begin.
+  /// \param points 3 x N.
+  static ClosestPointGrid starts(const Points& points);
+
   /// \pre isUseful(points.cols())
   /// \param points 3 x N.
   /// \param nearest kNeighbours + 1 indices for each point, nearest first, as a search for that point finds them.
   /// \param sq_reach squared distance of the last one of each point.
   NeighbourLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach);
+
+  /// The same with a grid that was made before.
+  /// \param starts of the same points.
+  /// \param num_threads 0 = one per core.
+  NeighbourLists(ClosestPointGrid starts, const Points& points, const std::vector<int>& nearest,
+                 const std::vector<float>& sq_reach, int num_threads);
 
   /// Walks from a guess of the closest point to a neighbour as long as one is closer to the query, for many queries at
   /// a time: each waits for memory while the others go on.
@@ -52,6 +62,7 @@ private:
   };
   static_assert(kMostPoints <= std::numeric_limits<std::uint16_t>::max());
 
+  void fill(std::size_t i, const Points& points, const std::vector<int>& nearest, float sq_reach);
   void walkSome(const PointsRef& queries, int* indices, float* sq_distances, char* is_closest) const;
 
   std::vector<List> lists_;

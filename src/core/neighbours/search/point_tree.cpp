@@ -91,17 +91,28 @@ std::array<float, 4> corner(const Eigen::Array3f& of_box) {
   return {of_box[0], of_box[1], of_box[2], 0.0f};
 }
 
-/// Moves entries that satisfy a condition to the front, by exchanging the outermost pair that stands wrongly.
+/// Moves entries that satisfy a condition to the front, by exchanging the outermost pairs that stand wrongly. All of
+/// these are listed first, without a branch that half of the entries would take.
+/// \param places storage for as many as there are entries.
 /// \return index of the first that does not.
 template <typename Entry, typename Condition>
-int moveToFront(std::vector<Entry>& entries, int begin, int end, const Condition& condition) {
-  int left = begin, right = end - 1;
-  while (true) {
-    while (left <= right && condition(entries[left])) ++left;
-    while (left <= right && !condition(entries[right])) --right;
-    if (left > right) return left;
-    std::swap(entries[left++], entries[right--]);
+int moveToFront(std::vector<Entry>& entries, int begin, int end, const Condition& condition, std::vector<int>& places) {
+  int middle = begin;
+  for (int i = begin; i < end; ++i) middle += condition(entries[i]) ? 1 : 0;
+  int* const left = places.data();
+  int num_left = 0;
+  for (int i = begin; i < middle; ++i) {
+    left[num_left] = i;
+    num_left += condition(entries[i]) ? 0 : 1;
   }
+  int* const right = left + num_left;
+  int num_right = 0;
+  for (int i = end - 1; num_right < num_left; --i) {
+    right[num_right] = i;
+    num_right += condition(entries[i]) ? 1 : 0;
+  }
+  for (int k = 0; k < num_left; ++k) std::swap(entries[left[k]], entries[right[k]]);
+  return middle;
 }
 
 }  // namespace
@@ -111,7 +122,8 @@ PointTree::PointTree(const PointsRef& points) : points_(points) {
   std::vector<Entry> entries(size);
   for (std::size_t i = 0; i < size; ++i) entries[i] = {points_.col(static_cast<Eigen::Index>(i)), static_cast<int>(i)};
   nodes_.reserve(size / 2 + 1);
-  divide(entries, 0, static_cast<int>(size),
+  std::vector<int> places(size + 1);
+  divide(entries, places, 0, static_cast<int>(size),
          {points_.rowwise().minCoeff().array(), points_.rowwise().maxCoeff().array()}, 1);
   for (auto* coordinates : {&ordered_.x, &ordered_.y, &ordered_.z})
     coordinates->assign(size + WideTree::kChildren, 0.0f);
@@ -126,9 +138,11 @@ PointTree::PointTree(const PointsRef& points) : points_(points) {
 }
 
 /// Adds the node of some points and those below it.
+/// \param places storage for as many as there are points, and one more.
 /// \param box contains the points.
 /// \return the bounding box of the points.
-PointTree::Box PointTree::divide(std::vector<Entry>& entries, int begin, int end, Box box, int depth) {
+PointTree::Box PointTree::divide(std::vector<Entry>& entries, std::vector<int>& places, int begin, int end, Box box,
+                                 int depth) {
   depth_ = std::max(depth_, depth);
   Box bounds{entries[begin].point.array(), entries[begin].point.array()};
   for (int i = begin + 1; i < end; ++i) {
@@ -142,14 +156,16 @@ PointTree::Box PointTree::divide(std::vector<Entry>& entries, int begin, int end
   const auto [axis, at] = divisionOf(box.high - box.low, bounds.low, bounds.high);
   const auto coordinate = [axis = axis](const Entry& entry) { return entry.point[axis]; };
   // Points at the division itself go to either side, so that both are as large as possible.
-  const int below = moveToFront(entries, begin, end, [&, at = at](const Entry& e) { return coordinate(e) < at; });
-  const int up_to = moveToFront(entries, below, end, [&, at = at](const Entry& e) { return coordinate(e) <= at; });
+  const int below = moveToFront(
+      entries, begin, end, [&, at = at](const Entry& e) { return coordinate(e) < at; }, places);
+  const int up_to = moveToFront(
+      entries, below, end, [&, at = at](const Entry& e) { return coordinate(e) <= at; }, places);
   const int middle = std::clamp(begin + count / 2, below, up_to);
   Box first = box, second = box;
   first.high[axis] = second.low[axis] = at;
-  first = divide(entries, begin, middle, first, depth + 1);
+  first = divide(entries, places, begin, middle, first, depth + 1);
   const auto link = static_cast<std::int32_t>(nodes_.size());
-  second = divide(entries, middle, end, second, depth + 1);
+  second = divide(entries, places, middle, end, second, depth + 1);
   nodes_[node].low[3] = first.high[axis];
   nodes_[node].high[3] = second.low[axis];
   nodes_[node].link = link;
@@ -258,8 +274,10 @@ void PointTree::closestByWalks(const PointsRef& queries, const int* guesses, std
   for (std::size_t i = 0; i < matches.size(); ++i)
     seen[i] = guesses[i] >= 0 ? guesses[i] : lists_->start(queries.col(static_cast<Eigen::Index>(i)));
   lists_->walk(queries, seen.data(), sq_seen.data(), is_closest.data());
-  std::vector<int> open;
-  std::vector<WideTree::Closest> found;
+  std::vector<int>& open = storage.open;
+  std::vector<WideTree::Closest>& found = storage.found;
+  open.clear();
+  found.clear();
   for (std::size_t i = 0; i < matches.size(); ++i) {
     Match& match = matches[i];
     if (is_closest[i] != 0) {
@@ -273,7 +291,7 @@ void PointTree::closestByWalks(const PointsRef& queries, const int* guesses, std
     found.push_back({match.sq_distance});
   }
   const Points asked = pointsAt(queries, open);
-  wide_->findClosestOfMany(ordered_, asked, found);
+  wide_->findClosestOfMany(ordered_, asked, found, storage.many);
   for (std::size_t k = 0; k < open.size(); ++k) {
     Match& match = matches[static_cast<std::size_t>(open[k])];
     match = closest(asked.col(static_cast<Eigen::Index>(k)), match, found[k], storage);
@@ -281,8 +299,10 @@ void PointTree::closestByWalks(const PointsRef& queries, const int* guesses, std
 }
 
 PointTree::Storage PointTree::storage() const {
-  return {std::vector<Pending>(static_cast<std::size_t>(depth_)),
-          wide_ ? wide_->storage() : std::vector<WideTree::Pending>()};
+  Storage storage;
+  storage.pending.resize(static_cast<std::size_t>(depth_));
+  if (wide_) storage.wide = wide_->pending();
+  return storage;
 }
 
 void PointTree::search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
@@ -332,7 +352,7 @@ void PointTree::nearestOfMany(const PointsRef& queries, int num_neighbours, int*
     if (num_before > 0) {
       const auto sq_limit = static_cast<float>(margin * sum / static_cast<double>(num_before));
       is_open = wide_->findNearestOfMany(ordered_, some, std::vector<WideTree::Closest>(size, {sq_limit}),
-                                         num_neighbours, found, sq_found);
+                                         num_neighbours, found, sq_found, storage.many);
     }
     sum = 0.0;
     for (std::size_t i = 0; i < size; ++i) {

@@ -57,9 +57,12 @@ private:
   struct Storage {
     std::vector<Pending> pending;
     std::vector<WideTree::Pending> wide;
+    WideTree::Storage many;
+    std::vector<int> open;  ///< queries that the lists do not decide
+    std::vector<WideTree::Closest> found;
   };
 
-  Box divide(std::vector<Entry>& entries, int begin, int end, Box box, int depth);
+  Box divide(std::vector<Entry>& entries, std::vector<int>& places, int begin, int end, Box box, int depth);
   static float sqDistance(const Node& node, const Eigen::Vector3f& query);
   template <typename Result>
   void visit(const Eigen::Vector3f& query, std::vector<Pending>& pending, Result& result) const;

@@ -217,8 +217,10 @@ __attribute__((target("avx2"))) void WideTree::findChildren(const Points& querie
 }
 
 /// The leaves that may hold a point no farther than the limit of a query.
-WideTree::Pairs WideTree::findLeaves(const Points& queries, const std::vector<Closest>& limits) const {
-  Pairs nodes, next, leaves;
+const WideTree::Pairs& WideTree::findLeaves(const Points& queries, const std::vector<Closest>& limits,
+                                            Storage& storage) const {
+  Pairs &nodes = storage.nodes, &next = storage.next, &leaves = storage.leaves;
+  leaves.size = 0;
   nodes.makeRoom(limits.size());
   nodes.size = limits.size();
   std::iota(nodes.queries.begin(), nodes.queries.begin() + static_cast<std::ptrdiff_t>(nodes.size), 0);
@@ -232,9 +234,9 @@ WideTree::Pairs WideTree::findLeaves(const Points& queries, const std::vector<Cl
 }
 
 __attribute__((target("avx2"))) void WideTree::findClosestOfMany(const OrderedCoordinates& points,
-                                                                 const Points& queries,
-                                                                 std::vector<Closest>& closest) const {
-  const Pairs leaves = findLeaves(queries, closest);
+                                                                 const Points& queries, std::vector<Closest>& closest,
+                                                                 Storage& storage) const {
+  const Pairs& leaves = findLeaves(queries, closest, storage);
   for (std::size_t k = 0; k < leaves.size; ++k) {
     const std::int32_t i = leaves.queries[k];
     ClosestPlace result(closest[static_cast<std::size_t>(i)]);
@@ -294,16 +296,18 @@ __attribute__((target("avx2"))) bool WideTree::putInOrder(Within& within, int mo
 
 std::vector<char> WideTree::findNearestOfMany(const OrderedCoordinates& points, const Points& queries,
                                               const std::vector<Closest>& limits, int most, std::int32_t* places,
-                                              float* sq_distances) const {
-  const Pairs leaves = findLeaves(queries, limits);
-  std::vector<Within> within(limits.size());
+                                              float* sq_distances, Storage& storage) const {
+  const Pairs& leaves = findLeaves(queries, limits, storage);
+  std::vector<Within>& within = storage.within;
+  if (within.size() < limits.size()) within.resize(limits.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) within[i].size = 0;
   for (std::size_t k = 0; k < leaves.size; ++k) {
     const auto i = static_cast<std::size_t>(leaves.queries[k]);
     addLeaf(points, queries.col(leaves.queries[k]).data(), leaves_[static_cast<std::size_t>(-1 - leaves.children[k])],
             limits[i].sq_distance, within[i]);
   }
   std::vector<char> is_open(limits.size());
-  for (std::size_t i = 0; i < within.size(); ++i) {
+  for (std::size_t i = 0; i < limits.size(); ++i) {
     const auto first = static_cast<std::ptrdiff_t>(i) * most;
     is_open[i] = putInOrder(within[i], most, places + first, sq_distances + first) ? 0 : 1;
   }
@@ -372,10 +376,11 @@ bool WideTree::findNearest(const OrderedCoordinates& points, const float* query,
 
 #else
 
-void WideTree::findClosestOfMany(const OrderedCoordinates&, const Points&, std::vector<Closest>&) const {}
+void WideTree::findClosestOfMany(const OrderedCoordinates&, const Points&, std::vector<Closest>&, Storage&) const {}
 
 std::vector<char> WideTree::findNearestOfMany(const OrderedCoordinates&, const Points&,
-                                              const std::vector<Closest>& limits, int, std::int32_t*, float*) const {
+                                              const std::vector<Closest>& limits, int, std::int32_t*, float*,
+                                              Storage&) const {
   return std::vector<char>(limits.size(), 1);
 }
 

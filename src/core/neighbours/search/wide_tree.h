@@ -45,7 +45,33 @@ public:
     float sq_distance;
   };
   /// \return as much as a query needs.
-  std::vector<Pending> storage() const { return std::vector<Pending>(num_pending_); }
+  std::vector<Pending> pending() const { return std::vector<Pending>(num_pending_); }
+
+  /// Queries, and for each a node or leaf that may hold its closest point.
+  struct Pairs {
+    std::vector<std::int32_t> queries, children;
+    std::size_t size = 0;
+
+    void makeRoom(std::size_t num_more);
+  };
+
+  /// chosen: half of the room for points within the distance
+  static constexpr int kMostOfMany = 24;
+
+  /// The points within the distance of a query, in no order. They fill whole vectors.
+  struct Within {
+    /// derived: points, one more vector that exceeds them, and what is written behind it
+    static constexpr int kRoom = 2 * kMostOfMany + 2 * kChildren;
+    std::array<float, kRoom> sq_distances;
+    std::array<std::int32_t, kRoom> places;
+    int size = 0;
+  };
+
+  /// What many queries need at a time; used again by the next ones.
+  struct Storage {
+    Pairs nodes, next, leaves;
+    std::vector<Within> within;
+  };
 
   /// The closest of the points that are strictly closer than a distance.
   struct Closest {
@@ -64,7 +90,8 @@ public:
   /// \pre isSupported()
   /// \param queries 3 x M.
   /// \param closest M, as of findClosest().
-  void findClosestOfMany(const OrderedCoordinates& points, const Points& queries, std::vector<Closest>& closest) const;
+  void findClosestOfMany(const OrderedCoordinates& points, const Points& queries, std::vector<Closest>& closest,
+                         Storage& storage) const;
 
   /// \param most how many closest points are wanted, at most as many as there are.
   /// \param[out] places,sq_distances room for them; nearest first.
@@ -84,21 +111,9 @@ public:
   /// are equally far away.
   std::vector<char> findNearestOfMany(const OrderedCoordinates& points, const Points& queries,
                                       const std::vector<Closest>& limits, int most, std::int32_t* places,
-                                      float* sq_distances) const;
-
-  /// chosen: half of the room for points within the distance
-  static constexpr int kMostOfMany = 24;
+                                      float* sq_distances, Storage& storage) const;
 
 private:
-  /// The points within the distance of a query, in no order. They fill whole vectors.
-  struct Within {
-    /// derived: points, one more vector that exceeds them, and what is written behind it
-    static constexpr int kRoom = 2 * kMostOfMany + 2 * kChildren;
-    std::array<float, kRoom> sq_distances;
-    std::array<std::int32_t, kRoom> places;
-    int size = 0;
-  };
-
   struct Node {
     std::array<std::array<float, kChildren>, 3> low, high;  ///< of the boxes of the children, axis by axis
     std::array<std::int32_t, kChildren> children;           ///< a node; or -1 - l: leaf l
@@ -107,17 +122,9 @@ private:
     std::int32_t first, num_points;
   };
 
-  /// Queries, and for each a node or leaf that may hold its closest point.
-  struct Pairs {
-    std::vector<std::int32_t> queries, children;
-    std::size_t size = 0;
-
-    void makeRoom(std::size_t num_more);
-  };
-
   void findChildren(const Points& queries, const std::vector<Closest>& closest, const Pairs& at, Pairs& nodes,
                     Pairs& leaves) const;
-  Pairs findLeaves(const Points& queries, const std::vector<Closest>& limits) const;
+  const Pairs& findLeaves(const Points& queries, const std::vector<Closest>& limits, Storage& storage) const;
   static void addLeaf(const OrderedCoordinates& points, const float* query, Leaf leaf, float sq_limit, Within& within);
   static bool putInOrder(Within& within, int most, std::int32_t* places, float* sq_distances);
   template <typename Result>

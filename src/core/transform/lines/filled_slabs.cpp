@@ -11,7 +11,7 @@ constexpr float kSlack = 0.01f;
 
 /// The directions from a cell to its neighbours, one of each pair.
 Eigen::Matrix3Xf directionsToNeighbours() {
-  Eigen::Matrix3Xf axes(3, 13);
+  Eigen::Matrix3Xf axes(3, kMostSlabs);
   int count = 0;
   for (int code = 14; code < 27; ++code)
     axes.col(count++) = Eigen::Vector3f(static_cast<float>(code % 3 - 1), static_cast<float>(code / 3 % 3 - 1),
@@ -25,21 +25,22 @@ FilledSlabs::FilledSlabs(const GaussianEdt& edt,
                          const Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>& samples)
     : axes_(directionsToNeighbours()) {
   constexpr float kFar = 1e6f;  // derived: farther than every cell
-  Eigen::VectorXf low = Eigen::VectorXf::Constant(axes_.cols(), kFar), high = -low;
+  using OfAxes = Eigen::Matrix<float, kMostSlabs, 1>;
+  const Eigen::Matrix<float, kMostSlabs, 3> axes = axes_.transpose();
+  OfAxes low = OfAxes::Constant(kFar), high = -low;
   const int n = edt.numCells();
   for (int row = 0; row < n * n; ++row) {
     const GaussianEdt::Range filled = edt.filledRanges()[static_cast<std::size_t>(row)];
     if (filled.begin == filled.end) continue;
     for (const int x : {filled.begin, filled.end - 1}) {
-      const Eigen::VectorXf along =
-          axes_.transpose() *
-          Eigen::Vector3f(static_cast<float>(x), static_cast<float>(row % n), static_cast<float>(row / n));
+      const OfAxes along =
+          axes * Eigen::Vector3f(static_cast<float>(x), static_cast<float>(row % n), static_cast<float>(row / n));
       low = low.cwiseMin(along);
       high = high.cwiseMax(along);
     }
   }
   // A look-up takes the whole cell.
-  const Eigen::VectorXf of_cell = 0.5f * axes_.cwiseAbs().colwise().sum().transpose().array() + kSlack;
+  const OfAxes of_cell = 0.5f * axes_.cwiseAbs().colwise().sum().transpose().array() + kSlack;
   const Eigen::MatrixXf along = samples.transpose() * axes_;
   low_ = (-along).rowwise() + (low - of_cell).transpose();
   high_ = (-along).rowwise() + (high + of_cell).transpose();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/base/simd.h"
 #include "core/distance_transform/lookup_table.h"
@@ -15,6 +16,57 @@
 #endif
 
 namespace pcl_symmetry {
+
+namespace {
+
+/// Numbers that are worked out side by side.
+typedef float FloatLanes __attribute__((vector_size(4 * kLineLanes)));
+
+/// Cuts lines off where they leave slabs, which are given as setUpLines() has them.
+/// \param along_of places of the samples along the normal.
+/// \param[in,out] first,behind ends of the lines along it.
+[[gnu::always_inline]] inline void cutAtSlabs(const SlabsOfSamples& slabs, const float* normal, const float* along_of,
+                                              int size, float* first, float* behind) {
+  float halves[kMostSlabs];
+  const float *entries[kMostSlabs], *exits[kMostSlabs];
+  int num_slabs = 0;
+  for (int s = 0; s < slabs.count; ++s) {
+    const float* const axis = slabs.axes + 3 * s;
+    const float slope = normal[0] * axis[0] + normal[1] * axis[1] + normal[2] * axis[2];
+    constexpr float kLeastSlope = 1e-3f;  // chosen: a line along a slab leaves it farther away than the ball
+    if (std::abs(slope) < kLeastSlope) continue;
+    const float *const low = slabs.low + slabs.stride * s, *const high = slabs.high + slabs.stride * s;
+    halves[num_slabs] = 0.5f / slope;
+    entries[num_slabs] = slope > 0.0f ? low : high;
+    exits[num_slabs++] = slope > 0.0f ? high : low;
+  }
+  // All slabs of some lines at a time, whose ends stay in registers.
+  int cut = 0;
+  for (; cut + kLineLanes <= size; cut += kLineLanes) {
+    FloatLanes along, begin, end;
+    std::memcpy(&along, along_of + cut, sizeof along);
+    std::memcpy(&begin, first + cut, sizeof begin);
+    std::memcpy(&end, behind + cut, sizeof end);
+    for (int s = 0; s < num_slabs; ++s) {
+      FloatLanes entry, exit;
+      std::memcpy(&entry, entries[s] + cut, sizeof entry);
+      std::memcpy(&exit, exits[s] + cut, sizeof exit);
+      entry = along + halves[s] * entry;
+      exit = along + halves[s] * exit;
+      begin = begin < entry ? entry : begin;
+      end = exit < end ? exit : end;
+    }
+    std::memcpy(first + cut, &begin, sizeof begin);
+    std::memcpy(behind + cut, &end, sizeof end);
+  }
+  for (; cut < size; ++cut)
+    for (int s = 0; s < num_slabs; ++s) {
+      first[cut] = std::max(first[cut], along_of[cut] + halves[s] * entries[s][cut]);
+      behind[cut] = std::min(behind[cut], along_of[cut] + halves[s] * exits[s][cut]);
+    }
+}
+
+}  // namespace
 
 PCL_SYMMETRY_MULTIVERSION
 void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube,
@@ -44,20 +96,7 @@ void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, c
     first[i] = 0.5f * (along - chord);
     behind[i] = sq_chord > 0.0f ? 0.5f * (along + chord) : first[i] - 2.0f * planes.step;
   }
-  for (int s = 0; s < slabs.count; ++s) {
-    const float* const axis = slabs.axes + 3 * s;
-    const float slope = nx * axis[0] + ny * axis[1] + nz * axis[2];
-    constexpr float kLeastSlope = 1e-3f;  // chosen: a line along a slab leaves it farther away than the ball
-    if (std::abs(slope) < kLeastSlope) continue;
-    const float half = 0.5f / slope;
-    const float *const low = slabs.low + slabs.stride * s, *const high = slabs.high + slabs.stride * s;
-    const float *const entry = slope > 0.0f ? low : high, *const exit = slope > 0.0f ? high : low;
-#pragma GCC ivdep
-    for (int i = 0; i < size; ++i) {
-      first[i] = std::max(first[i], along_of[i] + half * entry[i]);
-      behind[i] = std::min(behind[i], along_of[i] + half * exit[i]);
-    }
-  }
+  cutAtSlabs(slabs, planes.normal, along_of, size, first, behind);
 #pragma GCC ivdep
   for (int i = 0; i < size; ++i) {
     const float begin = std::ceil((first[i] - offset) * inverse_step);

@@ -48,6 +48,9 @@ struct SampleCoordinates {
   const float *x, *y, *z;
 };
 
+/// Slabs around what is not 0, at most. derived: pairs of the 26 neighbours of a cell.
+constexpr int kMostSlabs = 13;
+
 /// Slabs that hold all that is not 0 in a table, as samples see them: low <= axis . (x - sample) <= high for each.
 struct SlabsOfSamples {
   const float* axes;        ///< three numbers of each slab

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
 
@@ -24,16 +26,10 @@ public:
     return static_cast<float>(std::exp(-reach * reach));
   }
 
+  /// \param points 3 x M, side by side.
   /// \param bound what bound() returned for a distance.
-  /// \return whether \p x is farther from the surface than that distance, or outside the grid.
-  bool operator()(const Eigen::Vector3d& x, float bound) const {
-    const Eigen::Array3d cell = ((x * scale_ + center_ - edt_.origin()) / edt_.cellSize()).array() + 0.5;
-    const int n = edt_.numCells();
-    if (!(cell >= 0.0).all() || !(cell < static_cast<double>(n)).all()) return true;
-    const auto index = (static_cast<std::size_t>(cell.z()) * n + static_cast<std::size_t>(cell.y())) * n +
-                       static_cast<std::size_t>(cell.x());
-    return edt_.values()[index] <= std::min(bound, kFarthest);
-  }
+  /// \return indices of the points that lie inside the grid and may be as near to the surface as that, rising.
+  std::vector<Eigen::Index> nearOf(const PointsRef& points, float bound) const;
 
 private:
   static constexpr float kFarthest = 1e-3f;  // derived: below f at the cut of the transform, exp(-2.6^2) = 1.2e-3

@@ -17,6 +17,14 @@ struct PairBlock {
   double weights[kMost];  ///< >= 0
 };
 
+/// What the pairs of a block add to the sums of one kind of step, each for itself.
+struct StepTerms {
+  static constexpr int kSums = 12;  ///< derived: a matrix of 3 x 3 and a vector
+
+  int size = 0;
+  double values[kSums][PairBlock::kMost];
+};
+
 /// Normal equations of a plane's step. The unknowns (a, b, c) move the normal n by a u + b v, and the plane's distance
 /// from the middle of the samples by extent * c.
 ///
@@ -26,18 +34,20 @@ struct StepEquations {
   Eigen::Vector3d middle;
   double extent;
   double offset;                                ///< of the plane from the middle
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();  ///< the lower half
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();  ///< the lower half is used
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
 
   /// \param middle_of_samples,extent_of_samples weighted mean, and root mean square distance from it.
   StepEquations(const ReflectionPlane& plane, const Eigen::Vector3d& middle_of_samples, double extent_of_samples);
 
-  /// Adds w (m . (x' - y))^2 of each pair, where m is the mean direction of the normal at y and the reflected normal at
-  /// x.
-  void addPointToPlane(const PairBlock& pairs);
+  /// Terms of w (m . (x' - y))^2 of each pair, where m is the mean direction of the normal at y and the reflected
+  /// normal at x. The upper half of h stays 0.
+  void pointToPlane(const PairBlock& pairs, StepTerms& terms) const;
 
-  /// Adds w |x' - y|^2 of each pair.
-  void addPointToPoint(const PairBlock& pairs);
+  /// Terms of w |x' - y|^2 of each pair.
+  void pointToPoint(const PairBlock& pairs, StepTerms& terms) const;
+
+  void add(const StepTerms& terms);
 
   ReflectionPlane moved(const Eigen::Vector3d& step) const;
 };
