@@ -61,6 +61,12 @@ std::array<int, kNumWitnesses> witnessesOf(int self, const int* neighbours, int 
   return witnesses;
 }
 
+/// Distance between neighbouring samples.
+/// \param sq_radius squared distance of the last one of \p count points, the first of which is the sample.
+float spacingOf(double sq_radius, int count) {
+  return static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
+}
+
 }  // namespace
 
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours, int num_threads,
@@ -91,22 +97,26 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
       if (neighbours) neighbours->sq_reach[i] = static_cast<float>(sq_radius);
       const double offset = plane.offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
       geometry.at_border[i] = offset > kBorderOffset * std::sqrt(sq_radius) ? 1 : 0;
-      geometry.spacing[i] = static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
+      geometry.spacing[i] = spacingOf(sq_radius, count);
     }
   });
   return geometry;
 }
 
-std::vector<float> localRoughness(const Points& points, const ClosestPointSearch& search, const Points& places,
-                                  int num_neighbours) {
+GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& places,
+                                 int num_neighbours) {
   const int count = numToSearch(points.cols(), num_neighbours);
   std::vector<int> indices;
   std::vector<float> sq_distances;
   search.search(places, count, indices, sq_distances);
-  std::vector<float> roughness(static_cast<std::size_t>(places.cols()));
-  for (Eigen::Index i = 0; i < places.cols(); ++i)
-    roughness[i] = fitTangentPlane(points, places.col(i), indices.data() + i * count, count).roughness;
-  return roughness;
+  GeometryAtPlaces geometry{Points(3, places.cols()), {}, {}};
+  for (Eigen::Index i = 0; i < places.cols(); ++i) {
+    const TangentPlane plane = fitTangentPlane(points, places.col(i), indices.data() + i * count, count);
+    geometry.normals.col(i) = plane.normal;
+    geometry.roughness.push_back(plane.roughness);
+    geometry.spacing.push_back(spacingOf(sq_distances[static_cast<std::size_t>(i * count + count - 1)], count));
+  }
+  return geometry;
 }
 
 }  // namespace pcl_symmetry
