@@ -91,6 +91,7 @@ TEST(PoseScreening, FindsTheShapeAndImprovesItsPose) {
       PoseScreeningOptions options;
       options.num_shapes = 2;
       options.num_poses = 3;
+      options.most_behind = 2.0;  // no shape is left out
       const auto found = screenPoses(ScreenedSurface(scanOfHalfABox(kBoxes[k], scale)), shapes, options);
       ASSERT_EQ(found.size(), 2u);
       EXPECT_EQ(found[0].shape, k) << scale;
@@ -122,9 +123,15 @@ TEST(PoseScreening, ShapesThatFillEmptySpaceAreLeftBehind) {
   const ScreenedSurface narrow_box = screenedBox(half), wide_box = screenedBox(wide);
   const std::vector<PosesOfShape> shapes = {{&wide_box, {Eigen::Isometry3d::Identity()}},
                                             {&narrow_box, {Eigen::Isometry3d::Identity()}}};
-  const auto found = screenPoses(ScreenedSurface(evenSurfacePoints(face, 120, 1), seen), shapes);
+  const ScreenedSurface scan(evenSurfacePoints(face, 120, 1), seen);
+  const auto found = screenPoses(scan, shapes);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].shape, 1);
+  PoseScreeningOptions options;
+  options.least_shapes = 1;
+  EXPECT_EQ(screenPoses(scan, shapes, options).size(), 1u) << "the wide box is far behind";
+  options.most_behind = 2.0;
+  EXPECT_EQ(screenPoses(scan, shapes, options).size(), 2u);
 }
 
 TEST(PoseScreening, ThreadsDoNotChangeIt) {

@@ -24,7 +24,7 @@ constexpr int kTurns = 16;
 constexpr int kTurnBits = 8, kStepBits = 4;                 // derived: a turn is stored in 1/256, kTurns have 4 bits
 constexpr std::uint32_t kTurnMask = (1u << kTurnBits) - 1;  // derived: see above
 // Points of a scan that vote, each with all others. chosen: half misses poses, twice takes twice the time.
-constexpr int kReferences = 30;
+constexpr int kReferences = 20;
 // Poses of one shape that a point of the scan votes for. chosen: half loses that of the true place among those that
 // look alike, twice takes four times as long to compare them.
 constexpr int kPosesOfPoint = 3;
