@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "pcl_symmetry/core/detection/plane_detection.h"
+
+namespace pcl_symmetry {
+
+/// True where a plane is neither upright nor level on any of the supports that carry an object, see
+/// Visibility::withSupport(); false where nothing carries it.
+/// \param points of the object, 3 x N, finite, N >= 1.
+bool slants(const ReflectionPlane& plane, const PointsRef& points, const Visibility& seen);
+
+/// Lowers the confidence of planes that slant (not in the paper): what stands on a table was made to stand there, or
+/// lies on one of its sides, and then its planes are upright or level, but for few. A plane that maps noise or a part
+/// of an object onto itself slants as it likes.
+/// \param planes of one detection, see Detection::planes: symmetries that become doubtful go behind the others.
+/// \param options of that detection.
+void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const PointsRef& points, const Visibility& seen,
+                        const DetectionOptions& options);
+
+}  // namespace pcl_symmetry
