@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/base/constants.h"
 
@@ -31,18 +30,24 @@ double withOdds(double confidence, double factor) {
 
 }  // namespace
 
-bool slants(const ReflectionPlane& plane, const PointsRef& points, const Visibility& seen) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector4d& support : seen.supports()) lowest = std::min(lowest, heightOf(points, support));
-  const double reach = lowest + kTouching * 2.0 * boundingBall(points).radius;
-  bool slanting = false;
-  for (const Eigen::Vector4d& support : seen.supports()) {
-    if (heightOf(points, support) > reach) continue;
-    const double angle = std::acos(std::min(1.0, std::abs(support.head<3>().normalized().dot(plane.normal()))));
-    if (angle < kUpright || angle > 0.5 * kPi - kUpright) return false;
-    slanting = true;
-  }
-  return slanting;
+std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen) {
+  std::vector<double> heights;
+  for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
+  if (heights.empty()) return {};
+  const double reach =
+      *std::min_element(heights.begin(), heights.end()) + kTouching * 2.0 * boundingBall(points).radius;
+  std::vector<Eigen::Vector3d> normals;
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    if (heights[i] <= reach) normals.push_back(seen.supports()[i].head<3>().normalized());
+  return normals;
+}
+
+bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals) {
+  const auto is_along = [&](const Eigen::Vector3d& normal) {
+    const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
+    return angle <= kUpright || angle >= 0.5 * kPi - kUpright;
+  };
+  return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
 
 void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const PointsRef& points, const Visibility& seen,
@@ -50,8 +55,9 @@ void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const PointsRef& poi
   const auto is_decided = [](const SymmetryPlane& plane) {
     return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
   };
+  const std::vector<Eigen::Vector3d> normals = carryingNormals(points, seen);
   for (SymmetryPlane& plane : planes) {
-    if (!is_decided(plane) || !slants(plane, points, seen)) continue;
+    if (!is_decided(plane) || !slants(plane, normals)) continue;
     plane.confidence = withOdds(plane.confidence, kSlantedOdds);
     plane.kind = plane.confidence >= options.min_confidence ? PlaneKind::Symmetry
                  : plane.confidence >= options.min_possible ? PlaneKind::Possible

@@ -6,10 +6,13 @@
 
 namespace pcl_symmetry {
 
-/// True where a plane is neither upright nor level on any of the supports that carry an object, see
-/// Visibility::withSupport(); false where nothing carries it.
+/// The supports that carry an object, see Visibility::withSupport(): the nearest one and those that it touches, too.
 /// \param points of the object, 3 x N, finite, N >= 1.
-bool slants(const ReflectionPlane& plane, const PointsRef& points, const Visibility& seen);
+/// \return their unit normals.
+std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen);
+
+/// True where a plane is neither upright nor level on any of these supports; false without one.
+bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
 
 /// Lowers the confidence of planes that slant (not in the paper): what stands on a table was made to stand there, or
 /// lies on one of its sides, and then its planes are upright or level, but for few. A plane that maps noise or a part
