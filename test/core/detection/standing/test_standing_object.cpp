@@ -70,13 +70,13 @@ TEST(StandingObject, ItStandsOnTheNearestSupport) {
 TEST(StandingObject, SlantedPlanesAreDoubtedAndGoBehind) {
   const Points points = cubeAt(0.0);
   const Visibility seen = seenFromAbove(points).withSupport(kTable, 0.0);
-  const std::vector<SymmetryPlane> found = {planeAt(40.0, 0.0, 0.95), planeAt(90.0, 0.0, 0.6),
+  const std::vector<SymmetryPlane> found = {planeAt(40.0, 0.0, 0.95), planeAt(90.0, 0.0, 0.7),
                                             planeAt(30.0, 0.0, 0.55)};
   DetectionOptions options;
   std::vector<SymmetryPlane> planes = found;
   doubtSlantedPlanes(planes, points, seen, options);
   ASSERT_EQ(planes.size(), 2u) << "the last one is not even possible";
-  EXPECT_EQ(planes[0].confidence, 0.6);
+  EXPECT_EQ(planes[0].confidence, 0.7);
   EXPECT_EQ(planes[0].kind, PlaneKind::Symmetry);
   EXPECT_NEAR(planes[1].normal().z(), std::cos(40.0 * kPi / 180.0), 1e-6);
   EXPECT_EQ(planes[1].kind, PlaneKind::Symmetry) << "0.95 is sure enough";
