@@ -23,7 +23,8 @@ constexpr double kLeastDistance = 0.2;
 constexpr int kTurns = 16;
 constexpr int kTurnBits = 8, kStepBits = 4;                 // derived: a turn is stored in 1/256, kTurns have 4 bits
 constexpr std::uint32_t kTurnMask = (1u << kTurnBits) - 1;  // derived: see above
-// Points of a scan that vote, each with all others. chosen: half misses poses, twice takes twice the time.
+// Points of a scan that vote, each with all others. measured: of 119 objects of scenes of fold 0 that are hidden by 30
+// to 70 %, with the noise of a depth camera, 114 get their names with 20 and with 30, 104 and 105 the right pose.
 constexpr int kReferences = 20;
 // Poses of one shape that a point of the scan votes for. chosen: half loses that of the true place among those that
 // look alike, twice takes four times as long to compare them.
@@ -34,10 +35,10 @@ constexpr double kSameAngle = 0.4, kSamePlace = 0.15;
 // Weight of a pair that as many points have as the mean of all, and greatest weight. chosen: weights fall with the root
 // of their number; all weights alike give the votes to flat shapes.
 constexpr double kMeanWeight = 8.0, kMostWeight = 64.0;
-// Shapes of a block. derived: the votes of their points, 8 kB a shape, leave room for pairs in a cache of 48 kB.
-// measured: 8 take as long, 1 and 16 longer.
+// Shapes of a block: their votes, 16 kB each, and their pairs, 250 kB each, stay in a cache of 2 MB. chosen: half
+// visits each key twice as often, twice fills the cache.
 constexpr int kShapesOfBlock = 4;
-constexpr std::uint32_t kPairsTogether = 128;  // chosen: half and twice take as long
+constexpr std::uint32_t kPairsTogether = 128;  // chosen: half and twice change little: 26 are usual
 
 /// Where the votes of pairs are counted: for each the first point and the step of the turn that it needs.
 PCL_SYMMETRY_MULTIVERSION void findPlaces(const std::uint32_t* __restrict pairs, std::uint32_t size, std::uint32_t turn,

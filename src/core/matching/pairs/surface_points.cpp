@@ -24,7 +24,7 @@ constexpr double kCovered = 0.5;
 // Points that the area is measured at. derived: squared spacings from 16 neighbours are off by a quarter, the mean of
 // 1000 by 1 %, which changes the number of points by as much.
 constexpr std::size_t kAreaSamples = 1000;
-constexpr int kComparedTogether = 64;  // points. chosen: half and twice take as long
+constexpr int kComparedTogether = 64;  // points. chosen: half calls more often, twice compares more than it must
 
 PCL_SYMMETRY_MULTIVERSION int countWithin(const float* __restrict x, const float* __restrict y,
                                           const float* __restrict z, int size, const float* point, float sq_distance) {
