@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/detection/standing/standing_object.h"
 #include "core/evidence/plane_support.h"
 
 namespace pcl_symmetry::detail {
@@ -19,6 +20,7 @@ DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const Symmetry
   static_cast<Detection&>(found) =
       edt ? refineMaxima(points, *edt, map, options, search ? search(*edt) : nullptr, visibility, given)
           : detectPlanes(points, options, search, visibility, given);
+  if (visibility && !visibility->supports().empty()) doubtSlantedPlanes(found.planes, points, *visibility, options);
   found.points = std::move(points);
   return found;
 }

@@ -173,7 +173,7 @@ SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices&
     spacing[i] =
         std::sqrt(static_cast<float>(kPi) * sq_distances[(i + 1) * static_cast<std::size_t>(num_neighbours) - 1] /
                   static_cast<float>(std::max(1, num_neighbours - 1)));
-  return {median(std::move(spacing)), median(localRoughness(surface, *search, places))};
+  return {median(std::move(spacing)), median(localGeometryAt(surface, *search, places).roughness)};
 }
 
 std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,

@@ -33,6 +33,12 @@ std::array<int, kNumWitnesses> witnessesOf(int self, const int* neighbours, int 
   return witnesses;
 }
 
+/// Distance between neighbouring samples.
+/// \param sq_radius squared distance of the last one of \p count points, the first of which is the sample.
+float spacingOf(double sq_radius, int count) {
+  return static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
+}
+
 }  // namespace
 
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours, int num_threads,
@@ -68,26 +74,30 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
       if (neighbours) neighbours->sq_reach[i] = static_cast<float>(sq_radius);
       const double offset = offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
       geometry.at_border[i] = offset > kBorderOffset * std::sqrt(sq_radius) ? 1 : 0;
-      geometry.spacing[i] = static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
+      geometry.spacing[i] = spacingOf(sq_radius, count);
     }
   });
   return geometry;
 }
 
-std::vector<float> localRoughness(const Points& points, const ClosestPointSearch& search, const Points& places,
-                                  int num_neighbours) {
+GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& places,
+                                 int num_neighbours) {
   const int count = numToSearch(points.cols(), num_neighbours);
   std::vector<int> indices;
   std::vector<float> sq_distances;
   search.search(places, count, indices, sq_distances);
-  std::vector<float> roughness(static_cast<std::size_t>(places.cols()));
+  GeometryAtPlaces geometry{Points(3, places.cols()), {}, {}};
   TangentPlanes planes;
   for (Eigen::Index begin = 0; begin < places.cols(); begin += TangentPlanes::kMost) {
     const auto size = std::min<Eigen::Index>(TangentPlanes::kMost, places.cols() - begin);
     planes.fit(points, places.middleCols(begin, size), indices.data() + begin * count, count);
-    std::copy_n(planes.roughness, size, roughness.begin() + begin);
+    for (Eigen::Index k = 0; k < size; ++k) {
+      geometry.normals.col(begin + k) << planes.normal[0][k], planes.normal[1][k], planes.normal[2][k];
+      geometry.roughness.push_back(planes.roughness[k]);
+      geometry.spacing.push_back(spacingOf(sq_distances[static_cast<std::size_t>((begin + k + 1) * count - 1)], count));
+    }
   }
-  return roughness;
+  return geometry;
 }
 
 }  // namespace pcl_symmetry

@@ -45,12 +45,16 @@ struct FoundNeighbours {
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours, int num_threads,
                             FoundNeighbours* neighbours = nullptr);
 
-/// LocalGeometry::roughness at a few of the points.
+/// A part of LocalGeometry at a few of the points.
+struct GeometryAtPlaces {
+  Points normals;                         ///< 3 x M
+  std::vector<float> roughness, spacing;  ///< M values, input units
+};
+
 /// \param points 3 x N, finite.
 /// \param search over the same points.
 /// \param places 3 x M, some of the points.
-/// \return M values, input units.
-std::vector<float> localRoughness(const Points& points, const ClosestPointSearch& search, const Points& places,
-                                  int num_neighbours = kNumSupportNeighbours);
+GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& places,
+                                 int num_neighbours = kNumSupportNeighbours);
 
 }  // namespace pcl_symmetry

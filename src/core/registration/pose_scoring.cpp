@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/registration/covariance/pose_covariance.h"
+
 namespace pcl_symmetry {
 
 namespace {
@@ -84,22 +86,35 @@ public:
 
   /// w (n . (x + rotation x x + translation) - n . y)^2.
   void addPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& n, double weight) {
-    Vector6d row;
-    row << x.cross(n) / unit_, n;
-    hessian_.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-    gradient_ += weight * n.dot(y - x) / unit_ * row;
+    const Eigen::Vector3d lever = x.cross(n) / unit_;
+    const double apart = weight * n.dot(y - x) / unit_;
+    turns_ += weight * lever * lever.transpose();
+    mixed_ += weight * n * lever.transpose();
+    moves_ += weight * n * n.transpose();
+    of_turn_ += apart * lever;
+    of_move_ += apart * n;
   }
 
-  /// w |x + rotation x x + translation - y|^2.
+  /// w |x + rotation x x + translation - y|^2: the sum of addPlane() over three normals.
   void addPoint(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double weight) {
-    for (int k = 0; k < 3; ++k) addPlane(x, y, Eigen::Vector3d::Unit(k), weight);
+    const Eigen::Vector3d arm = x / unit_, apart = weight / unit_ * (y - x);
+    turns_ -= weight * arm * arm.transpose();
+    turns_.diagonal().array() += weight * arm.squaredNorm();
+    sum_of_arms_ += weight * arm;
+    moves_.diagonal().array() += weight;
+    of_turn_ += arm.cross(apart);
+    of_move_ += apart;
   }
 
   /// The motion of least squares; no motion where the points fix none.
   Eigen::Isometry3d motion() const {
-    Eigen::Matrix<double, 6, 6> hessian = hessian_;
+    const Eigen::Matrix3d mixed = mixed_ - crossMatrix(sum_of_arms_);
+    Eigen::Matrix<double, 6, 6> hessian;
+    hessian << turns_, mixed.transpose(), mixed, moves_;
+    Vector6d gradient;
+    gradient << of_turn_, of_move_;
     hessian.diagonal().array() += kInertia + kRelativeInertia * hessian.diagonal().maxCoeff();
-    const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient_);
+    const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
     Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
     if (!motion.allFinite()) return moved;
     const double angle = motion.head<3>().norm();
@@ -112,8 +127,10 @@ private:
   using Vector6d = Eigen::Matrix<double, 6, 1>;
 
   double unit_;
-  Eigen::Matrix<double, 6, 6> hessian_ = Eigen::Matrix<double, 6, 6>::Zero();
-  Vector6d gradient_ = Vector6d::Zero();
+  // Of the turn with itself, of the translation with the turn, of the translation with itself.
+  Eigen::Matrix3d turns_ = Eigen::Matrix3d::Zero(), mixed_ = turns_, moves_ = turns_;
+  Eigen::Vector3d sum_of_arms_ = Eigen::Vector3d::Zero();  // of whole points, see addPoint()
+  Eigen::Vector3d of_turn_ = sum_of_arms_, of_move_ = sum_of_arms_;
 };
 
 }  // namespace

@@ -47,7 +47,7 @@ Points everyNth(const Points& points, Eigen::Index stride) {
 
 /// Median distance of neighbours from the tangent planes at every \p stride-th point.
 double typicalRoughness(const Points& surface, Eigen::Index stride) {
-  return median(localRoughness(surface, *makeTreeSearch(surface), everyNth(surface, stride)));
+  return median(localGeometryAt(surface, *makeTreeSearch(surface), everyNth(surface, stride)).roughness);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ PairSearch::PairSearch(std::vector<StoredModel> models, const PointReader& read,
       return;
     }
     std::vector<SurfacePoints> few = evenSurfacePoints(
-        read(models_[i]), {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed, 1);
+        read(models_[i]), {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed);
     shapes_[i] = std::make_shared<const Shape>(Shape{std::move(few[0]), ScreenedSurface(few[1])});
   });
   std::vector<SurfacePoints> of_pairs;
@@ -45,7 +45,7 @@ std::size_t PairSearch::indexOf(std::int64_t model) const {
 std::vector<ModelOfView> PairSearch::nearest(const Points& scan, const Visibility& seen,
                                              const std::vector<ModelOfView>& others,
                                              const PoseScreeningOptions& options) const {
-  const SurfacePoints points = evenSurfacePoints(scan, PointPairIndex::kScanPoints, kPairSeed, options.num_threads);
+  const SurfacePoints points = evenSurfacePoints(scan, PointPairIndex::kScanPoints, kPairSeed);
   std::vector<PosesOfShape> poses;
   for (const auto& shape : shapes_) poses.push_back({&shape->screened, {}});
   const auto add = [&](std::size_t model, const std::vector<Eigen::Isometry3d>& more) {

@@ -34,7 +34,7 @@ const Eigen::Vector3d kHalves[] = {
 std::vector<SurfacePoints> shapes(double scale) {
   std::vector<SurfacePoints> made;
   for (const Eigen::Vector3d& half : kHalves)
-    made.push_back(evenSurfacePoints(scale * lumpyEllipsoid(half, 4000, 1), PointPairIndex::kShapePoints, 1, 1));
+    made.push_back(evenSurfacePoints(scale * lumpyEllipsoid(half, 4000, 1), PointPairIndex::kShapePoints, 1));
   return made;
 }
 
@@ -77,7 +77,7 @@ double leastMeanDistance(const Points& scan, const std::vector<Eigen::Isometry3d
 
 TEST(SurfacePoints, AreSpreadEvenly) {
   const Points points = lumpyEllipsoid(kHalves[0], 4000, 1);
-  const SurfacePoints few = evenSurfacePoints(points, 200, 1, 1);
+  const SurfacePoints few = evenSurfacePoints(points, 200, 1);
   EXPECT_LE(few.points.cols(), 200);
   EXPECT_GT(few.points.cols(), 150);
   float least = 1.0f;
@@ -87,8 +87,8 @@ TEST(SurfacePoints, AreSpreadEvenly) {
   }
   // derived: of 200 points drawn at random on 5 units of area, two would be within sqrt(5 / (pi 200^2 / 2)) = 0.01.
   EXPECT_GT(least, 0.05f);
-  EXPECT_EQ(evenSurfacePoints(points.leftCols(50), 200, 1, 1).points.cols(), 50);
-  const std::vector<SurfacePoints> both = evenSurfacePoints(points, {100, 200}, 1, 1);
+  EXPECT_EQ(evenSurfacePoints(points.leftCols(50), 200, 1).points.cols(), 50);
+  const std::vector<SurfacePoints> both = evenSurfacePoints(points, {100, 200}, 1);
   ASSERT_EQ(both.size(), 2u);
   EXPECT_LE(both[0].points.cols(), 100);
   EXPECT_EQ(both[1].points, few.points);
@@ -101,7 +101,7 @@ TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {
     const PointPairIndex index(made, 1);
     ASSERT_EQ(index.numShapes(), 5);
     for (int k = 0; k < 5; ++k) {
-      const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[k], scale), PointPairIndex::kScanPoints, 1, 1);
+      const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[k], scale), PointPairIndex::kScanPoints, 1);
       const std::vector<ShapeOfPairs> found = index.nearest(scan);
       ASSERT_EQ(found.size(), 5u);
       EXPECT_EQ(found[0].shape, k) << scale;
@@ -115,7 +115,7 @@ TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {
 }
 
 TEST(PointPairIndex, ThreadsDoNotChangeIt) {
-  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[1], 1.0), PointPairIndex::kScanPoints, 1, 1);
+  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[1], 1.0), PointPairIndex::kScanPoints, 1);
   std::vector<ShapeOfPairs> found[2];
   for (int i = 0; i < 2; ++i) {
     PairSearchOptions options;
@@ -137,12 +137,12 @@ TEST(PointPairIndex, ThreadsDoNotChangeIt) {
 TEST(PointPairIndex, DegenerateShapesAreFoundByNoPair) {
   const Points same = Points::Constant(3, 30, 2.0f);
   std::vector<SurfacePoints> with = shapes(1.0);
-  with.push_back(evenSurfacePoints(same, 20, 1, 1));
+  with.push_back(evenSurfacePoints(same, 20, 1));
   const PointPairIndex index(with, 1);
-  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[0], 1.0), PointPairIndex::kScanPoints, 1, 1);
+  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[0], 1.0), PointPairIndex::kScanPoints, 1);
   EXPECT_EQ(index.nearest(scan).front().shape, 0);
   EXPECT_EQ(index.nearest(scan).back().votes, 0.0);
-  for (const ShapeOfPairs& shape : index.nearest(evenSurfacePoints(same, 20, 1, 1))) EXPECT_EQ(shape.votes, 0.0);
+  for (const ShapeOfPairs& shape : index.nearest(evenSurfacePoints(same, 20, 1))) EXPECT_EQ(shape.votes, 0.0);
   EXPECT_TRUE(PointPairIndex({}, 1).nearest(scan).empty());
 }
 

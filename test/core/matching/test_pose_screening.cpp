@@ -27,7 +27,7 @@ Points pointsOfBox(const Eigen::Vector3d& half, int count, std::uint64_t seed) {
 }
 
 ScreenedSurface screenedBox(const Eigen::Vector3d& half) {
-  return ScreenedSurface(evenSurfacePoints(pointsOfBox(half, 5000, 1), ScreenedSurface::kShapePoints, 1, 1));
+  return ScreenedSurface(evenSurfacePoints(pointsOfBox(half, 5000, 1), ScreenedSurface::kShapePoints, 1));
 }
 
 const Eigen::Vector3d kBoxes[] = {{1.0, 0.6, 0.3}, {0.8, 0.8, 0.5}, {1.2, 0.2, 0.4}};
@@ -48,7 +48,7 @@ SurfacePoints scanOfHalfABox(const Eigen::Vector3d& half, double scale) {
   for (std::size_t i = 0; i < kept.size(); ++i)
     points.col(static_cast<Eigen::Index>(i)) =
         (scannedBox(scale).inverse() * Eigen::Vector3d(scale * all.col(kept[i]).cast<double>())).cast<float>();
-  return evenSurfacePoints(points, 120, 1, 1);
+  return evenSurfacePoints(points, 120, 1);
 }
 
 /// A box is the same after half turns about its axes.
@@ -91,6 +91,7 @@ TEST(PoseScreening, FindsTheShapeAndImprovesItsPose) {
       PoseScreeningOptions options;
       options.num_shapes = 2;
       options.num_poses = 3;
+      options.most_behind = 2.0;  // no shape is left out
       const auto found = screenPoses(ScreenedSurface(scanOfHalfABox(kBoxes[k], scale)), shapes, options);
       ASSERT_EQ(found.size(), 2u);
       EXPECT_EQ(found[0].shape, k) << scale;
@@ -122,9 +123,15 @@ TEST(PoseScreening, ShapesThatFillEmptySpaceAreLeftBehind) {
   const ScreenedSurface narrow_box = screenedBox(half), wide_box = screenedBox(wide);
   const std::vector<PosesOfShape> shapes = {{&wide_box, {Eigen::Isometry3d::Identity()}},
                                             {&narrow_box, {Eigen::Isometry3d::Identity()}}};
-  const auto found = screenPoses(ScreenedSurface(evenSurfacePoints(face, 120, 1, 1), seen), shapes);
+  const ScreenedSurface scan(evenSurfacePoints(face, 120, 1), seen);
+  const auto found = screenPoses(scan, shapes);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].shape, 1);
+  PoseScreeningOptions options;
+  options.least_shapes = 1;
+  EXPECT_EQ(screenPoses(scan, shapes, options).size(), 1u) << "the wide box is far behind";
+  options.most_behind = 2.0;
+  EXPECT_EQ(screenPoses(scan, shapes, options).size(), 2u);
 }
 
 TEST(PoseScreening, ThreadsDoNotChangeIt) {
@@ -152,7 +159,7 @@ TEST(PoseScreening, WithoutPosesOrSizeThereIsNoShape) {
   const ScreenedSurface scan(scanOfHalfABox(kBoxes[0], 1.0)), box = screenedBox(kBoxes[0]);
   EXPECT_TRUE(screenPoses(scan, {}).empty());
   EXPECT_TRUE(screenPoses(scan, {{&box, {}}}).empty());
-  const ScreenedSurface point(evenSurfacePoints(Points::Constant(3, 30, 2.0f), 20, 1, 1));
+  const ScreenedSurface point(evenSurfacePoints(Points::Constant(3, 30, 2.0f), 20, 1));
   EXPECT_TRUE(screenPoses(scan, {{&point, {Eigen::Isometry3d::Identity()}}}).empty());
   PoseScreeningOptions none;
   none.num_shapes = 0;

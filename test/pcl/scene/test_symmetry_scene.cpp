@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <set>
 
 #include "pcl/support/error_message.h"
@@ -212,17 +213,24 @@ TEST(SymmetryScene, BulgesOfTheTableAreNoObjects) {
 }
 
 TEST(SymmetryScene, AnyNumberOfThreadsGivesTheSameObjects) {
-  const auto with = [](int num_threads) {
+  const Cloud::Ptr picture = organized(twoBoxes().scan);
+  const auto database = std::make_shared<SymmetryDatabase>(":memory:");
+  for (int object = 1; object <= 2; ++object)
+    database->add("box " + std::to_string(object), Cloud(*picture, twoBoxes().pixelsOf(object)));
+  const auto with = [&](int num_threads) {
     SymmetryScene scene;
     SceneOptions options;
     options.max_points = 1000;
-    options.num_threads = num_threads;
+    options.num_threads = options.recognition.num_threads = num_threads;
+    options.recognition.min_confidence = 0.0;
     scene.setOptions(options);
-    scene.setInputCloud(organized(twoBoxes().scan));
+    scene.setInputCloud(picture);
+    scene.setDatabase(database);
     return scene.compute();
   };
   const SceneAnalysis one = with(1);
   ASSERT_EQ(one.objects.size(), 2u);
+  EXPECT_FALSE(one.objects[0].models.empty());
   for (const int num_threads : {2, 3}) {  // with 3, one object after the other
     const SceneAnalysis many = with(num_threads);
     ASSERT_EQ(many.objects.size(), one.objects.size());
@@ -234,6 +242,12 @@ TEST(SymmetryScene, AnyNumberOfThreadsGivesTheSameObjects) {
       for (std::size_t i = 0; i < a.planes.size(); ++i) {
         EXPECT_EQ(a.planes[i].coefficients(), b.planes[i].coefficients());
         EXPECT_EQ(a.planes[i].confidence, b.planes[i].confidence);
+      }
+      ASSERT_EQ(a.models.size(), b.models.size());
+      for (std::size_t i = 0; i < a.models.size(); ++i) {
+        EXPECT_EQ(a.models[i].name, b.models[i].name);
+        EXPECT_EQ(a.models[i].T_model_scan.matrix(), b.models[i].T_model_scan.matrix());
+        EXPECT_EQ(a.models[i].confidence, b.models[i].confidence);
       }
     }
   }

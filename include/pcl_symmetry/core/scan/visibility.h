@@ -68,6 +68,9 @@ public:
   /// \param margin by which objects may seem to reach into it, input units, >= 0.
   Visibility withSupport(const Eigen::Vector4d& support, double margin) const;
 
+  /// \return these planes with their margins: below n . x + d = 0 is no object.
+  const std::vector<Eigen::Vector4d>& supports() const { return supports_; }
+
   /// Pixels of a picture that is made from points. chosen: 4 MB a picture; half as many pixels blur clouds of more than
   /// two million points, twice as many need 8 MB.
   static constexpr std::size_t kMaxPixels = 1u << 20;

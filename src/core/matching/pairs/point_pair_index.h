@@ -53,28 +53,42 @@ private:
     double weight;
   };
 
-  struct KeyedPair {
-    int key, point;
-    std::uint8_t turn;
+  /// A few shapes whose votes fit into the memory next to the processor.
+  struct Block {
+    int first_shape, end_shape;
+    // Their pairs by key: the first point, counted from the first one of the block, and in the last 8 bits the turn of
+    // the second one about the normal of the first.
+    std::vector<std::uint32_t> key_begins, pairs;
   };
 
-  std::vector<KeyedPair> pairsOf(std::size_t shape) const;
-  void fillKeys(int num_threads);
-  void count(const SurfacePoints& scan, int reference, int sign, std::vector<std::int16_t>& votes) const;
-  void collect(const SurfacePoints& scan, int reference, int sign, const Eigen::Vector3d& center,
-               const std::vector<std::int16_t>& votes, std::vector<std::vector<Vote>>& poses) const;
+  /// Pairs of the shapes that a pair of the scan is like.
+  struct LookUp {
+    std::uint32_t key, turn;
+  };
+
+  /// A point of the scan that votes, with its normal of some sign.
+  struct Reference {
+    Eigen::Matrix3d frame;
+    Eigen::Vector3d point;
+    std::vector<LookUp> look_ups;
+  };
+
+  Block blockOf(int first_shape, int end_shape) const;
+  void fillWeights();
+  Reference referenceOf(const SurfacePoints& scan, int index, int sign) const;
+  void count(const Block& block, const std::vector<LookUp>& look_ups, std::vector<std::int32_t>& votes) const;
+  void collect(int shape, const Reference& reference, const Eigen::Vector3d& center, const std::int32_t* votes,
+               std::vector<Vote>& poses) const;
   ShapeOfPairs clustered(int shape, std::vector<Vote> votes, const Eigen::Vector3d& center, int num_poses) const;
   int keyOf(int distance, int angle, int other_angle, int between) const;
+  std::size_t numKeys() const { return weights_.size(); }
 
   // Points of all shapes, one behind the other: places, normals, where the points of each shape begin.
   Points points_, normals_;
   std::vector<int> begins_ = {0};
   std::vector<double> radii_;  // of the shapes
   int first_distance_ = 0, num_distances_ = 0;
-  // Pairs of all shapes by their keys: the first point, and in the last 8 bits the turn of the second one about the
-  // normal of the first.
-  std::vector<std::uint32_t> key_begins_;
-  std::vector<std::uint32_t> pairs_;
+  std::vector<Block> blocks_;
   std::vector<std::uint8_t> weights_;  // of the keys
 };
 

@@ -17,13 +17,11 @@ struct SurfacePoints {
 /// \param points 3 x N, finite, N >= 1.
 /// \param count >= 1.
 /// \param seed of the choice.
-/// \param num_threads >= 0; 0 = one per core.
 /// \return about \p count points, at most that many, in random order: the first k are spread over the surface too. All
 /// points where there are no more.
-SurfacePoints evenSurfacePoints(const Points& points, int count, std::uint64_t seed, int num_threads);
+SurfacePoints evenSurfacePoints(const Points& points, int count, std::uint64_t seed);
 
 /// The same for several counts: directions of the surface are found once.
-std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::vector<int>& counts, std::uint64_t seed,
-                                             int num_threads);
+std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::vector<int>& counts, std::uint64_t seed);
 
 }  // namespace pcl_symmetry
