@@ -60,55 +60,35 @@ void put(const Column& from, PairBlock::Coordinates& to, int place) {
   for (int k = 0; k < 3; ++k) to[k][place] = static_cast<double>(from[k]);
 }
 
-/// Calls use(block) for all pairs of a range with a weight, in their order.
+/// Adds the terms of all pairs with a weight, in their order.
 /// \param fill fill(i, block, place) writes the points and normals of pair i to a place of a block.
-template <typename Fill, typename Use>
-void forBlocks(const std::vector<double>& weights, std::size_t begin, std::size_t end, const Fill& fill,
-               const Use& use) {
+/// \param terms_of terms_of(block, terms) works out what the pairs of a block add.
+template <typename Fill, typename TermsOf>
+void addAll(StepEquations& equations, const std::vector<double>& weights, const Fill& fill, const TermsOf& terms_of) {
   PairBlock block;
-  for (std::size_t i = begin; i < end; ++i) {
+  StepTerms terms;
+  const auto use = [&] {
+    terms_of(block, terms);
+    equations.add(terms);
+    block.size = 0;
+  };
+  for (std::size_t i = 0; i < weights.size(); ++i) {
     if (weights[i] == 0.0) continue;
     block.weights[block.size] = weights[i];
     fill(static_cast<Eigen::Index>(i), block, block.size++);
-    if (block.size < PairBlock::kMost) continue;
-    use(block);
-    block.size = 0;
+    if (block.size == PairBlock::kMost) use();
   }
-  if (block.size > 0) use(block);
+  if (block.size > 0) use();
 }
 
-/// Adds the terms of all pairs with a weight, in their order.
-/// \param terms_of terms_of(block, terms) works out what the pairs of a block add.
-template <typename Fill, typename TermsOf>
-void addAll(StepEquations& equations, const std::vector<double>& weights, int num_threads, const Fill& fill,
-            const TermsOf& terms_of) {
-  StepTerms terms;
-  if (weights.size() <= kBlockSize || resolveNumThreads(num_threads) == 1) {
-    forBlocks(weights, 0, weights.size(), fill, [&](const PairBlock& block) {
-      terms_of(block, terms);
-      equations.add(terms);
-    });
-    return;
-  }
-  std::vector<std::vector<StepTerms>> of_ranges((weights.size() + kBlockSize - 1) / kBlockSize);
-  parallelRanges(weights.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<StepTerms>& own = of_ranges[begin / kBlockSize];
-    own.reserve(kBlockSize / PairBlock::kMost);
-    forBlocks(weights, begin, end, fill, [&](const PairBlock& block) { terms_of(block, own.emplace_back()); });
-  });
-  for (const std::vector<StepTerms>& of_range : of_ranges)
-    for (const StepTerms& some : of_range) equations.add(some);
-}
-
-/// stepReflectionPlane() of pairs that \p fill writes, see forBlocks().
+/// stepReflectionPlane() of pairs that \p fill writes, see addAll().
 template <typename Fill>
 ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weights, const ReflectionPlane& plane,
-                             int num_threads, const Fill& fill) {
+                             const Fill& fill) {
   const WeightedExtent samples(x, weights);
   if (!(samples.extent > 0.0)) return plane;
   StepEquations across(plane, samples.middle, samples.extent);
-  addAll(across, weights, num_threads, fill,
-         [&](const PairBlock& block, StepTerms& terms) { across.pointToPlane(block, terms); });
+  addAll(across, weights, fill, [&](const PairBlock& block, StepTerms& terms) { across.pointToPlane(block, terms); });
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
   const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
   int num_soft = 0;
@@ -118,8 +98,7 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
     step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
   if (num_soft > 0) {
     StepEquations whole(plane, samples.middle, samples.extent);
-    addAll(whole, weights, num_threads, fill,
-           [&](const PairBlock& block, StepTerms& terms) { whole.pointToPoint(block, terms); });
+    addAll(whole, weights, fill, [&](const PairBlock& block, StepTerms& terms) { whole.pointToPoint(block, terms); });
     const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
     const Eigen::MatrixXd reduced = soft.transpose() * whole.h * soft;
     step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * whole.g);
@@ -210,19 +189,14 @@ struct WeightedPairs {
       : x(pointsAt(surface.points, samples)), y(reflections(x, plane)), weights(samples.size()) {
     step = matchReflections(surface, y, sigma, guesses);
     step.plane = plane;
-    parallelRanges(samples.size(), kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (step.closest[i] < 0) continue;
-        const Eigen::Vector3d reflection = y.col(i).cast<double>();
-        y.col(i) = surface.points.col(step.closest[i]);
-        if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
-        weights[i] =
-            std::exp(-step.sq_distances[i] / (sigma * sigma)) * seenWeight(surface.visibility, reflection, sigma);
-      }
-    });
     double sum = 0.0, sq_sum = 0.0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
       if (step.closest[i] < 0) continue;
+      const Eigen::Vector3d reflection = y.col(i).cast<double>();
+      y.col(i) = surface.points.col(step.closest[i]);
+      if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
+      weights[i] =
+          std::exp(-step.sq_distances[i] / (sigma * sigma)) * seenWeight(surface.visibility, reflection, sigma);
       sum += weights[i];
       sq_sum += weights[i] * step.sq_distances[i];
     }
@@ -264,7 +238,7 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
 ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
                                     const PointsRef& y_normals, const std::vector<double>& weights,
                                     const ReflectionPlane& plane) {
-  return steppedPlane(x, weights, plane, 1, [&](Eigen::Index i, PairBlock& block, int place) {
+  return steppedPlane(x, weights, plane, [&](Eigen::Index i, PairBlock& block, int place) {
     put(x.col(i), block.x, place);
     put(y.col(i), block.y, place);
     put(x_normals.col(i), block.x_normals, place);
@@ -286,7 +260,7 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
     put(surface.normals.col(samples[i]), block.x_normals, place);
     put(surface.normals.col(step.closest[i]), block.y_normals, place);
   };
-  step.plane = steppedPlane(pairs.x, pairs.weights, plane, surface.num_threads, fill);
+  step.plane = steppedPlane(pairs.x, pairs.weights, plane, fill);
   return std::move(step);
 }
 
