@@ -1,7 +1,9 @@
 #include "core/evidence/missing/surface_end.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace pcl_symmetry {
@@ -16,29 +18,63 @@ constexpr float kInFront = 3.0f, kBehind = 4.0f;
 // surface runs into the plane, from the second on it closes before it. chosen: as above; 0.104 with 0.05 less of both,
 // 0.108 with 0.1 less; 0.5 is that of a sphere that is cut through its center, or of random normals.
 constexpr float kRunsInto = 0.65f, kCloses = 0.8f;
-constexpr float kLastPoints =
-    2.0f;  // spacings before the plane. chosen: one has too few points, three the bend of edges
-constexpr double kOutliers = 0.002;   // share of the points. chosen: outliers; twice cuts off small parts
-constexpr int kMostSteps = 200;       // chosen: 20 to 60 are made; where both overlap, there is no end
-constexpr float kLeastGain = 0.02f;   // share of the distance. chosen: 1 degree of its direction
-constexpr float kNoDistance = 1e-4f;  // radii. chosen: far below any spacing
+// Spacings before the plane. chosen: one has too few points, three the bend of edges.
+constexpr float kLastPoints = 2.0f;
+constexpr double kOutliers = 0.002;  // share of the points. chosen: outliers; twice cuts off small parts
+constexpr int kMostSteps = 200;      // chosen: 20 to 60 are made; where both overlap, there is no end
+constexpr float kLeastGain = 0.02f;  // share of the distance. chosen: 1 degree of its direction
+constexpr float kNoDistance = 1.0f;  // spacings. chosen: hulls that near touch or overlap, and the direction is chance
+
+/// Points that are asked again and again which of them is the last one along a direction.
+class Extremes {
+public:
+  explicit Extremes(const Points& points) : points_(points), size_(static_cast<std::size_t>(points.cols())) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Lanes beyond the last point repeat the first one.
+      coordinates_[k].assign((size_ + kLanes - 1) / kLanes * kLanes, points(static_cast<Eigen::Index>(k), 0));
+      for (std::size_t i = 0; i < size_; ++i)
+        coordinates_[k][i] = points(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
+    }
+    along_.resize(coordinates_[0].size());
+  }
+
+  /// The point that is farthest along a direction; of several the first one.
+  Eigen::Vector3f last(const Eigen::Vector3f& direction) {
+    const float *x = coordinates_[0].data(), *y = coordinates_[1].data(), *z = coordinates_[2].data();
+    std::array<float, kLanes> most;
+    most.fill(-std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < along_.size(); i += kLanes) {
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const float value = direction.x() * x[i + k] + direction.y() * y[i + k] + direction.z() * z[i + k];
+        along_[i + k] = value;
+        most[k] = value > most[k] ? value : most[k];
+      }
+    }
+    const auto found = std::find(along_.begin(), along_.end(), *std::max_element(most.begin(), most.end()));
+    const auto index = static_cast<std::size_t>(found - along_.begin());
+    return points_.col(static_cast<Eigen::Index>(index < size_ ? index : 0));
+  }
+
+private:
+  static constexpr std::size_t kLanes = 16;  // derived: floats of the widest vectors; narrower ones take two or four
+
+  const Points& points_;
+  std::size_t size_;
+  std::array<std::vector<float>, 3> coordinates_;
+  std::vector<float> along_;
+};
 
 /// The direction along which two clouds are farthest apart: that between the closest points of their convex hulls
 /// (Gilbert 1966). Where these overlap, a direction in which they overlap little.
-Eigen::Vector3f separatingDirection(const Points& points, const Points& piece) {
+Eigen::Vector3f separatingDirection(const Points& points, const Points& piece, float spacing) {
+  Extremes of_points(points), of_piece(piece);
   Eigen::Vector3f between = piece.rowwise().mean() - points.rowwise().mean();
-  Eigen::VectorXf along;
   for (int step = 0; step < kMostSteps; ++step) {
-    Eigen::Index last = 0, first = 0;
-    along.noalias() = points.transpose() * between;
-    along.maxCoeff(&last);
-    along.noalias() = piece.transpose() * between;
-    along.minCoeff(&first);
-    const Eigen::Vector3f nearest = piece.col(first) - points.col(last);
+    const Eigen::Vector3f nearest = of_piece.last(-between) - of_points.last(between);
     if (between.dot(nearest) >= (1.0f - kLeastGain) * between.squaredNorm()) break;
     const Eigen::Vector3f change = nearest - between;
     const Eigen::Vector3f next = between - std::min(1.0f, between.dot(change) / change.squaredNorm()) * change;
-    if (next.norm() < kNoDistance) break;
+    if (next.norm() < kNoDistance * spacing) break;
     between = next;
   }
   return between.normalized();
@@ -62,7 +98,7 @@ float ramp(float value, float none, float all) {
 
 float beyondEnd(const Points& points, const Points& normals, const Points& piece, double spacing) {
   const auto unit = static_cast<float>(spacing);
-  const Eigen::Vector3f normal = separatingDirection(points, piece);
+  const Eigen::Vector3f normal = separatingDirection(points, piece, unit);
   const Eigen::VectorXf along = points.transpose() * normal;
   const float gap = ((piece.transpose() * normal).minCoeff() - along.maxCoeff()) / unit;
   const float is_beyond = ramp(gap, -kBehind, -kInFront);
