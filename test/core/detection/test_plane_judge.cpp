@@ -128,8 +128,8 @@ TEST(PlaneJudge, ATipThatWasCutOffAThinPartIsMissed) {
     const double x = 1.6 * symmetric(random), y = 0.4 * symmetric(random), side = random.uniform() < 0.5 ? -1.0 : 1.0;
     if (std::abs(x) > 0.4) points.col(size++) = Eigen::Vector3d(x, y - 0.3 * std::abs(x), 0.01 * side).cast<float>();
   }
-  const Points rest = cut(points, 0.05, Eigen::Vector3f::UnitX());
-  const SymmetryPlane* plane = planeAcrossX(detectPlanes(rest));
+  const Detection detection = detectPlanes(cut(points, 0.05, Eigen::Vector3f::UnitX()));
+  const SymmetryPlane* plane = planeAcrossX(detection);
   ASSERT_NE(plane, nullptr);
   EXPECT_EQ(plane->kind, PlaneKind::Symmetry);
   EXPECT_LT(plane->seen, 0.97);
