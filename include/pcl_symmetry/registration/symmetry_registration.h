@@ -110,7 +110,8 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 /// This is a pcl::Registration that needs no guess: align() it like PCL's own classes. Candidates are the poses that
 /// bring the symmetry frames of both clouds together in one of the ways that symmetry leaves open, the guess, and
 /// rotations spread evenly. A candidate is judged by the points of one cloud that lie on the other, and by the points
-/// that lie where the scanner saw that there is nothing. The best candidates are refined by symmetric ICP, as PCL has it.
+/// that lie where the scanner saw that there is nothing. The best candidates are refined by symmetric ICP, as PCL has
+/// it.
 ///
 /// Honours setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
 /// epsilons of the refinement. Points that are not finite are left out. The target is prepared by the first align()

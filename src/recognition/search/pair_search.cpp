@@ -27,8 +27,8 @@ PairSearch::PairSearch(std::vector<StoredModel> models, const PointReader& read,
       shapes_[i] = before->shapes_[known];
       return;
     }
-    std::vector<SurfacePoints> few = evenSurfacePoints(
-        read(models_[i]), {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed);
+    std::vector<SurfacePoints> few =
+        evenSurfacePoints(read(models_[i]), {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed);
     shapes_[i] = std::make_shared<const Shape>(Shape{std::move(few[0]), ScreenedSurface(few[1])});
   });
   std::vector<SurfacePoints> of_pairs;
