@@ -83,7 +83,8 @@ std::vector<PosedModel> PosedScan::refined(int num_refined) {
 }
 
 PosedModel PosedScan::refined(const SearchedModel& model, std::shared_ptr<const PosedSurface> surface) const {
-  const Eigen::Isometry3d pose = refinePoses(surface_, *surface, model.poses, options_).front().T_model_scan;
+  const Eigen::Isometry3d pose =
+      refinePoses(surface_, *surface, RefinementTarget(*surface), model.poses, options_).front().T_model_scan;
   return {{model.name, model.frames.toInput(pose), scoreOf(*surface, pose), 0.0}, surface, pose, model.frames};
 }
 

@@ -26,11 +26,13 @@ public:
         scan_cloud_(swapped_ ? target : source),
         model_cloud_(swapped_ ? source : target),
         scan_(scan_cloud_.surface(frames_.scale)),
-        model_(model_cloud_.surface(frames_.scale)) {}
+        model_(model_cloud_.surface(frames_.scale)),
+        refinement_target_(model_cloud_.refinementTarget(frames_.scale)) {}
 
   const SearchFrames& frames() const { return frames_; }
   const PosedSurface& scan() const { return *scan_; }
   const PosedSurface& model() const { return *model_; }
+  const RefinementTarget& refinementTarget() const { return *refinement_target_; }
   std::shared_ptr<const SymmetryFrame> scanFrame() const { return scan_cloud_.frame(frames_.scale); }
   std::shared_ptr<const SymmetryFrame> modelFrame() const { return model_cloud_.frame(frames_.scale); }
 
@@ -70,6 +72,7 @@ private:
   SearchFrames frames_;
   const PreparedCloud &scan_cloud_, &model_cloud_;
   std::shared_ptr<const PosedSurface> scan_, model_;
+  std::shared_ptr<const RefinementTarget> refinement_target_;
 };
 
 /// The poses that bring the symmetry frames of both clouds together. Each is tried with the center of symmetry that was
@@ -201,7 +204,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   std::vector<RankedPose> poses = searchPoses(clouds.scan(), clouds.model(), hypotheses, search);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("search");
-  if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
+  if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), clouds.refinementTarget(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
   for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});

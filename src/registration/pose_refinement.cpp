@@ -1,14 +1,17 @@
 #include "registration/pose_refinement.h"
 
+#include <pcl/registration/icp.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "core/registration/pose_scoring.h"
-#include "core/registration/refinement/symmetric_icp.h"
 
 namespace pcl_symmetry {
 
 namespace {
+
+using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
 // Points of the scan that ICP uses. chosen: half is less exact, twice takes twice the time.
 constexpr int kRefinedPoints = 1000;
@@ -24,7 +27,52 @@ constexpr double kLeastFinalWidth = 0.015;
 // the front, twice takes more time.
 constexpr double kHopeless = 0.2;
 
+NormalCloud::Ptr cloudOf(const PosedSurface& surface, int max_points) {
+  const auto size = std::min<std::size_t>(surface.order.size(), max_points);
+  auto cloud = pcl::make_shared<NormalCloud>();
+  cloud->resize(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    (*cloud)[i].getVector3fMap() = surface.points.col(surface.order[i]);
+    (*cloud)[i].getNormalVector3fMap() = surface.normals.col(surface.order[i]);
+  }
+  return cloud;
+}
+
+/// Point-to-plane ICP from several poses.
+class PoseRefinement {
+public:
+  PoseRefinement(const PosedSurface& scan, const RefinementTarget& target, double reach,
+                 const CloudRegistrationOptions& options) {
+    icp_.setSearchMethodTarget(target.tree, true);
+    icp_.setInputTarget(target.cloud);
+    icp_.setInputSource(cloudOf(scan, kRefinedPoints));
+    icp_.setUseSymmetricObjective(true);
+    icp_.setEnforceSameDirectionNormals(true);
+    icp_.setMaximumIterations(options.max_iterations);
+    icp_.setMaxCorrespondenceDistance(reach);
+    icp_.setTransformationEpsilon(options.transformation_epsilon);
+    icp_.setTransformationRotationEpsilon(options.rotation_epsilon);
+  }
+
+  /// \return the refined T_model_scan; \p start where ICP fails.
+  Eigen::Isometry3d refined(const Eigen::Isometry3d& start) {
+    NormalCloud aligned;
+    icp_.align(aligned, start.matrix());
+    const Eigen::Isometry3d pose(icp_.getFinalTransformation());
+    return pose.matrix().allFinite() ? pose : start;
+  }
+
+private:
+  pcl::IterativeClosestPointWithNormals<pcl::PointNormal, pcl::PointNormal, double> icp_;
+};
+
 }  // namespace
+
+RefinementTarget::RefinementTarget(const PosedSurface& model)
+    : cloud(cloudOf(model, static_cast<int>(model.order.size()))),
+      tree(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>()) {
+  tree->setInputCloud(cloud);
+}
 
 double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence) {
   return max_correspondence.value_or(std::max(kLeastReach, kReach * std::max(scan.accuracy, model.accuracy)));
@@ -42,17 +90,10 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
   return pose;
 }
 
-std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
+std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model, const RefinementTarget& target,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options) {
   const double accuracy = std::max(scan.accuracy, model.accuracy);
-  SymmetricICPOptions icp;
-  icp.num_points = kRefinedPoints;
-  icp.reach = refinementReach(scan, model, options.max_correspondence);
-  icp.max_iterations = options.max_iterations;
-  icp.translation_epsilon = options.transformation_epsilon;
-  // As PCL takes them: a cosine, which follows from the other one where it is not given.
-  icp.rotation_epsilon =
-      options.rotation_epsilon > 0.0 ? 1.0 - options.rotation_epsilon : options.transformation_epsilon;
+  PoseRefinement icp(scan, target, refinementReach(scan, model, options.max_correspondence), options);
   const PoseScorer scorer(scan, model);
   const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, accuracy), true};
   const auto judged = [&](const Eigen::Isometry3d& pose, int num_points) {
@@ -62,7 +103,7 @@ std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface
   for (const RankedPose& pose : poses) {
     if (pose.score.merit() < poses.front().score.merit() - kHopeless) break;
     const RankedPose before = judged(pose.T_model_scan, pose.num_points);
-    const RankedPose after = judged(refinedBySymmetricICP(scan, model, pose.T_model_scan, icp), kRefinedPoints);
+    const RankedPose after = judged(icp.refined(pose.T_model_scan), kRefinedPoints);
     refined.push_back(after.score.merit() > before.score.merit() ? after : before);
   }
   const std::size_t size = refined.size();

@@ -32,7 +32,7 @@ struct CloudRegistrationOptions {
   bool frames = true;        ///< tries the poses that bring symmetry frames together, beside evenly spread rotations
   FrameOptions frame;        ///< of these frames
   PoseSearchOptions search;  ///< of the search for poses
-  int max_iterations = 30;   ///< of the refinement by symmetric ICP, >= 1
+  int max_iterations = 30;   ///< of the refinement by PCL's point-to-plane ICP, >= 1
   /// Greatest distance of corresponding points in the refinement, input units, > 0; not set: from the data.
   std::optional<double> max_correspondence = {};
   double transformation_epsilon = 1e-8;  ///< of the refinement, as in pcl::Registration, but in radii, >= 0
@@ -110,8 +110,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 /// This is a pcl::Registration that needs no guess: align() it like PCL's own classes. Candidates are the poses that
 /// bring the symmetry frames of both clouds together in one of the ways that symmetry leaves open, the guess, and
 /// rotations spread evenly. A candidate is judged by the points of one cloud that lie on the other, and by the points
-/// that lie where the scanner saw that there is nothing. The best candidates are refined by symmetric ICP, as PCL has
-/// it.
+/// that lie where the scanner saw that there is nothing. The best candidates are refined by PCL's point-to-plane ICP.
 ///
 /// Honours setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
 /// epsilons of the refinement. Points that are not finite are left out. The target is prepared by the first align()
