@@ -20,8 +20,8 @@ struct InferredView {
 /// view is believed if it explains a good part of the variance of the density and if each ray meets the cloud once.
 /// Whole objects, open shells, cut clouds and several views put together have none: so do flat sheets of even density,
 /// which are seen once from everywhere. Single views of which a voxel grid has evened out the density have none either:
-/// nothing tells them from open shells. Neither have fewer than 300 points, whose density is known too little, nor wires,
-/// which are seen once from everywhere.
+/// nothing tells them from open shells. Neither have fewer than 300 points, whose density is known too little, nor
+/// wires, which are seen once from everywhere.
 /// \param points 3 x N, finite.
 /// \param stored a viewpoint that may be a default, frame of the points. It is preferred where it explains the points
 /// as well as the best.
