@@ -173,7 +173,7 @@ std::vector<float> PlaneJudge::unknownMatches(const Reflected& reflected, const 
   const std::vector<char>& open = borders();
   const auto trust = static_cast<float>(held * border_trust_);
   if (trust <= 0.0f) return unknown;
-  unknown = missingCounterparts({cloud_.points, cloud_.geometry, open, cloud_.spacing}, matched, step.closest,
+  unknown = missingCounterparts({*outermost_, cloud_.geometry, open, cloud_.spacing}, matched, step.closest,
                                 reflected.points);
   for (std::size_t i = 0; i < size; ++i)
     if (!matched[i] && isCutOff(reflected.points.col(static_cast<Eigen::Index>(i)))) unknown[i] = 1.0f;
@@ -398,6 +398,7 @@ const std::vector<char>& PlaneJudge::borders() const {
   std::call_once(borders_found_, [this] {
     borders_ =
         openBorders(cloud_.points, *cloud_.search, cloud_.geometry.normals, options_.num_threads, &cloud_.neighbours);
+    outermost_.emplace(cloud_.points);
     cuts_ = findCutPlanes(cloud_.points, borders_, cloud_.spacing, options_.seed);
     const double near = shareNearBorders(borders_, cloud_.geometry);
     border_trust_ = std::clamp((kBordersEverywhere - near) / (kBordersEverywhere - kFewBorders), 0.0, 1.0);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/evidence/missing/cut_planes.h"
+#include "core/evidence/missing/outermost_points.h"
 #include "core/evidence/share/split_surface.h"
 #include "core/neighbours/thin_shape.h"
 #include "core/refinement/plane_fit.h"
@@ -140,9 +141,10 @@ private:
   std::array<double, 2> own_shares_;
   double own_score_;  ///< PlaneEvidence::own_score
   mutable std::once_flag borders_found_;
-  mutable std::vector<char> borders_;   ///< of the cloud; found where they are first asked for
-  mutable std::vector<CutPlane> cuts_;  ///< found together with the borders
-  mutable double border_trust_ = 1.0;   ///< how far borders say what is missing, in [0, 1]; found together with them
+  mutable std::vector<char> borders_;                 ///< of the cloud; found where they are first asked for
+  mutable std::optional<OutermostPoints> outermost_;  ///< of the cloud; found together with the borders
+  mutable std::vector<CutPlane> cuts_;                ///< found together with the borders
+  mutable double border_trust_ = 1.0;  ///< how far borders say what is missing, in [0, 1]; found together with them
 };
 
 }  // namespace pcl_symmetry

@@ -26,7 +26,8 @@ Points between(const Points& points, float low, float high) {
 
 float explained(const Points& points, const Points& piece, double spacing) {
   const auto search = makeFlannSearch(points);
-  return beyondEnd(points, localGeometry(points, *search, kNumSupportNeighbours, 1).normals, piece, spacing);
+  return beyondEnd(OutermostPoints(points), localGeometry(points, *search, kNumSupportNeighbours, 1).normals,
+                   OutermostPoints(piece), spacing);
 }
 
 /// A plate of half the size 1 x 1 x half_height: both faces and its four sides.

@@ -98,8 +98,8 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
       value = std::clamp((share - kLeastExplained) / (kExplained - kLeastExplained), 0.0f, 1.0f);
     }
     if (value < 1.0f && members.size() >= least)
-      value = std::max(
-          value, beyondEnd(surface.points, surface.geometry.normals, pointsAt(reflected, members), surface.spacing));
+      value = std::max(value, beyondEnd(surface.points, surface.geometry.normals,
+                                        OutermostPoints(pointsAt(reflected, members)), surface.spacing));
     for (const int i : members) missing[i] = value;
   }
   return missing;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/evidence/missing/outermost_points.h"
 #include "core/normals/surface_normals.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 
@@ -14,7 +15,7 @@ namespace pcl_symmetry {
 
 /// The samples of a cloud, as points() of NormalizedCloud.
 struct SampledSurface {
-  const Points& points;              ///< 3 x N
+  const OutermostPoints& points;     ///< N
   const LocalGeometry& geometry;     ///< of them
   const std::vector<char>& borders;  ///< what openBorders() returned
   double spacing;                    ///< median distance of the points

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "core/evidence/missing/outermost_points.h"
 
 namespace pcl_symmetry {
 
@@ -11,11 +11,11 @@ namespace pcl_symmetry {
 /// beyond the surface, too, but there the surface closes: its normals stand on the plane. No open border is needed, so
 /// that parts as thin as the spacing, whose borders are not seen, and parts without any edge to what is matched are
 /// told as well.
-/// \param points 3 x N, of the cloud.
+/// \param cloud the N points of the cloud.
 /// \param normals 3 x N, unit, of arbitrary sign.
-/// \param piece 3 x M, reflections of neighbouring points without counterpart, M > 0.
+/// \param piece reflections of neighbouring points without counterpart.
 /// \param spacing median distance of the points.
 /// \return in [0, 1]: 1 where the cloud was cut off before the piece, 0 where a counterpart should be there.
-float beyondEnd(const Points& points, const Points& normals, const Points& piece, double spacing);
+float beyondEnd(const OutermostPoints& cloud, const Points& normals, const OutermostPoints& piece, double spacing);
 
 }  // namespace pcl_symmetry
