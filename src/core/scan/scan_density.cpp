@@ -57,6 +57,8 @@ constexpr int kNumDirections = 128;
 // loses noisy scans, twice searches in vain in most whole clouds.
 constexpr double kHopeless = 1.5;
 constexpr int kNumStarts = 3;  // chosen: two miss a scan in fifty, more take more time
+// chosen: minima are apart by 37 degrees, so that a dozen covers half of all directions; other numbers were not tried
+constexpr std::size_t kMostViewpoints = 12;
 // cosine between starts; chosen: those of one minimum are closer than 37 degrees
 constexpr double kLeastApart = 0.8;
 // radii; chosen: about where a camera stands that the object fills. The distance is searched from there.
@@ -245,29 +247,47 @@ ScanDensity::Candidate ScanDensity::climbed(Candidate best, double first_step, d
   return best;
 }
 
-std::optional<Eigen::Vector3d> ScanDensity::bestViewpoint() const {
-  if (samples_.cols() < static_cast<Eigen::Index>(kFewestSamples)) return std::nullopt;
+/// Directions apart from each other that leave least, each climbed from by the coarse samples; none where all are
+/// hopeless.
+std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t most) const {
   std::vector<Candidate> coarse;
   for (const Eigen::Vector3d& direction : evenDirections(kNumDirections))
     coarse.push_back(
         {direction, std::log(kFirstDistance), unexplainedFrom(kFirstDistance * direction, kNumCoarseSamples)});
   std::stable_sort(coarse.begin(), coarse.end(),
                    [](const Candidate& a, const Candidate& b) { return a.unexplained < b.unexplained; });
-  if (!(coarse.front().unexplained < kHopeless * (varianceOf(kNumCoarseSamples) + kLeastVariance))) return std::nullopt;
-  std::vector<Candidate> starts;
+  std::vector<Candidate> minima;
+  if (!(coarse.front().unexplained < kHopeless * (varianceOf(kNumCoarseSamples) + kLeastVariance))) return minima;
   for (const Candidate& candidate : coarse) {
-    const bool apart = std::all_of(starts.begin(), starts.end(), [&](const Candidate& start) {
+    const bool apart = std::all_of(minima.begin(), minima.end(), [&](const Candidate& start) {
       return start.direction.dot(candidate.direction) < kLeastApart;
     });
-    if (apart) starts.push_back(candidate);
-    if (starts.size() == kNumStarts) break;
+    if (apart) minima.push_back(candidate);
+    if (minima.size() == most) break;
   }
-  for (Candidate& start : starts) start = climbed(start, kFirstStep, kMiddleStep, kNumCoarseSamples);
+  for (Candidate& start : minima) start = climbed(start, kFirstStep, kMiddleStep, kNumCoarseSamples);
+  return minima;
+}
+
+std::optional<Eigen::Vector3d> ScanDensity::bestViewpoint() const {
+  if (samples_.cols() < static_cast<Eigen::Index>(kFewestSamples)) return std::nullopt;
+  const std::vector<Candidate> starts = coarseMinima(kNumStarts);
+  if (starts.empty()) return std::nullopt;
   const auto best = std::min_element(starts.begin(), starts.end(), [](const Candidate& a, const Candidate& b) {
     return a.unexplained < b.unexplained;
   });
   const Eigen::Vector3d eye = climbed(*best, kMiddleStep, kLastStep, samples_.cols()).eye();
   return Eigen::Vector3d(ball_.center + ball_.radius * eye);
+}
+
+std::vector<Eigen::Vector3d> ScanDensity::viewpoints(double most_unexplained) const {
+  std::vector<Eigen::Vector3d> found;
+  if (samples_.cols() < static_cast<Eigen::Index>(kFewestSamples)) return found;
+  for (const Candidate& start : coarseMinima(kMostViewpoints)) {
+    const Candidate minimum = climbed(start, kMiddleStep, kLastStep, samples_.cols());
+    if (minimum.unexplained <= most_unexplained) found.push_back(ball_.center + ball_.radius * minimum.eye());
+  }
+  return found;
 }
 
 }  // namespace pcl_symmetry

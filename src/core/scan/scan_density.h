@@ -36,6 +36,10 @@ public:
   /// near to explaining the density.
   std::optional<Eigen::Vector3d> bestViewpoint() const;
 
+  /// \return viewpoints that leave at most \p most_unexplained, minima of what they leave, the most likely direction
+  /// first. Two flat pieces are as dense from several places.
+  std::vector<Eigen::Vector3d> viewpoints(double most_unexplained) const;
+
   /// Variance of log(density) that is accuracy rather than pattern. chosen: 3 %, the accuracy of a density where a scan
   /// is perfect. Half lets the regular points of a whole object pass for a pattern, twice asks more of flat objects.
   static constexpr double kLeastVariance = 1e-3;
@@ -50,6 +54,7 @@ private:
   double varianceOf(Eigen::Index num_samples) const;
   double unexplainedFrom(const Eigen::Vector3d& eye, Eigen::Index num_samples) const;
   struct Candidate;
+  std::vector<Candidate> coarseMinima(std::size_t most) const;
   Candidate climbed(Candidate start, double first_step, double last_step, Eigen::Index num_samples) const;
 
   BoundingBall ball_;

@@ -1,5 +1,9 @@
 #include "core/scan/viewpoint_inference.h"
 
+#include <limits>
+#include <utility>
+#include <vector>
+
 #include "core/geometry/point_samples.h"
 #include "core/normals/open_borders.h"
 #include "core/scan/scan_density.h"
@@ -75,6 +79,24 @@ Eigen::Vector3d onItsSide(const PointsRef& points, const ScanDensity& density, c
   return as_good && bulgesTowards(points, center, behind) ? behind : best;
 }
 
+/// The view from the place from which the points have the fewest layers, of those from which they may be seen at all.
+/// Two or three flat pieces are as dense as seen from several places.
+template <typename SeenFrom>
+std::optional<InferredView> leastLayered(const PointsRef& points, const std::vector<Eigen::Vector3d>& places,
+                                         const SeenFrom& seenFrom) {
+  std::optional<InferredView> view;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& place : places) {
+    const double layered = layeredShare(points, place);
+    if (layered >= least) continue;
+    if (std::optional<Visibility> seen = seenFrom(place)) {
+      view = {std::move(*seen), place, false};
+      least = layered;
+    }
+  }
+  return view;
+}
+
 }  // namespace
 
 std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vector3d& stored) {
@@ -87,14 +109,20 @@ std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vect
     return left + ScanDensity::kLeastVariance < share * (density.variance() + ScanDensity::kLeastVariance);
   };
   if (!leaves(kMostUnexplained)) return std::nullopt;
-  const bool as_stored = density.unexplained(stored) <= kAsGood * left + kAsGoodBeyond;
+  const double as_good = kAsGood * left + kAsGoodBeyond;
+  const bool as_stored = density.unexplained(stored) <= as_good;
+  const auto seenFrom = [&](const Eigen::Vector3d& position) {
+    const double by_patches = density.unexplainedByPatches(position);
+    if (by_patches > kMostUneven) return std::optional<Visibility>();
+    const bool surely = by_patches <= kSurelyEven && leaves(kSurely);
+    return spaceSeenFrom(points, position, surely ? kSureLimits : kLimits);
+  };
   const Eigen::Vector3d position = as_stored ? stored : onItsSide(points, density, *best);
-  const double by_patches = density.unexplainedByPatches(position);
-  if (by_patches > kMostUneven) return std::nullopt;
-  const bool surely = by_patches <= kSurelyEven && leaves(kSurely);
-  std::optional<Visibility> seen = spaceSeenFrom(points, position, surely ? kSureLimits : kLimits);
-  if (!seen || isWire(points)) return std::nullopt;
-  return InferredView{std::move(*seen), position, as_stored};
+  std::optional<InferredView> view;
+  if (std::optional<Visibility> seen = seenFrom(position)) view = {std::move(*seen), position, as_stored};
+  if (!view) view = leastLayered(points, density.viewpoints(as_good), seenFrom);
+  if (!view || isWire(points)) return std::nullopt;
+  return view;
 }
 
 }  // namespace pcl_symmetry

@@ -18,6 +18,7 @@ struct InferredView {
 ///
 /// Not in the paper. The density of the points decides (ScanDensity): it has a direction, a side and a distance. The
 /// view is believed if it explains a good part of the variance of the density and if each ray meets the cloud once.
+/// Where the best viewpoint is not, others that explain as much are tried, and the one with the fewest layers is taken.
 /// Whole objects, open shells, cut clouds and several views put together have none: so do flat sheets of even density,
 /// which are seen once from everywhere. Single views of which a voxel grid has evened out the density have none either:
 /// nothing tells them from open shells. Neither have fewer than 300 points, whose density is known too little, nor
