@@ -77,6 +77,12 @@ const json& listOf(const json& entry, const char* field, const std::string& wher
   return entry[field];
 }
 
+/// A name as it stands in the file, on one line: line breaks and the like stay escaped.
+std::string onOneLine(const std::string& name) {
+  const std::string quoted = json(name).dump();
+  return quoted.substr(1, quoted.size() - 2);
+}
+
 bool isOneModel(const json& file) {
   for (const char* field : {"symmetries_discrete", "symmetries_continuous", "align_axes", "diameter"})
     if (file.contains(field)) return true;
@@ -158,7 +164,8 @@ std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) 
   if (!file.is_object()) throw InputError(path + ": must be a JSON object of models");
   if (isOneModel(file)) return {{"", symmetriesFromJson(file, path)}};
   std::map<std::string, ListedSymmetries> models;
-  for (const auto& [key, entry] : file.items()) models[key] = symmetriesFromJson(entry, path + ": model " + key);
+  for (const auto& [key, entry] : file.items())
+    models[key] = symmetriesFromJson(entry, path + ": model " + onOneLine(key));
   return models;
 }
 

@@ -1,5 +1,6 @@
 #include "core/scan/viewpoint_inference.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -38,6 +39,11 @@ constexpr double kAsGood = 1.3;
 // variance of the log of the density; chosen: what a depth camera has at 3 degrees from the best viewpoint. Half
 // refuses true viewpoints of scans without noise, twice accepts places that are 10 degrees off.
 constexpr double kAsGoodBeyond = 2.0 * ScanDensity::kLeastVariance;
+
+// Variance of the log of the density that a place may leave that is not the best one. measured: of 1264 moved scans of
+// folds 0 and 1 49 have a viewpoint in this way, 48 of them within 12 degrees of the true one, and leave up to 0.0023;
+// two scans of a block put together leave 0.006. Of 2528 whole and cut clouds none has one.
+constexpr double kMostOfSeveral = 0.003;
 
 // derived: 12 neighbours give a density, so that fewer points have fewer than 25 independent ones, and the three
 // numbers of a viewpoint explain a quarter of their variance by chance.
@@ -89,7 +95,7 @@ std::optional<InferredView> leastLayered(const PointsRef& points, const std::vec
   for (const Eigen::Vector3d& place : places) {
     const double layered = layeredShare(points, place);
     if (layered >= least) continue;
-    if (std::optional<Visibility> seen = seenFrom(place)) {
+    if (std::optional<Visibility> seen = seenFrom(place, kSurelyEven)) {
       view = {std::move(*seen), place, false};
       least = layered;
     }
@@ -111,16 +117,16 @@ std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vect
   if (!leaves(kMostUnexplained)) return std::nullopt;
   const double as_good = kAsGood * left + kAsGoodBeyond;
   const bool as_stored = density.unexplained(stored) <= as_good;
-  const auto seenFrom = [&](const Eigen::Vector3d& position) {
+  const auto seenFrom = [&](const Eigen::Vector3d& position, double most_uneven) {
     const double by_patches = density.unexplainedByPatches(position);
-    if (by_patches > kMostUneven) return std::optional<Visibility>();
+    if (by_patches > most_uneven) return std::optional<Visibility>();
     const bool surely = by_patches <= kSurelyEven && leaves(kSurely);
     return spaceSeenFrom(points, position, surely ? kSureLimits : kLimits);
   };
   const Eigen::Vector3d position = as_stored ? stored : onItsSide(points, density, *best);
   std::optional<InferredView> view;
-  if (std::optional<Visibility> seen = seenFrom(position)) view = {std::move(*seen), position, as_stored};
-  if (!view) view = leastLayered(points, density.viewpoints(as_good), seenFrom);
+  if (std::optional<Visibility> seen = seenFrom(position, kMostUneven)) view = {std::move(*seen), position, as_stored};
+  if (!view) view = leastLayered(points, density.viewpoints(std::min(as_good, kMostOfSeveral)), seenFrom);
   if (!view || isWire(points)) return std::nullopt;
   return view;
 }

@@ -109,6 +109,16 @@ TEST(ModelsInfo, OfDopeIsAFileOfOneModel) {
   EXPECT_EQ(rows.at("").discrete.size(), 1u) << "a matrix as rows";
 }
 
+TEST(ModelsInfo, NamesModelsOnOneLine) {
+  const TemporaryFolder folder;
+  try {
+    readModelsInfo(folder.write("lines.json", R"({"a\nb": []})"));
+    FAIL() << "a list was read as a model";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("model a\\nb must be an object"), std::string::npos) << error.what();
+  }
+}
+
 TEST(ModelsInfo, RefusesWhatIsNoMotion) {
   const TemporaryFolder folder;
   const auto messageOf = [&](const std::string& text) -> std::string {

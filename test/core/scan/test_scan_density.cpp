@@ -40,6 +40,23 @@ TEST(ScanDensity, FindsTheViewpoint) {
   }
 }
 
+TEST(ScanDensity, TwoFlatFacesAreAsDenseFromSeveralPlaces) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    RandomStream random(seed);
+    Eigen::Vector3d along = randomDirection(random);
+    along.z() = 0.0;  // level with the box: it shows two faces
+    const Eigen::Vector3d viewpoint = 4.0 * along.normalized();
+    const ScanDensity density(scan(blockBox(), viewpoint).cloud());
+    const std::vector<Eigen::Vector3d> found = density.viewpoints(density.unexplained(viewpoint) + 2e-3);
+    double nearest = -1.0;
+    for (const Eigen::Vector3d& place : found)
+      nearest = std::max(
+          nearest, (place - density.ball().center).normalized().dot((viewpoint - density.ball().center).normalized()));
+    EXPECT_GT(nearest, std::cos(20.0 * kDegree)) << seed << ": " << found.size();
+  }
+  EXPECT_TRUE(ScanDensity(Points::Ones(3, 5)).viewpoints(1.0).empty());
+}
+
 TEST(ScanDensity, MovesWithThePoints) {
   const Points points = scan(blockL(), {2.5, -3.0, 2.0}).cloud();
   const Eigen::Isometry3d pose = randomPose(3, 5.0);
