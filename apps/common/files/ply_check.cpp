@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "common/files/header_lines.h"
@@ -30,7 +31,7 @@ struct PLYHeader {
   std::string format;
   std::vector<PLYElement> elements;
   std::size_t body = 0;
-  std::int64_t num_columns = 0, num_rows = 0;  ///< of a range image; 0: not given
+  std::optional<std::int64_t> num_columns, num_rows;  ///< of a range image
 };
 
 struct PLYScalar {
@@ -111,15 +112,17 @@ void checkPLYNames(const std::string& path, const PLYHeader& header) {
 
 /// PCL makes as many points as obj_info says, and ends the program where that is fewer than the vertices.
 void checkPLYGrid(const std::string& path, const PLYHeader& header, std::uint64_t num_vertices) {
-  if (header.num_columns == 0 || header.num_rows == 0) return;
-  const std::int64_t num_cells = header.num_columns * header.num_rows;
+  if (!header.num_columns && !header.num_rows) return;
+  const std::int64_t num_columns = header.num_columns.value_or(static_cast<std::int64_t>(num_vertices)),
+                     num_rows = header.num_rows.value_or(1);
+  const std::int64_t num_cells = num_columns * num_rows;
   const auto has_all_cells = [&](const PLYElement& element) {
     return (element.name == "vertex" || element.name == "range_grid") &&
            element.count == static_cast<std::uint64_t>(num_cells) && element.count >= num_vertices;
   };
-  if (header.num_columns > 0 && std::any_of(header.elements.begin(), header.elements.end(), has_all_cells)) return;
-  reject(path, "obj_info num_cols x num_rows = " + std::to_string(header.num_columns) + " x " +
-                   std::to_string(header.num_rows) + ", must be the number of vertices or of range_grid");
+  if (num_columns > 0 && std::any_of(header.elements.begin(), header.elements.end(), has_all_cells)) return;
+  reject(path, "obj_info num_cols x num_rows = " + std::to_string(num_columns) + " x " + std::to_string(num_rows) +
+                   ", must be the number of vertices or of range_grid");
 }
 
 void checkPLYHeader(const std::string& path, const PLYHeader& header, std::uint64_t available) {
