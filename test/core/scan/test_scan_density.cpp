@@ -52,7 +52,8 @@ TEST(ScanDensity, TwoFlatFacesAreAsDenseFromSeveralPlaces) {
     for (const Eigen::Vector3d& place : found)
       nearest = std::max(
           nearest, (place - density.ball().center).normalized().dot((viewpoint - density.ball().center).normalized()));
-    EXPECT_GT(nearest, std::cos(20.0 * kDegree)) << seed << ": " << found.size();
+    // Measured: at most 9 degrees.
+    EXPECT_GT(nearest, std::cos(15.0 * kDegree)) << seed << ": " << found.size();
   }
   EXPECT_TRUE(ScanDensity(Points::Ones(3, 5)).viewpoints(1.0).empty());
 }
