@@ -9,8 +9,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Points for each square of the side of a box. chosen: 10 000 points of a surface lie in some 200 cells of 50, so that a
-// question looks at about as many boxes as points; other numbers were not tried.
+// Points for each square of the side of a box. chosen: 10 000 points of a surface lie in some 200 cells of 50, so that
+// a question looks at about as many boxes as points; other numbers were not tried.
 constexpr double kPointsPerSquare = 160.0;
 
 /// The cell of each point, in a box that has as many cells along each side.
