@@ -16,10 +16,10 @@ struct ConfidenceFit {
 
 // clang-format off
 // fitted: 500 models and shapes, tolerance 0.01 of the diameter.
-inline const ConfidenceFit kConfidenceFit{{{{2.005, -1.569, -0.4655, -2.851, -0.02213, -9.081, -3.823},
-                                            {0.6539, -1.085, -0.6108, -11.45, -2.49, -0.9441},
+inline const ConfidenceFit kConfidenceFit{{{{2.318, -1.575, -0.5353, -3.24, -0.09108, -9.206, -4.142},
+                                            {0.6356, -1.081, -0.6048, -11.16, -2.523, -0.9471},
                                             {4.957, -0.7157, -1.61, -0.6965, -2.396}}},
-                                          {{{-6.72, 0.621}, {-11.8, 0.401}, {-21.5, 0.766}}}};
+                                          {{{-5.12, 0.574}, {-12.3, 0.4}, {-21.5, 0.766}}}};
 // clang-format on
 
 }  // namespace pcl_symmetry

@@ -66,7 +66,9 @@ BoundingBall boundingBall(const PointsRef& points) {
   for (int i = 1; i <= kNumIterations; ++i) {
     const double sq_greatest = sqDistancesFrom(ball.center.data(), probed[0].data(), probed[1].data(), probed[2].data(),
                                                sq_distances.size(), sq_distances.data());
-    const auto index = std::find(sq_distances.begin(), sq_distances.end(), sq_greatest) - sq_distances.begin();
+    const auto farthest = std::find(sq_distances.begin(), sq_distances.end(), sq_greatest);
+    if (farthest == sq_distances.end()) break;  // a point that is not finite: so is the center
+    const auto index = farthest - sq_distances.begin();
     const Eigen::Vector3d farthest_point(probed[0][index], probed[1][index], probed[2][index]);
     ball.center += (farthest_point - ball.center) / (i + 1.0);
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "shapes/shapes.h"
 
 namespace {
@@ -31,6 +33,15 @@ TEST(BoundingBall, OfOnePointHasNoRadius) {
   EXPECT_EQ(ball.radius, 0.0);
   EXPECT_EQ(ball.center, Eigen::Vector3d::Constant(2.5));
   EXPECT_EQ(boundingBall(Points(3, 0)).radius, 0.0);
+}
+
+TEST(BoundingBall, OfPointsThatAreNotFiniteHasNoCenter) {
+  for (const float coordinate : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::quiet_NaN(),
+                                 std::numeric_limits<float>::infinity()}) {
+    Points points = Points::Random(3, 4);
+    points(1, 2) = coordinate;
+    EXPECT_FALSE(boundingBall(points).center.allFinite()) << coordinate;
+  }
 }
 
 TEST(CenterOfMass, IsTheMeanFarFromTheOrigin) {

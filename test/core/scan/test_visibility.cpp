@@ -109,6 +109,12 @@ TEST(Visibility, SeesNothingFromInside) {
   EXPECT_TRUE(Visibility::fromPoints(spherePoints(), Eigen::Vector3d(1.05, 0.0, 0.0)));
 }
 
+TEST(Visibility, OfPointsThatAreNotFiniteIsNone) {
+  Points points = sphereScan();
+  points(0, 1) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(Visibility::fromPoints(points, kViewpoint));
+}
+
 TEST(Visibility, OnePointIsOnePixel) {
   const Points point = Points::Constant(3, 1, 1.0f);
   EXPECT_FALSE(Visibility::fromPoints(point, Eigen::Vector3d::Ones())) << "from the point itself";

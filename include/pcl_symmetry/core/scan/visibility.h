@@ -43,8 +43,8 @@ public:
   /// long as those before it, the picture cut the object off.
   /// \param points 3 x N, finite.
   /// \param viewpoint in the frame of the points.
-  /// \return nothing without a point, or if the viewpoint is among the points: they do not lie in a cone of 75 degrees
-  /// around one direction.
+  /// \return nothing without a point, with one that is not finite, or if the viewpoint is among the points: they do not
+  /// lie in a cone of 75 degrees around one direction.
   static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
   /// The range image of a scene, of which the analysed points are a part: whatever hides them is in it too. Space
