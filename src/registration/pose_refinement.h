@@ -2,7 +2,6 @@
 
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <pcl/search/kdtree.h>
 
 #include <Eigen/Geometry>
 #include <optional>
@@ -24,10 +23,9 @@ struct SearchFrames {
   Eigen::Isometry3d toInput(const Eigen::Isometry3d& T_target_source) const;
 };
 
-/// A model as PCL's ICP takes it, with the tree over its points.
+/// A model as PCL's ICP takes it: its points in their order.
 struct RefinementTarget {
   pcl::PointCloud<pcl::PointNormal>::Ptr cloud;
-  pcl::search::KdTree<pcl::PointNormal>::Ptr tree;
 
   explicit RefinementTarget(const PosedSurface& model);
 };
