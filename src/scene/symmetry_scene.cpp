@@ -3,6 +3,7 @@
 #include <pcl/common/common.h>
 
 #include <algorithm>
+#include <future>
 #include <utility>
 
 #include "core/base/check.h"
@@ -196,6 +197,10 @@ SceneAnalysis SymmetryScene::compute() const {
   Cloud::ConstPtr frame = input_;
   if (frame) analysis.seen = std::make_shared<const SeenSpace>(*frame, viewpoint_);
   const double seen_ms = watch.lap();
+  // What the database reads is ready when the clusters are: planes are searched for by one thread.
+  std::future<void> prepared;
+  if (database_ && analysis.seen && analysis.seen->visibility() && resolveNumThreads(options_.num_threads) > 1)
+    prepared = std::async(std::launch::async, [&] { database_->prepare(); });
   if (frame && options_.filter) frame = withoutDepthErrors(frame, *analysis.seen, options_.num_threads);
   if (frame != input_) analysis.seen = std::make_shared<const SeenSpace>(*frame, viewpoint_);
   std::optional<Eigen::Vector3d> viewpoint;
@@ -229,7 +234,7 @@ SceneAnalysis SymmetryScene::compute() const {
   clusters.erase(std::remove_if(clusters.begin(), clusters.end(), is_bulge), clusters.end());
   timed("clusters");
   if (database_ && !clusters.empty() && viewpoint) {
-    database_->prepare();
+    prepared.valid() ? prepared.get() : database_->prepare();
     timed("database");
   }
   analysis.objects = analyseObjects(frame, clusters, analysis, scale.spacing, options_, database_.get());
