@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/simd.h"
 #include "core/registration/covariance/pose_covariance.h"
 
 namespace pcl_symmetry {
@@ -78,6 +79,66 @@ bool isInFreeSpace(const Matches& matches, Eigen::Index i, const PosedSurface& t
   return to.seen->depthBehind(matches.places.col(i).cast<double>()) < 0.0;
 }
 
+constexpr int kColumns = 7, kLanes = 8;  // derived: six unknowns and a right side; numbers of the widest registers
+constexpr int kMostRows = 128;           // chosen: the columns stay in the first cache; half is called twice as often
+
+/// Sums of the products of each two of the columns, and a weight. They are the same for every instruction set: there are
+/// kLanes partial sums.
+/// \param columns of kMostRows numbers each; \p size of them count, a multiple of kLanes.
+/// \param[out] products kColumns times kColumns, below the diagonal.
+PCL_SYMMETRY_MULTIVERSION
+void addProducts(const double* weights, const double* columns, int size, double* products) {
+  for (int a = 0; a < kColumns; ++a) {
+    double weighted[kMostRows];
+    for (int i = 0; i < size; ++i) weighted[i] = weights[i] * columns[a * kMostRows + i];
+    for (int b = 0; b <= a; ++b) {
+      const double* const other = columns + b * kMostRows;
+      double lanes[kLanes] = {};
+      for (int i = 0; i < size; i += kLanes)
+        for (int k = 0; k < kLanes; ++k) lanes[k] += weighted[i + k] * other[i + k];
+      double sum = 0.0;
+      for (int k = 0; k < kLanes; ++k) sum += lanes[k];
+      products[a * kColumns + b] += sum;
+    }
+  }
+}
+
+/// The weighted sum of x x^T over rows x of kColumns numbers.
+class WeightedProducts {
+public:
+  using Matrix = Eigen::Matrix<double, kColumns, kColumns, Eigen::RowMajor>;
+
+  void add(const Eigen::Vector3d& first, const Eigen::Vector3d& second, double last, double weight) {
+    for (int k = 0; k < 3; ++k) {
+      columns_[k][size_] = first[k];
+      columns_[k + 3][size_] = second[k];
+    }
+    columns_[kColumns - 1][size_] = last;
+    weights_[size_] = weight;
+    if (++size_ == kMostRows) sumUp();
+  }
+
+  Matrix sums() {
+    sumUp();
+    return Matrix(products_.selfadjointView<Eigen::Lower>());
+  }
+
+private:
+  void sumUp() {
+    const int size = (size_ + kLanes - 1) / kLanes * kLanes;
+    for (int i = size_; i < size; ++i) {
+      weights_[i] = 0.0;
+      for (auto& column : columns_) column[i] = 0.0;
+    }
+    addProducts(weights_, columns_[0], size, products_.data());
+    size_ = 0;
+  }
+
+  double columns_[kColumns][kMostRows], weights_[kMostRows];
+  int size_ = 0;
+  Matrix products_ = Matrix::Zero();
+};
+
 /// Least squares in a small motion (rotation vector, translation).
 class MotionEquations {
 public:
@@ -86,33 +147,26 @@ public:
 
   /// w (n . (x + rotation x x + translation) - n . y)^2.
   void addPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& n, double weight) {
-    const Eigen::Vector3d lever = x.cross(n) / unit_;
-    const double apart = weight * n.dot(y - x) / unit_;
-    turns_ += weight * lever * lever.transpose();
-    mixed_ += weight * n * lever.transpose();
-    moves_ += weight * n * n.transpose();
-    of_turn_ += apart * lever;
-    of_move_ += apart * n;
+    of_planes_.add(x.cross(n) / unit_, n, n.dot(y - x) / unit_, weight);
   }
 
   /// w |x + rotation x x + translation - y|^2: the sum of addPlane() over three normals.
   void addPoint(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double weight) {
-    const Eigen::Vector3d arm = x / unit_, apart = weight / unit_ * (y - x);
-    turns_ -= weight * arm * arm.transpose();
-    turns_.diagonal().array() += weight * arm.squaredNorm();
-    sum_of_arms_ += weight * arm;
-    moves_.diagonal().array() += weight;
-    of_turn_ += arm.cross(apart);
-    of_move_ += apart;
+    of_points_.add(x / unit_, (y - x) / unit_, 1.0, weight);
   }
 
   /// The motion of least squares; no motion where the points fix none.
-  Eigen::Isometry3d motion() const {
-    const Eigen::Matrix3d mixed = mixed_ - crossMatrix(sum_of_arms_);
-    Eigen::Matrix<double, 6, 6> hessian;
-    hessian << turns_, mixed.transpose(), mixed, moves_;
-    Vector6d gradient;
-    gradient << of_turn_, of_move_;
+  Eigen::Isometry3d motion() {
+    const WeightedProducts::Matrix planes = of_planes_.sums(), points = of_points_.sums();
+    const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), turned = points.block<3, 3>(0, 3);
+    Eigen::Matrix<double, 6, 6> hessian = planes.topLeftCorner<6, 6>();
+    hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
+    hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, 6));
+    hessian.bottomRightCorner<3, 3>().diagonal().array() += points(6, 6);
+    Vector6d gradient = planes.block<6, 1>(0, 6);
+    gradient.head<3>() += Eigen::Vector3d(turned(1, 2) - turned(2, 1), turned(2, 0) - turned(0, 2),
+                                          turned(0, 1) - turned(1, 0));
+    gradient.tail<3>() += points.block<3, 1>(3, 6);
     hessian.diagonal().array() += kInertia + kRelativeInertia * hessian.diagonal().maxCoeff();
     const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
     Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
@@ -127,10 +181,8 @@ private:
   using Vector6d = Eigen::Matrix<double, 6, 1>;
 
   double unit_;
-  // Of the turn with itself, of the translation with the turn, of the translation with itself.
-  Eigen::Matrix3d turns_ = Eigen::Matrix3d::Zero(), mixed_ = turns_, moves_ = turns_;
-  Eigen::Vector3d sum_of_arms_ = Eigen::Vector3d::Zero();  // of whole points, see addPoint()
-  Eigen::Vector3d of_turn_ = sum_of_arms_, of_move_ = sum_of_arms_;
+  WeightedProducts of_planes_;  // of lever, normal and distance
+  WeightedProducts of_points_;  // of arm, way and 1
 };
 
 }  // namespace

@@ -141,6 +141,9 @@ PointPairIndex::Reference PointPairIndex::referenceOf(const SurfacePoints& scan,
         reference.look_ups.push_back(
             {static_cast<std::uint32_t>(keyOf(d, a, pair.other_angle, pair.between)), pair.turn});
   }
+  // Neighbours in memory one after the other.
+  std::sort(reference.look_ups.begin(), reference.look_ups.end(),
+            [](const LookUp& a, const LookUp& b) { return a.key < b.key; });
   return reference;
 }
 
