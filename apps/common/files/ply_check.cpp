@@ -61,11 +61,12 @@ PLYProperty parseProperty(const std::string& path, const Words& words) {
   return {words[2], value.size, value.integer, 0};
 }
 
-/// The numbers are read as PCL reads them, which takes the last of several.
+/// The numbers are read as PCL reads them, which takes the last of several, and 0 where there is none.
 void readPLYInfo(const Words& words, PLYHeader& header) {
-  if (words.size() < 3) return;
-  if (words[1] == "num_cols") header.num_columns = std::atoi(words[2].c_str());
-  if (words[1] == "num_rows") header.num_rows = std::atoi(words[2].c_str());
+  if (words.size() < 2) return;
+  const int number = words.size() > 2 ? std::atoi(words[2].c_str()) : 0;
+  if (words[1] == "num_cols") header.num_columns = number;
+  if (words[1] == "num_rows") header.num_rows = number;
 }
 
 PLYHeader readPLYHeader(const std::string& path, std::string_view text) {

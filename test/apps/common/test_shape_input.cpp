@@ -106,6 +106,9 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"no_rows.ply",
        ply("ascii", std::string("obj_info num_rows none\nelement vertex 2\n") + kPLYVertex, "1 2 3\n4 5 6\n"),
        "obj_info num_cols x num_rows = 2 x 0, must be the number of vertices"},
+      {"no_rows_empty.ply",
+       ply("ascii", std::string("obj_info num_rows \nelement vertex 2\n") + kPLYVertex, "1 2 3\n4 5 6\n"),
+       "obj_info num_cols x num_rows = 2 x 0, must be the number of vertices"},
       {"small_grid.ply",
        ply("ascii",
            std::string("obj_info num_cols 1\nobj_info num_rows 1\nelement vertex 2\n") + kPLYVertex +
