@@ -96,7 +96,10 @@ std::shared_ptr<const PairSearch> DatabaseParts::pairs() {
   const std::vector<StoredModel> models = store.models();
   const std::shared_ptr<const PairSearch> before = pairs_;
   lock.unlock();  // clouds are read under it, one at a time
-  const auto read = [&](const StoredModel& model) { return points(model, PairSearch::kModelPoints); };
+  const auto read = [&](const StoredModel& model) {
+    const PositionCloud stored = cloud(model);
+    return ModelPoints{finitePoints(stored, ModelPoints::kFine), finitePoints(stored, ModelPoints::kCoarse)};
+  };
   const auto made = std::make_shared<const PairSearch>(models, read, before.get(), options.num_threads);
   lock.lock();
   pairs_version_ = version;

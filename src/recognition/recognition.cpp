@@ -36,13 +36,9 @@ constexpr double kMostLead = 0.3;
 // variants of half to twice the size half do. With 0.8 one in twenty does, and of 27 unknown objects of fold 1 one more
 // gets a name.
 constexpr double kSameShape = 0.9;
-// Points of the scan and of a model that poses are judged by. chosen: time grows with them; half loses accuracy of the
-// pose, twice gains little as fine steps use a few hundred points.
+// Points of the scan that poses are judged by. chosen: time grows with them; half loses accuracy of the pose, twice
+// gains little as fine steps use a few hundred points.
 constexpr std::size_t kScanPoints = 10'000;
-constexpr std::size_t kModelPoints = 5'000;  // chosen: see above
-// Points of a model that its poses are searched by. measured: of 119 scans of models of the Princeton Shape Benchmark
-// (fold 0 of the training half) among 100 000 models, 103 are right with 1250 and with 5000, in 0.38 and 0.49 s.
-constexpr std::size_t kCoarsePoints = 1'250;
 
 /// Models that look like the scan from some side, each with poses to try. With a search by pairs: of all models those
 /// that fit best in some pose that pairs of points or the looks of the scan suggest.
@@ -116,12 +112,19 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   const std::vector<detail::ModelOfView> candidates =
       candidatesFor(database, pairs.get(), points, scan_points, seen, options, num_alike);
   PosedScan scan(scan_points, seen, options.registration);
+  const auto fine = [&](const StoredModel& model) {
+    const detail::ModelPoints* const kept = pairs ? pairs->pointsOf(model) : nullptr;
+    return kept ? kept->fine : database.points(model, detail::ModelPoints::kFine);
+  };
+  const auto coarse = [&](const StoredModel& model) {
+    const detail::ModelPoints* const kept = pairs ? pairs->pointsOf(model) : nullptr;
+    return kept ? kept->coarse : database.points(model, detail::ModelPoints::kCoarse);
+  };
   std::vector<PosedModel> found;
   const auto fit = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const StoredModel& model = candidates[i].model;
-      scan.bringTo(model.name, database.points(model, kCoarsePoints), candidates[i].T_model_scan,
-                   [&] { return database.points(model, kModelPoints); });
+      scan.bringTo(model.name, coarse(model), candidates[i].T_model_scan, [&] { return fine(model); });
     }
     const std::vector<PosedModel> fitted = scan.refined(options.num_refined);
     found.insert(found.end(), fitted.begin(), fitted.end());
@@ -196,8 +199,8 @@ void RecognitionOptions::validate() const {
 }
 
 void SymmetryDatabase::prepare() const {
+  parts_->views();  // by one thread, so that others may work beside it
   parts_->pairs();
-  parts_->views();
 }
 
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,

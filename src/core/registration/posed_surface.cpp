@@ -60,12 +60,8 @@ PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normal
       normals(known_normals),
       order(static_cast<std::size_t>(input.cols())),
       seen(std::move(seen_space)),
-      grid(std::make_shared<LateGrid>(kFewCells)),
-      search(makeTreeSearch(input)) {
+      grid(std::make_shared<LateGrid>(kFewCells)) {
   std::iota(order.begin(), order.end(), 0);
-  LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, 1);
-  accuracy = median(geometry.spacing) + 2.0 * median(std::move(geometry.roughness));
-  spacing = std::move(geometry.spacing);
 }
 
 }  // namespace pcl_symmetry

@@ -27,9 +27,11 @@ PairSearch::PairSearch(std::vector<StoredModel> models, const PointReader& read,
       shapes_[i] = before->shapes_[known];
       return;
     }
+    ModelPoints points = read(models_[i]);
     std::vector<SurfacePoints> few =
-        evenSurfacePoints(read(models_[i]), {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed);
-    shapes_[i] = std::make_shared<const Shape>(Shape{std::move(few[0]), ScreenedSurface(few[1])});
+        evenSurfacePoints(points.fine, {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed);
+    shapes_[i] =
+        std::make_shared<const Shape>(Shape{std::move(points), std::move(few[0]), ScreenedSurface(few[1])});
   });
   std::vector<SurfacePoints> of_pairs;
   for (const auto& shape : shapes_) of_pairs.push_back(shape->of_pairs);
@@ -40,6 +42,11 @@ std::size_t PairSearch::indexOf(std::int64_t model) const {
   return static_cast<std::size_t>(
       std::find_if(models_.begin(), models_.end(), [&](const StoredModel& other) { return other.id == model; }) -
       models_.begin());
+}
+
+const ModelPoints* PairSearch::pointsOf(const StoredModel& model) const {
+  const std::size_t i = indexOf(model.id);
+  return i < shapes_.size() ? &shapes_[i]->points : nullptr;
 }
 
 std::vector<ModelOfView> PairSearch::nearest(const Points& scan, const Visibility& seen,

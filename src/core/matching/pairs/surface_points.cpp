@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -72,13 +73,45 @@ std::vector<int> spreadPoints(const Points& points, const std::vector<int>& orde
   return chosen;
 }
 
+/// Directions of the surface at its points, found for each when it is first asked for.
+class PointNormals {
+public:
+  /// \param points,search must outlive this object.
+  PointNormals(const Points& points, const ClosestPointSearch& search)
+      : points_(points), search_(search), normals_(3, points.cols()), known_(static_cast<std::size_t>(points.cols())) {}
+
+  Points at(const std::vector<int>& some) {
+    std::vector<int> missing;
+    std::copy_if(some.begin(), some.end(), std::back_inserter(missing),
+                 [&](int i) { return !known_[static_cast<std::size_t>(i)]; });
+    find(missing);
+    return pointsAt(normals_, some);
+  }
+
+  /// \param some distinct.
+  /// \return spacings there.
+  std::vector<float> find(const std::vector<int>& some) {
+    GeometryAtPlaces geometry = localGeometryAt(points_, search_, pointsAt(points_, some), kNeighbours);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      normals_.col(some[k]) = geometry.normals.col(static_cast<Eigen::Index>(k));
+      known_[static_cast<std::size_t>(some[k])] = true;
+    }
+    return std::move(geometry.spacing);
+  }
+
+private:
+  const Points& points_;
+  const ClosestPointSearch& search_;
+  Points normals_;
+  std::vector<bool> known_;
+};
+
 /// Of the surface, from the spacing of some of its points.
-double areaOf(const Points& points, const ClosestPointSearch& search, std::vector<int> order) {
+double areaOf(PointNormals& normals, std::vector<int> order, Eigen::Index num_points) {
   order.resize(std::min(order.size(), kAreaSamples));
   double sum = 0.0;
-  for (const float spacing : localGeometryAt(points, search, pointsAt(points, order), kNeighbours).spacing)
-    sum += static_cast<double>(spacing) * spacing;
-  return sum / static_cast<double>(order.size()) * static_cast<double>(points.cols());
+  for (const float spacing : normals.find(order)) sum += static_cast<double>(spacing) * spacing;
+  return sum / static_cast<double>(order.size()) * static_cast<double>(num_points);
 }
 
 }  // namespace
@@ -86,16 +119,15 @@ double areaOf(const Points& points, const ClosestPointSearch& search, std::vecto
 std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::vector<int>& counts, std::uint64_t seed) {
   const ClosestPointSearch::Ptr search = makeTreeSearch(points);
   const std::vector<int> order = drawSamples(points.cols(), static_cast<int>(points.cols()) - 1, seed);
-  const double area = areaOf(points, *search, order);
+  PointNormals normals(points, *search);
+  const double area = areaOf(normals, order, points.cols());
   std::vector<SurfacePoints> found;
   for (const int count : counts) {
     std::vector<int> chosen = allOf(points.cols());
     // Discs of half the distance cover that share of the area.
     if (points.cols() > count)
       chosen = spreadPoints(points, order, std::sqrt(4.0 * kCovered * area / (std::acos(-1.0) * count)), count);
-    SurfacePoints few{pointsAt(points, chosen), {}};
-    few.normals = localGeometryAt(points, *search, few.points, kNeighbours).normals;
-    found.push_back(std::move(few));
+    found.push_back({pointsAt(points, chosen), normals.at(chosen)});
   }
   return found;
 }
