@@ -109,14 +109,22 @@ TEST(ModelsInfo, OfDopeIsAFileOfOneModel) {
   EXPECT_EQ(rows.at("").discrete.size(), 1u) << "a matrix as rows";
 }
 
-TEST(ModelsInfo, NamesModelsOnOneLine) {
+TEST(ModelsInfo, NamesModelsOnOneShortLine) {
   const TemporaryFolder folder;
-  try {
-    readModelsInfo(folder.write("lines.json", R"({"a\nb": []})"));
-    FAIL() << "a list was read as a model";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("model a\\nb must be an object"), std::string::npos) << error.what();
-  }
+  const auto messageOf = [&](const std::string& name) -> std::string {
+    try {
+      readModelsInfo(folder.write("names.json", "{\"" + name + "\": []}"));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "a list was read as a model";
+  };
+  EXPECT_NE(messageOf("a\\nb").find("model a\\nb must be an object"), std::string::npos) << messageOf("a\\nb");
+  const std::string of_long = messageOf("x" + std::string(39, 'y') + std::string(1000, 'z'));
+  EXPECT_NE(of_long.find("model x" + std::string(39, 'y') + "... must be"), std::string::npos) << of_long;
+  std::string letters = "x";
+  for (int i = 0; i < 40; ++i) letters += "\xc3\xa4";  // the 40th byte begins a letter of two
+  EXPECT_NE(messageOf(letters).find("... must be an object"), std::string::npos) << messageOf(letters);
 }
 
 TEST(ModelsInfo, RefusesWhatIsNoMotion) {
