@@ -44,8 +44,8 @@ NormalCloud::Ptr fewPoints(const PosedSurface& scan) {
   return cloudOf(scan, {scan.order.begin(), scan.order.begin() + static_cast<std::ptrdiff_t>(size)});
 }
 
-/// Pairs of closest points, all at once and by the search that the model has. PCL's own asks FLANN point by point, which
-/// takes four times as long and gives the same pairs.
+/// Pairs of closest points, all at once and by the search that the model has. PCL's own asks FLANN point by point,
+/// which takes four times as long and gives the same pairs.
 class ModelCorrespondences
     : public pcl::registration::CorrespondenceEstimation<pcl::PointNormal, pcl::PointNormal, double> {
 public:
@@ -54,8 +54,7 @@ public:
   void determineCorrespondences(pcl::Correspondences& pairs, double max_distance) override {
     const NormalCloud& scan = *getInputSource();
     Points places(3, static_cast<Eigen::Index>(scan.size()));
-    for (std::size_t i = 0; i < scan.size(); ++i)
-      places.col(static_cast<Eigen::Index>(i)) = scan[i].getVector3fMap();
+    for (std::size_t i = 0; i < scan.size(); ++i) places.col(static_cast<Eigen::Index>(i)) = scan[i].getVector3fMap();
     closest_.resize(scan.size(), -1);
     std::vector<float> sq_distances;
     model_->searchWithin(places, static_cast<float>(max_distance * max_distance), closest_, sq_distances);

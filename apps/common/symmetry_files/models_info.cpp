@@ -83,7 +83,8 @@ constexpr std::size_t kShownOfName = 40;
 /// A name as it stands in the file, on one line: line breaks and the like stay escaped, and a long one is cut off.
 std::string onOneLine(const std::string& name) {
   const json shown = name.substr(0, kShownOfName) + (name.size() > kShownOfName ? "..." : "");
-  const std::string quoted = shown.dump(-1, ' ', false, json::error_handler_t::replace);  // where a letter is cut in two
+  const std::string quoted =
+      shown.dump(-1, ' ', false, json::error_handler_t::replace);  // where a letter is cut in two
   return quoted.substr(1, quoted.size() - 2);
 }
 

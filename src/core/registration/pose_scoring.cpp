@@ -1,11 +1,9 @@
 #include "core/registration/pose_scoring.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/simd.h"
-#include "core/registration/covariance/pose_covariance.h"
+#include "core/registration/steps/motion_equations.h"
 
 namespace pcl_symmetry {
 
@@ -22,9 +20,6 @@ constexpr double kLeastJudged = 0.05;
 // Weight of a model point in free space against one of the scan. chosen: half lets silhouettes stick out, twice lets
 // holes of the scan pull the pose.
 constexpr double kSilhouetteShare = 0.5;
-// Inertia, added to the diagonal, relative to its greatest entry and absolute: directions that nothing fixes stay where
-// they are. derived: shortens steps along the best fixed direction by 1e-4 of their length.
-constexpr double kRelativeInertia = 1e-4, kInertia = 1e-6;
 
 /// The first points of a surface in the frame of another, each with its closest point there.
 struct Matches {
@@ -78,112 +73,6 @@ float normalFactor(const Matches& matches, Eigen::Index i, const PosedSurface& t
 bool isInFreeSpace(const Matches& matches, Eigen::Index i, const PosedSurface& to) {
   return to.seen->depthBehind(matches.places.col(i).cast<double>()) < 0.0;
 }
-
-constexpr int kColumns = 7, kLanes = 8;  // derived: six unknowns and a right side; numbers of the widest registers
-constexpr int kMostRows = 128;           // chosen: the columns stay in the first cache; half is called twice as often
-
-/// Sums of the products of each two of the columns, and a weight. They are the same for every instruction set: there are
-/// kLanes partial sums.
-/// \param columns of kMostRows numbers each; \p size of them count, a multiple of kLanes.
-/// \param[out] products kColumns times kColumns, below the diagonal.
-PCL_SYMMETRY_MULTIVERSION
-void addProducts(const double* weights, const double* columns, int size, double* products) {
-  for (int a = 0; a < kColumns; ++a) {
-    double weighted[kMostRows];
-    for (int i = 0; i < size; ++i) weighted[i] = weights[i] * columns[a * kMostRows + i];
-    for (int b = 0; b <= a; ++b) {
-      const double* const other = columns + b * kMostRows;
-      double lanes[kLanes] = {};
-      for (int i = 0; i < size; i += kLanes)
-        for (int k = 0; k < kLanes; ++k) lanes[k] += weighted[i + k] * other[i + k];
-      double sum = 0.0;
-      for (int k = 0; k < kLanes; ++k) sum += lanes[k];
-      products[a * kColumns + b] += sum;
-    }
-  }
-}
-
-/// The weighted sum of x x^T over rows x of kColumns numbers.
-class WeightedProducts {
-public:
-  using Matrix = Eigen::Matrix<double, kColumns, kColumns, Eigen::RowMajor>;
-
-  void add(const Eigen::Vector3d& first, const Eigen::Vector3d& second, double last, double weight) {
-    for (int k = 0; k < 3; ++k) {
-      columns_[k][size_] = first[k];
-      columns_[k + 3][size_] = second[k];
-    }
-    columns_[kColumns - 1][size_] = last;
-    weights_[size_] = weight;
-    if (++size_ == kMostRows) sumUp();
-  }
-
-  Matrix sums() {
-    sumUp();
-    return Matrix(products_.selfadjointView<Eigen::Lower>());
-  }
-
-private:
-  void sumUp() {
-    const int size = (size_ + kLanes - 1) / kLanes * kLanes;
-    for (int i = size_; i < size; ++i) {
-      weights_[i] = 0.0;
-      for (auto& column : columns_) column[i] = 0.0;
-    }
-    addProducts(weights_, columns_[0], size, products_.data());
-    size_ = 0;
-  }
-
-  double columns_[kColumns][kMostRows], weights_[kMostRows];
-  int size_ = 0;
-  Matrix products_ = Matrix::Zero();
-};
-
-/// Least squares in a small motion (rotation vector, translation).
-class MotionEquations {
-public:
-  /// \param unit of the lengths.
-  explicit MotionEquations(double unit) : unit_(unit) {}
-
-  /// w (n . (x + rotation x x + translation) - n . y)^2.
-  void addPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& n, double weight) {
-    of_planes_.add(x.cross(n) / unit_, n, n.dot(y - x) / unit_, weight);
-  }
-
-  /// w |x + rotation x x + translation - y|^2: the sum of addPlane() over three normals.
-  void addPoint(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double weight) {
-    of_points_.add(x / unit_, (y - x) / unit_, 1.0, weight);
-  }
-
-  /// The motion of least squares; no motion where the points fix none.
-  Eigen::Isometry3d motion() {
-    const WeightedProducts::Matrix planes = of_planes_.sums(), points = of_points_.sums();
-    const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), turned = points.block<3, 3>(0, 3);
-    Eigen::Matrix<double, 6, 6> hessian = planes.topLeftCorner<6, 6>();
-    hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
-    hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, 6));
-    hessian.bottomRightCorner<3, 3>().diagonal().array() += points(6, 6);
-    Vector6d gradient = planes.block<6, 1>(0, 6);
-    gradient.head<3>() += Eigen::Vector3d(turned(1, 2) - turned(2, 1), turned(2, 0) - turned(0, 2),
-                                          turned(0, 1) - turned(1, 0));
-    gradient.tail<3>() += points.block<3, 1>(3, 6);
-    hessian.diagonal().array() += kInertia + kRelativeInertia * hessian.diagonal().maxCoeff();
-    const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
-    Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
-    if (!motion.allFinite()) return moved;
-    const double angle = motion.head<3>().norm();
-    if (angle > 0.0) moved.linear() = Eigen::AngleAxisd(angle, motion.head<3>() / angle).toRotationMatrix();
-    moved.translation() = unit_ * motion.tail<3>();
-    return moved;
-  }
-
-private:
-  using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-  double unit_;
-  WeightedProducts of_planes_;  // of lever, normal and distance
-  WeightedProducts of_points_;  // of arm, way and 1
-};
 
 }  // namespace
 

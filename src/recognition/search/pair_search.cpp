@@ -30,8 +30,7 @@ PairSearch::PairSearch(std::vector<StoredModel> models, const PointReader& read,
     ModelPoints points = read(models_[i]);
     std::vector<SurfacePoints> few =
         evenSurfacePoints(points.fine, {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed);
-    shapes_[i] =
-        std::make_shared<const Shape>(Shape{std::move(points), std::move(few[0]), ScreenedSurface(few[1])});
+    shapes_[i] = std::make_shared<const Shape>(Shape{std::move(points), std::move(few[0]), ScreenedSurface(few[1])});
   });
   std::vector<SurfacePoints> of_pairs;
   for (const auto& shape : shapes_) of_pairs.push_back(shape->of_pairs);

@@ -19,8 +19,8 @@ struct ModelPoints {
   /// Points that poses are judged by, and that give normals. chosen: half loses accuracy of the pose and blurs edges,
   /// twice takes twice the time.
   static constexpr std::size_t kFine = 5'000;
-  /// Points that poses are searched by. measured: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of the
-  /// training half) among 100 000 models, 103 are right with 1250 and with 5000, in 0.38 and 0.49 s.
+  /// Points that poses are searched by. measured: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of
+  /// the training half) among 100 000 models, 103 are right with 1250 and with 5000, in 0.38 and 0.49 s.
   static constexpr std::size_t kCoarse = 1'250;
 
   Points fine, coarse;
