@@ -112,19 +112,17 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   const std::vector<detail::ModelOfView> candidates =
       candidatesFor(database, pairs.get(), points, scan_points, seen, options, num_alike);
   PosedScan scan(scan_points, seen, options.registration);
-  const auto fine = [&](const StoredModel& model) {
+  const auto points_of = [&](const StoredModel& model, Points detail::ModelPoints::*part, std::size_t max_points) {
     const detail::ModelPoints* const kept = pairs ? pairs->pointsOf(model) : nullptr;
-    return kept ? kept->fine : database.points(model, detail::ModelPoints::kFine);
-  };
-  const auto coarse = [&](const StoredModel& model) {
-    const detail::ModelPoints* const kept = pairs ? pairs->pointsOf(model) : nullptr;
-    return kept ? kept->coarse : database.points(model, detail::ModelPoints::kCoarse);
+    return kept ? kept->*part : database.points(model, max_points);
   };
   std::vector<PosedModel> found;
   const auto fit = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const StoredModel& model = candidates[i].model;
-      scan.bringTo(model.name, coarse(model), candidates[i].T_model_scan, [&] { return fine(model); });
+      scan.bringTo(model.name, points_of(model, &detail::ModelPoints::coarse, detail::ModelPoints::kCoarse),
+                   candidates[i].T_model_scan,
+                   [&] { return points_of(model, &detail::ModelPoints::fine, detail::ModelPoints::kFine); });
     }
     const std::vector<PosedModel> fitted = scan.refined(options.num_refined);
     found.insert(found.end(), fitted.begin(), fitted.end());

@@ -39,13 +39,14 @@ NormalCloud::Ptr cloudOf(const PosedSurface& surface, const std::vector<int>& po
   return cloud;
 }
 
+/// Points that are spread over the scan.
 NormalCloud::Ptr fewPoints(const PosedSurface& scan) {
   const auto size = std::min<std::size_t>(scan.order.size(), kRefinedPoints);
   return cloudOf(scan, {scan.order.begin(), scan.order.begin() + static_cast<std::ptrdiff_t>(size)});
 }
 
-/// Pairs of closest points, all at once and by the search that the model has. PCL's own asks FLANN point by point,
-/// which takes four times as long and gives the same pairs.
+/// Pairs of closest points, all at once and by the search that the model has. PCL's own asks FLANN point by point: of a
+/// frame of eight objects that are recognized it took 0.6 s of 3.7, with the same pairs, this takes 0.1 s.
 class ModelCorrespondences
     : public pcl::registration::CorrespondenceEstimation<pcl::PointNormal, pcl::PointNormal, double> {
 public:
@@ -55,10 +56,11 @@ public:
     const NormalCloud& scan = *getInputSource();
     Points places(3, static_cast<Eigen::Index>(scan.size()));
     for (std::size_t i = 0; i < scan.size(); ++i) places.col(static_cast<Eigen::Index>(i)) = scan[i].getVector3fMap();
+    pairs.clear();
+    if (!places.allFinite()) return;  // of a step that no points fixed
     closest_.resize(scan.size(), -1);
     std::vector<float> sq_distances;
     model_->searchWithin(places, static_cast<float>(max_distance * max_distance), closest_, sq_distances);
-    pairs.clear();
     for (std::size_t i = 0; i < scan.size(); ++i)
       if (closest_[i] >= 0) pairs.emplace_back(static_cast<int>(i), closest_[i], sq_distances[i]);
   }

@@ -30,7 +30,7 @@ struct ModelPoints {
 /// suggest, see PointPairIndex, and that are tried, see screenPoses().
 class PairSearch {
 public:
-  /// Models of a database from which on there is no such search. chosen: the pairs of a model take 0.3 MB and 5 ms to
+  /// Models of a database from which on there is no such search. chosen: the pairs of a model take 0.4 MB and 5 ms to
   /// make, each time that a database is opened; twice takes twice the memory and time.
   static constexpr std::size_t kMostModels = 300;
 
