@@ -53,6 +53,40 @@ Cloud cloudOf(const char* name, const py::array& points) {
   return cloud;
 }
 
+/// Models of a mapping from names to points, or of pairs of both. Points become clouds when they are used.
+std::vector<ModelInput> modelsOf(const py::object& models) {
+  const py::object pairs = py::hasattr(models, "items") ? models.attr("items")() : models;
+  std::vector<ModelInput> inputs;
+  for (const py::handle pair : pairs) {
+    std::pair<std::string, py::object> model;
+    try {
+      model = pair.cast<decltype(model)>();
+    } catch (const py::cast_error&) {
+      throw py::type_error("models: item " + std::to_string(inputs.size()) + " is no pair of a name and points");
+    }
+    // Shared, as the threads that copy it do not hold the lock of the interpreter.
+    const auto held = std::make_shared<py::object>(std::move(model.second));
+    inputs.push_back({model.first, {}, [held] {
+                        const py::gil_scoped_acquire acquire;
+                        return cloudOf("points", arrayOf("points", *held));
+                      }});
+  }
+  return inputs;
+}
+
+BuildReport build(SymmetryDatabase& database, const py::object& models, const py::object& progress) {
+  const std::vector<ModelInput> inputs = modelsOf(models);
+  BuildProgress told;
+  if (!progress.is_none())
+    told = [&progress](double share) {
+      const py::gil_scoped_acquire acquire;
+      const py::object go_on = progress(share);
+      return go_on.is_none() || go_on.cast<bool>();
+    };
+  const py::gil_scoped_release release;
+  return database.build(inputs, told);
+}
+
 py::array_t<float> rowsOf(const Cloud& cloud) {
   py::array_t<float> rows({static_cast<py::ssize_t>(cloud.size()), py::ssize_t{3}});
   Eigen::Map<Points> columns(rows.mutable_data(), 3, static_cast<Eigen::Index>(cloud.size()));
@@ -122,6 +156,10 @@ void addResults(py::module_& module) {
       .def_property_readonly(
           "transform", [](const RecognizedModel& m) { return RowMajor4(m.T_model_scan.matrix()); },
           "(4, 4) from the frame of the scan to that of the model");
+  py::class_<BuildReport>(module, "BuildReport", "What Database.build() did.")
+      .def_readonly("num_added", &BuildReport::num_added, "models that were stored")
+      .def_readonly("failures", &BuildReport::failures, "list of (name, reason), in the order of the models")
+      .def_readonly("cancelled", &BuildReport::cancelled, "the progress function returned False");
 }
 
 void addDatabase(py::module_& module) {
@@ -145,6 +183,11 @@ void addDatabase(py::module_& module) {
             database.add(name, cloud);
           },
           py::arg("name"), py::arg("points"), "Stores a model, (N, 3) points all around it; on the disk on return.")
+      .def("build", &build, py::arg("models"), py::kw_only(), py::arg("progress") = py::none(),
+           "Stores many models, each as soon as it is described, on all threads.\n\n"
+           "models: dict of name to (N, 3) points, or pairs of both. progress: called with the share done, in [0, 1];\n"
+           "where it returns False the rest is left. Returns BuildReport; a model that cannot be used does not stop\n"
+           "the others.")
       .def("remove", &SymmetryDatabase::remove, py::arg("name"))
       .def(
           "cloud",

@@ -301,9 +301,30 @@ class WithPCL(unittest.TestCase):
             with self.assertRaisesRegex(OSError, "wrong.db"):
                 pcl_symmetry.Database(str(wrong))
 
+    def test_many_models_are_stored_at_once(self):
+        database, shares = pcl_symmetry.Database(":memory:"), []
+        models = {"box": box(), "flat": np.zeros((50, 3)), "lamp": lamp(), "words": "none", "plate": box((1.0, 0.9, 0.1))}
+        report = database.build(models, progress=shares.append)
+        self.assertEqual((report.num_added, report.cancelled), (3, False))
+        self.assertEqual([name for name, _ in report.failures], ["flat", "words"])
+        self.assertRegex(report.failures[1][1], "points")
+        self.assertEqual(database.names, ["box", "lamp", "plate"])
+        self.assertEqual(database.match(lamp(seed=9), viewpoint=None)[0].name, "lamp")
+        self.assertEqual((sorted(shares), shares[-1]), (shares, 1.0))
+        self.assertRegex(repr(report), r"^BuildReport\(num_added=3, ")
+
+        stopped = pcl_symmetry.Database(":memory:", threads=1).build(models.items(), progress=lambda share: False)
+        self.assertEqual((stopped.num_added, stopped.cancelled), (1, True))
+        with self.assertRaises(ZeroDivisionError):
+            pcl_symmetry.Database(":memory:").build(models, progress=lambda share: 1 / 0)
+        with self.assertRaises(TypeError):
+            pcl_symmetry.Database(":memory:").build(5)
+        with self.assertRaisesRegex(TypeError, "models: item 0 is no pair"):
+            pcl_symmetry.Database(":memory:").build([("box", box(), 3)])
+
     def test_members_have_stubs_and_words(self):
         stub = Path(pcl_symmetry.__file__).with_suffix(".pyi").read_text()
-        for name in ("Database", "Match", "PoseScore", "Recognized", "Registration", "register"):
+        for name in ("BuildReport", "Database", "Match", "PoseScore", "Recognized", "Registration", "register"):
             self.assertRegex(stub, rf"(class|def) {name}\b")
             self.assertTrue(getattr(pcl_symmetry, name).__doc__)
         with self.assertRaises(AttributeError):

@@ -94,7 +94,7 @@ Planes.__repr__ = _text_of_planes
 
 # What needs the libraries of PCL, which take longer to load, is loaded when it is first used. It is missing where the library
 # was built without PCL.
-_WITH_PCL = ("Database", "Match", "PoseScore", "Recognized", "Registration", "register")
+_WITH_PCL = ("BuildReport", "Database", "Match", "PoseScore", "Recognized", "Registration", "register")
 
 
 def __getattr__(name):
@@ -105,6 +105,7 @@ def __getattr__(name):
     for each in _WITH_PCL:
         globals()[each] = getattr(_recognition, each)
     _show(
+        BuildReport="num_added failures cancelled",
         Match="name distance",
         PoseScore="support conflict merit",
         Recognized="name confidence transform",
