@@ -44,8 +44,8 @@ gallery=$folder/gallery pictures=$folder/pictures
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_planes \
-  pcl_symmetry_scan pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint pcl_symmetry_evaluate \
-  draw_alignment draw_medial_axis draw_scan_centers make_shapes
+  pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint pcl_symmetry_evaluate \
+  draw_alignment draw_failures draw_medial_axis draw_scan_centers make_shapes
 if $estimators; then
   cmake --preset benchmark --log-level=WARNING >/dev/null
   cmake --build build-benchmark --parallel "$(nproc)" --target benchmark_accuracy
@@ -166,6 +166,25 @@ draw_axes() {
   done
 }
 
+# A table with shapes of our own, as a camera sees it.
+draw_scene() {
+  [[ scene =~ $only ]] || return 0
+  mkdir -p own
+  cp -- *.ply own
+  pcl_symmetry_evaluate scenes own -scenes 3 -objects 5 -noise 0 -seen scene -export scenes -quiet >"$models/last.txt"
+  draw scene pcl_symmetry_scene scenes/scene_0002_noise_0.pcd -png "$gallery/scene.png"
+}
+
+# Where algorithms go wrong, for their pages.
+draw_failures_of_all() {
+  draw failure_transform pcl_symmetry_map hand.off -size 200 -slices "$gallery/failure_transform.png"
+  pcl_symmetry_scan mug.ply mug_scan.pcd -direction=-1,0,0.3 -quiet
+  draw failure_planes pcl_symmetry_planes mug_scan.pcd -png "$gallery/failure_planes.png"
+  pcl_symmetry_scan cow.off cow_scan.pcd -quiet
+  draw failure_scene pcl_symmetry_scene cow_scan.pcd -png "$gallery/failure_scene.png"
+  draw failures draw_failures "$gallery" hand.off
+}
+
 # Rates against points, noise, cuts and views; Figures 12, 13 and 14.
 draw_benchmark_charts() {
   local sweep
@@ -189,6 +208,8 @@ draw figure_11 draw_scan_centers "$gallery/figure_11.png" car.ply
 draw_figure_15
 draw_figure_16
 draw_axes
+draw_scene
+draw_failures_of_all
 if $estimators; then
   draw error_against_time benchmark_accuracy -data "$models" -png "$pictures/error_against_time.png"
 fi

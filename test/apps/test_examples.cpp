@@ -103,10 +103,23 @@ TEST_F(Example, Scene) {
   EXPECT_NE(contentOf(completed).find("FIELDS x y z"), std::string::npos);
 }
 
+TEST_F(Example, Completion) {
+  const std::string completed = folder_ / "completed.pcd";
+  ASSERT_EQ(run("11_completion " + (folder_ / "scan.pcd") + " " + completed), 0) << error_;
+  EXPECT_NE(output_.find(" points added to "), std::string::npos) << output_;
+  EXPECT_NE(contentOf(completed).find("FIELDS x y z"), std::string::npos);
+}
+
+TEST_F(Example, Viewpoint) {
+  ASSERT_EQ(runOn("12_viewpoint", "box.pcd"), 0) << error_;
+  EXPECT_NE(output_.find("seen from "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("worst "), std::string::npos) << output_;
+}
+
 TEST_F(Example, SaysHowItIsUsed) {
-  for (const std::string example :
-       {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration", "06_matching",
-        "07_segmentation", "08_own_search_and_point_type", "09_symmetric_poses", "10_scene"}) {
+  for (const std::string example : {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration",
+                                    "06_matching", "07_segmentation", "08_own_search_and_point_type",
+                                    "09_symmetric_poses", "10_scene", "11_completion", "12_viewpoint"}) {
     EXPECT_EQ(run(example), 2);
     EXPECT_NE(error_.find("usage: " + example), std::string::npos);
   }
