@@ -10,7 +10,7 @@ Writes the reference of cmake/Doxyfile into FOLDER/html and prints Doxygen's war
 lead nowhere, parameters that do not exist, classes, functions and members without a comment. Typedefs such as Ptr and
 protected functions that override one of PCL may have none.
 
-Exit status 0: none. 1: warnings, or a page that is missing. 77: Doxygen is not installed.
+Exit status 0: none. 1: warnings, or a page or a section of it that is missing. 77: Doxygen is not installed.
 END
 }
 
@@ -38,8 +38,15 @@ done
 for text in 'Which class do I need' 'From the paper to the command line'; do
   grep -q "$text" "$folder/html/index.html" || { echo "not on the main page: $text"; missing=1; }
 done
-for page in 'Planes of symmetry' 'What planes are good for' 'Fields of files'; do
-  grep -q "$page" "$folder/html/pages.html" || { echo "not among the pages: $page"; missing=1; }
+for page in src/pages/*.md src/pages/algorithms/*.md; do
+  title=$(sed -n '1s/^# //p' "$page")
+  [[ $page == */main_page.md ]] || grep -q ">$title<" "$folder/html/pages.html" || { echo "not among the pages: $title"; missing=1; }
+done
+for page in src/pages/algorithms/*.md; do
+  for section in Idea Example Parameters Cost Limits 'Where it fails'; do
+    grep -q "^[*][*]$section[.][*][*]" "$page" || { echo "$page: no section '$section'"; missing=1; }
+  done
+  (($(grep -c '^!\[' "$page") >= 2)) || { echo "$page: needs a picture of what it does and one of a failure"; missing=1; }
 done
 for picture in $(grep -ohE '<img src="[^"]*[.]png"' "$folder"/html/*.html | cut -d'"' -f2 | sort -u); do
   [[ -s $folder/html/$picture ]] || { echo "not in the reference: $picture"; missing=1; }
