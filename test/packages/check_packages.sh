@@ -73,6 +73,13 @@ if [[ -z $root ]]; then
     [[ -s $usr/$file ]] || fail "no package holds /usr/$file"
   done
   ! find "$usr" -name '*test*' | grep . || fail "tests are in the packages"
+  # Shared libraries have a package of their own, and say of each symbol which of them it belongs to.
+  find "$usr" -name 'libpcl_symmetry*.so.*.*.*' | while read -r library; do
+    soname=$(objdump -p "$library" | awk '/SONAME/ { print $2 }')
+    unversioned=$(nm -D --defined-only --with-symbol-versions "$library" | grep -v " A $soname\$" | grep -vc "@@\?$soname" || true)
+    ((unversioned == 0)) || fail "$library has $unversioned symbols without a version"
+    dpkg-deb -I "$packages"/libpcl-symmetry[0-9]*.deb shlibs | grep -q "^${soname%%.so*} " || fail "no shlibs for $soname"
+  done
   say "All is there"
   exit
 fi
@@ -88,6 +95,7 @@ use_packages in_root
 in_root bash -euc 'cmake -S /tmp/consumer -B /tmp/consumer/build -DCMAKE_BUILD_TYPE=Release >/dev/null
   cmake --build /tmp/consumer/build && /tmp/consumer/build/cmake_pcl'
 say "Removed"
-in_root apt-get -q purge -y libpcl-symmetry-dev pcl-symmetry-tools python3-pcl-symmetry
+mapfile -t names < <(for deb in "$packages"/*.deb; do dpkg-deb -f "$deb" Package; done)
+in_root apt-get -q purge -y "${names[@]}"
 ! find "$root/usr" -name '*pcl_symmetry*' | grep . || fail "files are left"
 say "All works, nothing is left"

@@ -176,12 +176,13 @@ float descriptorDistance(const PRSDSignature1024& a, const PRSDSignature1024& b)
 float descriptorDistance(const GEDTSignature32768& a, const GEDTSignature32768& b);
 
 #ifndef PCL_NO_PRECOMPILE
-extern template class PRSTEstimation<pcl::PointXYZ>;
-extern template class PRSTEstimation<pcl::PointXYZI>;
-extern template class PRSTEstimation<pcl::PointXYZRGB>;
-extern template class PRSTEstimation<pcl::PointXYZRGBA>;
-extern template class PRSTEstimation<pcl::PointNormal>;
-extern template class PRSTEstimation<pcl::PointXYZRGBNormal>;
+// Marked one by one: where all is hidden, so are the point types of PCL and what is made of them.
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZ>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZI>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGB>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGBA>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointNormal>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGBNormal>;
 #endif
 
 }  // namespace pcl_symmetry
