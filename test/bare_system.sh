@@ -8,7 +8,7 @@ usage: bash test/bare_system.sh [-h] [--user] [--packages BUILD | COMMAND...]
 
 Makes a bare Debian 12 in a temporary folder (debootstrap's smallest system, git and sudo), clones the last commit of this
 checkout into it, and runs COMMAND there; by default `bash apps/demo.sh`. Needs root, debootstrap, a network and 4 GB under
-TMPDIR. What it made is removed. Exit status: that of the command.
+TMPDIR. What it made is removed. Exit status: that of the command; 77: not root, or no debootstrap.
 
   --user            as a user who may become root with sudo, not as root
   --packages BUILD  installs the Debian packages of the build folder BUILD there instead, uses and removes them, see
@@ -17,6 +17,11 @@ TMPDIR. What it made is removed. Exit status: that of the command.
 examples: bash test/bare_system.sh --user bash test/run.sh
           bash test/bare_system.sh --packages build
 END
+}
+
+skip() {
+  echo "skipped: $*"
+  exit 77
 }
 
 fail() {
@@ -37,8 +42,8 @@ while (($# > 0)); do
   esac
   shift
 done
-((EUID == 0)) || fail "needs root"
-command -v debootstrap >/dev/null || fail "needs debootstrap (apt-get install debootstrap)"
+((EUID == 0)) || skip "needs root"
+command -v debootstrap >/dev/null || skip "needs debootstrap (apt-get install debootstrap)"
 source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 
 root=$(mktemp -d)

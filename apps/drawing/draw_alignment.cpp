@@ -11,6 +11,7 @@
 #include "common/pictures/picture.h"
 #include "core/base/constants.h"
 #include "core/geometry/principal_axes.h"
+#include "drawing/frame_axes.h"
 #include "drawing/mug_mesh.h"
 #include "drawing/parametric_mesh.h"
 #include "pcl_symmetry/mesh_sampling.h"
@@ -61,10 +62,9 @@ std::vector<pcl::PolygonMesh> shapes() {
 }
 
 PicturePanel panelOf(const std::string& label, const Eigen::Vector3d& center, const Eigen::Matrix3d& axes) {
-  const Eigen::Vector3d colors[] = {{0.84, 0.37, 0.0}, {0.0, 0.62, 0.45}, {0.0, 0.45, 0.70}};
   PicturePanel panel;
   panel.label = label;
-  for (int k = 0; k < 3; ++k) panel.axes.push_back({center, axes.col(k), colors[k]});
+  addAxes(panel, center, axes);
   return panel;
 }
 

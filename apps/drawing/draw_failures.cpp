@@ -1,7 +1,5 @@
 /// Draws for the pages of algorithms where each of them goes wrong: a frame, a pose, a completion, a name and a group
 /// of rotations that the data do not tell, or that the tolerance passes over.
-#include <pcl/common/transforms.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +14,7 @@
 #include "common/scanner/virtual_scanner.h"
 #include "common/shape_input/shape_input.h"
 #include "core/base/constants.h"
+#include "drawing/frame_axes.h"
 #include "drawing/mug_mesh.h"
 #include "pcl_symmetry/completion.h"
 #include "pcl_symmetry/mesh_sampling.h"
@@ -56,11 +55,6 @@ PictureScene sceneOf(const pcl::PolygonMesh& mesh, const Cloud::ConstPtr& cloud,
   return scene;
 }
 
-void addAxes(PicturePanel& panel, const SymmetryFrame& frame) {
-  const Eigen::Vector3d colors[] = {{0.84, 0.37, 0.0}, {0.0, 0.62, 0.45}, {0.0, 0.45, 0.70}};
-  for (int k = 0; k < 3; ++k) panel.axes.push_back({frame.center, frame.axes.col(k), colors[k]});
-}
-
 void draw(const std::vector<PictureScene>& scenes, const std::string& path) {
   const int num_panels = static_cast<int>(scenes.size());
   renderPicture(scenes, path, num_panels * kWidth, kHeight, num_panels);
@@ -82,7 +76,7 @@ void drawFrame(const Shape& hand, const std::string& path) {
     PictureScene scene = sceneOf(*hand.mesh, cloud,
                                  whole ? "frame of the whole hand" : rounded("of a scan of it, %.0f degrees off", off));
     standUpright(scene, Eigen::Vector3d::UnitY());
-    addAxes(scene.panels[0], frame);
+    addAxes(scene.panels[0], frame.center, frame.axes);
     scenes.push_back(scene);
   }
   draw(scenes, path);

@@ -182,7 +182,7 @@ draw_failures_of_all() {
   draw failure_planes pcl_symmetry_planes mug_scan.pcd -png "$gallery/failure_planes.png"
   pcl_symmetry_scan cow.off cow_scan.pcd -quiet
   draw failure_scene pcl_symmetry_scene cow_scan.pcd -png "$gallery/failure_scene.png"
-  draw failures draw_failures "$gallery" hand.off
+  draw "failure_frame failure_pose failure_completion failure_name failure_rotations" draw_failures "$gallery" hand.off
 }
 
 # Rates against points, noise, cuts and views; Figures 12, 13 and 14.

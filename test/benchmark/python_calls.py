@@ -3,7 +3,8 @@
 usage: PYTHONPATH=build/src/python /usr/bin/python3 test/benchmark/python_calls.py BENCHMARK_CALLS
 
 Prints the time of planes() for 10 000 points from Python and from C++ (BENCHMARK_CALLS is the program of that name, of
-the preset "benchmark"), in turn, five times 40 calls each; how much memory planes() takes beside an array of ten million rows; and the time of the import.
+the preset "benchmark"), in turn, five times 40 calls each; how much memory planes() takes beside an array of ten
+million rows; and the time of the import.
 """
 
 import resource

@@ -74,7 +74,11 @@ if [[ -z $root ]]; then
   done
   ! find "$usr" -name '*test*' | grep . || fail "tests are in the packages"
   # Shared libraries have a package of their own, and say of each symbol which of them it belongs to.
-  find "$usr" -name 'libpcl_symmetry*.so.*.*.*' | while read -r library; do
+  mapfile -t libraries < <(find "$usr" -name 'libpcl_symmetry*.so.*.*.*')
+  if compgen -G "$packages/libpcl-symmetry[0-9]*.deb" >/dev/null; then
+    ((${#libraries[@]} == 2)) || fail "${#libraries[@]} shared libraries in place of two"
+  fi
+  for library in "${libraries[@]}"; do
     soname=$(objdump -p "$library" | awk '/SONAME/ { print $2 }')
     unversioned=$(nm -D --defined-only --with-symbol-versions "$library" | grep -v " A $soname\$" | grep -vc "@@\?$soname" || true)
     ((unversioned == 0)) || fail "$library has $unversioned symbols without a version"
