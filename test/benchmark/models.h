@@ -8,6 +8,12 @@
 
 namespace pcl_symmetry::benchmarks {
 
+/// What a scanner sees of a surface.
+struct Scan {
+  Points points;
+  Eigen::Vector3d viewpoint;
+};
+
 /// A surface that points can be sampled from.
 struct Model {
   std::string name;
@@ -15,6 +21,9 @@ struct Model {
   std::vector<Eigen::Vector3i> triangles;
 
   Points sample(int num_points) const;
+
+  /// What is seen of that many samples from four radii away: the nearest one in each pixel.
+  Scan scan(int num_points) const;
 };
 
 /// Reads an OFF file of polygons, which are cut into triangles.

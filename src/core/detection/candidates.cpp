@@ -32,8 +32,7 @@ std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const Symm
     candidates.push_back({plane, true});
   }
   if (options.principal_planes)
-    for (const ReflectionPlane& plane : principalPlanes(principalAxes(cloud.points)))
-      candidates.push_back({plane, false});
+    for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane, false});
   return candidates;
 }
 

@@ -71,84 +71,6 @@ std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const
   return withoutPlanesOf(std::move(planes), detection.axes, cloud);
 }
 
-}  // namespace
-
-void DetectionOptions::validate() const {
-  edt.validate();
-  maxima.validate();
-  check(num_theta >= 1, "num_theta", num_theta, ">= 1");
-  check(num_phi >= 2 && num_phi % 2 == 0, "num_phi", num_phi, "even and >= 2");
-  check(num_radius >= 1, "num_radius", num_radius, ">= 1");
-  check(num_samples >= 1, "num_samples", num_samples, ">= 1");
-  check(max_candidates >= 1, "max_candidates", max_candidates, ">= 1");
-  check(max_drift >= 0.0, "max_drift", max_drift, ">= 0");
-  check(num_coarse_samples >= 10, "num_coarse_samples", num_coarse_samples, ">= 10");
-  check(num_refine_samples >= 10, "num_refine_samples", num_refine_samples, ">= 10");
-  check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
-  check(merge_angle >= 0.0, "merge_angle", merge_angle, ">= 0");
-  check(merge_offset >= 0.0, "merge_offset", merge_offset, ">= 0");
-  check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
-  check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
-  check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");
-  check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
-  check(max_possible >= 1, "max_possible", max_possible, ">= 1");
-  check(max_planes >= 1, "max_planes", max_planes, ">= 1");
-  checkNumThreads(num_threads);
-}
-
-Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
-                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search,
-                       const Visibility* visibility, const Points* normals) {
-  options.validate();
-  if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
-  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
-  Stopwatch watch;
-  if (const std::optional<CloudSubset> subset = make_search ? std::nullopt : subsetOf(points, options)) {
-    const double subset_ms = watch.lap();
-    Detection detection =
-        bySubset(*subset, points, normals, options.num_threads,
-                 [&](const Points& p, const Points* n) { return detectPlanes(p, options, nullptr, visibility, n); });
-    detection.map.center_of_mass = centerOfMass(points);
-    detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
-    return detection;
-  }
-  const GaussianEdt edt(points, options.edt);
-  const double edt_ms = watch.lap();
-  std::vector<float> free_space;
-  if (visibility) free_space = freeSpace(edt, *visibility, options.num_threads);
-  const double visibility_ms = watch.lap();
-  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
-  SampledTransformOptions sampling;
-  sampling.num_samples = options.num_samples;
-  sampling.seed = options.seed;
-  sampling.num_threads = options.num_threads;
-  SymmetryMap map = sampledTransform(edt, grid, sampling, free_space);
-  map.center_of_mass = centerOfMass(points);
-  const double transform_ms = watch.lap();
-  Detection detection =
-      refineMaxima(points, edt, map, options, make_search ? make_search(edt) : nullptr, visibility, normals);
-  detection.map = std::move(map);
-  detection.timing_ms.insert(
-      detection.timing_ms.begin(),
-      {{"distance_transform", edt_ms}, {"free_space", visibility_ms}, {"transform", transform_ms}});
-  return detection;
-}
-
-void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
-                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options) {
-  options.validate();
-  DetectionOptions alone = options;
-  alone.num_threads = alone.edt.num_threads = 1;
-  std::mutex one_at_a_time;
-  parallelBlocks(num_clouds, options.num_threads, [&](std::size_t i) {
-    Detection detection = detectPlanes(cloud(i), alone);
-    const std::lock_guard<std::mutex> lock(one_at_a_time);
-    found(i, std::move(detection));
-  });
-}
-
-namespace {
-
 /// Planes of a cloud, from the maxima of its map to the list.
 /// \param all the points of the cloud and those that were left out to make it evenly dense, normalised frame.
 Detection planesOf(const NormalizedCloud& cloud, const Points& all, const SymmetryMap& map,
@@ -225,18 +147,10 @@ Detection planesOfEven(const NormalizedCloud& cloud, const Points& input, const 
   return detection;
 }
 
-}  // namespace
-
-Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
-                       const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
-                       const Points* normals) {
-  options.validate();
-  if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
-  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
-  if (const std::optional<CloudSubset> subset = search ? std::nullopt : subsetOf(points, options))
-    return bySubset(*subset, points, normals, options.num_threads, [&](const Points& p, const Points* n) {
-      return refineMaxima(p, edt, map, options, nullptr, visibility, n);
-    });
+/// refineMaxima() of points that can have an answer and need no subset.
+Detection refinedMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
+                        const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
+                        const Points* normals) {
   Stopwatch watch;
   const DistinctPoints distinct(points);
   const bool repeated = distinct.points.cols() < points.cols();
@@ -251,6 +165,95 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
   if (!repeated) return detection;
   spreadSupport(detection, distinct.index_of);
   return detection;
+}
+
+}  // namespace
+
+void DetectionOptions::validate() const {
+  edt.validate();
+  maxima.validate();
+  check(num_theta >= 1, "num_theta", num_theta, ">= 1");
+  check(num_phi >= 2 && num_phi % 2 == 0, "num_phi", num_phi, "even and >= 2");
+  check(num_radius >= 1, "num_radius", num_radius, ">= 1");
+  check(num_samples >= 1, "num_samples", num_samples, ">= 1");
+  check(max_candidates >= 1, "max_candidates", max_candidates, ">= 1");
+  check(max_drift >= 0.0, "max_drift", max_drift, ">= 0");
+  check(num_coarse_samples >= 10, "num_coarse_samples", num_coarse_samples, ">= 10");
+  check(num_refine_samples >= 10, "num_refine_samples", num_refine_samples, ">= 10");
+  check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
+  check(merge_angle >= 0.0, "merge_angle", merge_angle, ">= 0");
+  check(merge_offset >= 0.0, "merge_offset", merge_offset, ">= 0");
+  check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
+  check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
+  check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");
+  check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
+  check(max_possible >= 1, "max_possible", max_possible, ">= 1");
+  check(max_planes >= 1, "max_planes", max_planes, ">= 1");
+  checkNumThreads(num_threads);
+}
+
+Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
+                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search,
+                       const Visibility* visibility, const Points* normals) {
+  options.validate();
+  if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
+  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
+  Stopwatch watch;
+  if (const std::optional<CloudSubset> subset = make_search ? std::nullopt : subsetOf(points, options)) {
+    const double subset_ms = watch.lap();
+    Detection detection =
+        bySubset(*subset, points, normals, options.num_threads,
+                 [&](const Points& p, const Points* n) { return detectPlanes(p, options, nullptr, visibility, n); });
+    detection.map.center_of_mass = centerOfMass(points);
+    detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
+    return detection;
+  }
+  const GaussianEdt edt(points, options.edt);
+  const double edt_ms = watch.lap();
+  std::vector<float> free_space;
+  if (visibility) free_space = freeSpace(edt, *visibility, options.num_threads);
+  const double visibility_ms = watch.lap();
+  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
+  SampledTransformOptions sampling;
+  sampling.num_samples = options.num_samples;
+  sampling.seed = options.seed;
+  sampling.num_threads = options.num_threads;
+  SymmetryMap map = sampledTransform(edt, grid, sampling, free_space);
+  map.center_of_mass = centerOfMass(points);
+  const double transform_ms = watch.lap();
+  Detection detection =
+      refinedMaxima(points, edt, map, options, make_search ? make_search(edt) : nullptr, visibility, normals);
+  detection.map = std::move(map);
+  detection.timing_ms.insert(
+      detection.timing_ms.begin(),
+      {{"distance_transform", edt_ms}, {"free_space", visibility_ms}, {"transform", transform_ms}});
+  return detection;
+}
+
+void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
+                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options) {
+  options.validate();
+  DetectionOptions alone = options;
+  alone.num_threads = alone.edt.num_threads = 1;
+  std::mutex one_at_a_time;
+  parallelBlocks(num_clouds, options.num_threads, [&](std::size_t i) {
+    Detection detection = detectPlanes(cloud(i), alone);
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    found(i, std::move(detection));
+  });
+}
+
+Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
+                       const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
+                       const Points* normals) {
+  options.validate();
+  if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
+  if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
+  if (const std::optional<CloudSubset> subset = search ? std::nullopt : subsetOf(points, options))
+    return bySubset(*subset, points, normals, options.num_threads, [&](const Points& p, const Points* n) {
+      return refineMaxima(p, edt, map, options, nullptr, visibility, n);
+    });
+  return refinedMaxima(points, edt, map, options, std::move(search), visibility, normals);
 }
 
 }  // namespace pcl_symmetry

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/parallel.h"
 #include "core/detection/folds/fold_spectrum.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
@@ -227,10 +228,17 @@ struct FamilyGuesses {
   std::vector<Eigen::Vector3d> centers;
 };
 
-FamilyGuesses guessFamilies(const NormalizedCloud& cloud, const std::vector<int>& samples) {
+FamilyGuesses guessFamilies(const NormalizedCloud& cloud, const std::vector<int>& samples, int num_threads) {
   if (cloud.isVolume()) return {};  // normals mean nothing
   const Points& normals = cloud.geometry.normals;
-  return {{axisOfNormals(cloud.points, normals, samples)}, {centerOfNormals(cloud.points, normals, samples)}};
+  FamilyGuesses guesses{std::vector<Line3d>(1), std::vector<Eigen::Vector3d>(1)};
+  parallelBlocks(2, num_threads, [&](std::size_t part) {
+    if (part == 0)
+      guesses.axes[0] = axisOfNormals(cloud.points, normals, samples);
+    else
+      guesses.centers[0] = centerOfNormals(cloud.points, normals, samples);
+  });
+  return guesses;
 }
 
 /// Different symmetries among planes, most confident first, normalised frame.
@@ -249,9 +257,8 @@ std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& plan
   return distinct;
 }
 
-/// The longest principal axis of points.
-Line3d lineThrough(const Points& points) {
-  const PrincipalAxes axes = principalAxes(points);
+/// The longest principal axis.
+Line3d longestAxis(const PrincipalAxes& axes) {
   const Eigen::Vector3d direction = axes.axes.col(0);
   return Line3d(axes.center - direction.dot(axes.center) * direction, direction);
 }
@@ -268,7 +275,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   const std::vector<int> samples =
       drawSamples(cloud.points.cols(), cloud.isVolume() ? kVolumeFamilySamples : kFamilySamples, options.seed);
   if (judge.isLine()) {
-    const Line3d line = lineThrough(cloud.points);
+    const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
     for (int k = 0; k < kTested; ++k) through.push_back(planeThrough(line, k));
     const JudgedFamily judged = judge.judgeFamily(through, samples);
@@ -278,7 +285,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     return found;
   }
   const FamilyTest test = familyTest(cloud, fit, samples, options.seed);
-  const FamilyGuesses guesses = guessFamilies(cloud, samples);
+  const FamilyGuesses guesses = guessFamilies(cloud, samples, options.num_threads);
   const auto drop = [&](const auto& belongs) {
     found.planes.erase(std::remove_if(found.planes.begin(), found.planes.end(),
                                       [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); }),

@@ -80,10 +80,12 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
       options_(options),
       tolerance_(options.absolute_tolerance > 0.0 ? options.absolute_tolerance / cloud.scale
                                                   : options.tolerance * cloud.extent),
-      thinness_(thinnessOf(cloud.points, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_, lineTolerance())),
+      thinness_(thinnessOf(cloud.points, cloud.principal_axes, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_,
+                           lineTolerance())),
       halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
                                : std::nullopt),
-      own_shares_(sharesWithin(halves_ ? halves_->ownDistances() : ownSurfaceDistances(cloud.samples), tolerance_)),
+      own_shares_(sharesWithin(
+          halves_ ? halves_->ownDistances() : ownSurfaceDistances(cloud.samples, options.num_threads), tolerance_)),
       own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
                                              options.num_threads)
                          : 1.0) {}
@@ -95,7 +97,7 @@ double PlaneJudge::lineTolerance() const {
 
 std::optional<ReflectionPlane> PlaneJudge::flatPlane() const {
   if (thinness_ != Thinness::Sheet) return std::nullopt;
-  const PrincipalAxes axes = principalAxes(cloud_.points);
+  const PrincipalAxes& axes = cloud_.principal_axes;
   return ReflectionPlane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
 }
 

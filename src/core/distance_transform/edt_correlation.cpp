@@ -15,24 +15,24 @@ namespace pcl_symmetry {
 namespace {
 
 void productsScalar(const GaussianEdt& edt, const float* f, const ImageOfRow& image, GaussianEdt::Range cells,
-                    double* products) {
+                    double* sums) {
   for (int x = cells.begin; x < cells.end; ++x)
-    products[x] = f[x] > 0.0f ? f[x] * edt.atCell(image.first + x * image.step) : 0.0;
+    if (f[x] > 0.0f) sums[(x - cells.begin) % kProductSums] += f[x] * edt.atCell(image.first + x * image.step);
 }
 
 #if defined(__x86_64__)
 
 /// The same by eight cells at a time: the steps of GaussianEdt::atCell().
 __attribute__((target("avx512f"))) void productsAvx512(const GaussianEdt& edt, const float* f, const ImageOfRow& image,
-                                                       GaussianEdt::Range cells, double* products) {
-  constexpr int kLanes = 8;  // derived: doubles in a register
+                                                       GaussianEdt::Range cells, double* sums) {
   const int n = edt.numCells();
   const float* const table = edt.interpolation().data();
-  const __m512d zero = _mm512_setzero_pd(), last = _mm512_set1_pd(n - 1.0), one_more = _mm512_set1_pd(kLanes);
+  const __m512d zero = _mm512_setzero_pd(), last = _mm512_set1_pd(n - 1.0), one_more = _mm512_set1_pd(kProductSums);
   const __m256i side = _mm256_set1_epi32(n);
+  __m512d sum = _mm512_loadu_pd(sums);
   __m512d place = _mm512_add_pd(_mm512_set1_pd(cells.begin), _mm512_setr_pd(0, 1, 2, 3, 4, 5, 6, 7));
-  for (int x = cells.begin; x < cells.end; x += kLanes, place = _mm512_add_pd(place, one_more)) {
-    const auto there = static_cast<__mmask8>((1u << std::min(kLanes, cells.end - x)) - 1u);
+  for (int x = cells.begin; x < cells.end; x += kProductSums, place = _mm512_add_pd(place, one_more)) {
+    const auto there = static_cast<__mmask8>((1u << std::min(kProductSums, cells.end - x)) - 1u);
     const __m512d own = _mm512_cvtps_pd(_mm512_castps512_ps256(_mm512_maskz_loadu_ps(there, f + x)));
     __m512d at[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -41,10 +41,7 @@ __attribute__((target("avx512f"))) void productsAvx512(const GaussianEdt& edt, c
     __mmask8 inside = _mm512_cmp_pd_mask(own, zero, _CMP_GT_OQ);
     inside = _mm512_mask_cmp_pd_mask(inside, _mm512_min_pd(_mm512_min_pd(at[0], at[1]), at[2]), zero, _CMP_GE_OQ);
     inside = _mm512_mask_cmp_pd_mask(inside, _mm512_max_pd(_mm512_max_pd(at[0], at[1]), at[2]), last, _CMP_LT_OQ);
-    if (inside == 0) {
-      _mm512_mask_storeu_pd(products + x, there, zero);
-      continue;
-    }
+    if (inside == 0) continue;
     __m256i cell[3];
     __m512d beyond[3];  // the cell's center
     for (int axis = 0; axis < 3; ++axis) {
@@ -64,8 +61,9 @@ __attribute__((target("avx512f"))) void productsAvx512(const GaussianEdt& edt, c
       return _mm512_add_pd(a, _mm512_mul_pd(t, _mm512_sub_pd(b, a)));
     };
     const __m512d near = between(row(0), row(n), beyond[1]), far = between(row(n * n), row(n * n + n), beyond[1]);
-    _mm512_mask_storeu_pd(products + x, there, _mm512_maskz_mul_pd(inside, own, between(near, far, beyond[2])));
+    sum = _mm512_add_pd(sum, _mm512_maskz_mul_pd(inside, own, between(near, far, beyond[2])));
   }
+  _mm512_storeu_pd(sums, sum);
 }
 
 #pragma GCC diagnostic pop

@@ -76,10 +76,13 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
   return evidence;
 }
 
-std::vector<float> ownSupport(const SurfaceSamples& samples) {
+std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads) {
+  constexpr std::size_t kBlockSize = 2048;  // points. chosen: large enough that threads start seldom
   std::vector<float> support(static_cast<std::size_t>(samples.size()));
-  for (int i = 0; i < samples.size(); ++i)
-    support[i] = supportNear(samples[i].nearest[0], i, samples[i].point, samples[i].normal, samples);
+  parallelRanges(support.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
+      support[i] = supportNear(samples[i].nearest[0], i, samples[i].point, samples[i].normal, samples);
+  });
   return support;
 }
 

@@ -33,8 +33,9 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
 
 /// Support of each sample on the surface that the other samples describe: what sampling alone leaves of a symmetry.
 /// \param samples N, normalised to the unit ball.
+/// \param num_threads 0 = one per core.
 /// \return N values in [0, 1].
-std::vector<float> ownSupport(const SurfaceSamples& samples);
+std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads);
 
 /// \param support at least one value.
 /// \return the mean.

@@ -1,7 +1,5 @@
 #include "core/neighbours/thin_shape.h"
 
-#include "core/geometry/principal_axes.h"
-
 namespace pcl_symmetry {
 
 namespace {
@@ -10,8 +8,7 @@ constexpr double kThinShare = 0.97;  // of the points. derived: the share of the
 
 }  // namespace
 
-Thinness thinnessOf(const PointsRef& points, double plane_tolerance, double line_tolerance) {
-  const PrincipalAxes axes = principalAxes(points);
+Thinness thinnessOf(const PointsRef& points, const PrincipalAxes& axes, double plane_tolerance, double line_tolerance) {
   Eigen::Index num_near_plane = 0, num_near_line = 0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d x = axes.axes.transpose() * (points.col(i).cast<double>() - axes.center);

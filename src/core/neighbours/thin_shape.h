@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/geometry/point_set.h"
 
 namespace pcl_symmetry {
@@ -12,12 +13,8 @@ enum class Thinness {
 };
 
 /// \param points 3 x N, finite, N >= 1.
+/// \param axes of the points.
 /// \param plane_tolerance,line_tolerance how far points may lie from a plane and from a line, units of the points, > 0.
-Thinness thinnessOf(const PointsRef& points, double plane_tolerance, double line_tolerance);
-
-/// The same with one tolerance for both.
-inline Thinness thinnessOf(const PointsRef& points, double tolerance) {
-  return thinnessOf(points, tolerance, tolerance);
-}
+Thinness thinnessOf(const PointsRef& points, const PrincipalAxes& axes, double plane_tolerance, double line_tolerance);
 
 }  // namespace pcl_symmetry

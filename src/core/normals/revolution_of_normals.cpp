@@ -4,11 +4,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/geometry/sums/weighted_products.h"
+
 namespace pcl_symmetry {
 
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Radians by which a normal may miss at half its weight. chosen: the error of normals of samples with noise of a third
@@ -45,26 +46,34 @@ Motion slowestAlongNormals(const Matrix6d& sum) {
   return {turn, shift - turn.dot(shift) * turn};  // without the translation along the axis
 }
 
+/// A point of a surface.
+struct Oriented {
+  Eigen::Vector3d point, normal;
+};
+
+std::vector<Oriented> orientedAt(const Points& points, const Points& normals, const std::vector<int>& samples) {
+  std::vector<Oriented> oriented;
+  oriented.reserve(samples.size());
+  for (const int i : samples) oriented.push_back({points.col(i).cast<double>(), normals.col(i).cast<double>()});
+  return oriented;
+}
+
 }  // namespace
 
 Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Points& normals,
                                                  const std::vector<int>& samples) {
-  std::vector<double> weights(samples.size(), 1.0);
+  const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
+  std::vector<double> weights(oriented.size(), 1.0);
   Motion motion{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()};
   for (int k = 0; k < kReweightings; ++k) {
-    Matrix6d sum = Matrix6d::Zero();
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Eigen::Vector3d x = points.col(samples[i]).cast<double>(), n = normals.col(samples[i]).cast<double>();
-      Vector6d along;  // of the normal, by turn and by shift
-      along << x.cross(n), n;
-      sum += weights[i] * along * along.transpose();
-    }
-    motion = slowestAlongNormals(sum);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Eigen::Vector3d x = points.col(samples[i]).cast<double>(), n = normals.col(samples[i]).cast<double>();
-      const Eigen::Vector3d velocity = motion.velocityAt(x);
+    WeightedProducts products;  // of how fast points move along their normals, by turn and by shift
+    for (std::size_t i = 0; i < oriented.size(); ++i)
+      products.add(oriented[i].point.cross(oriented[i].normal), oriented[i].normal, 0.0, weights[i]);
+    motion = slowestAlongNormals(products.sums().topLeftCorner<6, 6>());
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const Eigen::Vector3d velocity = motion.velocityAt(oriented[i].point);
       const double lever = std::max(kLeastLever, velocity.norm());
-      weights[i] = weightOf(velocity.dot(n) / lever) / (lever * lever);
+      weights[i] = weightOf(velocity.dot(oriented[i].normal) / lever) / (lever * lever);
     }
   }
   // The axis is where the motion stands still.
@@ -72,22 +81,25 @@ Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Poi
 }
 
 Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
-  std::vector<double> weights(samples.size(), 1.0);
+  constexpr double kRidge = 1e-9;  // derived: parallel normals leave two directions free, far above rounding
+  const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
+  std::vector<double> weights(oriented.size(), 1.0);
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (int k = 0; k < kReweightings; ++k) {
-    Eigen::Matrix3d sum = 1e-9 * Eigen::Matrix3d::Identity();
-    Eigen::Vector3d pull = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Eigen::Vector3d x = points.col(samples[i]).cast<double>(), n = normals.col(samples[i]).cast<double>();
-      const Eigen::Matrix3d across = weights[i] * (Eigen::Matrix3d::Identity() - n * n.transpose());
-      sum += across;
-      pull += across * x;
+    // The point with the least sum of w |(I - n n^T) (x - center)|^2.
+    WeightedProducts products;
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const auto& [x, n] = oriented[i];
+      products.add(n, x - n.dot(x) * n, 1.0, weights[i]);
     }
-    center = sum.ldlt().solve(pull);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Eigen::Vector3d d = points.col(samples[i]).cast<double>() - center;
+    const WeightedProducts::Matrix sums = products.sums();
+    const Eigen::Matrix3d across = (sums(6, 6) + kRidge) * Eigen::Matrix3d::Identity() - sums.topLeftCorner<3, 3>();
+    const Eigen::Vector3d pull = sums.block<3, 1>(3, 6);
+    center = across.ldlt().solve(pull);
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const Eigen::Vector3d d = oriented[i].point - center;
       const double lever = std::max(kLeastLever, d.norm());
-      weights[i] = weightOf(d.cross(normals.col(samples[i]).cast<double>()).norm() / lever) / (lever * lever);
+      weights[i] = weightOf(d.cross(oriented[i].normal).norm() / lever) / (lever * lever);
     }
   }
   return center;

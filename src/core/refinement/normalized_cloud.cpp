@@ -1,7 +1,9 @@
 #include "core/refinement/normalized_cloud.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "core/base/median.h"
@@ -71,7 +73,7 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       tree(input_search ? nullptr : treeOf(points, num_threads, starts_)),
       search(input_search ? std::move(input_search) : tree),
       geometry(withNormals(geometryOf(points, *search, tree.get(), starts_, num_threads, neighbours), given_normals)),
-      samples(points, geometry),
+      samples(points, geometry, num_threads),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),
       surface{points,
@@ -81,12 +83,21 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
               &far,
               num_threads,
               visibility ? &*visibility : nullptr},
-      extent(farthestPair(points)),
-      spacing(median(geometry.spacing)),
-      roughness(median(geometry.roughness) / std::max(spacing, kLeastSpacing)),
-      baseline(std::max(meanSupport(ownSupport(samples)), kLeastBaseline)),
+      measures_(points, geometry, num_threads),
+      principal_axes(measures_.principal_axes),
+      extent(measures_.extent),
+      spacing(measures_.spacing),
+      roughness(measures_.roughness / std::max(spacing, kLeastSpacing)),
+      baseline(std::max(meanSupport(ownSupport(samples, num_threads)), kLeastBaseline)),
       sigma(edt.sigma() / scale),
       final_sigma(std::min(sigma, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing))) {}
+
+NormalizedCloud::Measures::Measures(const Points& points, const LocalGeometry& geometry, int num_threads) {
+  const std::array<std::function<void()>, 4> measurements{
+      [&] { extent = farthestPair(points); }, [&] { principal_axes = principalAxes(points); },
+      [&] { spacing = median(geometry.spacing); }, [&] { roughness = median(geometry.roughness); }};
+  parallelBlocks(measurements.size(), num_threads, [&](std::size_t i) { measurements[i](); });
+}
 
 bool NormalizedCloud::isVolume() const {
   return roughness > kVolumeRoughness && !isScan();
@@ -104,7 +115,7 @@ double NormalizedCloud::score(const ReflectionPlane& input_plane) const {
   const ReflectionPlane cells(input_plane.normal(), input_plane.signedDistance(edt.origin()) / -edt.cellSize());
   const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * input_plane.normal().x() * input_plane.normal();
   return correlation(
-      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step);
+      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step, surface.num_threads);
 }
 
 }  // namespace pcl_symmetry

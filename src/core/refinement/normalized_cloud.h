@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/evidence/share/surface_samples.h"
+#include "core/geometry/principal_axes.h"
 #include "core/neighbours/closest_point_grid.h"
 #include "core/refinement/steps/far_test.h"
 #include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
@@ -47,9 +48,21 @@ public:
   const FarTest far;
   const IspSurface surface;  ///< the above, as Iterative Symmetric Points wants it
 
-  const double extent;       ///< greatest distance between two points, by farthestPair()
-  const double spacing;      ///< median of the points' spacing
-  const double roughness;    ///< median of the points' roughness, divided by the spacing
+private:
+  /// What is measured by passes over all points, at the same time.
+  struct Measures {
+    Measures(const Points& points, const LocalGeometry& geometry, int num_threads);
+
+    PrincipalAxes principal_axes;
+    double extent = 0.0, spacing = 0.0, roughness = 0.0;
+  };
+  const Measures measures_;
+
+public:
+  const PrincipalAxes principal_axes;  ///< of the points
+  const double extent;                 ///< greatest distance between two points, by farthestPair()
+  const double spacing;                ///< median of the points' spacing
+  const double roughness;              ///< median of the points' roughness, divided by the spacing
   const double baseline;     ///< mean support of the points on the surface of all others, > 0: a symmetry reaches it
   const double sigma;        ///< width of the weights when refinement starts: that of the edt
   const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/filesystem.hpp>
 #include <chrono>
 #include <csignal>
@@ -13,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "apps/support/temporary_folder.h"
@@ -66,11 +68,14 @@ int numberIn(const std::string& path, std::size_t size) {
   return points->size() == size ? static_cast<int>((*points)[0].x) : -1;
 }
 
-/// Writes the files again and again, until it is killed.
-[[noreturn]] void writeForever(const TemporaryFolder& folder, std::uint32_t size) {
+/// Writes the files again and again, until it is killed, and a byte into a pipe after each.
+[[noreturn]] void writeForever(const TemporaryFolder& folder, std::uint32_t size, int pipe) {
   const auto all = writers(size);
   for (int number = 1;; ++number)
-    for (const auto& [name, write] : all) write(folder / name, number);
+    for (const auto& [name, write] : all) {
+      write(folder / name, number);
+      if (::write(pipe, "", 1) != 1) _exit(1);
+    }
 }
 
 TEST(SafeFiles, KilledWritersLeaveWholeFiles) {
@@ -79,21 +84,30 @@ TEST(SafeFiles, KilledWritersLeaveWholeFiles) {
   const auto all = writers(kSize);
   for (const auto& [name, write] : all) write(folder / name, 0);  // loads the module before the forks
   std::mt19937 generator(1);
-  int num_changed = 0;
+  int num_within_rounds = 0;
   for (int kill = 0; kill < 200; ++kill) {
+    std::array<int, 2> pipe{};
+    ASSERT_EQ(::pipe(pipe.data()), 0);
     const pid_t child = fork();
-    if (child == 0) writeForever(folder, kSize);
-    std::this_thread::sleep_for(std::chrono::microseconds(generator() % 8000));
+    if (child == 0) writeForever(folder, kSize, pipe[1]);
+    close(pipe[1]);
+    // Some files on, however busy the machine is, and somewhere in the next one.
+    char byte = 0;
+    for (auto num_files = generator() % 10; num_files > 0; --num_files) ASSERT_EQ(read(pipe[0], &byte, 1), 1);
+    std::this_thread::sleep_for(std::chrono::microseconds(generator() % 1000));
     ::kill(child, SIGKILL);
     ASSERT_EQ(waitpid(child, nullptr, 0), child);
+    close(pipe[0]);
+    std::set<int> numbers;
     for (const auto& [name, write] : all) {
       const int number = numberIn(folder / name, kSize);
       ASSERT_GE(number, 0) << name << " after kill " << kill;
-      num_changed += number > 0;
+      numbers.insert(number);
       write(folder / name, 0);
     }
+    num_within_rounds += numbers.size() > 1;
   }
-  EXPECT_GT(num_changed, 50) << "the kills came while files were written";
+  EXPECT_GT(num_within_rounds, 50) << "the kills came while files were written";
 }
 
 /// The size of files is limited: the kernel then answers a write as on a full disk, with another error number.

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <atomic>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -178,31 +177,8 @@ private:
   bool first_ = true;
 };
 
-/// What a scanner four radii away sees of a cloud: the nearest point in each of its pixels.
-Points seenFrom(const Points& points, const Eigen::Vector3d& viewpoint) {
-  constexpr double kPixels = 350.0;  // for a slope of 1. chosen: leaves 6000 points of 40 000
-  const Eigen::Vector3d middle = centerOfMass(points), ahead = (middle - viewpoint).normalized();
-  const Eigen::Vector3d u = ahead.unitOrthogonal(), v = ahead.cross(u);
-  std::map<std::pair<int, int>, std::pair<double, Eigen::Index>> nearest;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d x = points.col(i).cast<double>() - viewpoint;
-    const double depth = x.dot(ahead);
-    const std::pair pixel(static_cast<int>(std::floor(kPixels * x.dot(u) / depth)),
-                          static_cast<int>(std::floor(kPixels * x.dot(v) / depth)));
-    const auto place = nearest.try_emplace(pixel, depth, i).first;
-    if (depth < place->second.first) place->second = {depth, i};
-  }
-  Points seen(3, static_cast<Eigen::Index>(nearest.size()));
-  Eigen::Index k = 0;
-  for (const auto& [pixel, point] : nearest) seen.col(k++) = points.col(point.second);
-  return seen;
-}
-
 void addScan(const Model& model, int num_repeats, std::vector<Stage>& stages) {
-  const Points all = model.sample(4 * kNumPoints);
-  const BoundingBall ball = boundingBall(all);
-  const Eigen::Vector3d viewpoint = ball.center + 4.0 * ball.radius * Eigen::Vector3d(0.6, 0.5, 0.62).normalized();
-  const Points scan = seenFrom(all, viewpoint);
+  const auto [scan, viewpoint] = model.scan(4 * kNumPoints);
   const std::optional<Visibility> seen = Visibility::fromPoints(scan, viewpoint);
   const GaussianEdt edt(scan, oneThread().edt);
   const auto detect = [&](bool turns) {

@@ -302,7 +302,6 @@ TEST(GaussianEdt, ProductsOfARowAreThoseOfItsCells) {
   const GaussianEdt edt(asymmetricBlob(500, 2).cloud(), cells(33));
   RandomStream random(4);
   const int n = edt.numCells();
-  std::vector<double> products(static_cast<std::size_t>(n));
   int num_filled = 0;
   for (int row = 0; row < n * n; ++row) {
     const GaussianEdt::Range filled = edt.filledRanges()[static_cast<std::size_t>(row)];
@@ -310,11 +309,15 @@ TEST(GaussianEdt, ProductsOfARowAreThoseOfItsCells) {
     const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * n);
     const Eigen::Vector3d step(symmetric(random), symmetric(random), symmetric(random));
     const ImageOfRow image{middle - 0.5 * n * step, step};
-    rowProducts()(edt, f, image, filled, products.data());
+    std::array<double, kProductSums> sums, expected;
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = expected[k] = random.uniform();
     for (int x = filled.begin; x < filled.end; ++x) {
-      EXPECT_EQ(products[static_cast<std::size_t>(x)], f[x] * edt.atCell(image.first + x * image.step));
-      num_filled += products[static_cast<std::size_t>(x)] > 0.0 ? 1 : 0;
+      const double product = f[x] * edt.atCell(image.first + x * image.step);
+      expected[static_cast<std::size_t>(x - filled.begin) % sums.size()] += product;
+      num_filled += product > 0.0 ? 1 : 0;
     }
+    rowProducts()(edt, f, image, filled, sums.data());
+    EXPECT_EQ(sums, expected);
   }
   EXPECT_GT(num_filled, 100);
 }

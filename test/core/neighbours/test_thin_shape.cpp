@@ -17,23 +17,31 @@ Points boxOf(const Eigen::Vector3f& size) {
   return points;
 }
 
+Thinness thinness(const Points& points, double plane_tolerance, double line_tolerance) {
+  return thinnessOf(points, principalAxes(points), plane_tolerance, line_tolerance);
+}
+
+Thinness thinness(const Points& points, double tolerance) {
+  return thinness(points, tolerance, tolerance);
+}
+
 TEST(Thinness, IsThatOfTheSizesBeyondTheTolerance) {
-  EXPECT_EQ(thinnessOf(boxOf({2.0f, 1.0f, 0.5f}), 0.02), Thinness::Solid);
-  EXPECT_EQ(thinnessOf(boxOf({2.0f, 1.0f, 0.03f}), 0.02), Thinness::Sheet);
-  EXPECT_EQ(thinnessOf(boxOf({2.0f, 0.02f, 0.02f}), 0.02), Thinness::Line);
-  EXPECT_EQ(thinnessOf(boxOf({2.0f, 1.0f, 0.03f}), 0.005), Thinness::Solid) << "another tolerance";
+  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.5f}), 0.02), Thinness::Solid);
+  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.03f}), 0.02), Thinness::Sheet);
+  EXPECT_EQ(thinness(boxOf({2.0f, 0.02f, 0.02f}), 0.02), Thinness::Line);
+  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.03f}), 0.005), Thinness::Solid) << "another tolerance";
 }
 
 TEST(Thinness, ALineHasAToleranceOfItsOwn) {
   const Points rod = boxOf({2.0f, 0.03f, 0.03f});
-  EXPECT_EQ(thinnessOf(rod, 0.005, 0.03), Thinness::Line);
-  EXPECT_EQ(thinnessOf(rod, 0.005, 0.005), Thinness::Solid);
+  EXPECT_EQ(thinness(rod, 0.005, 0.03), Thinness::Line);
+  EXPECT_EQ(thinness(rod, 0.005, 0.005), Thinness::Solid);
 }
 
 TEST(Thinness, AFewPointsBesideDoNotCount) {
   Points points = boxOf({2.0f, 1.0f, 0.0f});
   points(2, 500) = 0.5f;
-  EXPECT_EQ(thinnessOf(points, 0.02), Thinness::Sheet);
+  EXPECT_EQ(thinness(points, 0.02), Thinness::Sheet);
 }
 
 }  // namespace

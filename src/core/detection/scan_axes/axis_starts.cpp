@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/geometry/point_samples.h"
 #include "core/normals/revolution_of_normals.h"
@@ -18,9 +19,10 @@ constexpr int kNormalSamples = 600;  // chosen: half shifts the axis by noise, t
 // Draws of normals, and normals in each. derived: six numbers fix a motion but for its size; chosen: at 60 draws one is
 // free of a handle of a fifth of the surface with probability 1 - 1e-8.
 constexpr int kNormalDraws = 60, kNormalsInDraw = 8;
-constexpr int kFromNormals = 3;       // lines kept; chosen: more repeat the best
-constexpr double kMeets = 0.1;        // radians; chosen: as for the weights of axisOfNormals()
-constexpr double kLeastLever = 0.05;  // radii; chosen: as there
+constexpr std::size_t kDrawsPerBlock = 4;  // chosen: large enough that threads start seldom
+constexpr int kFromNormals = 3;            // lines kept; chosen: more repeat the best
+constexpr double kMeets = 0.1;             // radians; chosen: as for the weights of axisOfNormals()
+constexpr double kLeastLever = 0.05;       // radii; chosen: as there
 // Radians, radii: lines are one within these. chosen: a fit comes to the same line from either.
 constexpr double kSameStartAngle = 0.1, kSameStartOffset = 0.06;
 constexpr double kAngleOfFold = 3.0 * kDegree;  // chosen: planes of scans are off by this much in one of ten
@@ -45,10 +47,9 @@ double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3
 
 }  // namespace
 
-std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed) {
+std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
   const std::vector<int> samples = drawSamples(cloud.points.cols(), kNormalSamples, seed);
   const Points& normals = cloud.geometry.normals;
-  std::vector<std::pair<double, Line3d>> found;
   const auto inliersOf = [&](const Line3d& line) {
     std::vector<int> inliers;
     for (const int i : samples)
@@ -56,17 +57,22 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
         inliers.push_back(i);
     return inliers;
   };
-  const auto add = [&](const Line3d& line) {
-    if (line.direction().allFinite() && line.origin().allFinite())
-      found.emplace_back(-static_cast<double>(inliersOf(line).size()), line);
-  };
-  add(axisOfNormals(cloud.points, normals, samples));
+  std::vector<std::vector<int>> draws(1, samples);
   RandomStream random(seed);
   for (int draw = 0; draw < kNormalDraws; ++draw) {
     std::vector<int> few;
     for (int k = 0; k < kNormalsInDraw; ++k) few.push_back(samples[random.below(samples.size())]);
-    add(axisOfNormals(cloud.points, normals, few));
+    draws.push_back(std::move(few));
   }
+  std::vector<std::pair<double, Line3d>> found(draws.size());
+  parallelRanges(draws.size(), kDrawsPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Line3d line = axisOfNormals(cloud.points, normals, draws[i]);
+      const bool is_line = line.direction().allFinite() && line.origin().allFinite();
+      found[i] = {is_line ? -static_cast<double>(inliersOf(line).size()) : 1.0, line};
+    }
+  });
+  found.erase(std::remove_if(found.begin(), found.end(), [](const auto& one) { return one.first > 0.0; }), found.end());
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<AxisStart> starts;
   for (const auto& [unused, line] : found) {

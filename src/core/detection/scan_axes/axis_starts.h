@@ -17,7 +17,8 @@ struct AxisStart {
 /// Lines that many normals of a scan meet or are parallel to: the best of all, and the best of small draws, so that a
 /// base or a handle does not decide.
 /// \param seed of the draws.
-std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed);
+/// \param num_threads 0 = one per core.
+std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads);
 
 /// Common lines of planes at an angle of k pi / n.
 /// \param planes normalised frame.

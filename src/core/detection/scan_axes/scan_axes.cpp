@@ -148,7 +148,7 @@ bool isSameLine(const Line3d& a, const Line3d& b) {
 std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vector<SymmetryPlane>& planes,
                                    const std::vector<SymmetryAxis>& axes, const DetectionOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
-  std::vector<AxisStart> starts = startsFromNormals(cloud, options.seed);
+  std::vector<AxisStart> starts = startsFromNormals(cloud, options.seed, options.num_threads);
   const auto append = [&](const std::vector<AxisStart>& more) {
     starts.insert(starts.end(), more.begin(), more.end());
   };
@@ -179,7 +179,7 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
     turns.turn.point = turns.line.projection(Eigen::Vector3d::Zero()) * cloud.scale + cloud.center;
     result.push_back(turns.turn);
   }
-  const std::vector<TurnSigns> signs = turnSigns(evidence, result, options.min_possible);
+  const std::vector<TurnSigns> signs = turnSigns(evidence, result, options.min_possible, options.num_threads);
   for (std::size_t i = 0; i < result.size(); ++i) result[i].confidence = turnConfidence(result[i], signs[i]);
   result.erase(std::remove_if(result.begin(), result.end(),
                               [&](const SymmetryTurn& turn) { return turn.confidence < options.min_possible; }),

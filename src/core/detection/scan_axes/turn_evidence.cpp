@@ -99,16 +99,17 @@ bool TurnEvidence::isSeenEmpty(const Eigen::Vector3d& x) const {
 TurnShares TurnEvidence::roughly(const Eigen::Affine3d& motion, double slack, double most_off, double most_far) const {
   TurnShares shares;
   const double one = 1.0 / static_cast<double>(few_samples_.size());
+  const auto fAt = [&](double distance) { return std::exp(-std::pow(distance / cloud_.sigma, 2)); };
+  const double near_f = fAt(slack * tolerance_), far_f = fAt(far_);
   for (const int sample : few_samples_) {
     if (shares.off > most_off || shares.far > most_far) break;
     const Eigen::Vector3d x = motion * cloud_.points.col(sample).cast<double>();
     const double f = std::max(kLeastTurnF, cloud_.edt(x * cloud_.scale + cloud_.center));
-    const double distance = cloud_.sigma * std::sqrt(std::max(0.0, -std::log(f)));
-    if (distance <= slack * tolerance_) {
+    if (f >= near_f) {
       shares.on += one;
     } else if (isSeenEmpty(x)) {
       shares.off += one;
-      shares.far += distance > far_ ? one : 0.0;
+      shares.far += f < far_f ? one : 0.0;
     }
   }
   return shares;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/base/parallel.h"
 #include "core/detection/scan_axes/turn_confidence.h"
 #include "core/detection/scan_axes/turn_limits.h"
 #include "core/neighbours/diameter.h"
@@ -78,7 +79,7 @@ bool crossesUpright(const Line3d& a, const Line3d& b) {
 }  // namespace
 
 std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector<SymmetryTurn>& turns,
-                                 double min_confidence) {
+                                 double min_confidence, int num_threads) {
   const NormalizedCloud& cloud = evidence.cloud();
   const auto lineOf = [&](const SymmetryTurn& turn) {
     return Line3d((turn.point - cloud.center) / cloud.scale, turn.direction);
@@ -87,8 +88,8 @@ std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector
   const auto best = std::max_element(turns.begin(), turns.end(), [](const SymmetryTurn& a, const SymmetryTurn& b) {
     return marginOf(a) < marginOf(b);
   });
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    if (turns[i].fold != 2) continue;
+  parallelBlocks(turns.size(), num_threads, [&](std::size_t i) {
+    if (turns[i].fold != 2) return;
     const Line3d line = lineOf(turns[i]);
     signs[i].grown = grownBy(cloud, Eigen::Affine3d(turnAbout(line, kPi)));
     signs[i].hold = evidence.hold(line, kPi);
@@ -96,7 +97,7 @@ std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector
     signs[i].beside = is_best || crossesUpright(line, lineOf(*best)) ? 0.0 : 1.0;
     // Planes only speak against a turn, and take most of the time.
     if (turnConfidence(turns[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
-  }
+  });
   return signs;
 }
 

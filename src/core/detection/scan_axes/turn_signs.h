@@ -22,8 +22,9 @@ struct TurnSigns {
 
 /// \param turns of one scan, input frame, with the shares that were seen.
 /// \param min_confidence planes are not looked for where the other signs leave a turn less, see turnConfidence().
+/// \param num_threads 0 = one per core.
 /// \return one each; other turns than half turns have the defaults.
 std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector<SymmetryTurn>& turns,
-                                 double min_confidence = 0.0);
+                                 double min_confidence = 0.0, int num_threads = 1);
 
 }  // namespace pcl_symmetry

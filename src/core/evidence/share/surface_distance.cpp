@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/parallel.h"
+
 namespace pcl_symmetry {
 
 namespace {
@@ -12,6 +14,7 @@ namespace {
 // derived: with p = 3 parameters and n = 9 points the leverage is l = p / n, residuals of the points have the variance
 // (1 - l) and those of new points (1 + l) times that of the noise; the root of their ratio.
 constexpr float kNewPointFactor = 1.41421356f;
+constexpr std::size_t kDistancesPerBlock = 2048;  // chosen: large enough that threads start seldom
 
 /// Squared distance of a point from the disc of a sample.
 float sqDistanceFromDisc(const SurfaceSample& sample, const Eigen::Vector3f& point, float across_factor) {
@@ -41,10 +44,12 @@ std::vector<float> surfaceDistances(const Points& points, const std::vector<int>
   return distances;
 }
 
-std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples) {
+std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_threads) {
   std::vector<float> distances(static_cast<std::size_t>(samples.size()));
-  for (int i = 0; i < samples.size(); ++i)
-    distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].point, samples, kNewPointFactor);
+  parallelRanges(distances.size(), kDistancesPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
+      distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].point, samples, kNewPointFactor);
+  });
   return distances;
 }
 

@@ -19,8 +19,9 @@ std::vector<float> surfaceDistances(const Points& points, const std::vector<int>
 /// Distance of each sample from the surface that the others describe: what sampling and noise alone make of a surface
 /// that is mapped onto itself.
 /// \param samples N >= 2 of them.
+/// \param num_threads 0 = one per core.
 /// \return N distances >= 0, units of the samples.
-std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples);
+std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_threads = 1);
 
 /// \param distances at least one.
 /// \return share of the distances that are at most \p tolerance, in [0, 1].

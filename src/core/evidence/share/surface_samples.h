@@ -28,7 +28,8 @@ class SurfaceSamples {
 public:
   /// \param points 3 x N.
   /// \param geometry of the points.
-  SurfaceSamples(const Points& points, const LocalGeometry& geometry);
+  /// \param num_threads 0 = one per core.
+  SurfaceSamples(const Points& points, const LocalGeometry& geometry, int num_threads = 1);
 
   int size() const { return static_cast<int>(samples_.size()); }
   const SurfaceSample& operator[](int i) const { return samples_[static_cast<std::size_t>(i)]; }

@@ -39,8 +39,8 @@ NeighbourLists::NeighbourLists(const Points& points, const std::vector<int>& nea
 
 NeighbourLists::NeighbourLists(ClosestPointGrid starts, const Points& points, const std::vector<int>& nearest,
                                const std::vector<float>& sq_reach, int num_threads)
-    : lists_(static_cast<std::size_t>(points.cols())), grid_(std::move(starts)) {
-  parallelRanges(lists_.size(), kFilledPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    : lists_(new List[static_cast<std::size_t>(points.cols())]), grid_(std::move(starts)) {
+  parallelRanges(static_cast<std::size_t>(points.cols()), kFilledPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) fill(i, points, nearest, sq_reach[i]);
   });
 }
@@ -48,6 +48,7 @@ NeighbourLists::NeighbourLists(ClosestPointGrid starts, const Points& points, co
 /// Fills the list of a point.
 void NeighbourLists::fill(std::size_t i, const Points& points, const std::vector<int>& nearest, float sq_reach) {
   List& list = lists_[i];
+  list = List();
   const auto own = points.col(static_cast<Eigen::Index>(i));
   list.own_x = own.x();
   list.own_y = own.y();

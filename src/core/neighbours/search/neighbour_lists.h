@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/neighbours/closest_point_grid.h"
@@ -65,7 +66,7 @@ private:
   void fill(std::size_t i, const Points& points, const std::vector<int>& nearest, float sq_reach);
   void walkSome(const PointsRef& queries, int* indices, float* sq_distances, char* is_closest) const;
 
-  std::vector<List> lists_;
+  std::unique_ptr<List[]> lists_;  // not set to 0 first, which takes as long as to fill them
   ClosestPointGrid grid_;
 };
 
