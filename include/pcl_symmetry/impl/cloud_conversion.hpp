@@ -97,16 +97,22 @@ SelectedPoints selectPoints(const pcl::PointCloud<PointT>& cloud, const pcl::Ind
   }
   std::vector<std::size_t> drawn;
   if (num_finite > max_points) drawn = drawOneOfEachRun(num_finite, max_points, seed);
-  const std::size_t num_selected = std::min(num_finite, max_points);
-  SelectedPoints selected{Points(3, num_selected), pcl::Indices(num_selected)};
-  std::size_t slot = 0, finite = 0;
-  for (std::size_t i = 0; i < size && slot < num_selected; ++i) {
-    const PointT& point = cloud[at(i)];
-    if (!pcl::isXYZFinite(point)) continue;
-    const std::size_t position = finite++;
-    if (!drawn.empty() && position != drawn[slot]) continue;
-    selected.points.col(slot) = point.getVector3fMap();
+  const std::size_t count = std::min(num_finite, max_points);
+  SelectedPoints selected{Points(3, count), pcl::Indices(count)};
+  std::size_t slot = 0;
+  const auto select = [&](std::size_t i) {
+    selected.points.col(slot) = cloud[at(i)].getVector3fMap();
     selected.indices[slot++] = at(i);
+  };
+  if (num_finite == size && !drawn.empty()) {
+    for (const std::size_t i : drawn) select(i);
+    return selected;
+  }
+  std::size_t position = 0;  // among the finite points
+  for (std::size_t i = 0; i < size && slot < count; ++i) {
+    if (!pcl::isXYZFinite(cloud[at(i)])) continue;
+    if (drawn.empty() || position == drawn[slot]) select(i);
+    ++position;
   }
   return selected;
 }

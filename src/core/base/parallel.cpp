@@ -37,6 +37,12 @@ int numCores() {
 }
 
 void runOnThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
+  if (omp_in_parallel()) {
+    // Threads that have finished their own blocks take over some of these.
+#pragma omp taskloop grainsize(1) default(none) shared(num_blocks, block)
+    for (std::size_t b = 0; b < num_blocks; ++b) block(b);
+    return;
+  }
 #pragma omp parallel for schedule(dynamic, 1) num_threads(num_threads)
   for (std::size_t b = 0; b < num_blocks; ++b) block(b);
 }

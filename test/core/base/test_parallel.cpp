@@ -52,6 +52,41 @@ TEST(Parallel, ExceptionsReachTheCaller) {
   }
 }
 
+TEST(Parallel, BlocksMayHaveBlocks) {
+  for (const int num_threads : {1, 2, 8}) {
+    std::vector<std::vector<std::atomic<int>>> runs(5);
+    parallelBlocks(runs.size(), num_threads, [&](std::size_t b) {
+      // One block is much longer than the others: threads that have finished help with it.
+      std::vector<std::atomic<int>> own(b == 0 ? 10'000 : 3);
+      parallelBlocks(own.size(), num_threads, [&](std::size_t i) { ++own[i]; });
+      for (const auto& run : own) ASSERT_EQ(run, 1) << "a block has ended before all of its own ones";
+      runs[b] = std::vector<std::atomic<int>>(1);
+      parallelRanges(100, 7, num_threads,
+                     [&](std::size_t begin, std::size_t end) { runs[b][0] += static_cast<int>(end - begin); });
+    });
+    for (const auto& run : runs) ASSERT_EQ(run[0], 100) << num_threads << " threads";
+  }
+}
+
+TEST(Parallel, ExceptionsOfBlocksInBlocksReachTheCaller) {
+  for (const int num_threads : {1, 2, 8}) {
+    std::atomic<int> num_caught{0};
+    EXPECT_THROW(parallelBlocks(4, num_threads,
+                                [&](std::size_t b) {
+                                  try {
+                                    parallelBlocks(50, num_threads, [&](std::size_t i) {
+                                      if (i == 20 + b) throw std::invalid_argument("inner");
+                                    });
+                                  } catch (const std::invalid_argument&) {
+                                    ++num_caught;
+                                    if (b == 3) throw;
+                                  }
+                                }),
+                 std::invalid_argument);
+    EXPECT_EQ(num_caught, 4) << num_threads << " threads";
+  }
+}
+
 TEST(Parallel, ResolvesTheNumberOfThreads) {
   EXPECT_GE(resolveNumThreads(0), 1);
   EXPECT_EQ(resolveNumThreads(3), 3);
