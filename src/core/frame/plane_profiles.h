@@ -27,8 +27,7 @@ public:
   /// sides.
   /// \param num_samples points drawn from the distance transform, >= 1.
   /// \param seed of the samples.
-  /// \param
-  /// num_threads >= 0; 0 = one per core.
+  /// \param num_threads >= 0; 0 = one per core.
   PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& free_space, int num_samples, std::uint64_t seed,
                 int num_threads);
 
@@ -56,6 +55,7 @@ private:
   /// \param images cells of the images of the samples.
   /// \param completed the same in the reflection that completes a scan; null: there is none.
   Sums sumsAt(const std::uint32_t* images, const std::uint32_t* completed) const;
+  Sums sumsAvx512(const std::uint32_t* images, const std::uint32_t* completed) const;
 
   Cell at(float x, float y, float z) const {
     const auto i = static_cast<std::uint32_t>(static_cast<int>(x));
@@ -68,7 +68,7 @@ private:
   float middle_;
   bool scanned_;
   Cell outside_;
-  std::vector<Cell> cells_;   // and one for all that lies outside
+  std::vector<Cell> cells_;   // and one for all that lies outside, twice
   Eigen::Matrix3Xf samples_;  // cells from the middle
 };
 

@@ -40,9 +40,10 @@ NeighbourLists::NeighbourLists(const Points& points, const std::vector<int>& nea
 NeighbourLists::NeighbourLists(ClosestPointGrid starts, const Points& points, const std::vector<int>& nearest,
                                const std::vector<float>& sq_reach, int num_threads)
     : lists_(new List[static_cast<std::size_t>(points.cols())]), grid_(std::move(starts)) {
-  parallelRanges(static_cast<std::size_t>(points.cols()), kFilledPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) fill(i, points, nearest, sq_reach[i]);
-  });
+  parallelRanges(static_cast<std::size_t>(points.cols()), kFilledPerBlock, num_threads,
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) fill(i, points, nearest, sq_reach[i]);
+                 });
 }
 
 /// Fills the list of a point.
