@@ -147,10 +147,10 @@ Detection planesOfEven(const NormalizedCloud& cloud, const Points& input, const 
   return detection;
 }
 
-/// refineMaxima() of points that can have an answer and need no subset.
-Detection refinedMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
-                        const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
-                        const Points* normals) {
+/// Planes of points that can have an answer and need no subset, from the maxima of their map.
+Detection planesOfMap(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
+                      const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
+                      const Points* normals) {
   Stopwatch watch;
   const DistinctPoints distinct(points);
   const bool repeated = distinct.points.cols() < points.cols();
@@ -222,7 +222,7 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
   map.center_of_mass = centerOfMass(points);
   const double transform_ms = watch.lap();
   Detection detection =
-      refinedMaxima(points, edt, map, options, make_search ? make_search(edt) : nullptr, visibility, normals);
+      planesOfMap(points, edt, map, options, make_search ? make_search(edt) : nullptr, visibility, normals);
   detection.map = std::move(map);
   detection.timing_ms.insert(
       detection.timing_ms.begin(),
@@ -253,7 +253,7 @@ Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const Sy
     return bySubset(*subset, points, normals, options.num_threads, [&](const Points& p, const Points* n) {
       return refineMaxima(p, edt, map, options, nullptr, visibility, n);
     });
-  return refinedMaxima(points, edt, map, options, std::move(search), visibility, normals);
+  return planesOfMap(points, edt, map, options, std::move(search), visibility, normals);
 }
 
 }  // namespace pcl_symmetry

@@ -81,7 +81,7 @@ Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Poi
 }
 
 Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
-  constexpr double kRidge = 1e-9;  // derived: parallel normals leave two directions free, far above rounding
+  constexpr double kRidge = 1e-9;  // chosen: parallel normals leave the place along them open; far below any weight
   const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
   std::vector<double> weights(oriented.size(), 1.0);
   Eigen::Vector3d center = Eigen::Vector3d::Zero();

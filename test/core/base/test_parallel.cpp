@@ -54,17 +54,16 @@ TEST(Parallel, ExceptionsReachTheCaller) {
 
 TEST(Parallel, BlocksMayHaveBlocks) {
   for (const int num_threads : {1, 2, 8}) {
-    std::vector<std::vector<std::atomic<int>>> runs(5);
-    parallelBlocks(runs.size(), num_threads, [&](std::size_t b) {
-      // One block is much longer than the others: threads that have finished help with it.
-      std::vector<std::atomic<int>> own(b == 0 ? 10'000 : 3);
-      parallelBlocks(own.size(), num_threads, [&](std::size_t i) { ++own[i]; });
-      for (const auto& run : own) ASSERT_EQ(run, 1) << "a block has ended before all of its own ones";
-      runs[b] = std::vector<std::atomic<int>>(1);
+    std::vector<std::atomic<int>> sums(5);
+    parallelBlocks(sums.size(), num_threads, [&](std::size_t b) {
+      std::vector<std::atomic<int>> runs(b == 0 ? 10'000 : 3);
+      parallelBlocks(runs.size(), num_threads, [&](std::size_t i) { ++runs[i]; });
+      for (const auto& run : runs) ASSERT_EQ(run, 1) << "the call has returned before all of its blocks have run once";
       parallelRanges(100, 7, num_threads,
-                     [&](std::size_t begin, std::size_t end) { runs[b][0] += static_cast<int>(end - begin); });
+                     [&](std::size_t begin, std::size_t end) { sums[b] += static_cast<int>(end - begin); });
+      ASSERT_EQ(sums[b], 100);
     });
-    for (const auto& run : runs) ASSERT_EQ(run[0], 100) << num_threads << " threads";
+    for (const auto& sum : sums) ASSERT_EQ(sum, 100) << num_threads << " threads";
   }
 }
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <pcl/point_types.h>
 
+#include <limits>
+
 #include "pcl/support/error_message.h"
 
 namespace pcl_symmetry::detail {
@@ -44,6 +46,29 @@ TEST(CloudConversion, DrawsRisingPositionsOneOfEachRun) {
   }
   EXPECT_EQ(drawOneOfEachRun(1000, 10, 3), drawOneOfEachRun(1000, 10, 3));
   EXPECT_NE(drawOneOfEachRun(1000, 10, 3), drawOneOfEachRun(1000, 10, 4));
+}
+
+TEST(CloudConversion, DrawsTheSameOfTheFinitePointsWhateverElseIsThere) {
+  pcl::PointCloud<pcl::PointXYZ> finite, mixed;
+  pcl::Indices place_in_mixed;
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (int i = 0; i < 1000; ++i) {
+    finite.emplace_back(static_cast<float>(i), 1.0f, 2.0f);
+    if (i % 3 == 0) mixed.emplace_back(0.0f, none, 0.0f);
+    place_in_mixed.push_back(static_cast<pcl::index_t>(mixed.size()));
+    mixed.push_back(finite.back());
+  }
+  for (const std::size_t max_points : {std::size_t{10}, std::size_t{999}, std::size_t{1000}, std::size_t{2000}}) {
+    const SelectedPoints of_finite = selectPoints(finite, nullptr, max_points, 3);
+    const SelectedPoints of_mixed = selectPoints(mixed, nullptr, max_points, 3);
+    ASSERT_EQ(of_finite.indices.size(), std::min<std::size_t>(max_points, 1000));
+    ASSERT_EQ(of_mixed.points, of_finite.points);
+    for (std::size_t i = 0; i < of_finite.indices.size(); ++i) {
+      EXPECT_EQ(of_finite.points(0, static_cast<Eigen::Index>(i)), static_cast<float>(of_finite.indices[i]));
+      EXPECT_EQ(of_mixed.indices[i], place_in_mixed[static_cast<std::size_t>(of_finite.indices[i])]);
+    }
+    EXPECT_EQ(selectPoints(mixed, &place_in_mixed, max_points, 3).indices, of_mixed.indices);
+  }
 }
 
 TEST(CloudConversion, ReasonsNameTheInput) {

@@ -66,7 +66,7 @@ private:
   void fill(std::size_t i, const Points& points, const std::vector<int>& nearest, float sq_reach);
   void walkSome(const PointsRef& queries, int* indices, float* sq_distances, char* is_closest) const;
 
-  std::unique_ptr<List[]> lists_;  // not set to 0 first, which takes as long as to fill them
+  std::unique_ptr<List[]> lists_;  // each is set by the thread that fills it
   ClosestPointGrid grid_;
 };
 
