@@ -171,6 +171,16 @@ TEST(ConvolutionTransform, SmallGridsNeedACloserLattice) {
   EXPECT_EQ(convolutionTransform(scenes()[0].edt, scenes()[0].grid).method, TransformMethod::Convolution);
 }
 
+TEST(ConvolutionTransform, ManyBundlesAreAddedUpInTurn) {
+  // 160 cells: the sums of the lines of one direction may not fit in 32 bits.
+  const GaussianEdt edt(box(20'000, Sampling::Grid, 1).cloud(), Scene::cells(160));
+  const PlaneGrid grid(4, 4, 17, edt.center(), edt.radius());
+  SampledTransformOptions sampled;
+  sampled.num_samples = 20'000;
+  const SymmetryMap expected = sampledTransform(edt, grid, sampled), map = convolutionTransform(edt, grid);
+  for (std::size_t i = 0; i < grid.size(); ++i) EXPECT_NEAR(map[i], expected[i], 0.02) << i;
+}
+
 /// Bin averages of D: the mean of convolution over 4^3 bins in one. The measure d theta d phi dr is that of the bins.
 std::vector<double> binAverages(const Scene& scene) {
   const PlaneGrid& grid = scene.grid;

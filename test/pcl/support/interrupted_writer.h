@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -27,10 +28,50 @@ public:
 
   /// \return what was wrong; empty if nothing was.
   std::string run(Interruption interruption, std::uint64_t seed) {
+    if (interruption == Interruption::Kill && usual_time_.count() == 0.0) {
+      const std::string wrong = measureUsualTime(seed);
+      if (!wrong.empty()) return wrong;
+    }
+    const Child child = start(interruption, seed);
+    if (interruption == Interruption::Kill) {
+      std::this_thread::sleep_for(2.0 * RandomStream(seed).uniform() * usual_time_);
+      ::kill(child.process, SIGKILL);
+    }
+    std::string said;
+    while (child.tell(said)) {
+    }
+    child.end();
+    // The index of the log lies in memory: it does not survive.
+    if (interruption == Interruption::PowerFailure) std::filesystem::remove(file_ + "-shm");
+    return compare(said);
+  }
+
+  std::size_t numChanges() const { return num_changes_; }
+
+private:
+  /// A writer that runs.
+  struct Child {
+    pid_t process;
+    int from_it;
+
+    /// Adds what it says next. \return false if it will say nothing more.
+    bool tell(std::string& said) const {
+      char piece[4096];
+      const ssize_t size = ::read(from_it, piece, sizeof(piece));
+      if (size > 0) said.append(piece, static_cast<std::size_t>(size));
+      return size > 0;
+    }
+    void end() const {
+      ::close(from_it);
+      ::waitpid(process, nullptr, 0);
+    }
+  };
+
+  Child start(Interruption interruption, std::uint64_t seed) {
     int ends[2];
-    if (::pipe(ends) != 0) return "no pipe";
-    const pid_t child = ::fork();
-    if (child == 0) {
+    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+    const pid_t process = ::fork();
+    if (process == 0) {
       ::close(ends[0]);
       if (interruption == Interruption::PowerFailure) {
         LossyDisk::use();
@@ -40,23 +81,26 @@ public:
       ::_exit(0);
     }
     ::close(ends[1]);
-    if (interruption == Interruption::Kill) {
-      std::this_thread::sleep_for(std::chrono::microseconds(RandomStream(seed).below(60'000)));
-      ::kill(child, SIGKILL);
-    }
+    return {process, ends[0]};
+  }
+
+  /// How long a few changes take depends on the disk, and on what else runs.
+  std::string measureUsualTime(std::uint64_t seed) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Child child = start(Interruption::Kill, seed);
     std::string said;
-    char piece[4096];
-    for (ssize_t size; (size = ::read(ends[0], piece, sizeof(piece))) > 0;) said.append(piece, size);
-    ::close(ends[0]);
-    ::waitpid(child, nullptr, 0);
-    // The index of the log lies in memory: it does not survive.
-    if (interruption == Interruption::PowerFailure) std::filesystem::remove(file_ + "-shm");
+    const std::string change = "done\n";
+    for (std::size_t found = 0, from = 0; found < 10 && child.tell(said);)
+      for (std::size_t place; (place = said.find(change, from)) != std::string::npos; ++found)
+        from = place + change.size();
+    usual_time_ = std::chrono::steady_clock::now() - begin;
+    ::kill(child.process, SIGKILL);
+    while (child.tell(said)) {
+    }
+    child.end();
     return compare(said);
   }
 
-  std::size_t numChanges() const { return num_changes_; }
-
-private:
   /// Says what it is going to do, does it, and says that it is done.
   void write(int out, std::uint64_t seed) {
     RandomStream random(seed + 1);
@@ -118,6 +162,7 @@ private:
   std::string file_;
   std::map<std::string, std::string> models_;  // what has to be there: the value of each name
   std::size_t num_changes_ = 0;
+  std::chrono::duration<double> usual_time_{0.0};  // from the start of a writer to its tenth change
 };
 
 }  // namespace pcl_symmetry::test

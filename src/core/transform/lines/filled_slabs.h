@@ -7,8 +7,17 @@
 
 namespace pcl_symmetry {
 
-/// Slabs around the cells in which f is not 0, along the thirteen directions to the neighbours of a cell: images of
-/// samples beyond one of them need no look-up. Most shapes fill a small part of their ball.
+/// Slabs around the cells in which f is not 0, along the thirteen directions to the neighbours of a cell:
+/// low <= axes . p <= high for all p in one of them, in cells from the center of cell (0, 0, 0). Most shapes fill a
+/// small part of their ball.
+struct SlabsOfCells {
+  explicit SlabsOfCells(const GaussianEdt& edt);
+
+  Eigen::Matrix<float, kMostSlabs, 3> axes;
+  Eigen::Matrix<float, kMostSlabs, 1> low, high;
+};
+
+/// The same as samples see them: their images beyond a slab need no look-up.
 class FilledSlabs {
 public:
   /// \param samples 3 x N, in cells from the center of cell (0, 0, 0).
