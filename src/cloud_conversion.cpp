@@ -10,6 +10,7 @@
 
 #include "core/base/check.h"
 #include "core/base/even_draw.h"
+#include "core/base/parallel.h"
 #include "core/neighbours/answerable_points.h"
 #include "core/scan/single_view.h"
 #include "core/scan/viewpoint_inference.h"
@@ -46,6 +47,11 @@ std::string reasonForNoAnswer(const Points& points, const std::string& input) {
 
 void warnOfNoAnswer(const std::string& source, const std::string& reason) {
   PCL_WARN("[pcl_symmetry::%s] %s.\n", source.c_str(), reason.c_str());
+}
+
+void forPieces(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range) {
+  constexpr std::size_t kPiece = 1 << 14;  // chosen: large enough that threads start seldom
+  parallelRanges(size, kPiece, num_threads, range);
 }
 
 std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t max_points, std::uint64_t seed) {

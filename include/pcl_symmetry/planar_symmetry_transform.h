@@ -125,7 +125,7 @@ void PlanarSymmetryTransform<PointT>::setInputMesh(const pcl::PolygonMesh& mesh,
 template <typename PointT>
 SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
   return detail::withBadArguments([&] {
-    const Points points = this->selectInput(transform_.sampled.seed);
+    const Points points = this->selectInput(transform_.sampled.seed, transform_.sampled.num_threads);
     if (points.cols() == 0) return SymmetryMap();
     const std::optional<Visibility> seen = this->seenSpace(points);
     edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);

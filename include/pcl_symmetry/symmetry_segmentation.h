@@ -154,7 +154,7 @@ void SymmetrySegmentation<PointT>::segmentMesh() {
 
 template <typename PointT>
 void SymmetrySegmentation<PointT>::segmentCloud() {
-  const Points points = this->selectInput(options_.seed);
+  const Points points = this->selectInput(options_.seed, options_.num_threads);
   if (points.cols() == 0) return;
   const pcl::Indices& used = this->getUsedIndices();
   const std::vector<std::vector<int>> neighbors =

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/command_line/tool_errors.h"
+#include "common/mesh_files/assimp_reader.h"
 #include "common/modules/cloud_files.h"
 #include "common/shape_input/shape_input.h"
 #include "common/shape_output/face_labels.h"
@@ -17,9 +18,13 @@
 
 extern "C" const void* pclSymmetryModule(const char* version);
 
-/// The module of PCL's readers is linked, not loaded.
+// The modules of readers are linked, not loaded.
 const pcl_symmetry::apps::CloudFiles& pcl_symmetry::apps::cloudFiles() {
   return *static_cast<const CloudFiles*>(pclSymmetryModule(PCL_SYMMETRY_VERSION));
+}
+const pcl_symmetry::apps::MeshFiles& pcl_symmetry::apps::meshFiles() {
+  static const AssimpMeshFiles files;
+  return files;
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include "common/command_line/tool_errors.h"
 #include "common/modules/cloud_files.h"
 #include "common/modules/drawing.h"
+#include "common/modules/mesh_files.h"
 
 namespace pcl_symmetry::apps {
 
@@ -32,6 +33,12 @@ const Drawing& drawing() {
 const CloudFiles& cloudFiles() {
   static const auto* const loaded =
       static_cast<const CloudFiles*>(loadModule("pcl_symmetry_cloud_files", "PLY files and clouds to be written"));
+  return *loaded;
+}
+
+const MeshFiles& meshFiles() {
+  static const auto* const loaded =
+      static_cast<const MeshFiles*>(loadModule("pcl_symmetry_mesh_files", "OBJ and STL files"));
   return *loaded;
 }
 

@@ -16,7 +16,7 @@
 #include "common/files/pcd_reader.h"
 #include "common/files/ply_check.h"
 #include "common/modules/cloud_files.h"
-#include "common/shape_input/assimp_reader.h"
+#include "common/modules/mesh_files.h"
 #include "common/shape_input/off_reader.h"
 #include "common/shape_input/xyz_reader.h"
 #include "common/streams/standard_streams.h"
@@ -196,8 +196,8 @@ Shape loadFile(const std::string& path) {
     if (extension == ".ply") return completed(path, loadPLY(path));
     if (extension == ".off") return fromExact(path, readOFF(path));
     if (extension == ".xyz") return fromExact(path, readXYZ(path));
-    if (extension == ".obj") return fromMesh(path, readOBJ(path));
-    if (extension == ".stl") return fromMesh(path, readSTL(path));
+    if (extension == ".obj") return fromMesh(path, meshFiles().readOBJ(path));
+    if (extension == ".stl") return fromMesh(path, meshFiles().readSTL(path));
     if (extension == ".glb") return fromExact(path, exactOf(readGLB(path)));
   } catch (const InputError&) {
     throw;

@@ -57,12 +57,13 @@ protected:
   }
 
   /// Begins an analysis: clears the results of the last one and selects the points of the input.
+  /// \param num_threads 0 = one per core.
   /// \return 3 x N points; N = 0 where the input holds no answer.
-  Points selectInput(std::uint64_t seed) {
+  Points selectInput(std::uint64_t seed, int num_threads = 1) {
     clearResults();
     if (!input_) return giveNoAnswer("input cloud: not set");
     detail::SelectedPoints selected =
-        detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, seed);
+        detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, seed, num_threads);
     std::string reason = detail::reasonForNoAnswer(selected.points);
     if (!reason.empty()) return giveNoAnswer(std::move(reason));
     used_indices_ = std::move(selected.indices);

@@ -81,7 +81,7 @@ void SymmetryMaximaRefinement<PointT>::setSymmetryMap(const SymmetryMap& map,
 template <typename PointT>
 std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
   return detail::withBadArguments([&] {
-    Points points = this->selectInput(options_.seed);
+    Points points = this->selectInput(options_.seed, options_.num_threads);
     if (points.cols() == 0) return std::vector<SymmetryPlane>();
     const auto search = [&](const GaussianEdt& edt) -> ClosestPointSearch::Ptr {
       return std::make_shared<detail::PCLPointSearch<PointT>>(search_, *input_, this->getUsedIndices(), edt);

@@ -106,7 +106,7 @@ protected:
 private:
   /// \return whether the input holds an answer.
   bool prepare() {
-    const Points points = this->selectInput(transform_.seed);
+    const Points points = this->selectInput(transform_.seed, transform_.num_threads);
     if (points.cols() == 0) return false;
     visibility_ = this->seenSpace(points);
     edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);

@@ -27,9 +27,8 @@ double phase(double turns) {
 /// D for all planes of one direction: the volume is resampled along the normal, and each line is correlated with its
 /// reversal (Section 4.2).
 ///
-/// Lines stand side by side in bundles, each through a cell of the same row, so that one load looks all of them up.
-/// Their points lie at different heights along the normal: the sums of each lane are brought to the bins of r in the
-/// end.
+/// Lines stand side by side in bundles: those through cells of the same row are looked up by one load. Their points lie
+/// at different heights along the normal: the sums of each lane are brought to the bins of r in the end.
 class DirectionConvolution {
 public:
   DirectionConvolution(const BundleLattice& lattice, const RowTable& table, const BundleKernels& kernels)
@@ -39,7 +38,8 @@ public:
         values_(lattice.num_along),
         sums_(2 * lattice.num_along, 2.0 * lattice.most_ahead / lattice.along) {
     // derived: the sums of these fit in 32 bits
-    most_bundles_ = std::max(1, std::numeric_limits<std::int32_t>::max() / (255 * 255 * lattice.num_along));
+    most_bundles_ = static_cast<int>(std::max<std::int64_t>(
+        1, std::numeric_limits<std::int32_t>::max() / (std::int64_t{255} * 255 * lattice.num_along)));
   }
 
   /// \param index of the direction in the grid.
@@ -48,7 +48,7 @@ public:
   void run(const Eigen::Vector3d& normal, std::size_t index, double norm, int num_radius, float* d) {
     const BundlesOfDirection bundles(lattice_, normal);
     sums_.clear();
-    addBundles(bundles, static_cast<double>(index));
+    add(bundles, static_cast<double>(index));
     const double scale = bundles.volume() / norm;
     for (int k = 0; k < num_radius; ++k) {
       const double s = (k - bundles.numSkipped()) * lattice_.refine;
@@ -57,19 +57,22 @@ public:
   }
 
 private:
-  void addBundles(const BundlesOfDirection& bundles, double index) {
+  void add(const BundlesOfDirection& bundles, double index) {
     const RowTable::Rows rows = table_.along(bundles.axis());
     const double ahead = 2.0 * bundles.ahead() / lattice_.along;
     const int num_rows = bundles.numRows();
     int num_added = 0;
-    for (int i = -num_rows; i <= num_rows; ++i) {
-      // Each direction has its own phase of the lattice, and each row one of its own along it, so that what aliasing is
-      // left does not add up.
-      const double b = (i + phase(kPhaseSteps[0] * index)) * bundles.between();
-      const double shift = phase(kPhaseSteps[1] * (index + i)) * lattice_.step;
-      row_.clear();
-      bundles.addRow(b, shift, row_);
-      for (const Bundle& bundle : row_) {
+    // Each direction has its own phase of the lattice, and each row one of its own along it, so that what aliasing is
+    // left does not add up.
+    const double phase_of_rows = phase(kPhaseSteps[0] * index);
+    for (int i = -num_rows; i <= num_rows; i += kBundleRows) {
+      BundlesOfDirection::Row rows_of_bundle[kBundleRows];
+      for (int r = 0; r < kBundleRows; ++r)
+        rows_of_bundle[r] = {(i + r + phase_of_rows) * bundles.between(),
+                             phase(kPhaseSteps[1] * (index + i + r)) * lattice_.step};
+      some_.clear();
+      bundles.addBundles(rows_of_bundle, some_);
+      for (const Bundle& bundle : some_) {
         kernels_.look_up(bundle, rows, values_);
         kernels_.correlate(values_, sums_.data());
         if (++num_added % most_bundles_ == 0) sums_.bringTogether(ahead);
@@ -83,7 +86,7 @@ private:
   BundleKernels kernels_;
   BundleValues values_;
   LaneSums sums_;
-  std::vector<Bundle> row_;
+  std::vector<Bundle> some_;
   int most_bundles_;
 };
 

@@ -173,7 +173,7 @@ TEST(ConvolutionTransform, SmallGridsNeedACloserLattice) {
 
 TEST(ConvolutionTransform, ManyBundlesAreAddedUpInTurn) {
   // 160 cells: the sums of the lines of one direction may not fit in 32 bits.
-  const GaussianEdt edt(box(20'000, Sampling::Grid, 1).cloud(), Scene::cells(160));
+  const GaussianEdt edt(box(20'000, Sampling::Random, 1).cloud(), Scene::cells(160));
   const PlaneGrid grid(4, 4, 17, edt.center(), edt.radius());
   SampledTransformOptions sampled;
   sampled.num_samples = 20'000;

@@ -1,6 +1,7 @@
 #include "core/transform/convolution/bundle_kernels.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/distance_transform/lookup_table.h"
 
@@ -22,16 +23,20 @@ constexpr int kMargin = BundleValues::kMargin;  // derived: of BundleValues
 // Bits of the second number of a pair. derived: the upper half of 32 bits
 constexpr int kSecond = static_cast<int>(0xFFFF0000);
 
-/// Where the bytes of the lanes of each point lie in the rows, worked out side by side where instructions allow it.
+/// Where the bytes of each point lie in the rows of cells, worked out side by side where instructions allow it.
 [[gnu::always_inline]] inline void offsetsInRows(const Bundle& bundle, const RowTable::Rows& rows,
                                                  std::int32_t* __restrict offsets) {
-  constexpr int kShift = LookupTable::kFractionBits;  // derived: of LookupTable
-  const auto [start, step, first, last] = bundle;
+  const auto [starts, step, first, last] = bundle;
   const std::int32_t* __restrict const of_x = rows.of_x;
-  const int of_y = rows.of_y, of_z = rows.of_z;
-  for (int l = first; l < last; ++l) {
-    offsets[l] = ((start[2] + l * step[2]) >> kShift) * of_z + ((start[1] + l * step[1]) >> kShift) * of_y +
-                 of_x[(start[0] + l * step[0]) >> kShift];
+  const int of_y = rows.of_y, of_z = rows.of_z, least_x = rows.least_x, last_cell = rows.last;
+  for (int r = 0; r < kBundleRows; ++r) {
+    for (int l = first; l < last; ++l) {
+      const auto cell = [&](int axis, int least) {
+        const int at = (starts[r][axis] + l * step[axis]) >> LookupTable::kFractionBits;
+        return at < least ? least : at > last_cell ? last_cell : at;
+      };
+      offsets[r * (last - first) + l - first] = cell(2, 0) * of_z + cell(1, 0) * of_y + of_x[cell(0, least_x)];
+    }
   }
 }
 
@@ -42,8 +47,11 @@ void lookUpScalar(const Bundle& bundle, const RowTable::Rows& rows, BundleValues
     values.backAt(l)[2 * j] = values.backAt(l + 1)[2 * j + 1] = value;
   };
   for (int l = bundle.first - kMargin + 1; l < bundle.last + kMargin - 1; ++l) {
-    const bool inside = l >= bundle.first && l < bundle.last;
-    for (int j = 0; j < kBundleLanes; ++j) store(l, j, inside ? rows.bytes[values.offsets[l] + j] : std::int16_t{0});
+    std::uint8_t lanes[kBundleLanes] = {};
+    for (int r = 0; l >= bundle.first && l < bundle.last && r < kBundleRows; ++r)
+      std::memcpy(lanes + r * kRowLanes,
+                  rows.bytes + values.offsets[r * (bundle.last - bundle.first) + l - bundle.first], kRowLanes);
+    for (int j = 0; j < kBundleLanes; ++j) store(l, j, lanes[j]);
   }
   values.first = bundle.first;
   values.last = bundle.last;
@@ -67,6 +75,16 @@ inline int numSteps(const BundleValues& values, int c) {
 
 #if defined(__x86_64__)
 
+/// \return the bytes of a point in the lanes of all rows.
+__attribute__((target("avx2"))) inline __m128i lanesAt(const std::uint8_t* bytes, const std::int32_t* offsets,
+                                                       int num_points) {
+  static_assert(kRowLanes == 8 && kBundleRows == 2, "lanes of a row are loaded as one half");
+  const auto of_row = [&](int r) __attribute__((target("avx2"), always_inline)) {
+    return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes + offsets[r * num_points]));
+  };
+  return _mm_unpacklo_epi64(of_row(0), of_row(1));
+}
+
 __attribute__((target("avx2"))) inline __m256i pairsOf(const std::int16_t* pairs) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(pairs));
 }
@@ -84,6 +102,7 @@ __attribute__((target("avx2"))) inline bool areZero(const std::int16_t* pairs) {
 __attribute__((target("avx2"))) void lookUpAvx2(const Bundle& bundle, const RowTable::Rows& rows,
                                                 BundleValues& values) {
   offsetsInRows(bundle, rows, values.offsets.data());
+  const std::int32_t* const offsets = values.offsets.data();
   int first = bundle.first, last = bundle.last;
   const __m256i zero = _mm256_setzero_si256();
   __m256i low_before = zero, high_before = zero;
@@ -100,7 +119,7 @@ __attribute__((target("avx2"))) void lookUpAvx2(const Bundle& bundle, const RowT
     back += kPairs;
   };
   for (int l = first; l < last; ++l) {
-    const __m128i bytes = _mm_loadu_si128(reinterpret_cast<const __m128i*>(rows.bytes + values.offsets[l]));
+    const __m128i bytes = lanesAt(rows.bytes, offsets + l - bundle.first, bundle.last - bundle.first);
     store(_mm256_cvtepu8_epi32(bytes), _mm256_cvtepu8_epi32(_mm_srli_si128(bytes, 8)));
   }
   store(zero, zero);
@@ -148,6 +167,7 @@ __attribute__((target("avx2"))) void correlateAvx2(const BundleValues& values, s
 __attribute__((target("avx512f,avx512bw"))) void lookUpAvx512(const Bundle& bundle, const RowTable::Rows& rows,
                                                               BundleValues& values) {
   offsetsInRows(bundle, rows, values.offsets.data());
+  const std::int32_t* const offsets = values.offsets.data();
   int first = bundle.first, last = bundle.last;
   const __m512i zero = _mm512_setzero_si512();
   __m512i before = zero;
@@ -161,7 +181,7 @@ __attribute__((target("avx512f,avx512bw"))) void lookUpAvx512(const Bundle& bund
     back += kPairs;
   };
   for (int l = first; l < last; ++l)
-    store(_mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(rows.bytes + values.offsets[l]))));
+    store(_mm512_cvtepu8_epi32(lanesAt(rows.bytes, offsets + l - bundle.first, bundle.last - bundle.first)));
   store(zero);
   for (int i = 0; i < kMargin - 1; ++i) {
     _mm512_storeu_si512(values.aheadAt(first - 2 - i), zero);

@@ -8,10 +8,10 @@
 
 namespace pcl_symmetry {
 
-/// Parallel lines of equally spaced points, one through each of kBundleLanes cells of a row: point l of the first
-/// one is start + l * step, in fixed-point cells, for l in [first, last).
+/// Parallel lines of equally spaced points, through kRowLanes cells of each of some rows: point l of the first one of
+/// row r is start[r] + l * step, in fixed-point cells, for l in [first, last). What lies beyond the cube is 0.
 struct Bundle {
-  std::int32_t start[3];
+  std::int32_t start[kBundleRows][3];
   std::int32_t step[3];
   int first;
   int last;
@@ -26,7 +26,9 @@ struct BundleValues {
   static constexpr int kMargin = 6;
 
   explicit BundleValues(int num_points)
-      : ahead(static_cast<std::size_t>(num_points + 2 * kMargin) * kPairs), back(ahead.size()), offsets(num_points) {}
+      : ahead(static_cast<std::size_t>(num_points + 2 * kMargin) * kPairs),
+        back(ahead.size()),
+        offsets(static_cast<std::size_t>(num_points) * kBundleRows) {}
 
   /// \return 2 v[l] and 2 v[l + 1] of each lane, for l >= -kMargin: products of different points count twice.
   std::int16_t* aheadAt(int l) { return ahead.data() + (l + kMargin) * kPairs; }
@@ -36,7 +38,7 @@ struct BundleValues {
   const std::int16_t* backAt(int l) const { return back.data() + (l + kMargin) * kPairs; }
 
   std::vector<std::int16_t> ahead, back;
-  std::vector<std::int32_t> offsets;  ///< of the points in their rows
+  std::vector<std::int32_t> offsets;  ///< of the points in their rows, row by row
   int first = 0;
   int last = 0;
 };

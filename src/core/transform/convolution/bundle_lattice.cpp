@@ -14,12 +14,23 @@ namespace {
 // Lines of a bundle may be farther apart by this than what was asked for, where rows are the closer. derived: two whole
 // cells in place of 0.9 sigmas of two cells.
 constexpr double kMostStretch = 1.12;
-constexpr float kLeastSlope = 1e-5f;  // derived: along 4096 cells a slab is left by less than half a cell
+// Points that are whole cells apart would all be rounded to the same side along an axis of the cells, and so would
+// rows: distances nearer to a whole number than this are avoided. chosen: over ten points the rest adds up to a cell;
+// twice as much takes more points of more grids.
+constexpr double kNearWhole = 0.1;
+constexpr double kLessThanWhole = 0.87;  // by which rows come closer. chosen: out of reach of kNearWhole, for few more
+constexpr float kFar = 1e6f;             // points. derived: farther than all of a line
+constexpr int kAtOnce = 16;              // bundles that are cut together. derived: floats in an AVX-512 register
+constexpr float kLeastSlope = 1e-5f;     // derived: along 4096 cells a slab is left by less than half a cell
+
+bool isNearlyWhole(double cells) {
+  return std::abs(cells - std::round(cells)) < kNearWhole;
+}
 
 /// Where bundles with their middles at x enter the last slab and leave the first one.
 PCL_SYMMETRY_MULTIVERSION
 void cutAtSlabs(const float* entry, const float* exit, const float* of_x, const float* x, float* first, float* last) {
-  typedef float Lanes __attribute__((vector_size(4 * kBundleLanes)));
+  typedef float Lanes __attribute__((vector_size(4 * kAtOnce)));
   Lanes middle, low, high;
   std::memcpy(&middle, x, sizeof middle);
   low = entry[0] - middle * of_x[0];
@@ -45,6 +56,7 @@ BundleLattice::BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, doub
   spacing = spacing_in_sigmas * edt.sigma() / edt.cellSize();
   step = std::max(1, static_cast<int>(kMostStretch * spacing));
   refine = static_cast<int>(std::ceil(2.0 * radius_step / spacing));
+  if (isNearlyWhole(2.0 * radius_step / refine)) ++refine;
   along = 2.0 * radius_step / refine;
   most_ahead = half() / std::sqrt(3.0);  // the axis that is the farthest from n has at most 1 / sqrt(3) of it
   num_along = static_cast<int>(std::ceil(2.0 * (clip + most_ahead + radius_step) / along)) + 2;
@@ -57,6 +69,7 @@ BundlesOfDirection::BundlesOfDirection(const BundleLattice& lattice, const Eigen
   across_ = std::hypot(n_.y(), n_.z());
   v_ = Eigen::Vector3d(0.0, -n_.z(), n_.y()) / across_;
   between_ = std::min(lattice.spacing, lattice.spacing * lattice.spacing / (lattice.step * across_));
+  if (isNearlyWhole(between_)) between_ *= kLessThanWhole;
   const double first_offset = normal.dot(lattice.center) + lattice.grid_offset;
   num_skipped_ = std::floor((-lattice.clip - lattice.most_ahead - first_offset) / lattice.radius_step);
   t0_ = first_offset + num_skipped_ * lattice.radius_step;
@@ -87,37 +100,49 @@ int BundlesOfDirection::numRows() const {
   return static_cast<int>(std::ceil(lattice_.clip / between_));
 }
 
-void BundlesOfDirection::addRow(double b, double shift, std::vector<Bundle>& bundles) const {
-  if (std::abs(b) >= lattice_.clip) return;
-  // The ball casts an ellipse along n. Rows are shifted by up to half a step.
-  const double width = kBundleLanes * lattice_.step;
-  const int num_side = static_cast<int>(std::ceil(lattice_.clip / (across_ * width) + 0.5 / kBundleLanes));
-  float entry[kMostSlabs], exit[kMostSlabs];
+/// Makes room in [first, last] for where bundles with their middles at x meet all slabs, in points of a line.
+void BundlesOfDirection::cutRow(const Row& row, const float* x, float* first, float* last) const {
+  float entry[kMostSlabs], exit[kMostSlabs], low[kAtOnce], high[kAtOnce];
   for (int k = 0; k < kMostSlabs; ++k) {
-    entry[k] = entry_[k] - static_cast<float>(b) * of_b_[k];
-    exit[k] = exit_[k] - static_cast<float>(b) * of_b_[k];
+    entry[k] = entry_[k] - static_cast<float>(row.b) * of_b_[k];
+    exit[k] = exit_[k] - static_cast<float>(row.b) * of_b_[k];
   }
-  const auto scale = static_cast<float>(1.0 / lattice_.along);
-  for (int c = -num_side; c < num_side; c += kBundleLanes) {
-    // Ends of kBundleLanes bundles at a time.
-    float middles[kBundleLanes], first[kBundleLanes], last[kBundleLanes];
-    for (int i = 0; i < kBundleLanes; ++i) middles[i] = static_cast<float>((c + i + 0.5) * width + shift);
-    cutAtSlabs(entry, exit, of_x_, middles, first, last);
-    for (int i = 0; i < std::min(kBundleLanes, num_side - c); ++i) {
-      const double x = middles[i];
-      const double from = t0_ - x * n_.x();  // tau of point 0
+  cutAtSlabs(entry, exit, of_x_, x, low, high);
+  const auto scale = static_cast<float>(1.0 / lattice_.along), t0 = static_cast<float>(t0_),
+             nx = static_cast<float>(n_.x());
+  for (int i = 0; i < kAtOnce; ++i) {
+    const bool meets = low[i] <= high[i];
+    const float from = t0 - x[i] * nx;  // tau of point 0
+    first[i] = std::min(first[i], meets ? (low[i] - from) * scale : kFar);
+    last[i] = std::max(last[i], meets ? (high[i] - from) * scale : -kFar);
+  }
+}
+
+void BundlesOfDirection::addBundles(const Row* rows, std::vector<Bundle>& bundles) const {
+  // The ball casts an ellipse along n. Rows are shifted by up to half a step.
+  const double width = kRowLanes * lattice_.step;
+  const int num_side = static_cast<int>(std::ceil(lattice_.clip / (across_ * width) + 0.5 / kRowLanes));
+  for (int c = -num_side; c < num_side; c += kAtOnce) {
+    float x[kBundleRows][kAtOnce], first[kAtOnce], last[kAtOnce];
+    std::fill_n(first, kAtOnce, kFar);
+    std::fill_n(last, kAtOnce, -kFar);
+    for (int r = 0; r < kBundleRows; ++r) {
+      for (int i = 0; i < kAtOnce; ++i) x[r][i] = static_cast<float>((c + i + 0.5) * width + rows[r].shift);
+      cutRow(rows[r], x[r], first, last);
+    }
+    for (int i = 0; i < std::min(kAtOnce, num_side - c); ++i) {
       Bundle bundle;
-      const float after_first = (first[i] - static_cast<float>(from)) * scale;
-      const float after_last = (last[i] - static_cast<float>(from)) * scale;
-      bundle.first = static_cast<int>(std::max(0.0f, after_first)) + 1;
-      bundle.last = std::min(lattice_.num_along, static_cast<int>(std::max(-1.0f, after_last)) + 1);
+      bundle.first = static_cast<int>(std::max(0.0f, first[i])) + 1;
+      bundle.last = std::min(lattice_.num_along, static_cast<int>(std::max(-1.0f, last[i])) + 1);
       if (bundle.first >= bundle.last) continue;
-      const Eigen::Vector3d start(x - lattice_.half() + from * n_.x(), b * v_.y() + from * n_.y(),
-                                  b * v_.z() + from * n_.z());
-      for (int axis = 0; axis < 3; ++axis) {
-        bundle.start[axis] = LookupTable::toFixed(start[axis] + lattice_.middle + 0.5);
-        bundle.step[axis] = step_[axis];
+      for (int r = 0; r < kBundleRows; ++r) {
+        const double from = t0_ - x[r][i] * n_.x();
+        const Eigen::Vector3d start(x[r][i] - lattice_.half() + from * n_.x(), rows[r].b * v_.y() + from * n_.y(),
+                                    rows[r].b * v_.z() + from * n_.z());
+        for (int axis = 0; axis < 3; ++axis)
+          bundle.start[r][axis] = LookupTable::toFixed(start[axis] + lattice_.middle + 0.5);
       }
+      std::copy_n(step_, 3, bundle.step);
       bundles.push_back(bundle);
     }
   }

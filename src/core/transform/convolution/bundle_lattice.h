@@ -15,8 +15,8 @@ namespace pcl_symmetry {
 struct BundleLattice {
   BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas);
 
-  /// \return from the middle of a bundle to its first and last line.
-  double half() const { return 0.5 * (kBundleLanes - 1) * step; }
+  /// \return from the middle of a row of a bundle to its first and last line.
+  double half() const { return 0.5 * (kRowLanes - 1) * step; }
 
   SlabsOfCells slabs;
   double middle;           ///< coordinate of the middle in cells from the first cell center
@@ -29,14 +29,14 @@ struct BundleLattice {
   /// Points at t0 + l * along have the planes between them at t0 + (a + b) * along / 2: every refine-th one is a bin.
   int refine;
   double along;       ///< between the points of a line
-  double most_ahead;  ///< from the middle of a bundle to its first and last line, along the normal
+  double most_ahead;  ///< from the middle of a row to its first and last line, along the normal
   int num_along;      ///< points of a line
 };
 
 /// The bundles of one direction: lines along the normal n through every step-th cell of rows of cells. Rows lie along
 /// the axis e that is the farthest from n, at equal distances along v, which is across both. Vectors have e first.
 ///
-/// Point l of the middle of a bundle has the height t = t0 + l * along, and lies at x e + b v + tau n with
+/// Point l of the middle of a row of a bundle has the height t = t0 + l * along, and lies at x e + b v + tau n with
 /// tau = t - x n.x.
 class BundlesOfDirection {
 public:
@@ -46,18 +46,24 @@ public:
   /// \return bins from t0 to the first one, times -1.
   double numSkipped() const { return num_skipped_; }
   double between() const { return between_; }  ///< rows
-  /// \return heights of a line above the one before, in cells.
+  /// \return height of a line above the one before in its row, in cells.
   double ahead() const { return lattice_.step * n_.x(); }
   /// \return volume that each point stands for, in cells.
   double volume() const { return lattice_.along * between_ * lattice_.step * across_; }
   int numRows() const;  ///< on each side of the middle
 
-  /// Adds the bundles of the row at \p b, shifted along it by \p shift, each cut to where it can meet what is not 0.
-  /// Those of which nothing is left are not added.
-  void addRow(double b, double shift, std::vector<Bundle>& bundles) const;
+  /// Where a row of the lattice lies.
+  struct Row {
+    double b;
+    double shift;  ///< along it
+  };
+  /// Adds the bundles of kBundleRows rows, each cut to where it can meet what is not 0. Those of which nothing is left
+  /// are not added.
+  void addBundles(const Row* rows, std::vector<Bundle>& bundles) const;
 
 private:
   void setSlabs();
+  void cutRow(const Row& row, const float* middles, float* first, float* last) const;
 
   const BundleLattice& lattice_;
   int axis_ = 0;

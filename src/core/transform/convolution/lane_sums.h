@@ -5,19 +5,20 @@
 
 namespace pcl_symmetry {
 
-/// Sums of the lanes of bundles at equally spaced places, which differ from lane to lane by a fraction of the distance,
-/// and what they add up to at common places, by cubic splines (Unser, Splines: a perfect fit, 1999).
+/// Sums of the lanes of bundles at equally spaced places, which differ from lane to lane of a row by a fraction of the
+/// distance, and what they add up to at common places, by quintic splines (Unser, Splines: a perfect fit, 1999).
 class LaneSums {
 public:
   /// \param num_places of each lane.
-  /// \param most_ahead distances that the first and the last lane are from the middle, at most.
+  /// \param most_ahead distances that the first and the last lane of a row are from its middle, at most.
   LaneSums(int num_places, double most_ahead);
 
   /// \return number s * kBundleLanes + j is the sum of lane j at place s.
   std::int32_t* data() { return sums_.data(); }
 
   /// Adds the sums to the values at common places, and sets them to 0.
-  /// \param ahead distances that each lane is ahead of the one before; the middle of all is at the common places.
+  /// \param ahead distances that each lane of a row is ahead of the one before; the middle of a row is at the common
+  /// places.
   void bringTogether(double ahead);
 
   /// \return the value at common place s, 0 outside of [0, num_places).

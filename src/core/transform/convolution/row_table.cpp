@@ -11,14 +11,14 @@ namespace pcl_symmetry {
 RowTable::RowTable(const std::vector<float>& f, int num_cells, double clip, int step, int num_threads)
     : num_cells_(num_cells), step_(step) {
   const int n = num_cells;
-  stride_ = (n + step - 1) / step + kBundleLanes;  // the lanes before a row are those after the one before
+  stride_ = (n + step - 1) / step + kRowLanes;  // the lanes before a row are those after the one before
   const std::size_t of_phase = static_cast<std::size_t>(n) * n * stride_;
   size_ = of_phase * step;
-  for (int x = -kBundleLanes * step; x < n; ++x) {
-    const int shifted = x + kBundleLanes * step;
+  for (int x = -kRowLanes * step; x < n; ++x) {
+    const int shifted = x + kRowLanes * step;
     of_x_.push_back(static_cast<std::int32_t>((shifted % step) * of_phase) + shifted / step);
   }
-  bytes_.assign(3 * size_ + 2 * kBundleLanes, 0);
+  bytes_.assign(3 * size_ + 2 * kRowLanes, 0);
   const double middle = 0.5 * (n - 1);
   parallelBlocks(static_cast<std::size_t>(n), num_threads, [&](std::size_t slice) {
     const int c = static_cast<int>(slice);

@@ -1,4 +1,4 @@
-#include "common/shape_input/assimp_reader.h"
+#include "common/mesh_files/assimp_reader.h"
 
 #include <assimp/config.h>
 #include <assimp/scene.h>
@@ -10,7 +10,9 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "common/command_line/tool_errors.h"
 #include "common/files/file_text.h"
+#include "common/shape_input/exact_coordinates.h"
 
 namespace pcl_symmetry::apps {
 
@@ -121,12 +123,12 @@ std::string withVertices(std::string_view text, const pcl::PointCloud<pcl::Point
 
 }  // namespace
 
-pcl::PolygonMesh readSTL(const std::string& path) {
+pcl::PolygonMesh AssimpMeshFiles::readSTL(const std::string& path) const {
   Assimp::Importer importer;
   return meshOf(importer, importer.ReadFile(path, 0), path);
 }
 
-ShiftedMesh readOBJ(const std::string& path) {
+ShiftedMesh AssimpMeshFiles::readOBJ(const std::string& path) const {
   const std::string text = readWholeFile(path);
   bool has_vertices = false, has_faces = false;
   forEachLine(text, [&](std::string_view, std::string_view word) {
