@@ -30,7 +30,7 @@ void takeLargePages() {
   ::mallopt(M_MMAP_THRESHOLD, kHeap);
   ::mallopt(M_TOP_PAD, kHeap);
   ::mallopt(M_TRIM_THRESHOLD, kHeap);
-  ::mallopt(M_ARENA_MAX, 1);  // threads take from the same heap
+  ::mallopt(M_ARENA_MAX, 1);  // threads take from the same heap, whose pages are large
   const auto begin = reinterpret_cast<std::uintptr_t>(::sbrk(0));
   // More than the heap has left at the start of a program: it grows now.
   void* volatile block = std::malloc(kLargePage);

@@ -4,18 +4,10 @@
 #include <array>
 
 #include "core/base/simd.h"
+#include "core/base/x86_intrinsics.h"
 #include "core/distance_transform/edt_samples.h"
 #include "core/distance_transform/free_space.h"
 #include "pcl_symmetry/core/scan/visibility.h"
-
-#if defined(__x86_64__)
-#pragma GCC diagnostic push
-#if !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wuninitialized"  // from GCC 12's own AVX-512 header
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-#include <immintrin.h>
-#endif
 
 namespace pcl_symmetry {
 
@@ -116,7 +108,6 @@ __attribute__((target("avx512f"))) PlaneProfiles::Sums PlaneProfiles::sumsAvx512
   return {_mm512_reduce_add_epi32(surface), _mm512_reduce_add_epi32(free)};
 }
 
-#pragma GCC diagnostic pop
 #endif
 
 PlaneProfiles::Sums PlaneProfiles::sumsAt(const std::uint32_t* images, const std::uint32_t* completed) const {

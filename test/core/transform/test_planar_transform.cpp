@@ -172,12 +172,14 @@ TEST(ConvolutionTransform, SmallGridsNeedACloserLattice) {
 }
 
 TEST(ConvolutionTransform, ManyBundlesAreAddedUpInTurn) {
-  // 160 cells: the sums of the lines of one direction may not fit in 32 bits.
+  // With 160 cells and half the spacing a direction has a thousand bundles; the sums of 200 fit in 32 bits.
+  ConvolutionTransformOptions options;
+  options.spacing = 0.5;
   const GaussianEdt edt(box(20'000, Sampling::Random, 1).cloud(), Scene::cells(160));
   const PlaneGrid grid(4, 4, 17, edt.center(), edt.radius());
   SampledTransformOptions sampled;
   sampled.num_samples = 20'000;
-  const SymmetryMap expected = sampledTransform(edt, grid, sampled), map = convolutionTransform(edt, grid);
+  const SymmetryMap expected = sampledTransform(edt, grid, sampled), map = convolutionTransform(edt, grid, options);
   for (std::size_t i = 0; i < grid.size(); ++i) EXPECT_NEAR(map[i], expected[i], 0.02) << i;
 }
 

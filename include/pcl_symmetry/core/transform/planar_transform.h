@@ -59,8 +59,8 @@ struct ConvolutionTransformOptions {
 ///
 /// Departures from the paper: the lines are resampled at `spacing` sigmas instead of every cell, for a tenth of the
 /// work. A Gaussian shell of width sigma holds less than 1 % of its spectrum beyond the Nyquist frequency of that
-/// lattice. Lines stand side by side, each through a cell of the same row of cells, so that sixteen values are looked
-/// up at once; what each line adds up to at its own heights is brought to the bins of r by quintic splines. PRST
+/// lattice. Lines stand side by side, eight through cells of the same row of cells, whose values are looked up at
+/// once; what each line adds up to at its own heights is brought to the bins of r by quintic splines. PRST
 /// differs from the full sum by 0.1 % root mean square at 64 cells a side (0.17 % for boxes, whose faces can lie along
 /// the lattice) and by up to 0.3 % at 32 cells. Lines are correlated directly, because with about 36 values they are
 /// too short for a Fourier transform to pay.

@@ -3,16 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/base/x86_intrinsics.h"
 #include "core/distance_transform/lookup_table.h"
-
-#if defined(__x86_64__)
-#pragma GCC diagnostic push
-#if !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wuninitialized"  // from GCC 12's own AVX-512 header
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-#include <immintrin.h>
-#endif
 
 namespace pcl_symmetry {
 
@@ -241,7 +233,3 @@ BundleKernels bundleKernels(Simd simd) {
 }
 
 }  // namespace pcl_symmetry
-
-#if defined(__x86_64__)
-#pragma GCC diagnostic pop
-#endif

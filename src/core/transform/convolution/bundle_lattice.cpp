@@ -21,7 +21,7 @@ constexpr double kNearWhole = 0.1;
 constexpr double kLessThanWhole = 0.87;  // by which rows come closer. chosen: out of reach of kNearWhole, for few more
 constexpr float kFar = 1e6f;             // points. derived: farther than all of a line
 constexpr int kAtOnce = 16;              // bundles that are cut together. derived: floats in an AVX-512 register
-constexpr float kLeastSlope = 1e-5f;     // derived: along 4096 cells a slab is left by less than half a cell
+constexpr float kLeastSlope = 1e-5f;     // derived: along 512 cells a slab is left by less than its slack
 
 bool isNearlyWhole(double cells) {
   return std::abs(cells - std::round(cells)) < kNearWhole;
@@ -100,7 +100,7 @@ int BundlesOfDirection::numRows() const {
   return static_cast<int>(std::ceil(lattice_.clip / between_));
 }
 
-/// Makes room in [first, last] for where bundles with their middles at x meet all slabs, in points of a line.
+/// Widens [first, last] to where bundles with their middles at x meet all slabs, in points of a line.
 void BundlesOfDirection::cutRow(const Row& row, const float* x, float* first, float* last) const {
   float entry[kMostSlabs], exit[kMostSlabs], low[kAtOnce], high[kAtOnce];
   for (int k = 0; k < kMostSlabs; ++k) {

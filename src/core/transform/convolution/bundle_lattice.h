@@ -63,7 +63,7 @@ public:
 
 private:
   void setSlabs();
-  void cutRow(const Row& row, const float* middles, float* first, float* last) const;
+  void cutRow(const Row& row, const float* x, float* first, float* last) const;
 
   const BundleLattice& lattice_;
   int axis_ = 0;

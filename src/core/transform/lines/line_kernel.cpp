@@ -5,15 +5,8 @@
 #include <cstring>
 
 #include "core/base/simd.h"
+#include "core/base/x86_intrinsics.h"
 #include "core/distance_transform/lookup_table.h"
-
-#if defined(__x86_64__)
-#pragma GCC diagnostic push
-#if !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // from GCC 12's own AVX-512 header
-#endif
-#include <immintrin.h>
-#endif
 
 namespace pcl_symmetry {
 
@@ -219,7 +212,6 @@ __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, con
   }
 }
 
-#pragma GCC diagnostic pop
 #endif
 
 template <int kFunctions>
