@@ -4,29 +4,23 @@ set -euo pipefail
 
 usage() {
   cat <<'END'
-usage: bash apps/gallery/make.sh [-h] [--psb MESHES CLASSES] [--estimators] [--only REGEX] [FOLDER]
+usage: bash apps/gallery/make.sh [-h] [--estimators] [--only REGEX] [FOLDER]
 
 Builds the tools, fetches or makes the models (Debian package libcgal-demo, own shapes) and writes the pictures of
 the pages to FOLDER/gallery and FOLDER/pictures (build/pictures). FOLDER = apps replaces the pictures of the pages.
 Prints each command. Needs no screen.
 
-  --psb MESHES CLASSES  also the charts of the Princeton Shape Benchmark: its OFF files in one folder, and its
-                        classification; takes hours
-  --estimators          also the chart of the estimators' error against time: builds the benchmarks
-  --only REGEX          only pictures whose name matches, such as figure_15
+  --estimators  also the chart of the estimators' error against time: builds the benchmarks
+  --only REGEX  only pictures whose name matches, such as figure_15
 
 example: bash apps/gallery/make.sh --only cow
 END
 }
 
-psb="" classes="" estimators=false only=.
+estimators=false only=.
 while (($# > 0)); do
   case "$1" in
     -h | --help) usage; exit 0 ;;
-    --psb)
-      (($# >= 3)) || { usage >&2; exit 2; }
-      psb=$(realpath "$2") classes=$(realpath "$3")
-      shift 2 ;;
     --estimators) estimators=true ;;
     --only)
       (($# >= 2)) || { usage >&2; exit 2; }
@@ -44,7 +38,7 @@ gallery=$folder/gallery pictures=$folder/pictures
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_planes \
-  pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint pcl_symmetry_evaluate \
+  pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint \
   draw_alignment draw_failures draw_medial_axis draw_scan_centers make_shapes
 if $estimators; then
   cmake --preset benchmark --log-level=WARNING >/dev/null
@@ -166,15 +160,6 @@ draw_axes() {
   done
 }
 
-# A table with shapes of our own, as a camera sees it.
-draw_scene() {
-  [[ scene =~ $only ]] || return 0
-  mkdir -p own
-  cp -- *.ply own
-  pcl_symmetry_evaluate scenes own -scenes 3 -objects 5 -noise 0 -seen scene -export scenes -quiet >"$models/last.txt"
-  draw scene pcl_symmetry_scene scenes/scene_0002_noise_0.pcd -png "$gallery/scene.png"
-}
-
 # Where algorithms go wrong, for their pages.
 draw_failures_of_all() {
   draw failure_transform pcl_symmetry_map hand.off -size 200 -slices "$gallery/failure_transform.png"
@@ -183,20 +168,6 @@ draw_failures_of_all() {
   pcl_symmetry_scan cow.off cow_scan.pcd -quiet
   draw failure_scene pcl_symmetry_scene cow_scan.pcd -png "$gallery/failure_scene.png"
   draw "failure_frame failure_pose failure_completion failure_name failure_rotations" draw_failures "$gallery" hand.off
-}
-
-# Rates against points, noise, cuts and views; Figures 12, 13 and 14.
-draw_benchmark_charts() {
-  local sweep
-  for sweep in points views missing; do
-    draw "planes_by_$sweep" pcl_symmetry_evaluate planes "$psb" -every 8 -max 100 -sweep "$sweep" \
-      -png "$pictures/planes_by_$sweep.png"
-  done
-  draw planes_by_noise pcl_symmetry_evaluate planes "$psb" -every 8 -max 100 -sweep noise \
-    -noise 0,0.002,0.005,0.01,0.02,0.03,0.05 -png "$pictures/planes_by_noise.png"
-  draw misalignment pcl_symmetry_evaluate alignment "$psb" -classes "$classes" -fold 1 -every 8 -first 3 -num_views 4 \
-    -png "$pictures/misalignment.png"
-  draw figure_13 pcl_symmetry_evaluate retrieval "$psb" -cla "$classes" -png "$gallery/figure_13.png"
 }
 
 draw_scans_and_parts
@@ -208,11 +179,9 @@ draw figure_11 draw_scan_centers "$gallery/figure_11.png" car.ply
 draw_figure_15
 draw_figure_16
 draw_axes
-draw_scene
 draw_failures_of_all
 if $estimators; then
   draw error_against_time benchmark_accuracy -data "$models" -png "$pictures/error_against_time.png"
 fi
-if [[ -n $psb ]]; then draw_benchmark_charts; fi
 rm -f "$models/last.txt"
 echo "Pictures: $gallery $pictures"

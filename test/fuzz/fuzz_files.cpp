@@ -1,5 +1,5 @@
 /// Readers of files. FUZZ_KIND in the environment names one of them: a kind of shape file such as pcd, or isaac,
-/// models_info, classes, labels.
+/// models_info, labels.
 #include <unistd.h>
 
 #include <fstream>
@@ -13,7 +13,6 @@
 #include "common/shape_output/face_labels.h"
 #include "common/symmetry_files/isaac_axes.h"
 #include "common/symmetry_files/models_info.h"
-#include "evaluate/shared/class_file.h"
 #include "fuzz/byte_source.h"
 
 extern "C" const void* pclSymmetryModule(const char* version);
@@ -59,7 +58,6 @@ Kind kindOf(const std::string& name) {
   static const std::map<std::string, Kind> kinds = {
       {"isaac", {".yaml", [](const std::string& path) { readIsaacAxes(path); }}},
       {"models_info", {".json", readModelsSymmetries}},
-      {"classes", {".cla", [](const std::string& path) { leafClassNumbers(path); }}},
       {"labels", {".seg", [](const std::string& path) { readFaceLabels(path); }}}};
   const auto known = kinds.find(name);
   return known == kinds.end() ? Kind{"." + name, readShape} : known->second;

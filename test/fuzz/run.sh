@@ -10,7 +10,7 @@ Builds the fuzzers with Clang and libFuzzer (cmake --preset fuzz) into build-fuz
 undefined-behaviour sanitizers, from small files of make_seeds.py and what earlier runs kept in build-fuzz/corpus. An input that
 crashes, takes more than 120 s, or asks for more than 300 MB at once stays in build-fuzz/findings/TARGET.
 
-Targets: planes rotations segment packed database, and readers of files: pcd ply off xyz obj stl glb models_info isaac classes labels.
+Targets: planes rotations segment packed database, and readers of files: pcd ply off xyz obj stl glb models_info isaac labels.
 
 Exit status 0: nothing was found. 1: something was. 2: wrong usage, or the fuzzers could not be built.
 END
@@ -22,7 +22,7 @@ case "${1-}" in
 esac
 seconds=$1
 shift
-readers="pcd ply off xyz obj stl glb models_info isaac classes labels"
+readers="pcd ply off xyz obj stl glb models_info isaac labels"
 targets=("$@")
 ((${#targets[@]} > 0)) || targets=(planes rotations segment packed database $readers)
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 2

@@ -169,17 +169,17 @@ run_console() {
   done
 }
 
-# help_of TOOL [COMMAND]: its list of flags, cached.
+# help_of TOOL: its list of flags, cached.
 help_of() {
-  local file=$folder/help/$1-${2-}
+  local file=$folder/help/$1
   mkdir -p "$folder/help"
-  [[ -s $file ]] || "$tools/$1" ${2:+"$2"} -h >"$file" 2>&1 || true
+  [[ -s $file ]] || "$tools/$1" -h >"$file" 2>&1 || true
   cat "$file"
 }
 
 # The options of one command of an sh block.
 check_options() {
-  local label=$1 tool option help subcommand=
+  local label=$1 tool option help
   shift
   tool=$(basename "$1")
   shift
@@ -200,8 +200,7 @@ check_options() {
       return ;;
     pcl_symmetry_*)
       if [[ ! -x $tools/$tool ]]; then skipped "$label: $tool is not built"; return; fi
-      if [[ $tool == pcl_symmetry_evaluate ]]; then subcommand=$1; fi
-      help=$(help_of "$tool" "$subcommand") ;;
+      help=$(help_of "$tool") ;;
     *) return ;;
   esac
   for option in "$@"; do
