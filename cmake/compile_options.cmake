@@ -44,17 +44,23 @@ target_compile_options(pcl_symmetry_warnings INTERFACE -Wall -Wextra -Wshadow -W
 add_library(pcl_symmetry_quick_compile INTERFACE)
 target_compile_options(pcl_symmetry_quick_compile INTERFACE $<$<CONFIG:Release>:-O1>)
 
-# With CMAKE_UNITY_BUILD (presets release, sanitize and thread) the sources of a folder are compiled as one file: what they
-# include and the templates that they share are compiled once. A folder holds at most 12 files, so that a change compiles
-# little. Without it (preset debug) each source has to name what it includes.
+# With CMAKE_UNITY_BUILD (presets release, sanitize and thread) up to ten sources of a folder are compiled as one file: what
+# they include and the templates that they share are compiled once. Without it (preset debug) each source has to name what
+# it includes.
 function(pcl_symmetry_unite_folders target)
   get_target_property(sources ${target} SOURCES)
+  list(SORT sources)
   foreach(source IN LISTS sources)
     get_filename_component(folder ${source} ABSOLUTE)
     get_filename_component(folder ${folder} DIRECTORY)
     file(RELATIVE_PATH folder ${CMAKE_CURRENT_SOURCE_DIR} ${folder})
     string(MAKE_C_IDENTIFIER "folder_${folder}" group)
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    if(NOT DEFINED num_${group})
+      set(num_${group} 0)
+    endif()
+    math(EXPR part "${num_${group}} / 10")
+    math(EXPR num_${group} "${num_${group}} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group}_${part})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
 endfunction()

@@ -1,4 +1,4 @@
-# What the libraries link. The tools find what they need besides in apps/CMakeLists.txt.
+# What the libraries link. The tools find what they need besides in tools/CMakeLists.txt.
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 find_package(Boost REQUIRED)  # headers: Boost.Graph
 find_package(OpenMP REQUIRED COMPONENTS CXX)

@@ -11,7 +11,7 @@
 #include "core/base/check.h"
 #include "core/base/even_draw.h"
 #include "core/base/parallel.h"
-#include "core/neighbours/answerable_points.h"
+#include "core/geometry/answerable_points.h"
 #include "core/scan/single_view.h"
 #include "core/scan/viewpoint_inference.h"
 

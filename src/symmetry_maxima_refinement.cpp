@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/detection/standing/standing_object.h"
+#include "core/detection/standing_object.h"
 #include "core/evidence/plane_support.h"
 
 namespace pcl_symmetry::detail {

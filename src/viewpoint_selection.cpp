@@ -5,7 +5,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {

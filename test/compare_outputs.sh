@@ -23,7 +23,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 folder=$(realpath -m "${3-build/outputs}")
 mkdir -p "$folder/models"
 bash apps/fetch_meshes.sh "$folder/models" bull cow elephant hand >/dev/null
-"$before/make_shapes" "$folder/models"
+/usr/bin/python3 apps/gallery/shapes.py "$folder/models"
 
 # Everything that one build writes, into the current folder.
 run_all() {

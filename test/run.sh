@@ -4,17 +4,15 @@ set -uo pipefail
 
 usage() {
   cat <<'END'
-usage: bash test/run.sh [-h] [--all] [--until SECONDS] [--filter REGEX]
+usage: bash test/run.sh [-h] [--all] [--filter REGEX]
 
 Installs missing packages, builds libraries, tools and tests into build/ and runs the tests. With --all, builds the
-libraries once more with the address and undefined-behaviour sanitizers into build-sanitize/ and runs their tests, then the
-core, which starts all threads, with the thread sanitizer and without PCL into build-thread/ and runs its tests of threads, and
-the tools and their tests into build-sanitize/ at last. The last line says "N passed, N failed, N skipped"; a step that
-fails before its tests counts as one failure. Exit status 0 if tests ran and none failed.
+libraries once more with the address and undefined-behavior sanitizers into build-sanitize/ and runs their tests, then the
+core, which starts all threads, with the thread sanitizer and without PCL into build-thread/ and runs its tests of
+threads. The last line says "N passed, N failed, N skipped"; a step that fails before its tests counts as one failure.
+Exit status 0 if tests ran and none failed.
 
   --all            with sanitizers
-  --until SECONDS  leaves out what would not end before that many seconds, judging by the time that the build and the tests
-                   without sanitizers took; what is left out is named, and counts as one skipped test
   --filter REGEX   only tests whose name matches
 
 example: bash test/run.sh --filter consumer
@@ -22,16 +20,11 @@ END
 }
 
 sanitize=false
-until=0
 filter=.
 while (($# > 0)); do
   case "$1" in
     -h | --help) usage; exit 0 ;;
     --all) sanitize=true ;;
-    --until)
-      if [[ ! ${2-} =~ ^[1-9][0-9]*$ ]]; then echo "run.sh: --until needs a number of seconds" >&2; exit 2; fi
-      until=$2
-      shift ;;
     --filter)
       if [[ -z ${2-} ]]; then echo "run.sh: --filter needs a regular expression" >&2; exit 2; fi
       filter=$2
@@ -103,23 +96,9 @@ build_and_test() {
 
 say "Installing packages"
 step bash cmake/install_dependencies.sh
-begin=$SECONDS
 build_and_test release build all
-took=$((SECONDS - begin))
-# with_sanitizers PER_CENT PRESET TARGET LABELS: PER_CENT of the time without sanitizers are needed.
-with_sanitizers() {
-  if ((until > 0 && SECONDS + took * $1 / 100 > until)); then
-    say "Left out for want of time: $3 in build-$2"
-    ((++skipped))
-  else
-    build_and_test "$2" "build-$2" "$3" --label-regex "^($4)$"
-  fi
-}
 if $sanitize; then
-  # measured: on two slow cores with an empty compiler cache, where the build and the tests without sanitizers took 1500 s;
-  # a fifth is added
-  with_sanitizers 115 sanitize library_tests 'core|pcl'
-  with_sanitizers 35 thread library_tests core
-  with_sanitizers 180 sanitize all apps
+  build_and_test sanitize build-sanitize library_tests --label-regex '^(core|pcl)$'
+  build_and_test thread build-thread library_tests --label-regex '^core$'
 fi
 finish

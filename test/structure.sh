@@ -1,135 +1,130 @@
 #!/usr/bin/env bash
-# Is the house in order? Counts, and what breaks a rule of CONTRIBUTING.md.
-set -euo pipefail
-
-usage() {
-  cat <<'END'
-usage: bash test/structure.sh [-h] [-v]
-
-Prints, for the tree that it stands in: installed headers (at most 45, each with a test of its name), includes that run
-up from a room of the core to one above it, includes of private headers by installed ones, functions longer than 60
-lines, folders with more than 12 source files, and named constants without an origin (derived, measured, fitted or
-chosen). Exit status 0 if no rule is broken. -v also lists all functions from 50 lines on.
-
-A function may be longer where the line above it, or its comment, says "Long because" and why.
-END
-}
-
-verbose=false
+# Is the house in order? Prints what a successor carries, and what breaks a rule of CONTRIBUTING.md.
 case "${1-}" in
-  -h | --help) usage; exit 0 ;;
-  -v) verbose=true ;;
   "") ;;
-  *) usage >&2; exit 2 ;;
+  -h | --help)
+    cat <<'END'
+usage: bash test/structure.sh [-h]
+
+Prints lines of C++, folders, named constants, the longest page, and how many files stand behind symmetry_detection.h, each with
+its limit; then what breaks a rule: includes that run up from a room of the core to one above it, includes of PCL by the core
+or of private headers by installed ones, and installed headers without a test of their name. Exit status 0 if nothing is over
+its limit and no rule is broken.
+END
+    exit 0 ;;
+  *) echo "structure.sh: unknown option $1" >&2; exit 2 ;;
 esac
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
-max_headers=45 max_lines=60 max_files=12
-broken=0
+cd "$(dirname "${BASH_SOURCE[0]}")/.." && exec python3 - <<'END'
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
 
-# report NUMBER TEXT [LIST]: a line, and what breaks the rule.
-report() {
-  local count
-  count=$(grep -c . <<<"${3-}" || true)
-  printf '%6s  %s\n' "$1" "$2"
-  if [[ -n ${3-} ]]; then
-    sed 's/^/          /' <<<"$3"
-    broken=$((broken + count))
-  fi
-}
+# What is allowed: lines of C++, lines in src and include, lines of Python, folders with C++, named constants, lines of the
+# longest page, and files and lines behind symmetry_detection.h.
+LIMITS = dict(cpp=74000, library=34500, python=5500, folders=60, constants=800, page=300, files_behind=190, lines_behind=17000)
 
-mapfile -t sources < <(git ls-files -co --exclude-standard -- 'include/*.h' 'include/*.hpp' 'src/*.h' 'src/*.cpp' 'apps/*.h' 'apps/*.cpp' |
-  while read -r file; do [[ -f $file ]] && echo "$file"; done)
-mapfile -t headers < <(printf '%s\n' "${sources[@]}" | grep '^include/')
+listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True, check=True).stdout
+files = [Path(name) for name in listed.splitlines() if os.path.isfile(name)]
+text = {f: f.read_text(errors="replace") for f in files if f.suffix in (".cpp", ".h", ".hpp", ".py", ".md")}
+cpp = [f for f in text if f.suffix in (".cpp", ".h", ".hpp")]
+lines = {f: t.count("\n") for f, t in text.items()}
+core = [f for f in cpp if "core" in f.parts and f.parts[0] in ("src", "include")]
+installed = [f for f in cpp if f.parts[0] == "include"]
+broken = 0
 
-too_many=""
-((${#headers[@]} <= max_headers)) || too_many="${#headers[@]} headers, at most $max_headers"
-report "${#headers[@]}" "installed headers, .hpp counted (at most $max_headers)" "$too_many"
 
-untested=$(for header in "${headers[@]}"; do
-  [[ $header == *.hpp || $header == */exports.h ]] && continue
-  name=$(basename "$header" .h)
-  compgen -G "test/core/*/test_$name.cpp" >/dev/null || compgen -G "test/pcl/test_$name.cpp" >/dev/null ||
-    compgen -G "test/pcl/*/test_$name.cpp" >/dev/null || echo "$header"
-done)
-report "$(grep -c . <<<"$untested" || true)" "installed headers without a test of their name (0)" "$untested"
+def report(what, number, limit, findings=()):
+    """A line of the report, and what breaks the rule below it."""
+    global broken
+    over = number > limit
+    broken += over
+    print(f"{number:7}  {what} (at most {limit}){'  TOO MANY' if over else ''}")
+    for finding in findings:
+        print("         " + finding)
 
-leaks=$(grep -n '#include "' "${headers[@]}" | grep -v '"pcl_symmetry/' || true)
-report "$(grep -c . <<<"$leaks" || true)" "includes of private headers by installed ones (0)" "$leaks"
 
-pcl_in_core=$(grep -nE '#include <(pcl|vtk)' $(printf '%s\n' "${sources[@]}" | grep -E '^(src|include/pcl_symmetry)/core/') || true)
-report "$(grep -c . <<<"$pcl_in_core" || true)" "includes of PCL or VTK by the core (0)" "$pcl_in_core"
+def includes(f):
+    return re.findall(r'^#include ["<]([^">]+)[">]', text[f], re.M)
 
-# The list of rooms in src/CMakeLists.txt, bottom first, is the order.
-upward=$(awk '
-  FNR == NR {
-    if (/^set\(rooms/) inside = 1
-    else if (inside && /^\)/) inside = 0
-    else if (inside) floor[$1] = ++num_floors
-    next
-  }
-  FNR == 1 { from = FILENAME; sub(/.*core\//, "", from); sub(/\/.*/, "", from) }
-  /^#include "/ {
-    to = $2; gsub(/"/, "", to)
-    if (to == "pcl_symmetry/core/exports.h") next
-    if (to ~ /^(pcl_symmetry\/)?core\//) { sub(/.*core\//, "", to); sub(/\/.*/, "", to) }
-    else { print FILENAME ": " $2 " lies outside the core"; next }
-    if (!(from in floor) || !(to in floor)) print FILENAME ": room of " $2 " is not in the list"
-    else if (floor[to] > floor[from]) print FILENAME ": " $2 " lies above"
-  }' src/CMakeLists.txt $(printf '%s\n' "${sources[@]}" | grep -E '^(src|include/pcl_symmetry)/core/.*/'))
-report "$(grep -c . <<<"$upward" || true)" "includes that run up in the core (0)" "$upward"
 
-# Formatted code: a body ends with a closing brace under the first character of its signature; classes and namespaces
-# hold functions and are none.
-functions=$(awk '
-  function begin(line, at, signature) {
-    start = at; name = signature; first = 0
-    match(line, /^ */); indent = RLENGTH
-    sub(/^ */, "", name); sub(/\(.*/, "", name)
-    reason = index(comment, "Long because")
-  }
-  FNR == 1 { start = first = 0; comment = "" }
-  start {
-    match($0, /^ */)
-    if (/^ *\}/ && RLENGTH == indent) {
-      print FNR - start + 1, FILENAME ":" start, name, reason ? "reason" : ""
-      start = 0; comment = ""
-    }
-    next
-  }
-  /^ *\/\// { comment = comment $0; next }
-  first {
-    if (/\{$/) begin(signature, first, signature)
-    else if (/[;}]$/) first = 0
-    next
-  }
-  /^ ? ?[A-Za-z~]/ && !/^ *(namespace|class|struct|enum|extern|union|using|if|for|while|switch|else|do|try|return|constexpr)[ ({]/ {
-    if (/\(.*\{$/) { begin($0, FNR, $0); next }
-    if (/\(/ && !/[;}]$/) { first = FNR; signature = $0; next }
-  }
-  !/^ *$/ { comment = "" }' "${sources[@]}" | sort -rn)
-long=$(awk -v most=$max_lines '$1 > most && $NF != "reason"' <<<"$functions")
-report "$(head -1 <<<"$functions" | cut -d' ' -f1)" "lines in the longest function: $(head -1 <<<"$functions" | cut -d' ' -f2-) (at most $max_lines, or its reason)" "$long"
-if $verbose; then awk '$1 >= 50 { print "          " $0 }' <<<"$functions"; fi
+by_name = {}
+for f in cpp:
+    for root in ("include/", "src/"):
+        if str(f).startswith(root):
+            by_name[str(f)[len(root):]] = f
 
-folders=$(printf '%s\n' "${sources[@]}" $(git ls-files -co --exclude-standard -- 'test/*.h' 'test/*.cpp') | sort -u |
-  while read -r file; do [[ -f $file ]] && dirname "$file"; done | sort | uniq -c | sort -rn)
-crowded=$(awk -v most=$max_files '$1 > most { print $1, $2 }' <<<"$folders")
-report "$(awk 'NR == 1 { print $1 }' <<<"$folders")" "source files in the fullest folder: $(awk 'NR == 1 { print $2 }' <<<"$folders") (at most $max_files)" "$crowded"
 
-# An origin stands on the line of the constant, or in the comment over the run of constants that it belongs to.
-constants=$(awk '
-  FNR == 1 { origin = 0; in_comment = 0 }
-  /^ *\/\// { if (!in_comment) origin = 0; in_comment = 1; if (/(derived|measured|fitted|chosen):/) origin = 1; next }
-  { in_comment = 0 }
-  /^ *((static|inline) )*constexpr [^(=]*[ &*]k[A-Z][A-Za-z0-9_]*(\[[^\]]*\])* *(=|\{)/ {
-    print (origin || /(derived|measured|fitted|chosen):/) ? "good" : FILENAME ":" FNR ": " $0
-    next
-  }
-  { if (!/,$/) origin = 0 }' "${sources[@]}")
-without=$(grep -v '^good$' <<<"$constants" || true)
-report "$(grep -c . <<<"$without" || true)" "of $(grep -c . <<<"$constants") named constants without an origin (0)" "$without"
+def behind(header):
+    """All files of the project that a header reaches: its includes, and the sources of the headers among them."""
+    sources = {}
+    for f in cpp:
+        if f.suffix == ".cpp" and f.parts[0] == "src":
+            sources.setdefault(f.stem, []).append(f)
+    found, todo = set(), [by_name[header]]
+    while todo:
+        f = todo.pop()
+        if f in found:
+            continue
+        found.add(f)
+        todo += [by_name[i] for i in includes(f) if i in by_name]
+        if f.suffix != ".cpp":
+            # A header of src has its source beside it, one of include wherever it stands.
+            todo += [s for s in sources.get(f.stem, []) if s.parent == f.parent or f.parts[0] == "include"]
+    return found
 
-if ((broken > 0)); then
-  echo "structure.sh: $broken findings"
-  exit 1
-fi
+
+research = [f for f in text if f.suffix == ".py" and f.parts[:2] == ("test", "benchmark")]
+constants = [m for f in cpp if f.parts[0] in ("src", "include") for m in re.findall(r"constexpr [a-zA-Z_:<> ]+ k[A-Z]\w*", text[f])]
+pages = {f: n for f, n in lines.items() if f.suffix == ".md"}
+longest = max(pages, key=pages.get)
+reached = behind("pcl_symmetry/symmetry_detection.h")
+report("lines of C++", sum(lines[f] for f in cpp), LIMITS["cpp"])
+report("lines of C++ in src and include", sum(lines[f] for f in cpp if f.parts[0] in ("src", "include")), LIMITS["library"])
+report("lines of Python in test/benchmark", sum(lines[f] for f in research), LIMITS["python"])
+report("folders with C++", len({f.parent for f in cpp}), LIMITS["folders"])
+report("named constants in src and include", len(constants), LIMITS["constants"])
+report(f"lines of the longest page, {longest}", pages[longest], LIMITS["page"])
+report("files behind symmetry_detection.h", len(reached), LIMITS["files_behind"])
+report("lines of these files", sum(lines[f] for f in reached), LIMITS["lines_behind"])
+
+# The list of rooms in src/CMakeLists.txt, bottom first, is the order. An installed header belongs to the room of its source,
+# or of its test.
+rooms = re.search(r"set\(rooms\n(.*?)^\)", Path("src/CMakeLists.txt").read_text(), re.S | re.M).group(1)
+floors = {line.split()[0]: i for i, line in enumerate(rooms.splitlines())}
+room_of_name = {f.stem: f.parent.name for f in core if f.parts[0] == "src" and f.suffix == ".cpp"}
+for f in cpp:
+    if f.parts[:2] == ("test", "core"):
+        room_of_name.setdefault(f.stem[len("test_"):], f.parent.name)
+
+
+def room(f):
+    return f.parts[2] if f.parts[0] == "src" else room_of_name.get(f.stem)
+
+
+upward = []
+for f in core:
+    for name in includes(f):
+        other = by_name.get(name)
+        if other is None or other.stem == "exports" or f.stem == "exports":
+            continue
+        if other not in core:
+            upward.append(f"{f}: {name} lies outside the core")
+        elif floors.get(room(f)) is None or floors.get(room(other)) is None:
+            upward.append(f"{f}: the room of {name} is not in the list")
+        elif floors[room(other)] > floors[room(f)]:
+            upward.append(f"{f}: {name} lies above")
+report("includes that run up in the core", len(upward), 0, upward)
+of_pcl = [f"{f}: {name}" for f in core for name in includes(f) if name.startswith(("pcl/", "vtk"))]
+report("includes of PCL or VTK by the core", len(of_pcl), 0, of_pcl)
+leaks = [f"{f}: {name}" for f in installed for name in includes(f) if name in by_name and by_name[name].parts[0] != "include"]
+report("includes of private headers by installed ones", len(leaks), 0, leaks)
+tests = {f.stem for f in cpp if f.parts[0] == "test"}
+untested = [str(f) for f in installed if f.suffix == ".h" and f.stem != "exports" and "test_" + f.stem not in tests]
+report("installed headers without a test of their name", len(untested), 0, untested)
+
+if broken:
+    print(f"structure.sh: {broken} findings")
+sys.exit(broken > 0)
+END

@@ -7,10 +7,10 @@
 #include <mutex>
 
 #include "bop/rejections.h"
-#include "common/command_line/file_errors.h"
-#include "common/files/json_values.h"
-#include "common/shape_input/exact_coordinates.h"
-#include "core/neighbours/diameter.h"
+#include "command_line/file_errors.h"
+#include "io/json_values.h"
+#include "io/exact_coordinates.h"
+#include "core/geometry/diameter.h"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bop/colours/colour_symmetry.h"
+#include "bop/colour_symmetry.h"
 #include "bop/symmetry_check.h"
-#include "common/shape_input/shape_input.h"
+#include "io/shape_input.h"
 #include "pcl_symmetry/object_symmetries.h"
 
 namespace pcl_symmetry::apps {

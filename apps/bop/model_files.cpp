@@ -6,8 +6,8 @@
 #include <cctype>
 #include <map>
 
-#include "common/batch/input_files.h"
-#include "common/files/shape_file_kinds.h"
+#include "command_line/input_files.h"
+#include "io/shape_file_kinds.h"
 
 namespace pcl_symmetry::apps {
 

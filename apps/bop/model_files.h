@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/command_line/tool_errors.h"
+#include "command_line/tool_errors.h"
 
 namespace pcl_symmetry::apps {
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "common/shape_input/exact_coordinates.h"
-#include "common/shape_output/shape_output.h"
+#include "io/exact_coordinates.h"
+#include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {
 

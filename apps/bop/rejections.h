@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bop/surface_evidence.h"
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace pcl_symmetry::apps {
 

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "core/normals/surface_normals.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "core/geometry/surface_normals.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry::apps {
 

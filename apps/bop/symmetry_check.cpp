@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "common/files/json_values.h"
+#include "io/json_values.h"
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bop/surface_evidence.h"
-#include "common/symmetry_files/models_info.h"
+#include "bop/models_info.h"
 
 namespace pcl_symmetry::apps {
 

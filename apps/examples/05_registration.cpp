@@ -1,6 +1,6 @@
 /// Registers a scan to a model of its object from any pose, by a class that is used like PCL's registrations.
 #include <pcl/io/pcd_io.h>
-#include <pcl_symmetry/registration/symmetry_registration.h>
+#include <pcl_symmetry/symmetry_registration.h>
 
 #include <iostream>
 

@@ -1,7 +1,7 @@
 /// What models are like a cloud, and which of them a scan shows: descriptors, and a database that finds and recognizes.
 #include <pcl/io/pcd_io.h>
-#include <pcl_symmetry/features/prst.h>
-#include <pcl_symmetry/recognition/symmetry_database.h>
+#include <pcl_symmetry/prst.h>
+#include <pcl_symmetry/symmetry_database.h>
 
 #include <iostream>
 

@@ -1,6 +1,6 @@
 /// The objects of one frame of a depth camera, each with its symmetries, and the scene with their unseen sides added.
 #include <pcl/io/pcd_io.h>
-#include <pcl_symmetry/scene/symmetry_scene.h>
+#include <pcl_symmetry/symmetry_scene.h>
 
 #include <iostream>
 

@@ -44,12 +44,14 @@ if $estimators; then
   cmake --preset benchmark --log-level=WARNING >/dev/null
   cmake --build build-benchmark --parallel "$(nproc)" --target benchmark_accuracy
 fi
-export PATH=$PWD/build/apps:$PWD/build-benchmark/test/benchmark:$PATH
+export PATH=$PWD/build/apps:$PWD/build-benchmark/test/benchmark:$PATH PYTHONPATH=$PWD/build/src/python
+python=/usr/bin/python3
 
 models=$PWD/build/pictures_models
 mkdir -p "$gallery" "$pictures" "$models"
 bash apps/fetch_meshes.sh "$models" bull camel cow elephant hand
-make_shapes "$models"
+"$python" -B apps/gallery/shapes.py "$models"
+drawings=("$python" -B "$PWD/apps/gallery/drawings.py")
 contours=$PWD/apps/gallery/contour.awk
 cd "$models"
 
@@ -71,7 +73,7 @@ draw_scans_and_parts() {
   pcl_symmetry_scan cow.off cow_scan.pcd -quiet
   draw cow_scan_plane pcl_symmetry_planes cow_scan.pcd -png "$pictures/cow_scan_plane.png"
   draw bull_parts pcl_symmetry_planes bull.off -approximate -max_planes 6 -png "$pictures/bull_parts.png"
-  draw frames draw_alignment "$pictures/frames.png"
+  draw frames "${drawings[@]}" frames "$pictures/frames.png"
 }
 
 draw_figure_1() {
@@ -101,7 +103,7 @@ draw_figure_3() {
   contour rectangle "rectangle 1 0.5"
   contour bump "rectangle 1 0.5 0.1"
   draw figure_3 pcl_symmetry_lines rectangle.pcd bump.pcd -size 220 -png "$gallery/figure_3.png"
-  draw figure_3_medial_axis draw_medial_axis "$gallery/figure_3_medial_axis.png" 220 rectangle.pcd bump.pcd
+  draw figure_3_medial_axis "${drawings[@]}" medial_axis "$gallery/figure_3_medial_axis.png" rectangle.pcd bump.pcd
 }
 
 # draw_view PICTURE MODEL KEYS: the window of the viewer after some keys.
@@ -167,7 +169,13 @@ draw_failures_of_all() {
   draw failure_planes pcl_symmetry_planes mug_scan.pcd -png "$gallery/failure_planes.png"
   pcl_symmetry_scan cow.off cow_scan.pcd -quiet
   draw failure_scene pcl_symmetry_scene cow_scan.pcd -png "$gallery/failure_scene.png"
-  draw "failure_frame failure_pose failure_completion failure_name failure_rotations" draw_failures "$gallery" hand.off
+  local name
+  for name in frame completion; do
+    draw "failure_$name" "${drawings[@]}" "failure_$name" "$gallery/failure_$name.png" hand.off
+  done
+  for name in pose name rotations; do
+    draw "failure_$name" "${drawings[@]}" "failure_$name" "$gallery/failure_$name.png"
+  done
 }
 
 draw_scans_and_parts
@@ -175,7 +183,7 @@ draw_figure_1
 draw_figure_2
 draw_figure_3
 draw_figures_7_8_and_10
-draw figure_11 draw_scan_centers "$gallery/figure_11.png" car.ply
+draw figure_11 "${drawings[@]}" scan_centers "$gallery/figure_11.png" car.ply
 draw_figure_15
 draw_figure_16
 draw_axes

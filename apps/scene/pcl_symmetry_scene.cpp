@@ -7,19 +7,19 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
-#include "common/command_line/run_tool.h"
-#include "common/files/file_text.h"
-#include "common/files/json_values.h"
-#include "common/html/scene_page.h"
-#include "common/shape_input/exact_coordinates.h"
-#include "common/shape_input/input_shape.h"
-#include "common/shape_output/shape_output.h"
-#include "pcl_symmetry/scene/symmetry_scene.h"
-#include "scene/report/scene_report.h"
-#include "scene/watch/folder_watch.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/file_errors.h"
+#include "command_line/run_tool.h"
+#include "io/file_text.h"
+#include "io/json_values.h"
+#include "pictures/scene_page.h"
+#include "io/exact_coordinates.h"
+#include "io/input_shape.h"
+#include "io/shape_output.h"
+#include "pcl_symmetry/symmetry_scene.h"
+#include "scene/scene_report.h"
+#include "scene/folder_watch.h"
 
 namespace {
 

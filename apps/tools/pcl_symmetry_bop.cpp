@@ -12,12 +12,12 @@
 
 #include "bop/model_analysis.h"
 #include "bop/model_files.h"
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/run_tool.h"
-#include "common/files/json_values.h"
-#include "common/shape_output/shape_output.h"
-#include "common/symmetry_files/isaac_axes.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/run_tool.h"
+#include "io/json_values.h"
+#include "io/shape_output.h"
+#include "bop/isaac_axes.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 

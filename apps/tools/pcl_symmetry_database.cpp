@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
-#include "common/command_line/run_tool.h"
-#include "common/files/json_values.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/file_errors.h"
+#include "command_line/run_tool.h"
+#include "io/json_values.h"
 #include "common/processes/shared_work.h"
-#include "common/shape_output/shape_output.h"
-#include "database/database_listing.h"
-#include "database/model_files.h"
-#include "database/shared_build.h"
+#include "io/shape_output.h"
+#include "tools/database_listing.h"
+#include "tools/model_files.h"
+#include "tools/shared_build.h"
 
 namespace {
 

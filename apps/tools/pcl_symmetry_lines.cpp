@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
-#include "common/command_line/run_tool.h"
-#include "common/files/json_values.h"
-#include "common/pictures/contour_input.h"
-#include "common/pictures/raster_image.h"
-#include "common/shape_output/shape_output.h"
-#include "pcl_symmetry/core/transform/symmetry_map.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/file_errors.h"
+#include "command_line/run_tool.h"
+#include "io/json_values.h"
+#include "pictures/contour_input.h"
+#include "pictures/raster_image.h"
+#include "io/shape_output.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 #include "pcl_symmetry/planar_symmetry_transform_2d.h"
 
 namespace {

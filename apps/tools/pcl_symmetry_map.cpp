@@ -8,18 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "common/batch/run_on_files.h"
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/run_tool.h"
-#include "common/pictures/picture.h"
-#include "common/pictures/raster_image.h"
-#include "common/pictures/volume_image.h"
-#include "common/shape_input/exact_coordinates.h"
-#include "common/shape_input/input_shape.h"
-#include "common/shape_output/cloud_fields.h"
-#include "common/shape_output/shape_output.h"
-#include "map/symmetry_measure.h"
+#include "command_line/run_on_files.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/run_tool.h"
+#include "pictures/picture.h"
+#include "pictures/raster_image.h"
+#include "pictures/volume_image.h"
+#include "io/exact_coordinates.h"
+#include "io/input_shape.h"
+#include "io/cloud_fields.h"
+#include "io/shape_output.h"
+#include "tools/symmetry_measure.h"
 
 namespace {
 

@@ -8,15 +8,15 @@
 #include <optional>
 #include <string>
 
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
-#include "common/command_line/run_tool.h"
-#include "common/files/json_values.h"
-#include "common/shape_input/exact_coordinates.h"
-#include "common/shape_input/input_shape.h"
-#include "common/shape_output/shape_output.h"
-#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/file_errors.h"
+#include "command_line/run_tool.h"
+#include "io/json_values.h"
+#include "io/exact_coordinates.h"
+#include "io/input_shape.h"
+#include "io/shape_output.h"
+#include "pcl_symmetry/symmetry_database.h"
 
 namespace {
 

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
-#include "common/command_line/run_tool.h"
-#include "common/files/json_values.h"
-#include "common/scanner/virtual_scanner.h"
-#include "common/shape_input/exact_coordinates.h"
-#include "common/shape_input/shape_input.h"
-#include "common/shape_output/shape_output.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/file_errors.h"
+#include "command_line/run_tool.h"
+#include "io/json_values.h"
+#include "scanner/virtual_scanner.h"
+#include "io/exact_coordinates.h"
+#include "io/shape_input.h"
+#include "io/shape_output.h"
 #include "core/base/constants.h"
 
 namespace {

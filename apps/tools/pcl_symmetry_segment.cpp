@@ -8,18 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "common/batch/run_on_files.h"
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
-#include "common/command_line/run_tool.h"
-#include "common/html/scene_page.h"
-#include "common/pictures/picture.h"
-#include "common/shape_input/exact_coordinates.h"
-#include "common/shape_input/shape_input.h"
-#include "common/shape_output/face_labels.h"
-#include "common/shape_output/labelled_shape.h"
-#include "common/shape_output/shape_output.h"
+#include "command_line/run_on_files.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/file_errors.h"
+#include "command_line/run_tool.h"
+#include "pictures/scene_page.h"
+#include "pictures/picture.h"
+#include "io/exact_coordinates.h"
+#include "io/shape_input.h"
+#include "io/face_labels.h"
+#include "io/labelled_shape.h"
+#include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_segmentation.h"
 
 namespace {

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "common/command_line/command_line.h"
-#include "common/command_line/console.h"
-#include "common/command_line/file_errors.h"
-#include "common/command_line/run_tool.h"
-#include "common/drawing/private_display.h"
-#include "common/shape_input/exact_coordinates.h"
-#include "common/shape_input/shape_input.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
+#include "command_line/file_errors.h"
+#include "command_line/run_tool.h"
+#include "pictures/private_display.h"
+#include "io/exact_coordinates.h"
+#include "io/shape_input.h"
 #include "viewer/viewer_window.h"
 
 namespace {

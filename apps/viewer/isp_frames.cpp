@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/base/constants.h"
-#include "core/normals/surface_normals.h"
-#include "pcl_symmetry/core/refinement/iterative_symmetric_points.h"
+#include "core/geometry/surface_normals.h"
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
 
 namespace pcl_symmetry::apps {
 

@@ -15,9 +15,9 @@
 
 #include <algorithm>
 
-#include "common/drawing/picture_actors.h"
-#include "common/patches/patch_geometry.h"
-#include "common/shape_output/shape_output.h"
+#include "pictures/picture_actors.h"
+#include "pictures/patch_geometry.h"
+#include "io/shape_output.h"
 #include "core/base/constants.h"
 
 namespace pcl_symmetry::apps {

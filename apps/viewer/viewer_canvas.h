@@ -13,8 +13,8 @@
 #include <functional>
 #include <string>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry::apps {
 

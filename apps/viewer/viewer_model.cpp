@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "pcl_symmetry/core/detection/local_maxima.h"
+#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"

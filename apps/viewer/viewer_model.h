@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "common/command_line/command_line.h"
-#include "common/shape_input/shape_input.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
-#include "pcl_symmetry/core/frame/symmetry_frame.h"
-#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
+#include "command_line/command_line.h"
+#include "io/shape_input.h"
+#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 
 namespace pcl_symmetry::apps {

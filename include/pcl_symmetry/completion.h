@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "pcl_symmetry/core/registration/symmetric_completion.h"
+#include "pcl_symmetry/core/symmetric_completion.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

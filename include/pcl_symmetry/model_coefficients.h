@@ -2,7 +2,7 @@
 
 #include <pcl/ModelCoefficients.h>
 
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "pcl_symmetry/core/exports.h"
 
 /// Planes and axes of symmetry as models of PCL's segmentation, and back. The header of the coefficients is left empty.

@@ -3,7 +3,7 @@
 #include <pcl/PolygonMesh.h>
 #include <pcl/point_cloud.h>
 
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

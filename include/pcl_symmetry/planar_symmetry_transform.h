@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 #include "pcl_symmetry/mesh_sampling.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

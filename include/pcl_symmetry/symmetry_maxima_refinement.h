@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

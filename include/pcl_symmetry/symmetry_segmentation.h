@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
-#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

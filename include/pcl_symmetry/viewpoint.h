@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

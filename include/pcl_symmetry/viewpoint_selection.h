@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
+#include "pcl_symmetry/core/viewpoint_score.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

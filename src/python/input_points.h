@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry::python {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
+#include "pcl_symmetry/core/viewpoint_score.h"
 
 namespace py = pybind11;
 

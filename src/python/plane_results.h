@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 
 namespace pcl_symmetry::python {
 

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/recognition/symmetry_database.h"
-#include "pcl_symmetry/registration/symmetry_registration.h"
+#include "pcl_symmetry/symmetry_database.h"
+#include "pcl_symmetry/symmetry_registration.h"
 #include "python/input_points.h"
 #include "python/motions.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 #include "python/input_points.h"
 #include "python/motions.h"
 

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "pcl_symmetry/symmetry_database.h"
 #include "recognition/database_parts.h"
-#include "recognition/storage/io_error.h"
-#include "recognition/storage/old_folder.h"
+#include "recognition/io_error.h"
+#include "recognition/old_folder.h"
 
 namespace pcl_symmetry {
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/matching/shape_description.h"
-#include "core/views/view_signature.h"
-#include "recognition/storage/io_error.h"
+#include "core/matching/view_signature.h"
+#include "recognition/io_error.h"
 
 namespace pcl_symmetry::detail {
 

@@ -5,14 +5,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
-#include "pcl_symmetry/recognition/symmetry_database.h"
-#include "recognition/packing/packed_model.h"
-#include "recognition/search/pair_search.h"
-#include "recognition/search/shape_search.h"
-#include "recognition/search/view_search.h"
-#include "recognition/storage/model_store.h"
+#include "pcl_symmetry/symmetry_database.h"
+#include "recognition/packed_model.h"
+#include "recognition/pair_search.h"
+#include "recognition/shape_search.h"
+#include "recognition/view_search.h"
+#include "recognition/model_store.h"
 
 namespace pcl_symmetry::detail {
 

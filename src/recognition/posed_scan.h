@@ -9,7 +9,7 @@
 
 #include "core/registration/posed_surface.h"
 #include "core/registration/ranked_poses.h"
-#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "pcl_symmetry/symmetry_database.h"
 #include "registration/pose_refinement.h"
 
 namespace pcl_symmetry::detail {

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/descriptors/shape_signature.h"
-#include "core/views/view_signature.h"
+#include "core/matching/shape_signature.h"
+#include "core/matching/view_signature.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
-#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "pcl_symmetry/symmetry_database.h"
 #include "recognition/database_parts.h"
 #include "recognition/posed_scan.h"
 

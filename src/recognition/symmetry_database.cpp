@@ -1,4 +1,4 @@
-#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "pcl_symmetry/symmetry_database.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,7 +7,7 @@
 #include "core/base/check.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "recognition/database_parts.h"
-#include "recognition/storage/io_error.h"
+#include "recognition/io_error.h"
 
 namespace pcl_symmetry {
 

@@ -1,11 +1,11 @@
-#include "pcl_symmetry/registration/symmetry_registration.h"
+#include "pcl_symmetry/symmetry_registration.h"
 
 #include <algorithm>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/stopwatch.h"
-#include "core/registration/covariance/pose_covariance.h"
+#include "core/registration/pose_covariance.h"
 #include "core/registration/frame_hypotheses.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/ranked_poses.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/registration/ranked_poses.h"
-#include "pcl_symmetry/registration/symmetry_registration.h"
+#include "pcl_symmetry/symmetry_registration.h"
 
 namespace pcl_symmetry {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/registration/posed_surface.h"
-#include "pcl_symmetry/core/frame/symmetry_frame.h"
-#include "pcl_symmetry/registration/symmetry_registration.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/symmetry_registration.h"
 #include "registration/pose_refinement.h"
 
 namespace pcl_symmetry {

@@ -1,6 +1,6 @@
 #include <pcl/point_types.h>
 
-#include "pcl_symmetry/registration/impl/symmetry_registration.hpp"
+#include "pcl_symmetry/impl/symmetry_registration.hpp"
 
 PCL_INSTANTIATE_SymmetryRegistration(pcl::PointXYZ, pcl::PointXYZ, float)
     PCL_INSTANTIATE_SymmetryRegistration(pcl::PointXYZ, pcl::PointXYZ, double)

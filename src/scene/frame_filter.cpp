@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/base/median.h"
-#include "core/scan/picture/depth_filter.h"
-#include "pcl_symmetry/scene/symmetry_scene.h"
+#include "core/scan/depth_filter.h"
+#include "pcl_symmetry/symmetry_scene.h"
 
 namespace pcl_symmetry {
 

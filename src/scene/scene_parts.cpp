@@ -12,7 +12,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
-#include "core/normals/surface_normals.h"
+#include "core/geometry/surface_normals.h"
 
 namespace pcl_symmetry::detail {
 

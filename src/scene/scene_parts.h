@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "pcl_symmetry/scene/symmetry_scene.h"
+#include "pcl_symmetry/symmetry_scene.h"
 
 namespace pcl_symmetry::detail {
 

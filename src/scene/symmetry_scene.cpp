@@ -1,4 +1,4 @@
-#include "pcl_symmetry/scene/symmetry_scene.h"
+#include "pcl_symmetry/symmetry_scene.h"
 
 #include <pcl/common/common.h>
 

@@ -8,14 +8,14 @@
 #include <functional>
 #include <optional>
 
-#include "common/command_line/command_line.h"
-#include "common/command_line/run_tool.h"
-#include "common/pictures/chart.h"
+#include "command_line/command_line.h"
+#include "command_line/run_tool.h"
+#include "pictures/chart.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "models.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 
 #include "core/base/random.h"
 #include "models.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "pcl/support/damaged_database.h"
-#include "pcl/support/interrupted_writer.h"
+#include "pcl/damaged_database.h"
+#include "pcl/interrupted_writer.h"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/matching/shape_description.h"
 #include "recognition/database_parts.h"
-#include "recognition/packing/packed_model.h"
+#include "recognition/packed_model.h"
 
 namespace pcl_symmetry::benchmark {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/recognition/symmetry_database.h"
-#include "recognition/search/fitted_forms.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/symmetry_database.h"
+#include "recognition/fitted_forms.h"
 
 namespace pcl_symmetry::benchmark {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/descriptors/symmetry_descriptor.h"
+#include "core/matching/symmetry_descriptor.h"
 #include "core/geometry/axis_rotations.h"
 #include "core/matching/compact_index.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry::benchmarks {
 

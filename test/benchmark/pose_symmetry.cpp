@@ -6,7 +6,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/point_set.h"
 
 /// Ends the program with a message, which the fuzzer takes for a finding. It holds in builds without assertions too.
 #define FUZZ_CHECK(condition)                                                             \

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "fuzz/byte_source.h"
-#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "pcl_symmetry/symmetry_database.h"
 
 namespace {
 

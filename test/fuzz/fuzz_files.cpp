@@ -6,13 +6,13 @@
 #include <functional>
 #include <map>
 
-#include "common/command_line/tool_errors.h"
-#include "common/mesh_files/assimp_reader.h"
-#include "common/modules/cloud_files.h"
-#include "common/shape_input/shape_input.h"
-#include "common/shape_output/face_labels.h"
-#include "common/symmetry_files/isaac_axes.h"
-#include "common/symmetry_files/models_info.h"
+#include "command_line/tool_errors.h"
+#include "io/assimp_reader.h"
+#include "io/cloud_files.h"
+#include "io/shape_input.h"
+#include "io/face_labels.h"
+#include "bop/isaac_axes.h"
+#include "bop/models_info.h"
 #include "fuzz/byte_source.h"
 
 extern "C" const void* pclSymmetryModule(const char* version);

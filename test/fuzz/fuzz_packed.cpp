@@ -1,11 +1,11 @@
 /// The parts of models that are stored in a database, as any bytes; the first byte chooses the part.
 #include <stdexcept>
 
-#include "core/views/view_code_index.h"
+#include "core/matching/view_code_index.h"
 #include "fuzz/byte_source.h"
-#include "recognition/packing/packed_bytes.h"
-#include "recognition/packing/packed_model.h"
-#include "recognition/search/compact_forms.h"
+#include "recognition/packed_bytes.h"
+#include "recognition/packed_model.h"
+#include "recognition/compact_forms.h"
 
 namespace {
 

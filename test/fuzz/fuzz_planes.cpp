@@ -2,8 +2,8 @@
 #include <stdexcept>
 
 #include "fuzz/byte_source.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
-#include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace {
 

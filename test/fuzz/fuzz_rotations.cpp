@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "fuzz/byte_source.h"
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "fuzz/byte_source.h"
-#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "pcl_symmetry/recognition/symmetry_database.h"
+#include "pcl_symmetry/symmetry_database.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "pcl/support/error_message.h"
+#include "pcl/error_message.h"
 
 namespace pcl_symmetry {
 namespace {

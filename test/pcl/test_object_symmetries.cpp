@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
 
-#include "pcl/support/clouds.h"
-#include "pcl/support/error_message.h"
+#include "pcl/clouds.h"
+#include "pcl/error_message.h"
 #include "shapes/turning_shapes.h"
 
 namespace pcl_symmetry {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "pcl/support/clouds.h"
-#include "pcl/support/error_message.h"
-#include "pcl/support/pcl_meshes.h"
+#include "pcl/clouds.h"
+#include "pcl/error_message.h"
+#include "pcl/pcl_meshes.h"
 
 namespace pcl_symmetry {
 namespace {

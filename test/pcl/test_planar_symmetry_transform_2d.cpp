@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pcl/support/clouds.h"
-#include "pcl/support/error_message.h"
+#include "pcl/clouds.h"
+#include "pcl/error_message.h"
 #include "shapes/contours.h"
 
 namespace pcl_symmetry {

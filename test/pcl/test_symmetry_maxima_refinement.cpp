@@ -9,9 +9,9 @@
 #include <pcl/search/impl/brute_force.hpp>
 #include <pcl/search/impl/flann_search.hpp>
 
-#include "pcl/support/clouds.h"
-#include "pcl/support/error_message.h"
-#include "pcl/support/found_planes.h"
+#include "pcl/clouds.h"
+#include "pcl/error_message.h"
+#include "pcl/found_planes.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_detection.h"
 

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "pcl/support/clouds.h"
-#include "pcl/support/error_message.h"
+#include "pcl/clouds.h"
+#include "pcl/error_message.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "shapes/meshes.h"
 

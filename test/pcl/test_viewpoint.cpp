@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core/base/random.h"
-#include "pcl/support/clouds.h"
-#include "pcl/support/error_message.h"
+#include "pcl/clouds.h"
+#include "pcl/error_message.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pcl/support/clouds.h"
-#include "pcl/support/error_message.h"
+#include "pcl/clouds.h"
+#include "pcl/error_message.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace pcl_symmetry {

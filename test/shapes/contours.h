@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pcl_symmetry/core/transform_2d/gaussian_edt_2d.h"
+#include "pcl_symmetry/core/gaussian_edt_2d.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry::test {

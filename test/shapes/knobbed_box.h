@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/base/random.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry::test {
 

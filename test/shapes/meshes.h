@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry::test {
 

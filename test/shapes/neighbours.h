@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry::test {
 

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 #include "shapes/turning_shapes.h"
 
 namespace pcl_symmetry::test {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/registration/posed_surface.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry::test {
 

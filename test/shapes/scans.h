@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/viewing_frame.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry::test {

@@ -10,8 +10,8 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry::test {
 

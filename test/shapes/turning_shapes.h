@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/mesh_sampling.h"
-#include "pcl_symmetry/core/rotation/rotation_group.h"
+#include "pcl_symmetry/core/rotation_group.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry::test {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/command_line/tool_errors.h"
-#include "recognition/packing/packed_bytes.h"
+#include "command_line/tool_errors.h"
+#include "recognition/packed_bytes.h"
 
 namespace pcl_symmetry::apps {
 

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/visibility.h"
 #include "pcl_symmetry/viewpoint.h"
 
 /// PCL clouds become points of the core, and errors of the core become errors of PCL.

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <optional>
 
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

@@ -1,6 +1,6 @@
 #include "core/detection/candidates.h"
 
-#include "core/detection/folds/plane_lattice.h"
+#include "core/detection/plane_lattice.h"
 #include "core/geometry/principal_axes.h"
 
 namespace pcl_symmetry {

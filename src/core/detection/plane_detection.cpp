@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 
 #include <algorithm>
 #include <iterator>
@@ -10,21 +10,21 @@
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/candidates.h"
-#include "core/detection/folds/even_density.h"
-#include "core/detection/folds/fold_spectrum.h"
-#include "core/detection/large/cloud_subset.h"
+#include "core/detection/even_density.h"
+#include "core/detection/fold_spectrum.h"
+#include "core/detection/cloud_subset.h"
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_judge.h"
 #include "core/detection/plane_ranking.h"
-#include "core/detection/scan_axes/scan_axes.h"
-#include "core/detection/settling/plane_settler.h"
+#include "core/detection/scan_axes.h"
+#include "core/detection/plane_settler.h"
 #include "core/detection/staged_refinement.h"
-#include "core/distance_transform/free_space.h"
+#include "core/transform/free_space.h"
 #include "core/geometry/point_samples.h"
-#include "core/neighbours/answerable_points.h"
-#include "core/neighbours/distinct_points.h"
-#include "core/refinement/surface_fit.h"
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "core/geometry/answerable_points.h"
+#include "core/geometry/distinct_points.h"
+#include "core/detection/surface_fit.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/detection/plane_judge.h"
-#include "core/refinement/plane_fit.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
-#include "pcl_symmetry/core/geometry/reflection_plane.h"
-#include "pcl_symmetry/core/transform_axes/axial_transform.h"
+#include "core/detection/plane_fit.h"
+#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/axial_transform.h"
 
 namespace pcl_symmetry {
 

@@ -6,14 +6,14 @@
 
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
-#include "core/detection/parts/part_search.h"
-#include "core/evidence/missing/missing_surface.h"
+#include "core/detection/part_search.h"
+#include "core/evidence/missing_surface.h"
 #include "core/evidence/plane_support.h"
-#include "core/evidence/share/plane_stiffness.h"
-#include "core/evidence/share/surface_distance.h"
+#include "core/evidence/plane_stiffness.h"
+#include "core/evidence/surface_distance.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
-#include "core/normals/open_borders.h"
+#include "core/geometry/open_borders.h"
 
 namespace pcl_symmetry {
 

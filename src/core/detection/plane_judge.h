@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "core/evidence/missing/cut_planes.h"
-#include "core/evidence/missing/outermost_points.h"
-#include "core/evidence/share/split_surface.h"
-#include "core/neighbours/thin_shape.h"
-#include "core/refinement/plane_fit.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "core/evidence/cut_planes.h"
+#include "core/evidence/outermost_points.h"
+#include "core/evidence/split_surface.h"
+#include "core/geometry/thin_shape.h"
+#include "core/detection/plane_fit.h"
+#include "pcl_symmetry/core/plane_detection.h"
 
 namespace pcl_symmetry {
 

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/plane_tolerance.h"
+#include "core/detection/plane_tolerance.h"
 
 namespace pcl_symmetry {
 

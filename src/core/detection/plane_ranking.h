@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/folds/plane_lattice.h"
-#include "core/refinement/plane_fit.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "core/detection/plane_lattice.h"
+#include "core/detection/plane_fit.h"
+#include "pcl_symmetry/core/plane_detection.h"
 
 namespace pcl_symmetry {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/refinement/plane_fit.h"
-#include "core/refinement/plane_tolerance.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "core/detection/plane_fit.h"
+#include "core/detection/plane_tolerance.h"
+#include "pcl_symmetry/core/plane_detection.h"
 
 namespace pcl_symmetry {
 

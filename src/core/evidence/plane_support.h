@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "core/evidence/share/surface_samples.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/geometry/reflection_plane.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "core/evidence/surface_samples.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
 

@@ -6,7 +6,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/frame/frame_search.h"
-#include "pcl_symmetry/core/detection/local_maxima.h"
+#include "pcl_symmetry/core/local_maxima.h"
 
 namespace pcl_symmetry {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/base/constants.h"
-#include "core/distance_transform/free_space.h"
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "core/transform/free_space.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
 

@@ -6,8 +6,8 @@
 #include "core/frame/plane_profiles.h"
 #include "core/frame/surface_directions.h"
 #include "core/geometry/principal_axes.h"
-#include "pcl_symmetry/core/frame/symmetry_frame.h"
-#include "pcl_symmetry/core/transform/symmetry_map.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
 

@@ -5,9 +5,9 @@
 
 #include "core/base/simd.h"
 #include "core/base/x86_intrinsics.h"
-#include "core/distance_transform/edt_samples.h"
-#include "core/distance_transform/free_space.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "core/transform/edt_samples.h"
+#include "core/transform/free_space.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/distance_transform/free_space.h"
-#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+#include "core/transform/free_space.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
 

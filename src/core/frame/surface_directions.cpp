@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/normals/cell_normals.h"
+#include "core/geometry/cell_normals.h"
 
 namespace pcl_symmetry {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
 

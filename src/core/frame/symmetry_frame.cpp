@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/detection/scan_axes/scan_axes.h"
+#include "core/detection/scan_axes.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/frame/frame_search.h"
-#include "core/frame/probable/leveled_frames.h"
-#include "core/frame/probable/probable_frames.h"
+#include "core/frame/leveled_frames.h"
+#include "core/frame/probable_frames.h"
 
 namespace pcl_symmetry {
 

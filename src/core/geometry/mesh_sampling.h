@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "core/descriptors/shape_signature.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "core/matching/shape_signature.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 

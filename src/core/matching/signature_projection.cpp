@@ -8,7 +8,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/descriptors/shape_signature.h"
+#include "core/matching/shape_signature.h"
 #include "core/geometry/axis_rotations.h"
 
 namespace pcl_symmetry {

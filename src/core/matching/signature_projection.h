@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/descriptors/shape_signature.h"
+#include "core/matching/shape_signature.h"
 
 namespace pcl_symmetry {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace pcl_symmetry {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/registration/steps/motion_equations.h"
+#include "core/registration/motion_equations.h"
 
 namespace pcl_symmetry {
 

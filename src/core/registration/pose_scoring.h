@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "core/registration/posed_surface.h"
-#include "pcl_symmetry/core/registration/pose_search.h"
+#include "pcl_symmetry/core/pose_search.h"
 
 namespace pcl_symmetry {
 

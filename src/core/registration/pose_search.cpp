@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/registration/pose_search.h"
+#include "pcl_symmetry/core/pose_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include "core/base/median.h"
 #include "core/base/random.h"
-#include "core/normals/surface_normals.h"
+#include "core/geometry/surface_normals.h"
 
 namespace pcl_symmetry {
 

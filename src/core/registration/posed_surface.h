@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/neighbours/closest_point_grid.h"
-#include "pcl_symmetry/core/geometry/point_set.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "core/geometry/closest_point_grid.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 

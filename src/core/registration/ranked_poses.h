@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/registration/posed_surface.h"
-#include "pcl_symmetry/core/registration/pose_search.h"
+#include "pcl_symmetry/core/pose_search.h"
 
 namespace pcl_symmetry {
 

@@ -1,9 +1,9 @@
-#include "pcl_symmetry/core/registration/symmetric_completion.h"
+#include "pcl_symmetry/core/symmetric_completion.h"
 
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/normals/surface_normals.h"
+#include "core/geometry/surface_normals.h"
 
 namespace pcl_symmetry {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/rotation/rotation_search.h"
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace pcl_symmetry {
 

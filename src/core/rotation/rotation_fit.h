@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/neighbours/closest_point_grid.h"
-#include "core/normals/surface_discs.h"
-#include "core/normals/surface_normals.h"
-#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+#include "core/geometry/closest_point_grid.h"
+#include "core/geometry/surface_discs.h"
+#include "core/geometry/surface_normals.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
 

@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/rotation/rotation_group.h"
+#include "pcl_symmetry/core/rotation_group.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/principal_axes.h"
-#include "pcl_symmetry/core/rotation/rotation_group.h"
+#include "pcl_symmetry/core/rotation_group.h"
 
 namespace pcl_symmetry {
 

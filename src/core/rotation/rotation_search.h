@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/rotation/rotation_fit.h"
-#include "pcl_symmetry/core/transform_axes/axial_transform.h"
+#include "pcl_symmetry/core/axial_transform.h"
 
 namespace pcl_symmetry {
 

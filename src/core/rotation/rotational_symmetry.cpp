@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -8,14 +8,14 @@
 #include "core/base/constants.h"
 #include "core/base/stopwatch.h"
 #include "core/geometry/point_samples.h"
-#include "core/neighbours/answerable_points.h"
-#include "core/neighbours/diameter.h"
-#include "core/neighbours/distinct_points.h"
+#include "core/geometry/answerable_points.h"
+#include "core/geometry/diameter.h"
+#include "core/geometry/distinct_points.h"
 #include "core/rotation/greatest_group.h"
 #include "core/rotation/rotation_fit.h"
 #include "core/rotation/rotation_search.h"
 #include "core/rotation/turning_axes.h"
-#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
 

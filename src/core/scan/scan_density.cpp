@@ -9,7 +9,7 @@
 #include "core/base/median.h"
 #include "core/base/random.h"
 #include "core/geometry/directions.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
 

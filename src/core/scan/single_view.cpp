@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/base/median.h"
-#include "core/normals/surface_normals.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "core/geometry/surface_normals.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/geometry/point_samples.h"
-#include "core/normals/open_borders.h"
+#include "core/geometry/open_borders.h"
 #include "core/scan/scan_density.h"
 #include "core/scan/single_view.h"
 

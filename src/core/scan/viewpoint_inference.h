@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 

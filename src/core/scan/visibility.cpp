@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -12,8 +12,8 @@
 #include "core/base/constants.h"
 #include "core/base/simd.h"
 #include "core/geometry/viewing_frame.h"
-#include "core/scan/picture/picture_frame.h"
-#include "core/scan/picture/range_image.h"
+#include "core/scan/picture_frame.h"
+#include "core/scan/range_image.h"
 
 namespace pcl_symmetry {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/segmentation/evidence/patches.h"
-#include "core/segmentation/merging/region_merging.h"
-#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
+#include "core/segmentation/patches.h"
+#include "core/segmentation/region_merging.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
 
 namespace pcl_symmetry {
 

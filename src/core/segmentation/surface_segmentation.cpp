@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
 
 #include <array>
 #include <set>

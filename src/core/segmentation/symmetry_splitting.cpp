@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/segmentation/evidence/symmetry_features.h"
+#include "core/segmentation/symmetry_features.h"
 #include "core/segmentation/segment_tree.h"
 #include "core/segmentation/two_means_split.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pcl_symmetry/core/segmentation/surface_segmentation.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
 
 namespace pcl_symmetry {
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/base/k_means.h"
-#include "core/surface/cut/border_cut.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "core/segmentation/border_cut.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 

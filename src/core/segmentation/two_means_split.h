@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/segmentation/evidence/symmetry_features.h"
+#include "core/segmentation/symmetry_features.h"
 
 namespace pcl_symmetry {
 

@@ -4,10 +4,10 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/distance_transform/lookup_table.h"
-#include "core/transform/convolution/bundle_lattice.h"
-#include "core/transform/convolution/lane_sums.h"
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "core/transform/lookup_table.h"
+#include "core/transform/bundle_lattice.h"
+#include "core/transform/lane_sums.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
 

@@ -1,6 +1,6 @@
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
-#include "core/distance_transform/free_space.h"
+#include "core/transform/free_space.h"
 #include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {

@@ -5,11 +5,11 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/distance_transform/edt_samples.h"
-#include "core/distance_transform/free_space.h"
-#include "core/distance_transform/lookup_table.h"
-#include "core/transform/lines/filled_slabs.h"
-#include "core/transform/lines/line_kernel.h"
+#include "core/transform/edt_samples.h"
+#include "core/transform/free_space.h"
+#include "core/transform/lookup_table.h"
+#include "core/transform/filled_slabs.h"
+#include "core/transform/line_kernel.h"
 
 namespace pcl_symmetry {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
 

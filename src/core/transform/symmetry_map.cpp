@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/transform/symmetry_map.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -1,5 +1,5 @@
 /// From points to planes: shapes whose planes are known, moved, scaled, disturbed and flat.
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 
 #include <gtest/gtest.h>
 

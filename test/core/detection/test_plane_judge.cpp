@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/detection/folds/even_density.h"
-#include "core/detection/folds/fold_spectrum.h"
-#include "core/detection/folds/plane_lattice.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "core/detection/even_density.h"
+#include "core/detection/fold_spectrum.h"
+#include "core/detection/plane_lattice.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -1,5 +1,5 @@
 /// Axes of turns from one side: what the scanner saw confirms them, and a visible handle contradicts.
-#include "core/detection/scan_axes/scan_axes.h"
+#include "core/detection/scan_axes.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "shapes/one_side.h"
 
 namespace {

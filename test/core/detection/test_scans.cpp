@@ -6,9 +6,9 @@
 #include <numeric>
 #include <optional>
 
-#include "core/distance_transform/free_space.h"
+#include "core/transform/free_space.h"
 #include "core/evidence/plane_support.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "shapes/scans.h"
 
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detection/parts/matched_region.h"
-#include "core/detection/parts/part_search.h"
-#include "pcl_symmetry/core/detection/plane_detection.h"
+#include "core/detection/matched_region.h"
+#include "core/detection/part_search.h"
+#include "pcl_symmetry/core/plane_detection.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -1,12 +1,12 @@
 /// The probability of turns follows what was seen of them.
-#include "core/detection/scan_axes/turn_confidence.h"
+#include "core/detection/turn_confidence.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <utility>
 
-#include "core/detection/scan_axes/turn_confidence_fit.h"
+#include "core/detection/turn_confidence_fit.h"
 
 namespace {
 

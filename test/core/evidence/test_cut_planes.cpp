@@ -1,12 +1,12 @@
 /// Planes at which clouds were cut off.
-#include "core/evidence/missing/cut_planes.h"
+#include "core/evidence/cut_planes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/evidence/plane_support.h"
-#include "core/normals/open_borders.h"
+#include "core/geometry/open_borders.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "core/evidence/missing/missing_surface.h"
+#include "core/evidence/missing_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/base/constants.h"
-#include "core/normals/open_borders.h"
+#include "core/geometry/open_borders.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -1,5 +1,5 @@
 /// The last points of a cloud along a direction, against a look at all of them.
-#include "core/evidence/missing/outermost_points.h"
+#include "core/evidence/outermost_points.h"
 
 #include <gtest/gtest.h>
 

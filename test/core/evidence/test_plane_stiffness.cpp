@@ -1,5 +1,5 @@
 /// Which motions of a plane the matched surface excludes.
-#include "core/evidence/share/plane_stiffness.h"
+#include "core/evidence/plane_stiffness.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/normals/surface_normals.h"
+#include "core/geometry/surface_normals.h"
 #include "shapes/shapes.h"
 
 namespace {

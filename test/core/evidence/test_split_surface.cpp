@@ -1,12 +1,12 @@
-#include "core/evidence/share/split_surface.h"
+#include "core/evidence/split_surface.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "core/evidence/share/surface_distance.h"
-#include "pcl_symmetry/core/distance_transform/gaussian_edt.h"
+#include "core/evidence/surface_distance.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 #include "shapes/shapes.h"
 
 namespace {

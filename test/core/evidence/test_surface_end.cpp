@@ -1,12 +1,12 @@
 /// Where a cloud ends before a piece of its reflection.
-#include "core/evidence/missing/surface_end.h"
+#include "core/evidence/surface_end.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/normals/surface_normals.h"
+#include "core/geometry/surface_normals.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -1,5 +1,5 @@
 /// Frames with their probabilities.
-#include "core/frame/probable/probable_frames.h"
+#include "core/frame/probable_frames.h"
 
 #include <gtest/gtest.h>
 

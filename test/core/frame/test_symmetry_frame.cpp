@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/frame/symmetry_frame.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 
 #include <gtest/gtest.h>
 

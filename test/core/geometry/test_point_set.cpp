@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/geometry/point_set.h"
+#include "pcl_symmetry/core/point_set.h"
 
 #include <gtest/gtest.h>
 

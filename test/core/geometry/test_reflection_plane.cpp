@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/geometry/reflection_plane.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// Sums of weighted products of many rows, against those of single rows.
-#include "core/geometry/sums/weighted_products.h"
+#include "core/geometry/weighted_products.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/matching/pairs/point_pair_index.h"
+#include "core/matching/point_pair_index.h"
 
 #include <gtest/gtest.h>
 

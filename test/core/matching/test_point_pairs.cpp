@@ -1,5 +1,5 @@
 /// Pairs of points that are told apart one by one and many at once.
-#include "core/matching/pairs/point_pairs.h"
+#include "core/matching/point_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/matching/pairs/pose_screening.h"
+#include "core/matching/pose_screening.h"
 
 #include <gtest/gtest.h>
 

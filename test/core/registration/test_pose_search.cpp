@@ -1,5 +1,5 @@
 /// The search finds a pose from nowhere.
-#include "pcl_symmetry/core/registration/pose_search.h"
+#include "pcl_symmetry/core/pose_search.h"
 
 #include <gtest/gtest.h>
 

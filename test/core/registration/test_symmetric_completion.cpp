@@ -4,7 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "pcl_symmetry/core/registration/symmetric_completion.h"
+#include "pcl_symmetry/core/symmetric_completion.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/rotation/poses/rotation_cover.h"
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "core/rotation/rotation_cover.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 #include "shapes/shapes.h"
 
 namespace {

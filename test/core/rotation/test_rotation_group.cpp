@@ -1,5 +1,5 @@
 /// The finite groups of rotations: their orders, generators and axes are those of the textbooks.
-#include "pcl_symmetry/core/rotation/rotation_group.h"
+#include "pcl_symmetry/core/rotation_group.h"
 
 #include <gtest/gtest.h>
 

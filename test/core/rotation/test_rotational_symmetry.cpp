@@ -1,5 +1,5 @@
 /// The group of rotations of a shape, in any pose, size and sampling.
-#include "pcl_symmetry/core/rotation/rotational_symmetry.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 
 #include <gtest/gtest.h>
 

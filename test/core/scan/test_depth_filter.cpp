@@ -1,5 +1,5 @@
 /// Depth pictures without the errors of their camera.
-#include "core/scan/picture/depth_filter.h"
+#include "core/scan/depth_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// Sides of a picture that cut the object.
-#include "core/scan/picture/picture_frame.h"
+#include "core/scan/picture_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 #include "shapes/shapes.h"
 
 namespace {

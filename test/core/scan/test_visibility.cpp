@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/scan/visibility.h"
+#include "pcl_symmetry/core/visibility.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "core/segmentation/consensus/consensus.h"
+#include "core/segmentation/consensus.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "core/segmentation/merging/fragments.h"
-#include "core/segmentation/merging/mirrored_labels.h"
-#include "pcl_symmetry/core/surface/surface_graph.h"
+#include "core/segmentation/fragments.h"
+#include "core/segmentation/mirrored_labels.h"
+#include "pcl_symmetry/core/surface_graph.h"
 
 namespace pcl_symmetry {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/base/random.h"
-#include "core/distance_transform/lookup_table.h"
-#include "core/transform/convolution/bundle_lattice.h"
-#include "core/transform/convolution/lane_sums.h"
+#include "core/transform/lookup_table.h"
+#include "core/transform/bundle_lattice.h"
+#include "core/transform/lane_sums.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry {

@@ -1,4 +1,4 @@
-#include "core/transform/lines/filled_slabs.h"
+#include "core/transform/filled_slabs.h"
 
 #include <gtest/gtest.h>
 

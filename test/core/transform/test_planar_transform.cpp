@@ -1,5 +1,5 @@
 /// The three estimators against the definition: a slow full sum over all cells with exact distances.
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "core/distance_transform/free_space.h"
+#include "core/transform/free_space.h"
 #include "core/transform/sampled_transform.h"
-#include "pcl_symmetry/core/neighbours/closest_point_search.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "shapes/scans.h"
 
 namespace {

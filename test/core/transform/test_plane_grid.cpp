@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/transform/plane_grid.h"
+#include "pcl_symmetry/core/plane_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "pcl_symmetry/core/transform/symmetry_map.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 #include <gtest/gtest.h>
 
-#include "pcl_symmetry/core/transform/planar_transform.h"
+#include "pcl_symmetry/core/planar_transform.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry {

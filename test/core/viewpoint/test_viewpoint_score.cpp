@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/viewpoint/viewpoint_score.h"
+#include "pcl_symmetry/core/viewpoint_score.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,177 @@
+#include "bop/models_info.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "io/file_text.h"
+#include "io/json_values.h"
+#include "core/base/check.h"
+#include "core/base/constants.h"
+#include "core/rotation/rotation_cover.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+// Greatest entry of R R^T - I of a rotation in a file. chosen: half refuses matrices with two digits, twice takes
+// matrices that scale by 2 %.
+constexpr double kRotationError = 0.02;
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+Eigen::Isometry3d turnAbout(const ContinuousSymmetry& symmetry, double angle) {
+  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+  turn.linear() = rotationAbout(symmetry.axis, angle);
+  turn.translation() = symmetry.offset - turn.linear() * symmetry.offset;
+  return turn;
+}
+
+std::vector<double> finiteNumbers(const json& value, std::size_t size, const std::string& where) {
+  const std::string rule = where + ", must be " + std::to_string(size) + " finite numbers";
+  if (!value.is_array() || value.size() != size) throw InputError(rule);
+  std::vector<double> numbers;
+  for (const json& number : value) {
+    if (!number.is_number() || !std::isfinite(number.get<double>())) throw InputError(rule);
+    numbers.push_back(number.get<double>());
+  }
+  return numbers;
+}
+
+/// 16 numbers row by row, or four rows of four.
+Eigen::Isometry3d motionFrom(const json& value, const std::string& where) {
+  json flat = value;
+  if (value.is_array() && value.size() == 4 && value[0].is_array()) {
+    flat = json::array();
+    for (const json& row : value)
+      for (const json& number : row) flat.push_back(number);
+  }
+  const std::vector<double> numbers = finiteNumbers(flat, 16, where);
+  Eigen::Isometry3d motion;
+  motion.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
+  const Eigen::Matrix3d R = motion.linear();
+  const bool is_rotation = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kRotationError &&
+                           R.determinant() > 0.0;
+  const bool is_affine = motion.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+  if (!is_rotation || !is_affine) throw InputError(where + ", must be a rigid motion: a rotation and a translation");
+  motion.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  return motion;
+}
+
+ContinuousSymmetry axisFrom(const json& value, const std::string& where) {
+  if (!value.is_object() || !value.contains("axis")) throw InputError(where + ", must have the field axis");
+  ContinuousSymmetry symmetry;
+  symmetry.axis = Eigen::Vector3d(finiteNumbers(value["axis"], 3, where + ".axis").data());
+  symmetry.offset = Eigen::Vector3d::Zero();
+  if (value.contains("offset"))
+    symmetry.offset = Eigen::Vector3d(finiteNumbers(value["offset"], 3, where + ".offset").data());
+  if (!(symmetry.axis.norm() > 0.0)) throw InputError(where + ".axis = 0 0 0, must not be zero");
+  symmetry.axis.normalize();
+  return symmetry;
+}
+
+const json& listOf(const json& entry, const char* field, const std::string& where) {
+  static const json none = json::array();
+  if (!entry.contains(field)) return none;
+  if (!entry[field].is_array()) throw InputError(where + ": " + field + " must be a list");
+  return entry[field];
+}
+
+// Bytes of a name that a message shows. chosen: the line stays readable
+constexpr std::size_t kShownOfName = 40;
+
+/// A name as it stands in the file, on one line: line breaks and the like stay escaped, and a long one is cut off.
+std::string onOneLine(const std::string& name) {
+  const json shown = name.substr(0, kShownOfName) + (name.size() > kShownOfName ? "..." : "");
+  const std::string quoted =
+      shown.dump(-1, ' ', false, json::error_handler_t::replace);  // where a letter is cut in two
+  return quoted.substr(1, quoted.size() - 2);
+}
+
+bool isOneModel(const json& file) {
+  for (const char* field : {"symmetries_discrete", "symmetries_continuous", "align_axes", "diameter"})
+    if (file.contains(field)) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<Eigen::Isometry3d> bopTransforms(const ListedSymmetries& listed, double max_step) {
+  check(max_step > 0.0, "max_step", max_step, "> 0");
+  std::vector<Eigen::Isometry3d> discrete{Eigen::Isometry3d::Identity()};
+  discrete.insert(discrete.end(), listed.discrete.begin(), listed.discrete.end());
+  if (listed.continuous.empty()) return discrete;
+  std::vector<Eigen::Isometry3d> transforms;
+  const int num_turns = static_cast<int>(std::ceil(kPi / max_step));
+  for (const Eigen::Isometry3d& first : discrete)
+    for (const ContinuousSymmetry& symmetry : listed.continuous)
+      for (int k = 0; k < num_turns; ++k) transforms.push_back(turnAbout(symmetry, 2.0 * kPi * k / num_turns) * first);
+  return transforms;
+}
+
+ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle) {
+  if (symmetries.kind != RotationGroupKind::Spherical) return {symmetries.discrete, symmetries.continuous, false};
+  ListedSymmetries listed;
+  listed.continuous.push_back({Eigen::Vector3d::UnitZ(), symmetries.center});
+  for (const Eigen::Matrix3d& tilt : tiltsCovering(Eigen::Vector3d::UnitZ(), sphere_angle)) {
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    motion.linear() = tilt;
+    motion.translation() = symmetries.center - tilt * symmetries.center;
+    if (!tilt.isIdentity(1e-12)) listed.discrete.push_back(motion);
+  }
+  return listed;
+}
+
+ordered_json symmetriesJson(const ListedSymmetries& listed) {
+  ordered_json entry = ordered_json::object();
+  for (const Eigen::Isometry3d& motion : listed.discrete) entry["symmetries_discrete"].push_back(rowMajor(motion));
+  for (const ContinuousSymmetry& symmetry : listed.continuous)
+    entry["symmetries_continuous"].push_back(
+        {{"axis", numbersOf(symmetry.axis)}, {"offset", numbersOf(symmetry.offset)}});
+  return entry;
+}
+
+ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle) {
+  const ListedSymmetries listed = bopSymmetries(symmetries, sphere_angle);
+  ordered_json entry = symmetriesJson(listed);
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Eigen::Isometry3d& motion : listed.discrete) rotations.push_back(motion.linear());
+  Eigen::Vector3d main = Eigen::Vector3d::UnitZ();
+  int greatest_order = 1;
+  for (const RotationAxis& axis : axesOf(rotations)) {
+    if (axis.order <= greatest_order) continue;
+    greatest_order = axis.order;
+    main = axis.direction;
+  }
+  if (!listed.continuous.empty()) main = listed.continuous.front().axis;
+  if (greatest_order == 1 && listed.continuous.empty()) return entry;
+  const Eigen::Vector3d across = signedDirection(main.unitOrthogonal());
+  const std::vector<double> up{0.0, 1.0, 0.0}, forward{0.0, 0.0, 1.0};
+  entry["align_axes"] = {{{"object", numbersOf(across)}, {"camera", forward}},
+                         {{"object", numbersOf(main)}, {"camera", up}}};
+  return entry;
+}
+
+ListedSymmetries symmetriesFromJson(const json& entry, const std::string& where) {
+  if (!entry.is_object()) throw InputError(where + " must be an object");
+  ListedSymmetries listed;
+  const json &discrete = listOf(entry, "symmetries_discrete", where),
+             &continuous = listOf(entry, "symmetries_continuous", where);
+  for (std::size_t i = 0; i < discrete.size(); ++i)
+    listed.discrete.push_back(motionFrom(discrete[i], where + ": symmetries_discrete[" + std::to_string(i) + "]"));
+  for (std::size_t i = 0; i < continuous.size(); ++i)
+    listed.continuous.push_back(axisFrom(continuous[i], where + ": symmetries_continuous[" + std::to_string(i) + "]"));
+  return listed;
+}
+
+std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) {
+  const json file = json::parse(readWholeFile(path), nullptr, false);
+  if (!file.is_object()) throw InputError(path + ": must be a JSON object of models");
+  if (isOneModel(file)) return {{"", symmetriesFromJson(file, path)}};
+  std::map<std::string, ListedSymmetries> models;
+  for (const auto& [key, entry] : file.items())
+    models[key] = symmetriesFromJson(entry, path + ": model " + onOneLine(key));
+  return models;
+}
+
+}  // namespace pcl_symmetry::apps

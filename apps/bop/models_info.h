@@ -1,0 +1,50 @@
+/// Files of symmetries: models_info.json of the BOP benchmark, and model_info.json of DOPE's data generation.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command_line/tool_errors.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
+
+namespace pcl_symmetry::apps {
+
+/// Symmetries as a file lists them: a group only where its author saw to it.
+struct ListedSymmetries {
+  std::vector<Eigen::Isometry3d> discrete;     ///< with or without the identity, unit and frame of the model
+  std::vector<ContinuousSymmetry> continuous;  ///< unit axes
+  bool is_composed = false;                    ///< whether whoever reads the file composes all that it lists
+};
+
+/// The transforms that bop_toolkit makes of an entry: each discrete one, the identity among them, followed by each turn
+/// about each axis of revolution. Turns about two axes are never composed.
+/// \param max_step greatest part of half a turn between neighbouring turns, as bop_toolkit's max_sym_disc_step, > 0: an
+/// axis has ceil(pi / max_step) turns.
+std::vector<Eigen::Isometry3d> bopTransforms(const ListedSymmetries& listed, double max_step = 0.01);
+
+/// Symmetries as BOP's files list them. A sphere becomes one axis and as many tilts of it as reach any rotation.
+/// \param sphere_angle radians, in (0, pi]: every rotation is within it of a composition of a turn and a tilt.
+ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle);
+
+/// The fields symmetries_discrete (4 x 4 row by row) and symmetries_continuous (axis and offset); what there is none of
+/// is left out.
+nlohmann::ordered_json symmetriesJson(const ListedSymmetries& listed);
+
+/// An entry for DOPE: the same fields, and align_axes, by which it chooses one of the poses that look the same: the
+/// main axis of the object upright in the image, a line across it towards the camera.
+nlohmann::ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle);
+
+/// Reads what symmetriesJson() writes.
+/// \param where names the entry in errors, e.g. "models_info.json: model 3".
+/// \throws InputError naming field, value and rule.
+ListedSymmetries symmetriesFromJson(const nlohmann::json& entry, const std::string& where);
+
+/// Reads models_info.json, or a file of one model.
+/// \return symmetries by the number of the model; for a file of one model by an empty name.
+/// \throws InputError naming the file, the entry, field, value and rule.
+std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,278 @@
+#include "command_line/command_line.h"
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <boost/program_options.hpp>
+#include <iostream>
+#include <numeric>
+#include <sstream>
+#include <utility>
+
+namespace pcl_symmetry::apps {
+
+namespace po = boost::program_options;
+
+namespace {
+
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+struct CommandLine::Parser {
+  po::options_description flags{"Flags", 120, 60};  // width of the help and of its right column, characters
+  std::vector<std::pair<std::string, Assign>> assignments;
+  std::vector<std::pair<std::string, bool*>> switches;
+  po::variables_map values;
+};
+
+CommandLine::CommandLine(std::string tool, std::string summary, std::string example)
+    : tool_(std::move(tool)), summary_(std::move(summary)), example_(std::move(example)), parser_(new Parser) {
+  parser_->flags.add_options()("help,h", "print this text")("version", "print the version");
+  flag_names_ = {"help", "version"};
+}
+
+CommandLine::~CommandLine() = default;
+CommandLine::CommandLine(CommandLine&& other) noexcept = default;
+CommandLine& CommandLine::operator=(CommandLine&& other) noexcept = default;
+
+CommandLine& CommandLine::positional(const std::string& name, std::string& value, const std::string& help) {
+  positionals_.push_back({name, help, true, [&value](const std::string& text) { value = text; }});
+  return *this;
+}
+
+CommandLine& CommandLine::positional(const std::string& name, std::optional<std::string>& value,
+                                     const std::string& help) {
+  positionals_.push_back({name, help, false, [&value](const std::string& text) { value = text; }});
+  return *this;
+}
+
+CommandLine& CommandLine::positionals(const std::string& name, std::vector<std::string>& values,
+                                      const std::string& help) {
+  positionals_.push_back({name, help, true, [&values](const std::string& text) { values.push_back(text); }, true});
+  return *this;
+}
+
+CommandLine& CommandLine::flag(const std::string& name, bool& value, const std::string& help) {
+  parser_->flags.add_options()(name.c_str(), help.c_str());
+  flag_names_.push_back(name);
+  parser_->switches.emplace_back(name, &value);
+  return *this;
+}
+
+CommandLine& CommandLine::add(const std::string& name, const std::string& placeholder, const std::string& help,
+                              Assign assign) {
+  parser_->flags.add_options()(name.c_str(), po::value<std::string>()->value_name(placeholder), help.c_str());
+  flag_names_.push_back(name);
+  parser_->assignments.emplace_back(name, std::move(assign));
+  return *this;
+}
+
+CommandLine& CommandLine::text(const std::string& name, const std::string& placeholder,
+                               std::optional<std::string>& value, const std::string& help) {
+  return add(name, placeholder, help, [&value, name](const std::string& text) {
+    if (text.empty()) throw UsageError("-" + name + " must not be empty");
+    value = text;
+  });
+}
+
+CommandLine& CommandLine::picture(const std::string& name, std::optional<std::string>& value, const std::string& help) {
+  return add(name, "FILE.png", help, [&value, name](const std::string& text) {
+    if (text != "-" && !boost::algorithm::iends_with(text, ".png")) rejectValue("-" + name, text, "must end in .png");
+    value = text;
+  });
+}
+
+CommandLine& CommandLine::choice(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
+                                 const std::string& help) {
+  const std::string list = boost::algorithm::join(allowed, "|");
+  return add(name, list, help + " (" + value + ")", [&value, allowed, list, name](const std::string& text) {
+    if (std::find(allowed.begin(), allowed.end(), text) == allowed.end())
+      rejectValue("-" + name, text, "must be " + list);
+    value = text;
+  });
+}
+
+CommandLine& CommandLine::number(const std::string& name, double& value, const Range& range, const std::string& help) {
+  return add(name, "F", help + " (" + shortest(value) + ")",
+             [&value, range, name](const std::string& text) { value = parseNumber("-" + name, text, range); });
+}
+
+CommandLine& CommandLine::number(const std::string& name, std::optional<double>& value, const Range& range,
+                                 const std::string& help) {
+  return add(name, "F", help,
+             [&value, range, name](const std::string& text) { value = parseNumber("-" + name, text, range); });
+}
+
+CommandLine& CommandLine::number(const std::string& name, int& value, const Range& range, const std::string& help) {
+  return add(name, "N", help + " (" + std::to_string(value) + ")",
+             [&value, range, name](const std::string& text) { value = parseInt("-" + name, text, range); });
+}
+
+CommandLine& CommandLine::number(const std::string& name, std::optional<int>& value, const Range& range,
+                                 const std::string& help) {
+  return add(name, "N", help,
+             [&value, range, name](const std::string& text) { value = parseInt("-" + name, text, range); });
+}
+
+CommandLine& CommandLine::number(const std::string& name, std::uint64_t& value, const std::string& help) {
+  return add(name, "N", help + " (" + std::to_string(value) + ")", [&value, name](const std::string& text) {
+    value = static_cast<std::uint64_t>(parseInteger("-" + name, text, Range::atLeast(0)));
+  });
+}
+
+CommandLine& CommandLine::numbers(const std::string& name, std::vector<double>& values, const Range& range,
+                                  const std::string& help) {
+  std::vector<std::string> defaults;
+  for (const double value : values) defaults.push_back(shortest(value));
+  return add(name, "A,B,...", help + " (" + boost::algorithm::join(defaults, ",") + ")",
+             [&values, range, name](const std::string& text) { values = parseNumbers("-" + name, text, range); });
+}
+
+CommandLine& CommandLine::vector(const std::string& name, std::optional<Eigen::Vector3d>& value,
+                                 const std::string& help) {
+  return add(name, "X,Y,Z", help, [&value, name](const std::string& text) { value = parseVector("-" + name, text); });
+}
+
+CommandLine& CommandLine::direction(const std::string& name, std::optional<Eigen::Vector3d>& value,
+                                    const std::string& help) {
+  return add(name, "X,Y,Z", help, [&value, name](const std::string& text) {
+    value = parseVector("-" + name, text);
+    if (value->isZero(0.0)) rejectValue("-" + name, text, "must not be zero");
+  });
+}
+
+CommandLine& CommandLine::common(CommonOptions& options, unsigned flags) {
+  if (flags & kMeshPoints)
+    number("points", options.mesh_points, Range::closed(100, 10'000'000), "number of points spread over a mesh");
+  if (flags & kGrid) number("grid", options.grid, Range::closed(8, 512), "cells along an edge of the distance field");
+  if (flags & kSigma)
+    number("sigma", options.sigma, Range::above(0), "width of the Gaussian, input units (two cells of the field)");
+  if (flags & kViewpoint) {
+    add("viewpoint", "auto|none|X,Y,Z", "where the scanner stood, input frame (auto)",
+        [&options](const std::string& text) { options.viewpoint = parseViewpoint("-viewpoint", text); });
+  }
+  if (flags & kSeed) number("seed", options.seed, "start of the random streams");
+  if (flags & kThreads) number("threads", options.threads, Range::closed(0, 4096), "number of threads, 0 = all");
+  if (flags & kJson) text("json", "FILE", options.json_path, "write the result as JSON");
+  if (flags & kQuiet) flag("quiet", options.quiet, "print errors only");
+  return *this;
+}
+
+std::string CommandLine::closestFlag(const std::string& unknown) const {
+  std::string name = unknown.substr(std::min(unknown.find_first_not_of('-'), unknown.size()));
+  name = name.substr(0, name.find('='));
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
+  for (const std::string& candidate : flag_names_) {
+    const std::size_t distance = editDistance(name, candidate);
+    if (distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+bool CommandLine::parse(int argc, const char* const* argv) {
+  readTokens(argc, argv);
+  if (given("help")) {
+    std::cout << usage();
+    return false;
+  }
+  if (given("version")) {
+    printVersion(tool_);
+    return false;
+  }
+  assignPositionals();
+  assignFlags();
+  return true;
+}
+
+void CommandLine::readTokens(int argc, const char* const* argv) {
+  po::options_description all;
+  all.add(parser_->flags);
+  all.add_options()("positional arguments", po::value<std::vector<std::string>>());
+  po::positional_options_description order;
+  order.add("positional arguments", -1);
+  using namespace po::command_line_style;
+  parser_->values.clear();
+  try {
+    const int style = allow_long | long_allow_adjacent | long_allow_next | allow_short | allow_dash_for_short |
+                      short_allow_next | allow_long_disguise;
+    po::store(po::command_line_parser(argc, argv).options(all).positional(order).style(style).run(), parser_->values);
+  } catch (const po::unknown_option& error) {
+    const std::string unknown = error.get_option_name();
+    const std::string closest = closestFlag(unknown);
+    throw UsageError("unknown flag " + unknown + (closest.empty() ? "" : ", did you mean -" + closest + "?"));
+  } catch (const po::error& error) {
+    throw UsageError(error.what());
+  }
+}
+
+void CommandLine::assignPositionals() const {
+  std::vector<std::string> arguments;
+  if (given("positional arguments")) arguments = parser_->values["positional arguments"].as<std::vector<std::string>>();
+  const bool repeated = !positionals_.empty() && positionals_.back().repeated;
+  if (arguments.size() > positionals_.size() && !repeated) {
+    throw UsageError("unexpected argument '" + arguments[positionals_.size()] + "'");
+  }
+  for (std::size_t i = 0; i < std::max(arguments.size(), positionals_.size()); ++i) {
+    const Positional& positional = positionals_[std::min(i, positionals_.size() - 1)];
+    if (i < arguments.size()) {
+      if (arguments[i].empty()) throw UsageError("argument '" + positional.name + "' is empty");
+      positional.assign(arguments[i]);
+    } else if (positional.required) {
+      throw UsageError("missing argument '" + positional.name + "'");
+    }
+  }
+}
+
+void CommandLine::assignFlags() const {
+  for (const auto& [name, target] : parser_->switches)
+    if (given(name)) *target = true;
+  for (const auto& [name, assign] : parser_->assignments)
+    if (given(name)) assign(parser_->values[name].as<std::string>());
+}
+
+bool CommandLine::given(const std::string& name) const {
+  return parser_->values.count(name) > 0;
+}
+
+std::string CommandLine::usage() const {
+  std::ostringstream text;
+  text << summary_ << "\n\nUsage: " << tool_;
+  for (const Positional& argument : positionals_) {
+    text << (argument.required ? " " + argument.name : " [" + argument.name + "]");
+    if (argument.repeated) text << " [" << argument.name << " ...]";
+  }
+  text << " [-flag value]\n\n";
+  std::size_t width = 0;
+  for (const Positional& argument : positionals_) width = std::max(width, argument.name.size());
+  for (const Positional& argument : positionals_) {
+    text << "  " << argument.name << std::string(width - argument.name.size() + 2, ' ') << argument.help << "\n";
+  }
+  std::ostringstream flags;
+  flags << parser_->flags;
+  text << "\n" << boost::algorithm::replace_all_copy(flags.str(), " --", " -") << "\nExample:\n  " << example_ << "\n";
+  return text.str();
+}
+
+void printVersion(const std::string& tool) {
+  // PCL_SYMMETRY_VERSION: the version of the CMake project.
+  std::cout << tool << " " << PCL_SYMMETRY_VERSION << "\n";
+}
+
+}  // namespace pcl_symmetry::apps

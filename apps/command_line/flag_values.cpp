@@ -1,0 +1,98 @@
+#include "command_line/flag_values.h"
+
+#include <boost/algorithm/string.hpp>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+namespace pcl_symmetry::apps {
+
+std::string shortest(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+void rejectValue(const std::string& name, const std::string& value, const std::string& rule) {
+  throw UsageError(name + " = " + value + ", " + rule);
+}
+
+bool Range::contains(double value) const {
+  return (min_open ? value > min : value >= min) && (max_open ? value < max : value <= max);
+}
+
+std::string Range::rule() const {
+  const bool has_min = std::isfinite(min), has_max = std::isfinite(max);
+  std::string text = "must be ";
+  if (has_min) text += (min_open ? "> " : ">= ") + shortest(min);
+  if (has_min && has_max) text += " and ";
+  if (has_max) text += (max_open ? "< " : "<= ") + shortest(max);
+  return has_min || has_max ? text : "must be a number";
+}
+
+double parseNumber(const std::string& name, const std::string& text, const Range& range) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || std::isspace(static_cast<unsigned char>(text[0]))) {
+    rejectValue(name, text, "must be a number");
+  }
+  if (!std::isfinite(value)) rejectValue(name, text, "must be finite");
+  if (!range.contains(value)) rejectValue(name, text, range.rule());
+  return value;
+}
+
+std::int64_t parseInteger(const std::string& name, const std::string& text, const Range& range) {
+  char* end = nullptr;
+  errno = 0;
+  const long long value = std::strtoll(text.c_str(), &end, 10);
+  if (text.empty() || *end != '\0' || std::isspace(static_cast<unsigned char>(text[0]))) {
+    rejectValue(name, text, "must be a whole number");
+  }
+  if (errno == ERANGE) rejectValue(name, text, "is too large");
+  if (!range.contains(static_cast<double>(value))) rejectValue(name, text, range.rule());
+  return value;
+}
+
+std::vector<double> parseNumbers(const std::string& name, const std::string& text, const Range& range) {
+  std::vector<std::string> parts;
+  boost::algorithm::split(parts, text, boost::is_any_of(","));
+  std::vector<double> values;
+  for (const std::string& part : parts) values.push_back(parseNumber(name, part, range));
+  return values;
+}
+
+Eigen::Vector3d parseVector(const std::string& name, const std::string& text) {
+  std::vector<std::string> parts;
+  boost::algorithm::split(parts, text, boost::is_any_of(","));
+  if (parts.size() != 3) rejectValue(name, text, "must be three numbers X,Y,Z");
+  Eigen::Vector3d value;
+  for (int i = 0; i < 3; ++i) {
+    char* end = nullptr;
+    value[i] = std::strtod(parts[i].c_str(), &end);
+    if (parts[i].empty() || *end != '\0' || !std::isfinite(value[i])) {
+      rejectValue(name, text, "must be three finite numbers X,Y,Z");
+    }
+  }
+  return value;
+}
+
+int parseInt(const std::string& name, const std::string& text, const Range& range) {
+  const std::int64_t value = parseInteger(name, text, range);
+  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) {
+    rejectValue(name, text, "is too large");
+  }
+  return static_cast<int>(value);
+}
+
+Viewpoint parseViewpoint(const std::string& name, const std::string& text) {
+  if (text == "auto") return {};
+  if (text == "none") return {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
+  try {
+    return {Viewpoint::Mode::Given, parseVector(name, text)};
+  } catch (const UsageError&) {
+    rejectValue(name, text, "must be auto, none or X,Y,Z");
+  }
+}
+
+}  // namespace pcl_symmetry::apps

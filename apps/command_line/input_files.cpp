@@ -1,0 +1,116 @@
+#include "command_line/input_files.h"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <boost/filesystem.hpp>
+#include <fstream>
+
+#include "io/file_text.h"
+#include "io/shape_file_kinds.h"
+
+namespace pcl_symmetry::apps {
+
+namespace fs = boost::filesystem;
+
+namespace {
+
+bool isList(const std::string& argument) {
+  return argument.size() > 1 && argument.front() == '@';
+}
+
+bool isPattern(const std::string& argument) {
+  boost::system::error_code error;
+  return !fs::exists(argument, error) && argument.find_first_of("*?[") != std::string::npos;
+}
+
+bool isFolder(const std::string& argument) {
+  boost::system::error_code error;
+  return fs::is_directory(argument, error);
+}
+
+void addFolder(const std::string& folder, InputFiles& files) {
+  std::vector<std::string> found;
+  try {
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (fs::is_regular_file(entry.path()) && hasShapeExtension(entry.path().string()))
+        found.push_back(entry.path().string());
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(folder + ": " + error.code().message());
+  }
+  if (found.empty()) throw InputError(folder + ": holds no file of type " + kShapeFiles);
+  std::sort(found.begin(), found.end());
+  for (const std::string& path : found) files.add(path, folder);
+}
+
+void addPattern(const std::string& pattern, InputFiles& files) {
+  glob_t found{};
+  const int code = ::glob(pattern.c_str(), 0, nullptr, &found);
+  const std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + (code == 0 ? found.gl_pathc : 0));
+  ::globfree(&found);
+  if (code != 0) throw InputError(pattern + ": no file has such a name");
+  for (const std::string& path : paths) {
+    if (isFolder(path)) {
+      addFolder(path, files);
+    } else {
+      files.add(path);
+    }
+  }
+}
+
+void addArgument(const std::string& argument, InputFiles& files);
+
+void addList(const std::string& path, InputFiles& files) {
+  checkReadableFile(path);
+  std::ifstream text(path, std::ios::binary);
+  for (std::string line; std::getline(text, line);) {
+    boost::algorithm::trim(line);
+    if (!line.empty() && line.front() != '#') addArgument(line, files);
+  }
+}
+
+void addArgument(const std::string& argument, InputFiles& files) {
+  if (isList(argument)) {
+    addList(argument.substr(1), files);
+  } else if (isFolder(argument)) {
+    addFolder(argument, files);
+  } else if (isPattern(argument)) {
+    addPattern(argument, files);
+  } else {
+    files.add(argument);
+  }
+}
+
+}  // namespace
+
+void InputFiles::add(const std::string& path, const std::string& folder) {
+  if (folders_.empty() || folders_.back() != folder) folders_.push_back(folder);
+  begins_.push_back(letters_.size());
+  folder_of_.push_back(static_cast<std::uint32_t>(folders_.size() - 1));
+  letters_ += path;
+}
+
+std::string InputFiles::path(std::size_t i) const {
+  const std::size_t end = i + 1 < begins_.size() ? begins_[i + 1] : letters_.size();
+  return letters_.substr(begins_[i], end - begins_[i]);
+}
+
+bool hasShapeExtension(const std::string& path) {
+  const std::string ending = boost::algorithm::to_lower_copy(fs::path(path).extension().string());
+  if (ending.empty()) return false;
+  const std::string known = boost::algorithm::replace_all_copy(std::string(" ") + kShapeFiles + " ", ",", " ");
+  return known.find(" " + ending + " ") != std::string::npos;
+}
+
+bool standsForSeveral(const std::string& argument) {
+  return isList(argument) || isFolder(argument) || isPattern(argument);
+}
+
+InputFiles inputFiles(const std::vector<std::string>& arguments) {
+  InputFiles files;
+  for (const std::string& argument : arguments) addArgument(argument, files);
+  return files;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,53 @@
+/// The files that the results of many inputs go to, line by line.
+#pragma once
+
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "command_line/batch_options.h"
+#include "command_line/common_options.h"
+
+namespace pcl_symmetry::apps {
+
+/// JSON Lines and CSV. What stands in them is whole lines, also if the program is killed, but perhaps for the last
+/// line, which a later run with -resume drops.
+class ResultFiles {
+public:
+  /// Opens the files. JSON goes to standard output where neither a JSON nor a CSV file is named.
+  /// \throws InputError where one cannot be written, or holds something else than results and -resume is given.
+  ResultFiles(const BatchOptions& batch, const CommonOptions& common, const std::vector<std::string>& columns);
+
+  /// \return whether -resume found the result of the input; failed inputs are tried again.
+  bool holds(const std::string& input) const { return kept_.count(input) > 0; }
+  std::size_t numKept() const { return kept_.size(); }
+
+  /// \param json_line,csv_lines with their ends.
+  /// \throws InputError where they cannot be written.
+  void add(const std::string& json_line, const std::string& csv_lines);
+
+private:
+  /// A file that grows, or standard output.
+  class Sink {
+  public:
+    using LineFilter = std::function<bool(const std::string& line)>;
+    /// \param resume keep those lines of the file that \p keeps says; none otherwise.
+    void open(const std::string& path, const std::string& header, const LineFilter& keeps, bool resume);
+    void add(const std::string& text);
+
+  private:
+    [[noreturn]] void fail() const;
+
+    std::string path_;
+    std::ofstream file_;
+  };
+
+  std::set<std::string> kept_;
+  Sink json_, csv_;
+  bool has_json_ = false, has_csv_ = false;
+};
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,63 @@
+#include "command_line/run_tool.h"
+
+#include <pcl/console/print.h>
+#include <pcl/exceptions.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <boost/filesystem/path.hpp>
+#include <iostream>
+#include <new>
+#include <sstream>
+
+#include "command_line/file_errors.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+std::string oneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  boost::algorithm::trim(text);
+  return text;
+}
+
+}  // namespace
+
+std::string plainMessage(const pcl::PCLException& error) {
+  const std::string text = error.what();
+  // As PCLException::createDetailedMessage() puts it together.
+  std::ostringstream prefix;
+  if (error.getFunctionName()) prefix << error.getFunctionName() << " ";
+  if (error.getFileName()) {
+    prefix << "in " << error.getFileName() << " ";
+    if (error.getLineNumber() != 0) prefix << "@ " << error.getLineNumber() << " ";
+  }
+  prefix << ": ";
+  return boost::algorithm::starts_with(text, prefix.str()) ? text.substr(prefix.str().size()) : text;
+}
+
+int runTool(int argc, char** argv, const std::function<int(int, char**)>& body) {
+  const std::string tool = argc > 0 ? boost::filesystem::path(argv[0]).filename().string() : "pcl_symmetry";
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  const auto fail = [&tool](const std::string& message, int code) {
+    std::cerr << tool << ": " << oneLine(message) << std::endl;
+    return code;
+  };
+  try {
+    return body(argc, argv);
+  } catch (const UsageError& error) {
+    return fail(std::string(error.what()) + " (see " + tool + " -h)", 2);
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory", 1);
+  } catch (const pcl::PCLException& error) {
+    return fail(plainMessage(error), 1);
+  } catch (const std::exception& error) {
+    return fail(error.what(), 1);
+  } catch (...) {
+    return fail("stopped by an error of unknown type", 1);
+  }
+}
+
+}  // namespace pcl_symmetry::apps

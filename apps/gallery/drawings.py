@@ -1,0 +1,278 @@
+"""Pictures of the pages that no tool draws: frames, centers of scans, a medial axis, and where algorithms go wrong.
+
+usage: python3 apps/gallery/drawings.py PICTURE OUT.png [FILE ...]
+
+  frames               mugs and mailboxes with their axes, by center of mass and PCA, and by symmetry (Figure 10)
+  scan_centers MESH    eight scans of a mesh, and the centers found in each, by symmetry and by mass (Figure 11)
+  medial_axis CONTOUR… the medial axes of planar shapes, ASCII PCD (the other half of Figure 3)
+  failure_frame MESH, failure_completion MESH, failure_pose, failure_name, failure_rotations
+                       answers that the data do not tell, or that the tolerance passes over
+
+Needs python3-matplotlib, python3-open3d, the tool pcl_symmetry_scan on PATH, and the module (PYTHONPATH=build/src/python).
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+import pcl_symmetry
+from shapes import Patches, mug, write_ply
+
+GRAY, ORANGE, BLUE, GREEN, VERMILION = "#B9C0CB", "#E69F00", "#0072B2", "#009E73", "#D55E00"
+AWAY_FROM_HANDLE = (-1, 0, 0.3)  # a little from above, as a camera looks at a table
+NUM_POINTS = 10000
+
+
+def scan(mesh, direction):
+    """A scan by the tool from a direction: points (N, 3) and the viewpoint (3,)."""
+    import open3d
+
+    with tempfile.TemporaryDirectory() as folder:
+        if not isinstance(mesh, (str, Path)):
+            write_ply(f"{folder}/mesh.ply", *mesh)
+            mesh = f"{folder}/mesh.ply"
+        out = f"{folder}/scan.pcd"
+        view = ",".join(map(str, direction))
+        subprocess.run(["pcl_symmetry_scan", mesh, out, f"-direction={view}", "-quiet"], check=True)
+        header = Path(out).read_bytes().split(b"DATA", 1)[0].decode()
+        points = np.asarray(open3d.io.read_point_cloud(out).points)
+    viewpoint = next(line.split()[1:4] for line in header.splitlines() if line.startswith("VIEWPOINT"))
+    return points[np.isfinite(points).all(axis=1)].astype(np.float32), np.array(viewpoint, float)
+
+
+def load_mesh(path):
+    import open3d
+
+    mesh = open3d.io.read_triangle_mesh(path)
+    return np.asarray(mesh.vertices, np.float32), np.asarray(mesh.triangles)
+
+
+def sampled(mesh):
+    return pcl_symmetry.sample_mesh(*mesh, NUM_POINTS)
+
+
+class Sheet:
+    """Panels of 3D scatter plots side by side."""
+
+    def __init__(self, rows, columns, view, up="z", size=3.6):
+        self.figure = plt.figure(figsize=(size * columns, size * rows), dpi=100, layout="constrained")
+        self.rows, self.columns, self.up, self.num = rows, columns, up, 0
+        self.elevation = np.degrees(np.arctan2(view[2], np.hypot(view[0], view[1])))
+        self.azimuth = np.degrees(np.arctan2(view[1], view[0]))
+
+    def panel(self, title, around):
+        self.num += 1
+        axes = self.figure.add_subplot(self.rows, self.columns, self.num, projection="3d")
+        around = self.upright(around)
+        low, high = around.min(axis=0), around.max(axis=0)
+        middle, half = (low + high) / 2, 0.5 * (high - low).max()
+        axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
+        axes.set_zlim(middle[2] - half, middle[2] + half)
+        axes.set_box_aspect((1, 1, 1))
+        axes.view_init(self.elevation, self.azimuth)
+        axes.set_axis_off()
+        axes.set_title(title, fontsize=9)
+        return axes
+
+    def upright(self, points):
+        points = np.asarray(points)
+        return points[..., [2, 0, 1]] if self.up == "y" else points
+
+    def dots(self, axes, points, color, size=1.0):
+        axes.scatter(*self.upright(points).T, s=size, c=color, linewidths=0, depthshade=False)
+
+    def cross(self, axes, center, directions, half_length, colors):
+        for direction, color in zip(np.asarray(directions).T, colors):
+            ends = self.upright(center + half_length * np.array([[-1], [1]]) * direction)
+            axes.plot(*ends.T, color=color, linewidth=2)
+
+    def save(self, path):
+        self.figure.savefig(path)
+        print(path)
+
+
+def mailbox(stands):
+    """A box with a round roof on stands: (low corner, size)."""
+    length, half_width, wall = 3.0, 0.8, 0.9
+
+    def outline(u):  # once around: floor, wall, roof, wall
+        if u < 0.25:
+            return half_width * (1 - 8 * u), 0.0
+        if u < 0.4:
+            return -half_width, wall * (u - 0.25) / 0.15
+        if u > 0.85:
+            return half_width, wall * (1 - u) / 0.15
+        angle = np.pi * (1 - (u - 0.4) / 0.45)
+        return half_width * np.cos(angle), wall + half_width * np.sin(angle)
+
+    def at(u, shrink, y):
+        x, z = outline(u)
+        return shrink * x, y, 0.5 * wall + shrink * (z - 0.5 * wall)
+
+    mesh = Patches()
+    mesh.add(80, 1, lambda u, v: at(u, 1, length * (v - 0.5)))
+    for end in (-0.5, 0.5):
+        mesh.add(80, 1, lambda u, v: at(u, v, length * end))
+    for stand in stands:
+        mesh.add_box(*stand)
+    return mesh.mesh()
+
+
+def frames(out):
+    pole, back = ((-0.12, -0.12, -1.6), (0.24, 0.24, 1.6)), ((-0.12, 0.9, -2.6), (0.24, 0.24, 2.6))
+    front = [((-0.12, -1.2, -2.0), (0.24, 0.24, 2.0)), ((-0.7, -1.8, -2.1), (1.4, 1.4, 0.1))]
+    shapes = [mug(0.5, 0.6), mug(0.9, 0.9), mug(1.5, 1.0), mailbox([pole]), mailbox([back]), mailbox(front)]
+    clouds = [sampled(shape) for shape in shapes]
+    sheet = Sheet(2, len(clouds), (0.9, -1.6, 0.7), size=2.6)
+    colors = (VERMILION, GREEN, BLUE)
+    for k, cloud in enumerate(clouds):
+        axes = sheet.panel("" if k else "center of mass, PCA", cloud)
+        sheet.dots(axes, cloud, GRAY, 0.5)
+        length = 0.5 * np.linalg.norm(np.ptp(cloud, axis=0))
+        sheet.cross(axes, cloud.mean(axis=0), np.linalg.svd(cloud - cloud.mean(axis=0), full_matrices=False)[2].T, length, colors)
+    for k, cloud in enumerate(clouds):
+        frame = pcl_symmetry.frame(cloud)
+        axes = sheet.panel("" if k else "center of symmetry, principal symmetry axes", cloud)
+        sheet.dots(axes, cloud, GRAY, 0.5)
+        sheet.cross(axes, frame.center, frame.axes, 0.5 * np.linalg.norm(np.ptp(cloud, axis=0)), colors)
+        print(f"distance of the two centers {np.linalg.norm(frame.center - cloud.mean(axis=0)):.3f}")
+    sheet.save(out)
+
+
+def scan_centers(out, path):
+    whole = sampled(load_mesh(path))
+    sheet = Sheet(2, 5, (1, 1, 0.8), size=2.2)
+    found = []
+    corners = [[1 if k >> bit & 1 else -1 for bit in range(3)] for k in range(8)]
+    for k, corner in enumerate(corners):
+        points, viewpoint = scan(path, corner)
+        found.append((pcl_symmetry.frame(points, viewpoint=viewpoint).center, points.mean(axis=0)))
+        print("center of symmetry {:7.3f} {:7.3f} {:7.3f}".format(*found[-1][0]),
+              "  center of mass {:7.3f} {:7.3f} {:7.3f}".format(*found[-1][1]))
+        sheet.dots(sheet.panel(f"scan {k + 1}", whole), points, GRAY, 0.5)
+    for title, which, color in (("centers of symmetry", 0, VERMILION), ("centers of mass", 1, GREEN)):
+        axes = sheet.panel(title, whole)
+        sheet.dots(axes, whole, GRAY, 0.1)
+        for centers in found:
+            sheet.cross(axes, centers[which], np.eye(3), 0.04 * np.linalg.norm(np.ptp(whole, axis=0)), [color] * 3)
+    sheet.save(out)
+
+
+def medial_axis(out, *contours):
+    """Where the closest contour points of neighboring pixels lie in different directions."""
+    from scipy.ndimage import label
+    from scipy.spatial import cKDTree
+
+    size, figure = 220, plt.figure(figsize=(2.2 * len(contours), 2.2), dpi=100)
+    for k, path in enumerate(contours):
+        points = np.loadtxt(Path(path).read_text().split("DATA ascii\n", 1)[1].splitlines())[:, :2]
+        low, high = points.min(axis=0), points.max(axis=0)
+        edge = 1.12 * (high - low).max()
+        low = (low + high - edge) / 2
+        step = edge / size
+        x, y = np.meshgrid(*(low[:, None] + step * (np.arange(size) + 0.5)))
+        distance, index = cKDTree(points).query(np.stack([x, y], -1))
+        offset = points[index] - np.stack([x, y], -1)
+        labels, _ = label(distance >= step)
+        inside = (labels != labels[0, 0]) & (distance > step)
+        axis = np.zeros_like(inside)
+        for shift in ((0, 1), (1, 0)):
+            other, point = np.roll(offset, (-shift[0], -shift[1]), (0, 1)), np.roll(points[index], (-shift[0], -shift[1]), (0, 1))
+            apart = np.linalg.norm(points[index] - point, axis=-1) > 2 * step
+            cosine = (offset * other).sum(-1) / np.maximum(np.linalg.norm(offset, axis=-1) * np.linalg.norm(other, axis=-1), 1e-12)
+            axis |= inside & apart & (cosine < np.cos(np.radians(8)))
+        axes = figure.add_axes((k / len(contours), 0, 1 / len(contours), 1))
+        axes.plot(x[axis], y[axis], "k.", markersize=1.5)
+        axes.plot(*points.T, ".", color=VERMILION, markersize=1.5)
+        axes.set(xlim=(low[0], low[0] + edge), ylim=(low[1], low[1] + edge), aspect="equal")
+        axes.set_axis_off()
+    figure.savefig(out)
+    print(out)
+
+
+def failure_frame(out, path):
+    """A hand is not symmetric: its whole and a scan of it have frames of their own."""
+    whole = sampled(load_mesh(path))
+    points, viewpoint = scan(path, (1, 1, 1))
+    first, second = pcl_symmetry.frame(whole), pcl_symmetry.frame(points, viewpoint=viewpoint)
+    cosine = np.abs((first.axes.T @ second.axes).diagonal()).min()
+    sheet = Sheet(1, 2, (1, 1, 0.6), up="y")
+    titles = ("frame of the whole hand", f"of a scan of it, {np.degrees(np.arccos(min(1, cosine))):.0f} degrees off")
+    for title, cloud, frame in zip(titles, (whole, points), (first, second)):
+        axes = sheet.panel(title, whole)
+        sheet.dots(axes, cloud, GRAY)
+        sheet.cross(axes, frame.center, frame.axes, 0.5 * np.linalg.norm(np.ptp(whole, axis=0)), (VERMILION, GREEN, BLUE))
+    sheet.save(out)
+
+
+def failure_completion(out, path):
+    """The other half of a hand is not that of its best plane."""
+    whole = sampled(load_mesh(path))
+    points, viewpoint = scan(path, (1, 1, 1))
+    found = pcl_symmetry.planes(points, viewpoint=viewpoint)
+    completed, added = pcl_symmetry.complete(points, found[0] if len(found) else found.best, viewpoint=viewpoint)
+    sheet = Sheet(1, 2, (-1.0, -1.4, 0.4), up="y")
+    sheet.dots(sheet.panel("the hand", whole), whole, GRAY)
+    axes = sheet.panel("measured (orange), added (blue)", whole)
+    sheet.dots(axes, np.delete(completed, added, axis=0), ORANGE)
+    sheet.dots(axes, completed[added], BLUE)
+    sheet.save(out)
+
+
+def failure_pose(out):
+    """A mug whose handle the scanner does not see fits at any angle at which the handle is hidden."""
+    model = sampled(mug())
+    points, viewpoint = scan(mug(), AWAY_FROM_HANDLE)
+    found = pcl_symmetry.register(points, model, source_viewpoint=viewpoint)
+    rotation = np.asarray(found.transform)[:3, :3]
+    angle = np.degrees(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
+    sheet = Sheet(1, 2, (-0.6, -1.0, 1.3))
+    aligned = points @ rotation.T + np.asarray(found.transform)[:3, 3]
+    for title, cloud in (("true pose", points), (f"pose found, {angle:.0f} degrees off, merit {found.score.merit:.2f}", aligned)):
+        axes = sheet.panel(title, model)
+        sheet.dots(axes, model, GRAY)
+        sheet.dots(axes, cloud, ORANGE)
+    sheet.save(out)
+
+
+def failure_name(out):
+    """Seen from the side without a handle, a mug is a cup."""
+    sheet = Sheet(1, 2, (-1, 0.7, 0.8))
+    with tempfile.TemporaryDirectory() as folder:
+        database = pcl_symmetry.Database(f"{folder}/models.db")
+        database.add("mug", sampled(mug()))
+        database.add("cup", sampled(mug(0.01, 0.01)))
+        for side in (1, -1):
+            points, viewpoint = scan(mug(), (side, 0.7, 0.3))
+            names = [f"{m.name} {m.confidence:.2f}" for m in database.recognize(points, viewpoint=viewpoint)]
+            sheet.azimuth = np.degrees(np.arctan2(0.7, side))
+            axes = sheet.panel("scan of the mug: " + (", ".join(names) or "no name"), points)
+            sheet.dots(axes, points, BLUE)
+    sheet.save(out)
+
+
+def failure_rotations(out):
+    """What is smaller than max_feature is passed over."""
+    sheet = Sheet(1, 2, (0.9, -1.6, 0.7))
+    for handle in (0.25, 0.9):
+        cloud = sampled(mug(handle, handle))
+        found = pcl_symmetry.rotations(cloud)
+        axes = sheet.panel(f"group {found.name}, confidence {found.confidence:.2f}", cloud)
+        sheet.dots(axes, cloud, BLUE)
+    sheet.save(out)
+
+
+if __name__ == "__main__":
+    pictures = {f.__name__: f for f in (frames, scan_centers, medial_axis, failure_frame, failure_completion, failure_pose,
+                                        failure_name, failure_rotations)}
+    if len(sys.argv) < 3 or sys.argv[1] not in pictures:
+        print(__doc__)
+        sys.exit(0 if "-h" in sys.argv or "--help" in sys.argv else 2)
+    pictures[sys.argv[1]](*sys.argv[2:])

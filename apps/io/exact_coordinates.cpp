@@ -1,0 +1,110 @@
+#include "io/exact_coordinates.h"
+
+#include <pcl/conversions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+/// Spacing of float numbers, relative. derived: 23 bits of mantissa.
+constexpr double kFloatSpacing = 0x1.0p-23;
+/// Spacing of coordinates that is allowed, in extents. chosen: the tools report planes to about 1e-4 of the extent;
+/// half shifts clouds that need no shift, twice costs digits of thin parts.
+constexpr double kAllowedSpacing = 1e-5;
+
+}  // namespace
+
+Eigen::Vector3d shiftFor(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& point : points)
+    if (point.allFinite()) box.extend(point);
+  if (box.isEmpty()) return Eigen::Vector3d::Zero();
+  const double extent = box.sizes().maxCoeff();
+  const double largest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  // One point has no shape to lose.
+  if (!(extent > 0.0) || !std::isfinite(extent) || largest * kFloatSpacing <= kAllowedSpacing * extent)
+    return Eigen::Vector3d::Zero();
+  const double unit = std::exp2(std::floor(std::log2(extent)));
+  const Eigen::Vector3d shift = (box.center() / unit).array().round().matrix() * unit;
+  // Extents below the least normal number make no unit that the center could be counted in.
+  return shift.allFinite() ? shift : Eigen::Vector3d::Zero();
+}
+
+pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift) {
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  cloud.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3f p = (point - shift).cast<float>();
+    cloud.emplace_back(p.x(), p.y(), p.z());
+  }
+  return cloud;
+}
+
+pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift) {
+  pcl::PCLPointCloud2 cloud;
+  if (shift.isZero(0.0)) {
+    pcl::toPCLPointCloud2(points, cloud);
+    return cloud;
+  }
+  cloud.header = points.header;
+  cloud.width = points.width;
+  cloud.height = points.height;
+  cloud.is_dense = points.is_dense;
+  for (const char* name : {"x", "y", "z"}) {
+    pcl::PCLPointField field;
+    field.name = name;
+    field.offset = static_cast<pcl::uindex_t>(cloud.fields.size() * sizeof(double));
+    field.datatype = pcl::PCLPointField::FLOAT64;
+    field.count = 1;
+    cloud.fields.push_back(field);
+  }
+  cloud.point_step = 3 * sizeof(double);
+  cloud.row_step = cloud.point_step * cloud.width;
+  cloud.data.resize(points.size() * cloud.point_step);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d point = points[i].getVector3fMap().cast<double>() + shift;
+    std::memcpy(&cloud.data[i * cloud.point_step], point.data(), cloud.point_step);
+  }
+  return cloud;
+}
+
+Viewpoint shifted(Viewpoint viewpoint, const Eigen::Vector3d& shift) {
+  if (viewpoint.mode == Viewpoint::Mode::Given) viewpoint.position -= shift;
+  return viewpoint;
+}
+
+Eigen::Vector3d shiftedBack(const Eigen::Vector3d& point, const Eigen::Vector3d& shift) {
+  // Adding zero would turn -0 into 0.
+  return shift.isZero(0.0) ? point : Eigen::Vector3d(point + shift);
+}
+
+ReflectionPlane shiftedBack(const ReflectionPlane& plane, const Eigen::Vector3d& shift) {
+  if (shift.isZero(0.0)) return plane;
+  return ReflectionPlane(plane.normal(), plane.offset() + plane.normal().dot(shift));
+}
+
+Eigen::Isometry3d shiftedBack(const Eigen::Isometry3d& T_target_source, const Eigen::Vector3d& source_shift,
+                              const Eigen::Vector3d& target_shift) {
+  Eigen::Isometry3d result = T_target_source;
+  if (!source_shift.isZero(0.0)) result.translation() -= T_target_source.linear() * source_shift;
+  if (!target_shift.isZero(0.0)) result.translation() += target_shift;
+  return result;
+}
+
+int lengthDigits(const Eigen::Vector3d& shift) {
+  // derived: six digits tell 1e-5 of the extent; a shift of up to a million extents takes six more.
+  return shift.isZero(0.0) ? 6 : 12;
+}
+
+std::string spelled(const Eigen::Vector3d& point, int digits) {
+  char text[96];
+  std::snprintf(text, sizeof(text), "%.*g %.*g %.*g", digits, point.x(), digits, point.y(), digits, point.z());
+  return text;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,57 @@
+/// Coordinates that need more digits than float has: read in double, shifted near zero, and shifted back on output.
+///
+/// The library computes in float. A box of one metre at map coordinates such as (500000, 5000000, 100) would lose its
+/// shape, so the loader subtracts a shift in double, and the tools add it to what they report.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/PolygonMesh.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/viewpoint.h"
+
+namespace pcl_symmetry::apps {
+
+/// Vertices and faces as a text file spells them.
+struct ExactShape {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<pcl::Vertices> polygons;
+};
+
+/// \return what to subtract: zero where float is precise enough, else a point near the middle of the finite points,
+/// rounded so that the subtraction is exact
+Eigen::Vector3d shiftFor(const std::vector<Eigen::Vector3d>& points);
+
+/// \return the points minus the shift
+pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift);
+
+/// \return the points plus the shift: with a shift fields x, y and z of type double, otherwise those of PointXYZ
+pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
+
+/// \return the viewpoint in the frame of the shifted points
+Viewpoint shifted(Viewpoint viewpoint, const Eigen::Vector3d& shift);
+
+/// \return the point of the shifted points in the input frame
+Eigen::Vector3d shiftedBack(const Eigen::Vector3d& point, const Eigen::Vector3d& shift);
+
+/// \return the plane of the shifted points in the input frame
+ReflectionPlane shiftedBack(const ReflectionPlane& plane, const Eigen::Vector3d& shift);
+
+/// \param T_target_source between shifted frames
+/// \return the same motion between the input frames
+Eigen::Isometry3d shiftedBack(const Eigen::Isometry3d& T_target_source, const Eigen::Vector3d& source_shift,
+                              const Eigen::Vector3d& target_shift);
+
+/// \return significant digits of lengths in the input frame that a tool prints
+int lengthDigits(const Eigen::Vector3d& shift);
+
+/// \return "x y z" with the given number of significant digits
+std::string spelled(const Eigen::Vector3d& point, int digits);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,124 @@
+#include "io/file_text.h"
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+
+namespace pcl_symmetry::apps {
+
+namespace fs = boost::filesystem;
+
+std::uint64_t checkReadableFile(const std::string& path) {
+  boost::system::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError(path + ": no such file");
+  if (fs::is_directory(status)) throw InputError(path + ": is a directory, must be a file");
+  if (!fs::is_regular_file(status)) throw InputError(path + ": is not a regular file");
+  errno = 0;
+  if (!std::ifstream(path, std::ios::binary)) throw InputError(path + ": cannot be opened, " + std::strerror(errno));
+  const std::uint64_t size = fs::file_size(path, error);
+  if (error) throw InputError(path + ": " + error.message());
+  if (size == 0) throw InputError(path + ": is empty (0 bytes)");
+  return size;
+}
+
+std::string readWholeFile(const std::string& path) {
+  std::string text(checkReadableFile(path), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!file) throw InputError(path + ": cannot be read");
+  return text;
+}
+
+bool spellsNumber(std::string_view token, double* value) {
+  if (!token.empty() && token.front() == '+') token.remove_prefix(1);
+  double parsed = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), parsed);
+  if (error == std::errc::result_out_of_range) {
+    parsed = std::strtod(std::string(token).c_str(), nullptr);
+  } else if (error != std::errc()) {
+    return false;
+  }
+  if (end != token.data() + token.size()) return false;
+  if (value) *value = parsed;
+  return true;
+}
+
+bool spellsCount(std::string_view token, std::uint64_t* value) {
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), *value);
+  return !token.empty() && error == std::errc() && end == token.data() + token.size();
+}
+
+void TokenReader::skipSpace(bool across_lines) {
+  while (position_ < text_.size()) {
+    const char c = text_[position_];
+    if (c == '#') {
+      position_ = std::min(text_.find('\n', position_), text_.size());
+    } else if (std::isspace(static_cast<unsigned char>(c)) && (across_lines || c != '\n')) {
+      ++position_;
+    } else {
+      break;
+    }
+  }
+}
+
+std::string_view TokenReader::nextOnLine() {
+  skipSpace(false);
+  const std::size_t begin = position_;
+  while (position_ < text_.size() && text_[position_] != '#' &&
+         !std::isspace(static_cast<unsigned char>(text_[position_]))) {
+    ++position_;
+  }
+  return text_.substr(begin, position_ - begin);
+}
+
+std::string_view TokenReader::next() {
+  skipSpace(true);
+  return nextOnLine();
+}
+
+void TokenReader::skipLine() {
+  position_ = std::min(text_.find('\n', position_), text_.size());
+}
+
+bool TokenReader::atEnd() {
+  skipSpace(true);
+  return position_ == text_.size();
+}
+
+void TokenReader::fail(const char* what, std::uint64_t index, std::string_view token, const std::string& rule) const {
+  const std::string name = path_ + ": " + what + " " + std::to_string(index);
+  if (token.empty()) throw InputError(name + " is missing, the file ends before it");
+  std::string shown(token.substr(0, 40));
+  std::replace_if(
+      shown.begin(), shown.end(), [](unsigned char c) { return !std::isprint(c); }, '?');
+  throw InputError(name + " = " + shown + ", " + rule);
+}
+
+double TokenReader::number(const char* what, std::uint64_t index) {
+  const std::string_view token = next();
+  double value = 0;
+  if (!spellsNumber(token, &value)) fail(what, index, token, "must be a number");
+  return value;
+}
+
+double TokenReader::numberOnLine(const char* what, std::uint64_t index) {
+  const std::string_view token = nextOnLine();
+  double value = 0;
+  if (token.empty()) throw InputError(path_ + ": " + what + " " + std::to_string(index) + " is missing on its line");
+  if (!spellsNumber(token, &value)) fail(what, index, token, "must be a number");
+  return value;
+}
+
+std::uint64_t TokenReader::count(const char* what, std::uint64_t index, std::uint64_t largest) {
+  const std::string_view token = next();
+  std::uint64_t value = 0;
+  if (!spellsCount(token, &value)) fail(what, index, token, "must be a whole number >= 0");
+  if (value > largest) fail(what, index, token, "must be <= " + std::to_string(largest));
+  return value;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,40 @@
+/// Reads clouds and meshes from files, and refuses what it cannot trust with one clear line.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/PolygonMesh.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "command_line/tool_errors.h"
+#include "io/shape_file_kinds.h"
+#include "pcl_symmetry/core/point_set.h"
+
+namespace pcl_symmetry::apps {
+
+/// What a file holds. Points may be non-finite, as scanners write them.
+struct Shape {
+  pcl::PCLPointCloud2 cloud;                   ///< all fields of the file, input frame; the vertices of a mesh
+  pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< the coordinates minus the shift, same order and organization
+  std::optional<pcl::PolygonMesh> mesh;        ///< polygons of any size >= 3, indices checked; minus the shift
+  /// Subtracted from points and mesh; zero unless the file's coordinates have more digits than float holds.
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();  ///< input frame
+  Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
+};
+
+/// \param path a file of kShapeFiles, in capitals or not; "-" for standard input, whose kind is known by its content
+/// \throws InputError naming the file, what is wrong and the rule
+Shape loadShape(const std::string& path);
+
+/// \return a shape made of a mesh, as if it had been loaded.
+Shape shapeFromMesh(const pcl::PolygonMesh& mesh);
+
+/// \return 3 x N, the finite points of a cloud, same order.
+Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud);
+
+}  // namespace pcl_symmetry::apps

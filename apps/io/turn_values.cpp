@@ -1,0 +1,32 @@
+#include "io/turn_values.h"
+
+#include <cstdio>
+
+#include "io/json_values.h"
+#include "io/exact_coordinates.h"
+
+namespace pcl_symmetry::apps {
+
+nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Vector3d& shift) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const SymmetryTurn& turn : turns)
+    json.push_back({{"point", numbersOf(shiftedBack(turn.point, shift))},
+                    {"direction", numbersOf(turn.direction)},
+                    {"fold", turn.fold},
+                    {"confidence", turn.confidence},
+                    {"support", turn.support},
+                    {"off", turn.off},
+                    {"far", turn.far},
+                    {"halfway", turn.halfway}});
+  return json;
+}
+
+std::string lineOf(const SymmetryTurn& turn, const Eigen::Vector3d& shift) {
+  const std::string order = turn.fold > 0 ? "axis of order " + std::to_string(turn.fold) : "axis of revolution";
+  char line[128];
+  std::snprintf(line, sizeof(line), " along %.6f %.6f %.6f, confidence %.3f\n", turn.direction.x(), turn.direction.y(),
+                turn.direction.z(), turn.confidence);
+  return order + ": through " + spelled(shiftedBack(turn.point, shift), lengthDigits(shift)) + line;
+}
+
+}  // namespace pcl_symmetry::apps

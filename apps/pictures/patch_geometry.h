@@ -1,0 +1,47 @@
+/// Where the rectangles of planes and the lines of axes lie in a picture or a page.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <utility>
+
+#include "pictures/picture.h"
+
+namespace pcl_symmetry::apps {
+
+/// Moves the scene to the origin and to unit size: the clipping planes and single-precision buffers of renderers want
+/// that.
+struct Normalization {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double scale = 1;
+  Eigen::Vector3d operator()(const Eigen::Vector3d& point) const { return (point - center) * scale; }
+};
+
+/// \throws InputError where no point is finite.
+Normalization normalizationOf(const PictureScene& scene);
+
+/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
+std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points);
+
+/// \return the same, or the corners of a square where the patch has a size of its own.
+std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const PictureScene& scene);
+
+/// \return the ends of the line: as long as the points reach along it, and a tenth more, unless it has a length of its
+/// own.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> axisEnds(const AxisLine& axis, const PictureScene& scene);
+
+/// \return the color of a point in a panel, before shading.
+Eigen::Vector3d pointColor(const PicturePanel& panel, std::size_t point);
+
+/// Light on a point: least + range * |cosine between normal and view|.
+struct PointShade {
+  double least, range;
+};
+
+/// \param coloured by support or segments, whose colors have to stay legible.
+PointShade shadeOf(bool coloured);
+
+const Eigen::Vector3d kPlainPointColor(0.30, 0.38, 0.52);
+const Eigen::Vector3d kPlainMeshColor(0.86, 0.86, 0.88);
+
+}  // namespace pcl_symmetry::apps

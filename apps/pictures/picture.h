@@ -1,0 +1,75 @@
+/// Pictures of clouds, meshes and symmetry planes as PNG files, also on machines without a display.
+#pragma once
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pictures/colors.h"
+#include "command_line/tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+/// A translucent rectangle in the plane normal . x = offset; fitted to the points unless half_size is set.
+struct PlanePatch {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
+  double offset = 0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the square, projected onto the plane
+  double half_size = 0;  ///< of the square, input units; 0 = a rectangle around the projected points, center not used
+  Eigen::Vector3d color = {0.90, 0.62, 0.0};  ///< red, green, blue in [0, 1]
+};
+
+/// A straight line through the whole scene, or about a point.
+struct AxisLine {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d color = {0.84, 0.37, 0.0};  ///< red, green, blue in [0, 1]
+  double half_length = 0;  ///< to both sides of the point, input units, and in front of all; 0 = through the scene
+};
+
+/// One view among several in a picture.
+struct PicturePanel {
+  std::string label;                 ///< drawn at the top; empty for none
+  std::vector<double> support = {};  ///< one value in [0, 1] per point, cividis colours; empty for one plain colour
+  std::vector<PlanePatch> planes = {};
+  std::vector<AxisLine> axes = {};
+  /// One number per polygon of the mesh, or per point where there is no mesh, each in a colour of its own (below 0:
+  /// grey); the points of the mesh are then not drawn. Empty for one plain colour.
+  std::vector<int> segments = {};
+  bool show_points = true;  ///< false: the mesh alone; it takes the colours where its vertices are the points
+};
+
+/// What a picture shows: the same shape in every panel.
+struct PictureScene {
+  pcl::PointCloud<pcl::PointXYZ>::ConstPtr points;  ///< non-finite points are not drawn
+  std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light grey
+  std::vector<PicturePanel> panels = {};            ///< at least one
+  int num_columns = 0;                              ///< 0 = as square as the panels allow
+  Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< from the scene towards the camera
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  bool show_color_bar = true;  ///< legend of the support, in panels that have support
+};
+
+/// Turns the view so that \p up is to it what z was; any length but zero.
+void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
+
+/// \throws std::invalid_argument for a scene that does not fit together.
+void checkScene(const PictureScene& scene);
+
+/// Renders off screen and writes a PNG whole. Uses the display if there is one, or else a private Xvfb.
+/// \param width, height of the whole picture in pixels, 16 to 16384.
+/// \throws std::invalid_argument for a scene that does not fit together, InputError if nothing can draw or the file
+/// cannot be written.
+void renderPicture(const PictureScene& scene, const std::string& path, int width, int height);
+
+/// The panels of several scenes in one picture, row by row.
+/// \param num_columns of all panels, 0 = as square as the panels allow; that of the scenes does not count.
+void renderPicture(const std::vector<PictureScene>& scenes, const std::string& path, int width, int height,
+                   int num_columns = 0);
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,55 @@
+/// Pictures as arrays of pixels: read from PNG and binary PGM, written as PNG. Needs no display.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "command_line/tool_errors.h"
+
+namespace pcl_symmetry::apps {
+
+/// Red, green and blue, 8 bits each, row by row from the top.
+struct RasterImage {
+  RasterImage() = default;
+  /// White.
+  /// \param num_columns,num_rows pixels, >= 1.
+  RasterImage(int num_columns, int num_rows)
+      : width(num_columns), height(num_rows), pixels(3 * std::size_t(num_columns) * num_rows, 255) {}
+
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+
+  std::uint8_t* at(int x, int y) { return &pixels[3 * (std::size_t(y) * width + x)]; }
+  const std::uint8_t* at(int x, int y) const { return &pixels[3 * (std::size_t(y) * width + x)]; }
+
+  /// \param color red, green and blue in [0, 1], clamped.
+  void set(int x, int y, const Eigen::Vector3d& color);
+
+  /// Fills the disk, at least the pixel that its center is in; what lies outside the picture is left out.
+  /// \param center
+  /// pixels, (0, 0) = middle of the first one.
+  void drawDisk(const Eigen::Vector2d& center, double radius, const Eigen::Vector3d& color);
+
+  /// Copies \p tile to (x, y), which it must fit at.
+  void paste(const RasterImage& tile, int x, int y);
+};
+
+/// Pictures of one size in rows, with white gaps.
+/// \param num_columns 0 = one row.
+RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns = 0);
+
+/// \return whether the name ends as pictures do that readImage() knows: .png or .pgm, in capitals or not.
+bool isImagePath(const std::string& path);
+
+/// Grey pictures get three equal channels, transparent ones a white ground.
+/// \throws InputError for a file that is no PNG or binary PGM picture of 8 or 16 bits.
+RasterImage readImage(const std::string& path);
+
+/// Writes a PNG whole.
+/// \throws InputError if the file cannot be written.
+void writeImage(const RasterImage& image, const std::string& path);
+
+}  // namespace pcl_symmetry::apps

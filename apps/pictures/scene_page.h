@@ -1,0 +1,21 @@
+/// Pages of HTML that show a cloud, its planes and parts in any browser, without an installation and without network.
+#pragma once
+
+#include <string>
+
+#include "pictures/picture.h"
+
+namespace pcl_symmetry::apps {
+
+struct PageText {
+  std::string title;
+  std::string text;  ///< what the tool prints, shown below
+};
+
+/// Writes one file, with everything in it: the same scene, colours and legend as renderPicture(), a panel at a time. Of
+/// more than 200 000 points it holds every second, third, ... one.
+/// \throws std::invalid_argument for a scene that does not fit together, InputError where no point is finite or the file
+/// cannot be written.
+void writePage(const PictureScene& scene, const PageText& text, const std::string& path);
+
+}  // namespace pcl_symmetry::apps

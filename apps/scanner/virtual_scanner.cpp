@@ -1,0 +1,232 @@
+#include "scanner/virtual_scanner.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scanner/random_numbers.h"
+#include "scanner/triangle_scene.h"
+#include "core/base/constants.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+/// Edge of the largest picture, pixels. chosen: 64 million rays; half is short of ten million points, twice needs 2 GB.
+constexpr int kMaxResolution = 8192;
+/// Edge of the first picture, which tells the share of hits, pixels. chosen: half misses thin shapes, twice takes
+/// longer.
+constexpr int kFirstResolution = 128;
+/// Relative error of the number of points. chosen: half takes one picture more, twice is visible in "10 000 points".
+constexpr double kAcceptedCountError = 0.01;
+/// Pictures until the number of points has to fit. chosen: two or three are enough for most shapes; a thin shape ends
+/// here.
+constexpr int kMaxRounds = 8;
+
+[[noreturn]] void reject(const char* field, double value, const char* rule) {
+  throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + ", " + rule);
+}
+
+/// Right, down, forward: the columns of the sensor's rotation. The picture's up is z, or y for a vertical view.
+Eigen::Matrix3d lookAlong(const Eigen::Vector3d& forward) {
+  const Eigen::Vector3d up =
+      std::abs(forward.z()) < 0.999 * forward.norm() ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
+  Eigen::Matrix3d R_model_sensor;
+  R_model_sensor.col(2) = forward.normalized();
+  R_model_sensor.col(0) = forward.cross(up).normalized();
+  R_model_sensor.col(1) = R_model_sensor.col(2).cross(R_model_sensor.col(0));
+  return R_model_sensor;
+}
+
+struct Camera {
+  Eigen::Vector3d origin;
+  Eigen::Matrix3d axes;  ///< columns right, down, forward
+  double half_width;     ///< at depth one
+  int resolution;
+
+  Eigen::Vector3d rayThrough(int column, int row) const {
+    const double x = (2.0 * (column + 0.5) / resolution - 1.0) * half_width;
+    const double y = (2.0 * (row + 0.5) / resolution - 1.0) * half_width;
+    return (axes * Eigen::Vector3d(x, y, 1.0)).normalized();
+  }
+};
+
+/// The distance of each pixel along its ray, row by row; infinite where the ray misses.
+struct Picture {
+  Camera camera;
+  std::vector<double> distances;
+  int num_hits = 0;
+
+  Picture(const Camera& from, std::vector<double> all) : camera(from), distances(std::move(all)) {
+    num_hits =
+        static_cast<int>(std::count_if(distances.begin(), distances.end(), [](double d) { return std::isfinite(d); }));
+  }
+
+  bool touchesBorder() const {
+    const int resolution = camera.resolution;
+    for (int i = 0; i < resolution; ++i) {
+      const std::size_t last = static_cast<std::size_t>(resolution) * (resolution - 1);
+      const std::size_t row = static_cast<std::size_t>(resolution) * i;
+      for (const std::size_t pixel : {std::size_t(i), last + i, row, row + resolution - 1}) {
+        if (std::isfinite(distances[pixel])) return true;
+      }
+    }
+    return false;
+  }
+};
+
+}  // namespace
+
+void VirtualScannerOptions::validate() const {
+  if (num_points <= 0) reject("num_points", num_points, "must be > 0");
+  if (!(field_of_view > 0) || !(field_of_view < kPi)) reject("field_of_view", field_of_view, "must be > 0 and < pi");
+  if (!(distance > 0.5) || !std::isfinite(distance)) reject("distance", distance, "must be > 0.5 diagonals");
+  if (!(noise >= 0) || !std::isfinite(noise)) reject("noise", noise, "must be >= 0");
+  if (num_threads < 0) reject("num_threads", num_threads, "must be >= 0");
+  if (resolution && (*resolution < 1 || *resolution > kMaxResolution)) {
+    reject("resolution", *resolution, "must be >= 1 and <= 8192");
+  }
+  if (max_resolution < 1 || max_resolution > kMaxResolution) {
+    reject("max_resolution", max_resolution, "must be >= 1 and <= 8192");
+  }
+}
+
+struct VirtualScanner::Scene : TriangleScene {
+  using TriangleScene::TriangleScene;
+
+  Picture takePicture(const Camera& camera, int num_threads) const {
+    std::vector<double> distances(static_cast<std::size_t>(camera.resolution) * camera.resolution);
+#pragma omp parallel for schedule(dynamic, 8) num_threads(num_threads > 0 ? num_threads : omp_get_max_threads())
+    for (int row = 0; row < camera.resolution; ++row) {
+      for (int column = 0; column < camera.resolution; ++column) {
+        distances[static_cast<std::size_t>(row) * camera.resolution + column] =
+            distanceAlong(*this, camera.origin, camera.rayThrough(column, row));
+      }
+    }
+    return {camera, std::move(distances)};
+  }
+
+  /// \return the picture, of a resolution chosen for it, whose number of hits is closest to the wanted one
+  Picture takePictureOfPoints(Camera camera, const VirtualScannerOptions& options) const {
+    const auto error = [&](const Picture& picture) {
+      return std::abs(double(picture.num_hits) / options.num_points - 1.0);
+    };
+    Picture picture = takePicture(camera, options.num_threads);
+    Picture best = picture;
+    for (int round = 0; round < kMaxRounds && error(best) > kAcceptedCountError; ++round) {
+      const double wanted = camera.resolution * std::sqrt(double(options.num_points) / std::max(picture.num_hits, 1));
+      const int previous = camera.resolution;
+      camera.resolution = static_cast<int>(std::clamp(std::round(wanted), 1.0, double(options.max_resolution)));
+      if (picture.num_hits == 0) camera.resolution = std::min(4 * previous, options.max_resolution);
+      if (camera.resolution == previous) break;
+      picture = takePicture(camera, options.num_threads);
+      if (error(picture) < error(best)) best = picture;
+    }
+    return best;
+  }
+};
+
+namespace {
+
+/// The points of the pixels, with noise, in the frame of the scan.
+pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const Picture& picture, const VirtualScannerOptions& options,
+                                            const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& to_scan) {
+  const Camera& camera = picture.camera;
+  std::seed_seq streams{options.seed, options.seed >> 32, options.noise_stream};
+  std::mt19937_64 generator(streams);
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>(camera.resolution, camera.resolution));
+  for (int row = 0; row < camera.resolution; ++row) {
+    for (int column = 0; column < camera.resolution; ++column) {
+      double distance = picture.distances[static_cast<std::size_t>(row) * camera.resolution + column];
+      pcl::PointXYZ& point = cloud->at(column, row);
+      if (!std::isfinite(distance)) {
+        point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
+        continue;
+      }
+      if (options.noise > 0) distance += options.noise * standardNormal(generator);
+      point.getVector3fMap() = to_scan(camera.origin + distance * camera.rayThrough(column, row)).cast<float>();
+    }
+  }
+  cloud->is_dense = picture.num_hits == camera.resolution * camera.resolution;
+  return cloud;
+}
+
+VirtualScan toScan(const Picture& picture, const TriangleScene& scene, const VirtualScannerOptions& options) {
+  VirtualScan result;
+  result.num_points = picture.num_hits;
+  result.cropped = picture.touchesBorder();
+  if (options.random_pose) {
+    result.T_scan_model = randomPose(options.seed, scene.diagonal());
+    result.T_scan_model.translation() -= result.T_scan_model.linear() * scene.center();
+  }
+  const auto to_scan = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+    return result.T_scan_model * (scene.center() + scene.diagonal() * point);
+  };
+  result.T_scan_sensor.linear() = result.T_scan_model.linear() * picture.camera.axes;
+  result.T_scan_sensor.translation() = to_scan(picture.camera.origin);
+  result.cloud = cloudOf(picture, options, to_scan);
+  result.cloud->sensor_origin_.head<3>() = result.T_scan_sensor.translation().cast<float>();
+  result.cloud->sensor_origin_[3] = 0.0f;
+  result.cloud->sensor_orientation_ = Eigen::Quaterniond(result.T_scan_sensor.linear()).normalized().cast<float>();
+  return result;
+}
+
+}  // namespace
+
+VirtualScanner::VirtualScanner(const pcl::PolygonMesh& mesh) : scene_(std::make_unique<Scene>(mesh)) {}
+
+VirtualScanner::~VirtualScanner() = default;
+VirtualScanner::VirtualScanner(VirtualScanner&&) noexcept = default;
+VirtualScanner& VirtualScanner::operator=(VirtualScanner&&) noexcept = default;
+
+Eigen::Vector3d VirtualScanner::center() const {
+  return scene_->center();
+}
+double VirtualScanner::diagonal() const {
+  return scene_->diagonal();
+}
+
+VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options) const {
+  options.validate();
+  if (!direction.allFinite() || !(direction.norm() > 0)) {
+    throw std::invalid_argument("direction must be finite and not zero");
+  }
+  const Eigen::Vector3d towards_scanner = direction.normalized();
+  const Camera camera{options.distance * towards_scanner, lookAlong(-towards_scanner),
+                      std::tan(options.field_of_view / 2),
+                      options.resolution.value_or(std::min(kFirstResolution, options.max_resolution))};
+  const Picture picture = options.resolution ? scene_->takePicture(camera, options.num_threads)
+                                             : scene_->takePictureOfPoints(camera, options);
+  if (picture.num_hits == 0) throw std::runtime_error("no ray hits the model");
+  return toScan(picture, *scene_, options);
+}
+
+std::array<Eigen::Vector3d, 8> cubeCorners() {
+  std::array<Eigen::Vector3d, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners[i] = Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).normalized();
+  }
+  return corners;
+}
+
+/// Shoemake, Uniform random rotations, Graphics Gems III.
+Eigen::Isometry3d randomPose(std::uint64_t seed, double extent) {
+  std::mt19937_64 generator(seed);
+  const double u = uniform(generator), v = 2 * kPi * uniform(generator), w = 2 * kPi * uniform(generator);
+  const Eigen::Quaterniond rotation(std::sqrt(u) * std::cos(w), std::sqrt(1 - u) * std::sin(v),
+                                    std::sqrt(1 - u) * std::cos(v), std::sqrt(u) * std::sin(w));
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation.normalized().toRotationMatrix();
+  for (int k = 0; k < 3; ++k) pose.translation()[k] = extent * (2 * uniform(generator) - 1);
+  return pose;
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,280 @@
+#include "scene/scene_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "io/json_values.h"
+#include "io/exact_coordinates.h"
+#include "io/answer_words.h"
+#include "io/cloud_fields.h"
+#include "core/geometry/viewing_frame.h"
+
+namespace pcl_symmetry::apps {
+
+namespace {
+
+// Points of the overview. chosen: half shows gaps in near surfaces, twice takes twice the time to draw.
+constexpr std::size_t kDrawnPoints = 150'000;
+// Objects that have a panel of their own. chosen: twice makes panels too small to read, half leaves objects out.
+constexpr std::size_t kMostPanels = 8;
+// Pixels. chosen: a panel of an object is readable; half is not, twice makes large files.
+constexpr int kPanelWidth = 520, kPanelHeight = 440;
+// Colour of points that a symmetry added, counted from that of the object. chosen: far from it among the eight colours;
+// at 8 it would be a lighter one of the same.
+constexpr int kAddedColor = 5;
+// Above the line of sight, as a share of the distance: the scene is looked at slightly from above, so that depths tell.
+// chosen: at 0 the picture is that of the sensor, at 1 it shows what the sensor did not see.
+constexpr double kRaised = 0.25;
+
+// Radii of the object. chosen: axes and planes stick out of it; half hides them in it, twice covers its neighbours.
+constexpr double kAxisReach = 1.4, kPlaneReach = 1.1;
+
+struct Finding {
+  enum class Kind { Center, Axis, Plane, None } kind = Kind::None;
+  double confidence = 0.0;
+};
+
+/// What an object's best answer is.
+Finding bestOf(const SceneObject& object) {
+  if (!object.centers.empty()) return {Finding::Kind::Center, object.centers.front().confidence};
+  if (!object.axes.empty()) return {Finding::Kind::Axis, object.axes.front().confidence};
+  if (!object.planes.empty() && object.planes.front().kind == PlaneKind::Symmetry)
+    return {Finding::Kind::Plane, object.planes.front().confidence};
+  return {};
+}
+
+std::size_t numPlanes(const SceneObject& object, PlaneKind kind) {
+  return static_cast<std::size_t>(std::count_if(object.planes.begin(), object.planes.end(),
+                                                [&](const SymmetryPlane& plane) { return plane.kind == kind; }));
+}
+
+std::string counted(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+/// What was found of an object, in words.
+std::string summaryOf(const SceneObject& object) {
+  if (!object.reason.empty()) return object.reason;
+  const Finding best = bestOf(object);
+  const std::string confidence = formatted(", confidence %.2f", best.confidence);
+  std::string text;
+  switch (best.kind) {
+    case Finding::Kind::Center:
+      text = "sphere" + confidence;
+      break;
+    case Finding::Kind::Axis:
+      text = "axis of revolution" + confidence;
+      break;
+    case Finding::Kind::Plane:
+      text = counted(numPlanes(object, PlaneKind::Symmetry), "plane") + confidence;
+      break;
+    case Finding::Kind::None: {
+      const std::size_t possible = numPlanes(object, PlaneKind::Possible);
+      text = possible ? counted(possible, "possible plane") : "no symmetry";
+    }
+  }
+  if (!object.models.empty())
+    text += ", " + object.models.front().name + formatted(" (%.2f)", object.models.front().confidence);
+  return text;
+}
+
+nlohmann::json describeFrame(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
+  nlohmann::json json{{"center", numbersOf(shiftedBack(frame.center, shift))}, {"axes", nlohmann::json::array()}};
+  for (int k = 0; k < 3; ++k) json["axes"].push_back(numbersOf(frame.axes.col(k)));
+  json["scores"] = numbersOf(frame.scores);
+  json["revolution_axis"] = frame.revolution_axis;
+  json["transform"] = rowMajor(shiftedBack(frame.T_canonical_input, shift, Eigen::Vector3d::Zero()));
+  return json;
+}
+
+nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& shift) {
+  nlohmann::json json{{"num_points", object.indices.size()},
+                      {"planes", nlohmann::json::array()},
+                      {"axes", nlohmann::json::array()},
+                      {"centers", nlohmann::json::array()},
+                      {"models", nlohmann::json::array()}};
+  if (!object.reason.empty()) json["reason"] = object.reason;
+  for (const SymmetryPlane& plane : object.planes)
+    json["planes"].push_back({{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
+                              {"kind", toString(plane.kind)},
+                              {"confidence", plane.confidence},
+                              {"share", plane.share},
+                              {"support", plane.support},
+                              {"seen", plane.seen},
+                              {"score", plane.score}});
+  for (const SymmetryAxis& axis : object.axes)
+    json["axes"].push_back({{"point", numbersOf(shiftedBack(axis.point, shift))},
+                            {"direction", numbersOf(axis.direction)},
+                            {"confidence", axis.confidence}});
+  for (const SymmetryCenter& center : object.centers)
+    json["centers"].push_back(
+        {{"point", numbersOf(shiftedBack(center.point, shift))}, {"confidence", center.confidence}});
+  if (object.frame) json["frame"] = describeFrame(*object.frame, shift);
+  if (object.completed_by)
+    json["completed"] = {{"by", numbersOf(shiftedBack(*object.completed_by, shift).coefficients())},
+                         {"num_added", object.added.size()}};
+  for (const RecognizedModel& model : object.models)
+    json["models"].push_back(
+        {{"name", model.name},
+         {"confidence", model.confidence},
+         {"merit", model.score.merit()},
+         {"T_model_scene", rowMajor(shiftedBack(model.T_model_scan, shift, Eigen::Vector3d::Zero()))}});
+  return json;
+}
+
+/// Of each point of the scene its object, from 1 on; -1 for those of supporting planes, 0 for others.
+std::vector<int> objectNumbers(const SceneAnalysis& scene, std::size_t num_points) {
+  std::vector<int> numbers(num_points, 0);
+  for (const SupportingPlane& support : scene.supports)
+    for (const pcl::index_t i : support.indices) numbers[static_cast<std::size_t>(i)] = -1;
+  for (std::size_t k = 0; k < scene.objects.size(); ++k)
+    for (const pcl::index_t i : scene.objects[k].indices)
+      numbers[static_cast<std::size_t>(i)] = static_cast<int>(k) + 1;
+  return numbers;
+}
+
+/// Looks at some points from where the sensor stood.
+void lookFromSensor(PictureScene& picture, const SceneAnalysis& scene, const Eigen::Vector3d& middle) {
+  const Visibility* seen = scene.seen->visibility();
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  if (!scene.supports.empty()) up = scene.supports.front().coefficients.head<3>();
+  if (seen) {
+    const Eigen::Vector3d towards = (seen->viewpoint() - middle).normalized();
+    if (std::abs(up.dot(towards)) > 0.95) up = towards.unitOrthogonal();  // a wall that faces the sensor
+    picture.view = (towards + kRaised * up).normalized();
+  }
+  picture.up = up;
+}
+
+void markFindings(PicturePanel& panel, const SceneObject& object, const SymmetryScene::Cloud& points,
+                  const Eigen::Vector3d& color) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const pcl::PointXYZ& point : points) middle += point.getVector3fMap().cast<double>() / double(points.size());
+  double reach = 0.0;
+  for (const pcl::PointXYZ& point : points)
+    reach = std::max(reach, (point.getVector3fMap().cast<double>() - middle).norm());
+  for (const SymmetryAxis& axis : object.axes) {
+    const Eigen::Vector3d point = axis.point + axis.direction.dot(middle - axis.point) * axis.direction;
+    panel.axes.push_back({point, axis.direction, color, kAxisReach * reach});
+  }
+  for (const SymmetryPlane& plane : object.planes)
+    if (plane.kind == PlaneKind::Symmetry)
+      panel.planes.push_back({plane.normal(), plane.offset(), middle, kPlaneReach * reach, color});
+}
+
+PictureScene closeUp(const InputShape& input, const SceneAnalysis& scene, std::size_t k) {
+  const SceneObject& object = scene.objects[k];
+  auto points = pcl::make_shared<SymmetryScene::Cloud>(*input.points, object.indices);
+  PicturePanel panel;
+  panel.segments.assign(points->size(), static_cast<int>(k));
+  markFindings(panel, object, *points, segmentColor(static_cast<int>(k)));
+  const Eigen::Vector3d middle = points->front().getVector3fMap().cast<double>();
+  *points += object.added;
+  panel.segments.resize(points->size(), static_cast<int>(k) + kAddedColor);
+  panel.label = std::to_string(k + 1) + ": " + summaryOf(object);
+  PictureScene picture;
+  picture.points = points;
+  picture.panels = {panel};
+  lookFromSensor(picture, scene, middle);
+  return picture;
+}
+
+}  // namespace
+
+std::string tableOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift) {
+  const int digits = lengthDigits(shift);
+  std::string text =
+      counted(scene.supports.size(), "supporting plane") + ", " + counted(scene.objects.size(), "object") + "\n";
+  for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+    const SceneObject& object = scene.objects[k];
+    text += std::to_string(k + 1) + ": " + counted(object.indices.size(), "point") + ", " + summaryOf(object);
+    if (object.frame) text += ", center " + spelled(shiftedBack(object.frame->center, shift), std::min(digits, 4));
+    if (object.completed_by) text += ", " + counted(object.added.size(), "point") + " added";
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene) {
+  nlohmann::json json{{"file", input.path},
+                      {"num_points", input.points->size()},
+                      {"viewpoint", {{"from", toString(scene.seen->source())}}},
+                      {"plane_distance", scene.plane_distance},
+                      {"cluster_distance", scene.cluster_distance},
+                      {"supports", nlohmann::json::array()},
+                      {"objects", nlohmann::json::array()},
+                      {"timing_ms", timingJson(scene.timing_ms)}};
+  if (scene.seen->visibility())
+    json["viewpoint"]["position"] = numbersOf(shiftedBack(scene.seen->visibility()->viewpoint(), input.shift()));
+  for (const SupportingPlane& support : scene.supports) {
+    const ReflectionPlane plane(support.coefficients.head<3>(), -support.coefficients[3]);
+    json["supports"].push_back({{"coefficients", numbersOf(shiftedBack(plane, input.shift()).coefficients())},
+                                {"num_points", support.indices.size()}});
+  }
+  for (const SceneObject& object : scene.objects) json["objects"].push_back(describeObject(object, input.shift()));
+  return json;
+}
+
+pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis& scene) {
+  const std::vector<int> numbers = objectNumbers(scene, input.points->size());
+  SymmetryScene::Cloud points;
+  std::vector<float> object, completed;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!pcl::isXYZFinite((*input.points)[i])) continue;
+    points.push_back((*input.points)[i]);
+    object.push_back(static_cast<float>(numbers[i]));
+  }
+  completed.assign(object.size(), 0.0f);
+  for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+    points += scene.objects[k].added;
+    object.resize(points.size(), static_cast<float>(k + 1));
+  }
+  completed.resize(points.size(), 1.0f);
+  return withFields(toFields(points, input.shift()), {"object", "completed"}, {object, completed});
+}
+
+PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
+  const std::vector<int> numbers = objectNumbers(scene, input.points->size());
+  auto points = pcl::make_shared<SymmetryScene::Cloud>();
+  PicturePanel panel;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  const std::size_t stride = 1 + input.points->size() / kDrawnPoints;
+  double num_of_objects = 0.0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const pcl::PointXYZ& point = (*input.points)[i];
+    if (!pcl::isXYZFinite(point) || (numbers[i] <= 0 && i % stride != 0)) continue;
+    points->push_back(point);
+    panel.segments.push_back(numbers[i] - 1);
+    if (numbers[i] <= 0) panel.segments.back() = -1;
+    if (numbers[i] > 0) middle += point.getVector3fMap().cast<double>(), ++num_of_objects;
+  }
+  if (num_of_objects > 0.0) middle /= num_of_objects;
+  for (std::size_t k = 0; k < scene.objects.size(); ++k)
+    markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
+                 segmentColor(static_cast<int>(k)));
+  panel.label = counted(scene.objects.size(), "object") + ", " + counted(scene.supports.size(), "supporting plane");
+  PictureScene picture;
+  picture.points = points;
+  picture.panels = {panel};
+  lookFromSensor(picture, scene, middle);
+  return picture;
+}
+
+void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path) {
+  std::vector<PictureScene> panels = {overview(input, scene)};
+  for (std::size_t k = 0; k < scene.objects.size() && k < kMostPanels; ++k) panels.push_back(closeUp(input, scene, k));
+  const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(panels.size()))));
+  const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+  renderPicture(panels, path, std::max(2 * kPanelWidth, columns * kPanelWidth), std::max(2, rows) * kPanelHeight,
+                columns);
+}
+
+}  // namespace pcl_symmetry::apps

@@ -1,0 +1,29 @@
+/// What pcl_symmetry_scene tells of a scene: a table, JSON, the completed scene, a picture.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "pictures/picture.h"
+#include "io/input_shape.h"
+#include "pcl_symmetry/symmetry_scene.h"
+
+namespace pcl_symmetry::apps {
+
+/// One line for each object, in the frame of the input.
+/// \param shift of the loaded points, see InputShape.
+std::string tableOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift);
+
+nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene);
+
+/// The fields x, y, z, object (0 = none, -1 = supporting plane, then 1, 2 ... as in the table) and completed (1 where a
+/// symmetry added the point) of all finite points of the scene and the added ones.
+pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis& scene);
+
+/// The scene from where the sensor stood, each object in a colour of its own with its plane or axis.
+PictureScene overview(const InputShape& input, const SceneAnalysis& scene);
+
+/// The overview, and each object with what its symmetry adds.
+void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path);
+
+}  // namespace pcl_symmetry::apps

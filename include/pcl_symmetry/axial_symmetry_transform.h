@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "pcl_symmetry/core/axial_transform.h"
+#include "pcl_symmetry/impl/cloud_analysis.hpp"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// The axial symmetry transform of a point cloud: a measure of its symmetry with respect to turns about every axis, and
+/// with respect to every point. It carries PlanarSymmetryTransform over from reflections to rotations, which the paper
+/// leaves to future work (Section 6).
+///
+/// The defaults depend neither on units nor on tuning. A map has 16 x 64 directions and 32 x 32 offsets for each; it
+/// takes about three seconds on two cores, and 4 MiB for each fold.
+///
+/// \code
+/// pcl_symmetry::AxialSymmetryTransform<pcl::PointXYZ> transform;
+/// transform.setInputCloud(cloud);
+/// transform.compute();
+/// for (const pcl_symmetry::AxisMaximum& maximum : transform.getAxes())
+///   std::cout << maximum.axis.direction().transpose() << " fold " << maximum.fold << " " << maximum.value << "\n";
+/// \endcode
+template <typename PointT>
+class AxialSymmetryTransform : public ScanAnalysis<PointT> {
+public:
+  using Ptr = pcl::shared_ptr<AxialSymmetryTransform<PointT>>;
+  using ConstPtr = pcl::shared_ptr<const AxialSymmetryTransform<PointT>>;
+
+  /// Uses at most 200 000 points, see setMaxPoints().
+  AxialSymmetryTransform() : ScanAnalysis<PointT>("AxialSymmetryTransform", 200'000) { edt_options_.num_cells = 32; }
+
+  /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 32. Twice as many see
+  /// details half as large, and need four times the bins.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  void setNumCells(int num_cells) {
+    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_cells = num_cells; });
+  }
+  /// \param num_theta,num_phi,num_offset bins of the map, each >= 1, num_phi even; default 16, 64 and 32. It has
+  /// num_theta * num_phi * num_offset^2 axes.
+  void setMapSize(int num_theta, int num_phi, int num_offset) {
+    detail::withBadArguments([&] { AxisGrid(num_theta, num_phi, num_offset, Eigen::Vector3d::Zero(), 1.0); });
+    num_theta_ = num_theta;
+    num_phi_ = num_phi;
+    num_offset_ = num_offset;
+  }
+  /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
+  /// that is more.
+  void setSigma(double sigma) {
+    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.sigma = sigma; });
+  }
+  /// \param folds orders of the turns, each 0 (any angle) or in [2, 60]; default 0 and 2 to 8.
+  void setFolds(const std::vector<int>& folds) {
+    detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.folds = folds; });
+  }
+  /// \param num_samples points drawn, >= 1; default 192, for an error below 1 %.
+  void setNumSamples(int num_samples) {
+    detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.num_samples = num_samples; });
+  }
+  void setRandomSeed(std::uint64_t seed) { transform_.seed = seed; }  ///< of all random draws
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  void setNumberOfThreads(int num_threads) {
+    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_threads = num_threads; });
+    transform_.num_threads = num_threads;
+  }
+
+  /// \return the map of all axes, in the frame and units of the input; empty where the input holds no answer, see
+  /// getReason(). With a viewpoint it holds (1 + c) D / (D + F + c), as that of PlanarSymmetryTransform.
+  /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
+  AxisMap compute() {
+    return detail::withBadArguments([&] {
+      if (!prepare()) return AxisMap();
+      const AxisGrid grid(num_theta_, num_phi_, num_offset_, edt_->center(), edt_->radius());
+      map_ = axialTransform(*edt_, grid, transform_, seen());
+      return map_;
+    });
+  }
+
+  /// \return the map of all centers of point symmetry; empty where the input holds no answer.
+  /// \param num_centers along each edge, in [2, 512].
+  /// \throws pcl::BadArgumentException as compute().
+  CenterMap computeCenters(int num_centers = 64) {
+    return detail::withBadArguments(
+        [&] { return prepare() ? centralTransform(*edt_, num_centers, transform_, seen()) : CenterMap(); });
+  }
+
+  /// \param count greatest number of axes, >= 1.
+  /// \param min_value least D, in [0, 1].
+  /// \return the maxima of the last map, strongest first, as from axisMaxima(): by D alone, also for scans.
+  std::vector<AxisMaximum> getAxes(int count = 5, double min_value = 0.5) const {
+    return detail::withBadArguments(
+        [&] { return edt_ ? axisMaxima(map_, *edt_, count, min_value, transform_) : std::vector<AxisMaximum>(); });
+  }
+
+protected:
+  void clearResults() override {
+    ScanAnalysis<PointT>::clearResults();
+    edt_.reset();
+    map_ = {};
+    visibility_.reset();
+  }
+
+private:
+  /// \return whether the input holds an answer.
+  bool prepare() {
+    const Points points = this->selectInput(transform_.seed, transform_.num_threads);
+    if (points.cols() == 0) return false;
+    visibility_ = this->seenSpace(points);
+    edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);
+    return true;
+  }
+
+  const Visibility* seen() const { return visibility_ ? &*visibility_ : nullptr; }
+
+  GaussianEdtOptions edt_options_;
+  AxialTransformOptions transform_;
+  int num_theta_ = 16, num_phi_ = 64, num_offset_ = 32;
+  std::shared_ptr<const GaussianEdt> edt_;
+  AxisMap map_;
+  std::optional<Visibility> visibility_;
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/point_set.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// Finds the closest points of one fixed point set, for many queries at a time.
+///
+/// Derive from it to use a search structure of your own. Implement search(); searchWithin() has a default that calls
+/// it. Both are called from several threads at once. Results are written into vectors of the caller, so that repeated
+/// searches reuse their memory.
+class ClosestPointSearch {
+public:
+  using Ptr = std::shared_ptr<ClosestPointSearch>;
+  virtual ~ClosestPointSearch() = default;
+
+  /// Finds the num_neighbours closest points to each query. Must be safe to call from several threads at once.
+  /// \param queries 3 x M, finite, input units.
+  /// \param num_neighbours neighbours of each query, >= 1 and at most the number of points.
+  /// \param[out] indices M * num_neighbours indices of points, query by query, nearest first; resized by the call.
+  /// \param[out] sq_distances squared distances to these points, input units squared; resized by the call.
+  virtual void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+                      std::vector<float>& sq_distances) const = 0;
+
+  /// Finds the closest point to each query within a distance. Must be safe to call from several threads at once.
+  /// \param queries 3 x M, finite, input units.
+  /// \param max_sq_distance greatest squared distance, input units squared.
+  /// \param[in,out] indices before the call M points that are likely to be close, or -1; they shorten the search and do
+  /// not change its result. After it the closest points, or -1 where none lies within the distance.
+  /// \param[out] sq_distances M squared distances, infinity where there is no point; resized by the call.
+  virtual void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
+                            std::vector<float>& sq_distances) const;
+};
+
+/// \param points 3 x N, finite, N >= 1; they are copied.
+/// \return a search by a k-d tree; exact. It gives the answers of makeFlannSearch(), those of one neighbour in less than
+/// half of the time.
+ClosestPointSearch::Ptr makeTreeSearch(const PointsRef& points);
+
+/// \param points 3 x N, finite, N >= 1; they are copied.
+/// \return a search by a k-d tree of FLANN; exact.
+ClosestPointSearch::Ptr makeFlannSearch(const PointsRef& points);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// How Iterative Symmetric Points moves the plane.
+enum class IspUpdate {
+  PointToPoint,  ///< the paper's: minimises the weighted squared distances of the pairs, in closed form
+  PointToPlane   ///< minimises distances across the surface by a Gauss-Newton step; converges in far fewer iterations
+};
+
+/// Options of Iterative Symmetric Points (Section 4.4).
+struct IspOptions {
+  IspUpdate update = IspUpdate::PointToPlane;  ///< what a step makes least
+  double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
+  double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane rests
+  int max_iterations = 30;   ///< >= 1
+  /// The plane has converged when it moves by less than this, in radians and in input units divided by the extent of
+  /// the samples (the root mean square distance from their mean), >= 0 ...
+  double tolerance = 1e-7;
+  /// ... or by less than this share of its own standard error, residual / sqrt(number of samples), >= 0. Beyond that,
+  /// matches that change sides keep the plane of a sampled surface in motion without improving it.
+  double error_share = 0.5;
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+class FarTest;
+class Visibility;
+
+/// The surface that reflected samples are matched to.
+struct IspSurface {
+  const Points& points;              ///< 3 x N
+  const Points& normals;             ///< 3 x N unit normals of any sign; may be empty with PointToPoint
+  const ClosestPointSearch& search;  ///< finds the closest of points
+  /// N values; matches to points with 1 get no weight, because the true match at the rim of a scan may not have been
+  /// seen. Null: no such points.
+  const std::vector<char>* at_border = nullptr;
+  const FarTest* far = nullptr;  ///< spares the search for points that would get no weight; null = search for all
+  int num_threads = 1;           ///< for the searches of one iteration; 0 = one per core
+  /// What a scanner saw, in the frame of the points: a reflection behind the surface that was seen has its partner
+  /// there, and not at the closest point. Null: the points show the object from all sides.
+  const Visibility* visibility = nullptr;
+};
+
+/// What one iteration saw and did: everything that a picture of it needs (Figure 7).
+struct IspStep {
+  ReflectionPlane plane;            ///< the plane after the step
+  double residual = 0.0;            ///< weighted root mean square distance of the pairs before the step, input units
+  double weight = 0.0;              ///< mean weight of the pairs, in [0, 1]
+  std::vector<int> closest;         ///< index of the closest point to each sample's reflection; -1: none within 3 sigma
+  std::vector<float> sq_distances;  ///< squared distances to the closest points; infinite where there is none
+};
+
+/// A refined plane.
+struct IspResult {
+  ReflectionPlane plane;   ///< where the steps ended, input frame
+  int iterations = 0;      ///< steps that were made
+  bool converged = false;  ///< the last step moved the plane by less than the tolerance
+  IspStep last;            ///< the last iteration: its distances are those before a step that no longer mattered
+};
+
+/// The plane that minimises sum w |x' - y|^2 over pairs (x, y) of a sample and the closest point to its reflection x'.
+///
+/// sum w |x' - y|^2 = const + 4 sum w (n.x - r)(n.y - r). Hence r = n.m with m the weighted mean of (x + y) / 2, and n
+/// is the eigenvector of the smallest eigenvalue of sum w [(x - m)(y - m)^T + (y - m)(x - m)^T] / 2.
+/// \param x,y 3 x M.
+/// \param weights M values >= 0.
+/// \return \p fallback where all weights are 0.
+ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const std::vector<double>& weights,
+                                   const ReflectionPlane& fallback);
+
+/// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2, where m is the mean direction of the normal at y
+/// and the reflected normal at x.
+///
+/// Directions that this leaves free (a flat piece of surface says nothing about planes across it) move by a step on
+/// sum w |x' - y|^2. Departure from the paper, which minimises the latter alone: it needs many more iterations.
+/// \param x,y,x_normals,y_normals 3 x M.
+/// \param weights M values >= 0.
+ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
+                                    const PointsRef& y_normals, const std::vector<double>& weights,
+                                    const ReflectionPlane& plane);
+
+/// One iteration of Iterative Symmetric Points (Section 4.4): reflect, match, weight, move the plane.
+/// \param samples indices of the points of the surface to reflect.
+/// \param plane,sigma in the units of the surface.
+/// \param guesses IspStep::closest of a plane nearby, which makes the search faster; null = not known.
+IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                               double sigma, IspUpdate update, const std::vector<int>* guesses = nullptr);
+
+/// The first half of an iteration: reflect, match, weight. The plane of the result is \p plane.
+/// \param samples indices of the points of the surface to reflect.
+/// \param plane,sigma in the units of the surface.
+/// \param guesses IspStep::closest of a plane nearby, which makes the search faster; null = not known.
+IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                             double sigma, const std::vector<int>* guesses = nullptr);
+
+/// Iterates until the plane stands still (Section 4.4).
+/// \param samples indices of the points of the surface to reflect.
+/// \param plane where to start.
+/// \throws std::invalid_argument for bad options.
+IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
+                                const ReflectionPlane& plane, const IspOptions& options);
+
+}  // namespace pcl_symmetry

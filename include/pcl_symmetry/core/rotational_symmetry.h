@@ -1,0 +1,161 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/rotation_group.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// Options of objectSymmetries(): what symmetric means, and limits of the search.
+struct ObjectSymmetryOptions {
+  int num_cells = 64;         ///< cells of the distance transform along each side, in [8, 512]
+  int num_directions = 3000;  ///< directions of axes on a half sphere, >= 100; 3000 are 2.6 degrees apart
+  int max_fold = 60;          ///< greatest order of a rotation, >= 2
+  int max_points = 10'000;    ///< number of points drawn from larger clouds, >= 100
+  /// What symmetric means: how far a surface may be off, share of the greatest distance between two points, in (0,
+  /// 0.1]. A rotation is a symmetry if it maps at least 1 - max_feature of the surface to within this of the surface.
+  double tolerance = 0.01;
+  /// The same in input units, >= 0; 0 = tolerance decides.
+  double absolute_tolerance = 0.0;
+  /// Greatest share of the surface, in one or more pieces together, that a symmetry may map off the surface: a plug, a
+  /// notch, a screw. At most an eighth of it may be off by more than ten tolerances: handles are parts, not features.
+  /// In [0, 1].
+  double max_feature = 0.10;
+  bool other_tolerances = false;  ///< finds the groups at half and twice the tolerance too
+  double min_confidence = 0.5;    ///< least confidence of rotations that are called symmetries, in [0, 1]
+  std::uint64_t seed = 1;         ///< of all random draws
+  int num_threads = 0;            ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// An axis of revolution: turns by every angle about it are symmetries.
+struct ContinuousSymmetry {
+  Eigen::Vector3d axis;    ///< unit, input frame
+  Eigen::Vector3d offset;  ///< a point of the axis, input frame
+};
+
+/// How far two poses of an object are from each other, whatever its symmetries hide.
+struct PoseDistance {
+  double angle;   ///< radians, in [0, pi]: the least angle between the first pose and all that look like the second
+  double offset;  ///< input units: between the two places of ObjectSymmetries::center
+};
+
+/// Turns about a line that are no symmetries, and why.
+struct RejectedRotation {
+  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();  ///< one of them, x -> T x in the input frame
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();         ///< unit
+  int fold = 0;                                            ///< order of the turns; 0: by any angle
+  double off = 0.0;                                        ///< share of the surface beyond the tolerance, in [0, 1]
+  double far = 0.0;                                        ///< share beyond ten tolerances, in [0, 1]
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();         ///< center of what is off, input frame
+};
+
+/// A group by its name.
+struct GroupName {
+  RotationGroupKind kind = RotationGroupKind::Cyclic;  ///< which of the finite or continuous groups
+  int fold = 1;                                        ///< order of the main axis; 0 where it is one of revolution
+
+  std::string name() const { return nameOf(kind, fold); }  ///< as nameOf() gives it
+};
+
+/// The rotations that map a shape onto itself.
+///
+/// A pose T maps the input frame to any other one, such as that of a camera. The pose T S looks like T for every
+/// symmetry S. The methods below take all symmetries into account: the turns of a continuous group in closed form,
+/// without samples of their angles. discrete and continuous are a group, as detection and from() leave them.
+struct ObjectSymmetries {
+  RotationGroupKind kind = RotationGroupKind::Cyclic;  ///< which of the finite or continuous groups
+  int fold = 1;                                        ///< order of the main axis; 0 where it is one of revolution
+  /// The point that all axes pass through, input frame; the center of the bounding ball where there is no axis.
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  /// Rotations as motions x -> T x in the input frame, without the identity. Together with it they are a group, exactly
+  /// but for rounding. A cylinder has one: a half turn about an axis across its own.
+  std::vector<Eigen::Isometry3d> discrete;
+  /// One axis for a body of revolution, three perpendicular ones for a sphere: turns about two of them generate all
+  /// rotations.
+  std::vector<ContinuousSymmetry> continuous;
+  /// Share of the surface that each rotation maps to within the tolerance of the surface, relative to what sampling and
+  /// noise allow, in [0, 1]; for rotations by any angle their mean.
+  double support = 1.0;
+  double confidence = 1.0;  ///< probability that the whole surface, not its points alone, keeps to the limits
+  double tolerance = 0.0;   ///< that was decided at, input units
+  std::optional<GroupName> at_half_tolerance;             ///< with ObjectSymmetryOptions::other_tolerances
+  std::optional<GroupName> at_twice_tolerance;            ///< with ObjectSymmetryOptions::other_tolerances
+  std::vector<RejectedRotation> rejected;                 ///< what was tried and failed, the least failure first
+  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+  std::string reason;  ///< why there is no answer, set by detectObjectSymmetries() for clouds; empty where there is one
+
+  std::string name() const { return nameOf(kind, fold); }  ///< as nameOf() gives it
+
+  /// The group that given motions and axes generate, exact but for rounding: how what people wrote into a file becomes
+  /// symmetries. A sphere may be given by two axes of revolution, or by one and a motion that tilts it.
+  /// \param discrete rigid motions in the input frame, the identity or not; each rotates by less than half a degree
+  /// from an element of the group.
+  /// \param continuous axes of revolution, not zero, of any length.
+  /// \throws std::invalid_argument where the motions generate no group of at most 240 rotations, or a motion shifts the
+  /// axes off the common center.
+  static ObjectSymmetries from(const std::vector<Eigen::Isometry3d>& discrete,
+                               const std::vector<ContinuousSymmetry>& continuous);
+
+  /// The poses that look like T.
+  /// \param step radians, > 0: turns about an axis of revolution are at most this far apart. For a sphere, every
+  /// rotation lies within half a step of one of the result; their number grows with its third power.
+  /// \return T first.
+  /// \throws std::invalid_argument for a step that is not > 0.
+  std::vector<Eigen::Isometry3d> equivalents(const Eigen::Isometry3d& T, double step = 0.5) const;
+
+  /// The pose that looks like T and is turned least from another one: the pose that continues a track. The step from
+  /// \p T_previous is never greater than that of the object, whichever of the equivalent poses T is.
+  Eigen::Isometry3d closestTo(const Eigen::Isometry3d& T, const Eigen::Isometry3d& T_previous) const;
+
+  /// One pose for all that look the same: the one that is turned least, among equals the one whose matrix is greatest
+  /// column by column (a body of revolution upside down: a fixed one of its half turns). Poses that look the same have
+  /// the same result but for rounding. No such choice can be continuous: use closestTo() along a track.
+  Eigen::Isometry3d canonical(const Eigen::Isometry3d& T) const;
+
+  /// Difference between two poses as it looks.
+  PoseDistance distance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2) const;
+
+  /// Maximum symmetry-aware surface distance (MSSD of the BOP benchmark): how far the worst of the points is, in the
+  /// pose that looks like T_2 for which that is least. Exact for turns about an axis; for spheres, the distance of the
+  /// centers.
+  /// \param points 3 x N, finite, input frame; N >= 1. The vertices of a mesh, or of its convex hull, are enough.
+  /// \return distance, input units.
+  /// \throws std::invalid_argument without a point.
+  double surfaceDistance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2, const PointsRef& points) const;
+
+  /// Whether two poses look the same within an angle in radians and a distance in input units.
+  bool sameUpTo(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2, double max_angle, double max_offset) const;
+
+  /// Mean of poses of which each may be any of those that look like it: it has the least sum of sin^2 of half the
+  /// angles to them, as far as a descent from each of at most 32 of the poses finds it, and their mean center.
+  /// \return of all that look the same, the pose closest to the first one.
+  /// \throws std::invalid_argument without a pose.
+  Eigen::Isometry3d mean(const std::vector<Eigen::Isometry3d>& poses) const;
+};
+
+/// Finds the group of rotations of a shape: both the rotations that planes of symmetry generate and those of shapes
+/// without any plane, such as propellers. It carries the paper's transform and refinement over from reflections to
+/// rotations, as its future work suggests (Section 6).
+///
+/// The distance transform tells in which directions axes through the center of mass are likely. Turns about these axes
+/// are refined as planes are, and judged by the share of the surface that they map to within the tolerance of the
+/// surface. A fold has to beat the turns halfway between its own; where all turns hold, the axis is one of revolution.
+/// The greatest group that explains the axes is then fitted as a whole, and has to hold as a whole.
+/// \param points 3 x N, finite, input units; at least 20 distinct ones, not all on a line, that show the object from all
+/// sides.
+/// \param options what symmetric means, and limits of the search.
+/// \return the group, in the input frame; C_1 for a shape without symmetry.
+/// \throws std::invalid_argument for bad options, values that are not finite, too few points and points on a line.
+ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
+
+}  // namespace pcl_symmetry

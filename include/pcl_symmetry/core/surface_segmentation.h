@@ -1,0 +1,152 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/surface_graph.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// How a surface is cut into parts.
+enum class SegmentationMethod {
+  Merging,   ///< small patches are merged as long as two of them are more likely one part than two; not in the paper
+  Splitting  ///< the paper's method: two-means of the support for symmetry planes, again and again (Section 5.3)
+};
+
+/// The evidence that merging uses, beside areas and contact.
+enum class MergingEvidence {
+  Symmetry,              ///< support for the planes of the surface, and which regions are each other's reflection
+  SymmetryAndConcavity,  ///< also concave edges, where people see borders of parts
+  All,                   ///< also thickness of the body and lines of sight within it; needs a surface with an inside
+  AllButSymmetry,        ///< concavity, thickness and lines of sight; the transform is not computed
+  Nothing                ///< areas and contact alone: what the other kinds are compared with
+};
+
+/// Options of SegmentationMethod::Merging.
+struct MergingOptions {
+  MergingEvidence evidence = MergingEvidence::All;  ///< what the costs of merging are made of
+
+  /// Patches at the beginning, >= 1.
+  /// chosen: half as many blur borders and lose small parts; twice as many take four times the time and memory.
+  int num_patches = 200;
+
+  /// Divisions into patches, each grown from other seeds, whose merges are averaged, >= 1.
+  /// chosen: with one, borders and parts depend on where patches happen to lie (measured on 65 models: Rand distance
+  /// 0.134 with one, 0.124 with four divisions into 300 patches); twice as many take twice the time.
+  int num_divisions = 4;
+
+  /// Smaller regions join a neighbour; share of the surface, in [0, 1).
+  /// chosen: at half, fragments of noise remain; at twice, small parts such as ears are lost.
+  double least_area = 0.003;
+
+  /// Whether parts on one side of a plane that maps nearly all of the surface onto itself become the reflections of
+  /// those on the other side. Without effect if the number of parts is given.
+  bool agree_across_planes = true;
+
+  /// Borders between parts move to a minimum cut within this distance, in square roots of the area of the surface, >=
+  /// 0. With 0 they stay along the patches. chosen: at half, borders still show the patches; at twice, they may leave
+  /// the place that the evidence found.
+  double cut_band = 0.03;
+
+  /// Preference of that cut for concave edges, as SplittingOptions::concavity_weight, >= 0; not used with
+  /// MergingEvidence::Symmetry.
+  /// chosen: smaller values shorten borders across creases; larger values let them follow every crease.
+  double concavity_weight = 3.0;
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// Options of SegmentationMethod::Splitting (Section 5.3). A part is split if a plane maps at least min_share and at
+/// most max_share of it onto itself. This rule hardly ever ends the splitting, so that the depth decides.
+struct SplittingOptions {
+  /// Splits in a row at most, in [0, 30]: the paper's "user-supplied depth". There are up to 2^depth parts.
+  /// measured: 1 - Rand index is 0.339, 0.295 and 0.284 at depths 2, 3 and 4 (`pcl_symmetry_evaluate segmentation`,
+  /// models of the Princeton Segmentation Benchmark with ids 1 modulo 4).
+  int depth = 3;
+  double min_share = 0.1;  ///< of the area of a part, in [0, max_share]; the paper's 10 %
+  double max_share = 0.9;  ///< of the area of a part, in [min_share, 1]; the paper's 90 %
+
+  /// Maxima are significant if D >= strength * (1 - r / R) * strongest D, as LocalMaximaOptions; in [0, 1].
+  /// chosen: at half, more weak planes are features; at twice, planes of small parts are lost.
+  double strength = 0.1;
+
+  /// Strongest maxima that serve as features, >= 1.
+  /// chosen: half as many may lack the planes of small parts; twice as many add weak planes and time.
+  int max_planes = 20;
+
+  /// The minimum cut may lie within this distance of the border of the clusters, in radii of the part, > 0.
+  /// chosen: at half, the cut keeps the ragged border of the clusters; at twice, it may drift to a shorter
+  /// border elsewhere.
+  double cut_band = 0.1;
+
+  /// An edge of concavity c > 0 radians costs length * exp(-concavity_weight * c) to cut; >= 0. With the paper's 0 the
+  /// length alone counts: cuts take the shortest way, as through the thighs in the paper's Figure 15.
+  double concavity_weight = 0.0;
+
+  /// Keeps to the letter of Sections 4.4 and 5.3: a maximum whose refinement leaves its cell is no feature, and
+  /// elements outside the two largest components go to the closer one. Otherwise such a maximum stays a feature at its
+  /// place on the grid, maxima of one basin count once, and the cut assigns the other elements.
+  bool as_published = false;
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// Options of segmentSurface().
+struct SegmentationOptions {
+  SegmentationMethod method = SegmentationMethod::Merging;  ///< how parts are found
+  MergingOptions merging;                                   ///< with SegmentationMethod::Merging
+  SplittingOptions splitting;                               ///< strength and max_planes are used by merging, too
+  int num_parts = 0;       ///< >= 0; 0: the method finds the number. Splitting then splits the largest part first.
+  std::uint64_t seed = 1;  ///< of the random samples
+  int num_threads = 0;     ///< >= 0; 0: one per core
+  /// Called now and then with the share of the work that is done, in [0, 1]; may be empty.
+  std::function<void(double)> progress;
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// A plane and the share of a part that it maps onto itself.
+struct PartPlane {
+  ReflectionPlane plane;  ///< input frame
+  double share;           ///< of the area of the part, in [0, 1]
+};
+
+/// A node of the segmentation tree: a part of the surface, either split in two or a segment.
+struct SegmentNode {
+  int parent = -1;                ///< index into the tree; -1 for the root
+  int children[2] = {-1, -1};     ///< indices into the tree; -1 for a leaf
+  int segment = -1;               ///< number of the segment of a leaf; -1 for other nodes
+  int depth = 0;                  ///< of the node; 0 for the root
+  std::vector<PartPlane> planes;  ///< significant planes of the part, strongest first
+};
+
+/// A plane of the whole surface that maps at least this share of it onto itself has an image for every segment.
+/// chosen: at half, planes pair segments that are not alike; towards 1, only nearly symmetric shapes have pairs.
+constexpr double kMappedShare = 0.75;
+
+/// The result of segmentSurface().
+struct Segmentation {
+  std::vector<int> labels;        ///< one per element: number of its segment, from 0; segment 0 has the largest area
+  int num_segments = 0;           ///< parts; labels are below it
+  std::vector<SegmentNode> tree;  ///< the root first, children after their parents
+  /// One list per plane of the root with share >= kMappedShare, in the same order: the segment that each segment is
+  /// reflected onto, which may be itself.
+  std::vector<std::vector<int>> images;
+};
+
+/// Cuts a surface into parts by its symmetries (Section 5.3).
+///
+/// A cloud of fewer than 20 distinct points is one segment, whatever the options say: so few points show no surface.
+/// \param graph N elements, from meshGraph() or cloudGraph().
+/// \param options method, evidence, number of parts.
+/// \return labels of the N elements, the tree of the parts and their images.
+/// \throws std::invalid_argument for bad options or a surface without area.
+Segmentation segmentSurface(const SurfaceGraph& graph, const SegmentationOptions& options = {});
+
+}  // namespace pcl_symmetry

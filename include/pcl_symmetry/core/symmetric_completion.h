@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/visibility.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// Options of the completion of a scan by its reflection.
+struct CompletionOptions {
+  /// Reflected points within this distance of a measured point add nothing; local spacings of the points, > 0. chosen:
+  /// half doubles parts of the surface, twice leaves gaps beside it.
+  double overlap = 1.5;
+  /// Reflected points more than this in front of what was seen lie in free space; local spacings of the points, >= 0.
+  /// chosen: half drops points next to the surface, twice keeps points in front of it.
+  double margin = 3.0;
+  int num_threads = 0;  ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// The points of a partial scan whose reflections show what the scanner did not see of a symmetric object: they fall
+/// neither onto the measured surface nor into space that was seen to be empty.
+/// \param points 3 x N, finite, input units.
+/// \param plane a symmetry plane of the object, input frame.
+/// \param options tolerances in spacings of the points.
+/// \param visibility what the scanner saw, input frame; null = nothing is known about it.
+/// \return indices of these points, rising.
+/// \throws std::invalid_argument for bad options.
+std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane& plane,
+                                  const CompletionOptions& options = {}, const Visibility* visibility = nullptr);
+
+}  // namespace pcl_symmetry

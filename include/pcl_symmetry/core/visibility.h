@@ -1,0 +1,137 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/point_set.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// What a range scanner saw: space in front of the surface on each ray is free, space behind it is unknown.
+///
+/// It is a picture of depths with the projection that made it, or several of them: free is what any of them shows to be
+/// free. A reflected point in free space speaks against the plane; a reflected point in unknown space says nothing.
+/// Departure from the paper, which takes scans for whole objects: their best planes then often lie beside the true
+/// ones.
+///
+/// Copies share their pictures.
+class Visibility {
+public:
+  using Projection = Eigen::Matrix<double, 3, 4>;
+
+  /// Depth of a ray that met nothing: all of its space is free. derived: farther than every point.
+  static constexpr float kBackground = std::numeric_limits<float>::infinity();
+  /// Depth of a pixel without a ray: all of its space is unknown. derived: nearer than every point.
+  static constexpr float kNoRay = -std::numeric_limits<float>::infinity();
+
+  /// The rays of an organized cloud or a depth image.
+  /// \param projection takes a homogeneous point of the input frame to (u w, v w, w) with w its depth, input units.
+  /// \param width,height number of columns and rows, >= 1.
+  /// \param depths width * height depths, row by row, input units; pixel (u, v) covers u - 1/2 to u + 1/2.
+  /// \param outside depth of rays beyond the picture: kNoRay or kBackground.
+  /// \throws std::invalid_argument for a picture without pixels, or a number of depths that does not fit.
+  Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside = kNoRay);
+
+  /// A range image of points without order: the nearest point in each pixel. The size of the pixels follows the
+  /// distance between the points in the picture; small gaps between the points are closed. Space beside the points is
+  /// free, but for that beyond a side of the scanner's picture: where the last of the rows that the points lie in is as
+  /// long as those before it, the picture cut the object off.
+  /// \param points 3 x N, finite.
+  /// \param viewpoint in the frame of the points.
+  /// \return nothing without a point, with one that is not finite, or if the viewpoint is among the points: they do not
+  /// lie in a cone of 75 degrees around one direction.
+  static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
+
+  /// The range image of a scene, of which the analysed points are a part: whatever hides them is in it too. Space
+  /// beyond the picture is unknown. Points all around the viewpoint give six pictures, the faces of a cube; where the
+  /// points lie in a cone of 75 degrees around one direction there is one.
+  /// \param points 3 x N, finite: all that the scanner measured.
+  /// \param viewpoint in the frame of the points.
+  /// \param max_pixels of each picture, >= 16: larger scenes get larger pixels. A picture takes four bytes a pixel.
+  /// \return nothing without a point other than the viewpoint.
+  static std::optional<Visibility> ofScene(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                           std::size_t max_pixels = kMaxPixels);
+
+  /// What several scanners saw of one scene: free is what any of them saw to be free.
+  /// \param views in one frame, at least one.
+  /// \throws std::invalid_argument without a view.
+  static Visibility together(const std::vector<Visibility>& views);
+
+  /// The same for objects on a table: none of them reaches into the table, so that space behind its surface is free of
+  /// them.
+  /// \param support unit normal n towards the objects, then d: n . x + d = 0 on the surface, frame of the points.
+  /// \param margin by which objects may seem to reach into it, input units, >= 0.
+  Visibility withSupport(const Eigen::Vector4d& support, double margin) const;
+
+  /// \return these planes with their margins: below n . x + d = 0 is no object.
+  const std::vector<Eigen::Vector4d>& supports() const { return supports_; }
+
+  /// Pixels of a picture that is made from points. chosen: 4 MB a picture; half as many pixels blur clouds of more than
+  /// two million points, twice as many need 8 MB.
+  static constexpr std::size_t kMaxPixels = 1u << 20;
+
+  /// \param x in the frame of the points.
+  /// \return distance of the point behind the surface, along its ray, input units: negative in free space, -infinity
+  /// where the ray met nothing, +infinity where no ray passed.
+  double depthBehind(const Eigen::Vector3d& x) const;
+
+  /// \param points 3 x M, in the frame of the points.
+  /// \return for each whether depthBehind() is negative: M values, 1 in free space.
+  std::vector<char> areFree(const Eigen::Matrix3Xd& points) const;
+
+  /// \param points 3 x N, finite, N >= 1.
+  /// \param margin input units.
+  /// \return share of the points that lie more than the margin behind the surface on their ray. From the viewpoint of a
+  /// scan it is close to 0, because each ray meets the cloud once.
+  double hiddenShare(const PointsRef& points, double margin) const;
+
+  /// \return the same visibility for coordinates (x - center) / scale.
+  Visibility normalized(const Eigen::Vector3d& center, double scale) const;
+
+  /// \return the point where all rays of the first picture meet, in the frame of the points.
+  Eigen::Vector3d viewpoint() const;
+
+  /// \return number of pictures, >= 1.
+  std::size_t numPictures() const { return pictures_.size(); }
+  /// Columns and rows of the first picture.
+  int width() const { return pictures_.front().width; }
+  int height() const { return pictures_.front().height; }  ///< rows
+  /// \return depth of a pixel of the first picture, input units.
+  float depth(int u, int v) const { return pictures_.front().depth(u, v); }
+
+private:
+  struct Picture {
+    Projection projection;
+    int width, height;
+    std::shared_ptr<const std::vector<float>> depths;  // in the units that the picture was taken in
+    float outside;
+    double unit = 1.0;  // of this frame, in units of the depths
+    // Lines in homogeneous pixels at which the picture cut the object: no ray passed where their product is positive.
+    std::vector<Eigen::Vector3d> sides;
+
+    float depth(int u, int v) const {
+      return static_cast<float>((*depths)[static_cast<std::size_t>(v) * width + u] / unit);
+    }
+    double depthBehind(const Eigen::Vector3d& x) const;
+    void markFree(const Eigen::Matrix3Xd& points, std::vector<char>& is_free) const;
+  };
+
+  Visibility() = default;
+
+  std::vector<Picture> pictures_;
+  std::vector<Eigen::Vector4d> supports_;  // behind these planes is no object
+};
+
+/// Finds out from the points whether they were measured from a viewpoint: they lie in front of it, hardly any of them
+/// behind others, in one layer. An open surface that is visible as a whole from there passes too.
+/// \param points 3 x N, finite.
+/// \param viewpoint in the frame of the points.
+/// \return the space seen from the viewpoint; nothing if the points were not measured from there.
+std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,188 @@
+/// The planar-reflective symmetry transform as a descriptor of shape (Section 5.2).
+#pragma once
+
+#include <pcl/console/print.h>
+#include <pcl/features/feature.h>
+#include <pcl/impl/pcl_base.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/visibility.h"
+#include "pcl_symmetry/point_types.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
+#include "pcl_symmetry/viewpoint.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+namespace detail {
+
+/// Parameters of PRSTEstimation.
+struct PRSTParameters {
+  bool use_input_axes = false;
+  double radius = 2.0;  ///< in mean distances of the points from the center, > 0
+  std::uint64_t seed = 1;
+  int num_threads = 0;  ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// \param points 3 x N, finite, input units.
+/// \param seen what a scanner saw; null = the points show the object from all sides.
+/// \return PRSTSignature32768::descriptorSize() values.
+/// \throws std::invalid_argument for points without extent.
+std::vector<float> describePRST(const Points& points, const PRSTParameters& parameters, const Visibility* seen);
+
+}  // namespace detail
+
+/// The planar-reflective symmetry transform as a global descriptor: one for the whole cloud (Section 5.2).
+///
+/// Honours setIndices; points that are not finite are left out. The descriptor has no neighbourhoods: setRadiusSearch,
+/// setKSearch, setSearchMethod and setSearchSurface of the base class are ignored. Clouds that hold no answer (no
+/// finite point, all points at one place) give an empty output and a PCL_WARN.
+///
+/// \code
+/// pcl_symmetry::PRSTEstimation<pcl::PointXYZ> estimation;
+/// estimation.setInputCloud(cloud);
+/// pcl::PointCloud<pcl_symmetry::PRSTSignature32768> descriptor;
+/// estimation.compute(descriptor);
+/// \endcode
+template <typename PointInT, typename PointOutT = PRSTSignature32768>
+class PRSTEstimation : public pcl::Feature<PointInT, PointOutT> {
+public:
+  using Ptr = pcl::shared_ptr<PRSTEstimation<PointInT, PointOutT>>;
+  using ConstPtr = pcl::shared_ptr<const PRSTEstimation<PointInT, PointOutT>>;
+  using PointCloudOut = typename pcl::Feature<PointInT, PointOutT>::PointCloudOut;
+
+  PRSTEstimation() { this->feature_name_ = "PRSTEstimation"; }
+
+  /// \param use_input_axes true: about the center of mass in the axes of the cloud, as the paper does with models that
+  /// were aligned by hand. false (default): in the canonical frame of the cloud, see SymmetryAlignment.
+  void setUseInputAxes(bool use_input_axes) { parameters_.use_input_axes = use_input_axes; }
+  bool getUseInputAxes() const { return parameters_.use_input_axes; }  ///< see setUseInputAxes()
+
+  /// Sets the size of the ball that is described. It is relative to the cloud, unlike that of setRadiusSearch(), which
+  /// is ignored.
+  /// \param radius in mean distances of the points from the center, > 0; default 2.
+  /// \throws
+  /// pcl::BadArgumentException for another radius.
+  void setRadius(double radius) {
+    detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.radius = radius; });
+  }
+  double getRadius() const { return parameters_.radius; }  ///< see setRadius()
+
+  void setRandomSeed(std::uint64_t seed) { parameters_.seed = seed; }  ///< of all random draws
+
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  /// \throws pcl::BadArgumentException for a negative number.
+  void setNumberOfThreads(int num_threads) {
+    detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.num_threads = num_threads; });
+  }
+
+  /// \param max_points points that are drawn from a larger cloud, >= 2; default 20 000.
+  /// \throws pcl::BadArgumentException for fewer than 2.
+  void setMaxPoints(std::size_t max_points) {
+    detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 2);
+    max_points_ = max_points;
+  }
+
+  /// Sets where the scanner stood; by default the data decide, as in SymmetryAlignment.
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
+
+protected:
+  using pcl::Feature<PointInT, PointOutT>::input_;
+  using pcl::Feature<PointInT, PointOutT>::indices_;
+
+  /// Replaces that of the base class, which builds a search tree and makes one output point for each index.
+  /// \throws pcl::BadArgumentException where the points surround the given viewpoint.
+  bool initCompute() override {
+    warnOfIgnoredSearch();
+    if (!pcl::PCLBase<PointInT>::initCompute()) return warnOfNoAnswer("input cloud: not set");
+    points_ = detail::selectPoints(*input_, indices_.get(), max_points_, parameters_.seed).points;
+    const std::string reason = detail::reasonForNoAnswer(points_);
+    if (!reason.empty()) return warnOfNoAnswer(reason);
+    const bool is_part = this->use_indices_ && indices_->size() < input_->size();
+    seen_ = detail::withBadArguments([&] { return detail::seenSpace(*input_, points_, viewpoint_, is_part); });
+    all_indices_ = indices_;
+    indices_ = pcl::make_shared<pcl::Indices>(1, 0);
+    return true;
+  }
+
+  bool deinitCompute() override {
+    indices_ = all_indices_;
+    all_indices_.reset();
+    points_.resize(3, 0);
+    seen_.reset();
+    return pcl::PCLBase<PointInT>::deinitCompute();
+  }
+
+  void computeFeature(PointCloudOut& output) override {
+    output.width = output.height = 1;
+    try {
+      const std::vector<float> prst = detail::describePRST(points_, parameters_, seen_ ? &*seen_ : nullptr);
+      std::copy(prst.begin(), prst.end(), output[0].prst);
+    } catch (const std::invalid_argument& reason) {
+      warnOfNoAnswer(std::string("input cloud: ") + reason.what());
+      output.clear();
+      output.height = 1;
+    }
+  }
+
+private:
+  /// \return false.
+  bool warnOfNoAnswer(const std::string& reason) const {
+    detail::warnOfNoAnswer(this->getClassName(), reason);
+    return false;
+  }
+
+  void warnOfIgnoredSearch() {
+    if (warned_ || (this->search_radius_ == 0.0 && this->k_ == 0)) return;
+    warned_ = true;
+    PCL_WARN("[pcl_symmetry::%s] setRadiusSearch and setKSearch are ignored; setRadius is the size of the ball\n",
+             this->getClassName().c_str());
+  }
+
+  detail::PRSTParameters parameters_;
+  std::size_t max_points_ = 20'000;
+  Viewpoint viewpoint_;
+  bool warned_ = false;  // that a search is ignored
+  // While a descriptor is computed:
+  pcl::IndicesPtr all_indices_;
+  Points points_;
+  std::optional<Visibility> seen_;
+};
+
+/// The product of the L2 distances of PRST and GEDT, which the paper proposes for retrieval (Section 5.2).
+/// \return >= 0.
+float productDistance(const PRSTSignature32768& prst_a, const GEDTSignature32768& gedt_a,
+                      const PRSTSignature32768& prst_b, const GEDTSignature32768& gedt_b);
+
+/// L2 distance, differences weighted by sqrt(sin theta), the size of the bins (Section 5.2).
+/// \return >= 0.
+float descriptorDistance(const PRSTSignature32768& a, const PRSTSignature32768& b);
+/// The same for PRSD. Departure from Kazhdan et al. (2004), who take the maximum difference: L2 as for PRST, so that
+/// both descriptors are compared alike.
+/// \return >= 0.
+float descriptorDistance(const PRSDSignature1024& a, const PRSDSignature1024& b);
+/// L2 distance.
+/// \return >= 0.
+float descriptorDistance(const GEDTSignature32768& a, const GEDTSignature32768& b);
+
+#ifndef PCL_NO_PRECOMPILE
+// Marked one by one: where all is hidden, so are the point types of PCL and what is made of them.
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZ>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZI>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGB>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGBA>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointNormal>;
+extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGBNormal>;
+#endif
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,279 @@
+/// Models in a file, found by shape or recognized in a scan (Section 5.2).
+#pragma once
+
+#include <pcl/common/io.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/symmetry_registration.h"
+#include "pcl_symmetry/viewpoint.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+namespace detail {
+struct DatabaseParts;
+}
+
+/// How a database is made and used.
+struct DatabaseOptions {
+  /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1. chosen: fewer
+  /// show less of the variety of the models, twice takes four times the time and memory of the fit; README measures 200
+  /// for 904 models.
+  int num_references = 200;
+  /// Views of a model that scans are compared with, >= 1. chosen: of 80 views the nearest is within 12 degrees of any
+  /// direction; half makes that 17 degrees, twice 8.5 (gaps shrink with the square root).
+  int num_views = 80;
+  std::size_t max_points = 20'000;  ///< points of a cloud that are kept, >= 100. chosen: time grows with them
+  int num_threads = 0;              ///< >= 0; 0 = one per core
+  /// Seconds that a change waits while another program writes, >= 0. chosen: a program that builds a database writes
+  /// for milliseconds at a time; half and twice are as good.
+  double lock_timeout = 30.0;
+  std::string unit;  ///< of the coordinates of all models, such as "m"; stored when the database is made
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// What SymmetryDatabase::recognize() tries, and what it accepts.
+struct RecognitionOptions {
+  /// Models that are brought to the scan coarsely, >= 1. chosen: half misses more models, twice takes twice the time.
+  int num_candidates = 10;
+  /// For scans from a viewpoint, in databases of more than 300 models: models that are brought to it where none of
+  /// these is accepted, with these, >= 1; a number below num_candidates counts as that. Unknown objects take the time
+  /// of all. chosen: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of the training half) among
+  /// 100 000 models, 103 are right with 40 and 107 with 100, which take up to 1.3 and 1.9 s of processor time.
+  int max_candidates = 70;
+  /// For scans from a viewpoint: models with the best coarse poses, whose poses are refined, >= 1, of num_candidates
+  /// and again of the others. chosen: as num_candidates.
+  int num_refined = 4;
+  /// Added to the distance of two views if their radii differ by a factor of e, >= 0. A smaller value is better where
+  /// other objects hide much of the object. chosen: 0 ignores the size.
+  double size_weight = 0.25;
+  /// Least confidence of a model that is accepted, in [0, 1], see RecognizedModel::confidence. chosen: an answer is as
+  /// often right as wrong there; README has a curve of what other values accept.
+  double min_confidence = 0.5;
+  /// Least merit of a pose that is accepted whatever its confidence, in [-1, 1], see RecognizedModel::score. chosen:
+  /// below that a scan hardly fits; the confidence asks for more.
+  double min_merit = 0.5;
+  CloudRegistrationOptions registration = quickRegistration();  ///< search for poses and their refinement
+  int num_threads = 0;                                          ///< >= 0; 0 = one per core
+
+  /// \return a search for poses that takes a tenth of the time of the default.
+  static CloudRegistrationOptions quickRegistration();
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// A model that is like a query.
+struct ModelMatch {
+  std::string name;  ///< of the model
+  /// L2 distance of the compact signatures, divided by the root of the product of the two mean distances to the ten
+  /// nearest references: 1 between shapes that are as far from each other as from what is most like them.
+  double distance;
+};
+
+/// A model that a scan shows, and where.
+struct RecognizedModel {
+  std::string name;                                                ///< of the model
+  Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();  ///< frame of the scan to that of the model
+  /// How well the scan fits there: support is the share of its points on the surface of the model, as wide as the
+  /// points of the scan are apart and noisy. How densely the model was sampled does not count.
+  PoseScore score;
+  /// Probability that the scan shows this model or one of the same shape, in [0, 1]: a logistic function of the merit
+  /// and of how far it is ahead of the best model of another shape, fitted to scenes with objects that are not in the
+  /// database. The sum over shapes is at most 1. Two models are of the same shape if they share 90 % of their surfaces
+  /// where the scan puts them. The best model is judged before it is turned about its axes for a better pose, so that
+  /// its score may be higher than its confidence says.
+  double confidence = 0.0;
+};
+
+/// Accepted models, best first. Empty: the object is unknown.
+using Recognition = std::vector<RecognizedModel>;
+
+/// Where a model comes from; what is not known stays empty.
+struct ModelSource {
+  std::string path;               ///< file or address
+  std::string checksum;           ///< of what is there; build() passes over models whose checksum is stored
+  std::vector<std::string> tags;  ///< its class, or any other words; one line each
+};
+
+/// What is stored of a model beside its points.
+struct ModelInfo {
+  std::string name;            ///< unique in the database
+  std::int64_t time = 0;       ///< when it was stored, seconds since 1970 (UTC)
+  ModelSource source;          ///< empty where none was given
+  std::size_t num_points = 0;  ///< that are stored
+};
+
+/// A model of a long build. Its functions are called by several threads at once.
+struct ModelInput {
+  std::string name;                                           ///< that it gets in the database
+  std::function<ModelSource()> source;                        ///< nothing: no source is stored
+  std::function<pcl::PointCloud<pcl::PointXYZ>()> load = {};  ///< called unless the source is stored already
+};
+
+/// What SymmetryDatabase::build() did.
+struct BuildReport {
+  std::size_t num_added = 0;                                  ///< models that were stored
+  std::size_t num_kept = 0;                                   ///< models whose source was stored before
+  std::vector<std::pair<std::string, std::string>> failures;  ///< name and reason, in the order of the inputs
+  bool cancelled = false;                                     ///< the progress function said so
+};
+
+/// Told the share of the work that is done, in [0, 1]. Returns whether to go on.
+using BuildProgress = std::function<bool(double)>;
+
+/// Models in a file, found by their symmetry (Section 5.2): match() finds models of like shape, recognize() the model
+/// that a scan shows.
+///
+/// The file is a database of SQLite. What a function changes is on the disk when it returns, whole or not at all, also
+/// if the program is killed. Several programs may read while one writes; a second writer waits, see
+/// DatabaseOptions::lock_timeout. A database that is open shows the state of its first reading, or that after its own
+/// last change, until refresh(). While it is open, SQLite keeps FILE-wal and FILE-shm beside the file.
+///
+/// Parts of models are read when a query needs them. An object may be used by several threads for queries, or by one
+/// for changes. Clouds that hold no answer (fewer than 20 distinct points, or all of them on one line) give an empty
+/// result and a PCL_WARN.
+///
+/// \code
+/// pcl_symmetry::SymmetryDatabase database("models.db");
+/// database.add("milk", cloud);
+/// for (const auto& model : database.recognize(scan)) std::cout << model.name << ' ' << model.confidence << '\n';
+/// \endcode
+class SymmetryDatabase {
+public:
+  using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+  /// Opens a database. A file that is missing is an empty database, and is made by the first change.
+  /// \param file ":memory:" = no file: the models are gone with the object.
+  /// \throws pcl::IOException naming file and reason: no database of this library, of a newer or an older one, damaged.
+  /// \throws pcl::BadArgumentException for bad options.
+  explicit SymmetryDatabase(const std::string& file, const DatabaseOptions& options = {});
+  ~SymmetryDatabase();
+  SymmetryDatabase(SymmetryDatabase&&) noexcept;             ///< the other one may only be destroyed or assigned to
+  SymmetryDatabase& operator=(SymmetryDatabase&&) noexcept;  ///< as above
+
+  /// \return names of all models, sorted by their bytes.
+  std::vector<std::string> names() const;
+  std::size_t size() const;                      ///< number of models
+  bool contains(const std::string& name) const;  ///< whether there is such a model
+  /// \throws pcl::BadArgumentException where there is no such model.
+  ModelInfo info(const std::string& name) const;
+  /// \return the unit that the database was made with.
+  std::string unit() const;
+  /// Reads what others have changed since.
+  void refresh();
+
+  /// Stores a model, or replaces the model of that name. It is found at once.
+  /// \param name 1 to 200 bytes of UTF-8 without "/" and control characters; the first one is not ".".
+  /// \param cloud the object seen from all sides.
+  /// \throws pcl::BadArgumentException for another name or a cloud that holds no answer: it would never be found.
+  /// \throws pcl::IOException naming file and reason; the database is unchanged then.
+  void add(const std::string& name, const Cloud& cloud, const ModelSource& source = {});
+  /// \throws pcl::BadArgumentException where there is no such model.
+  /// \throws pcl::IOException naming file and reason; the database is unchanged then.
+  void remove(const std::string& name);
+  /// Stores many models, each as soon as it is described, and fits the compact forms as save() does. Models that cannot
+  /// be used are reported, and the others stored. An interrupted build goes on where it stopped: a model of the same
+  /// name and the same source checksum is kept.
+  /// \throws pcl::IOException naming file and reason; what was stored before stays stored.
+  BuildReport build(const std::vector<ModelInput>& models, const BuildProgress& progress = {});
+  /// Adds the models of another database, or those of a folder that version 0.1 of this library wrote; models of the
+  /// same name are replaced. The folder's clouds are described again.
+  /// \throws pcl::IOException naming file and reason; what was stored before stays stored.
+  BuildReport importFrom(const std::string& path, const BuildProgress& progress = {});
+  /// Fits the compact forms anew if they have less than half of the references that DatabaseOptions::num_references
+  /// asks for, and stores those that are missing. Without it, each program that asks has to do so for itself.
+  /// \throws pcl::IOException naming file and reason; the database is unchanged then.
+  void save();
+  /// Fits the compact forms anew to the models that are there now.
+  /// \throws pcl::IOException naming file and reason; the database is unchanged then.
+  void rebuild();
+
+  /// \return what is damaged, a sentence each; empty where all is well.
+  /// \throws pcl::IOException naming file and reason where it cannot be read at all.
+  static std::vector<std::string> check(const std::string& file);
+
+  /// \return the cloud of a model, at most DatabaseOptions::max_points points. Coordinates differ from those that were
+  /// added by at most 7.7e-6 of the greatest extent; points have another order.
+  /// \throws pcl::BadArgumentException where there is no such model.
+  /// \throws pcl::IOException naming file and reason.
+  Cloud cloud(const std::string& name) const;
+
+  /// Models of like shape, whatever their size and pose.
+  /// \param cloud the object seen from all sides, or a scan.
+  /// \param num_nearest >= 0.
+  /// \param viewpoint where the scanner stood.
+  /// \return nearest first, at most \p num_nearest.
+  /// \throws pcl::BadArgumentException for bad parameters.
+  /// \throws pcl::IOException naming file and reason.
+  std::vector<ModelMatch> match(const Cloud& cloud, int num_nearest = 10, const Viewpoint& viewpoint = {}) const;
+
+  /// Makes what recognize() needs for scans from a viewpoint, which the first one does otherwise: once, on all threads
+  /// of DatabaseOptions. A call after a change makes what is new.
+  /// \throws pcl::IOException naming file and reason.
+  void prepare() const;
+
+  /// The models that a scan can show, in the unit of the models. Candidates look like the scan from some side; without
+  /// a viewpoint, candidates are of like shape.
+  /// \param scan at least two different finite points.
+  /// \param viewpoint where the scanner stood.
+  /// \return accepted models, best first.
+  /// \throws pcl::BadArgumentException for bad options.
+  /// \throws pcl::IOException naming file and reason.
+  Recognition recognize(const Cloud& scan, const RecognitionOptions& options = {},
+                        const Viewpoint& viewpoint = {}) const;
+
+  /// The same for an object of a scene.
+  /// \param scene all that the scanner measured.
+  /// \param cluster the points of the object, indices into the scene. Other objects in front may hide much of it.
+  /// \param seen what the scanners saw of the scene, made once for all its clusters; null: it is made of \p scene.
+  /// \throws pcl::BadArgumentException for bad options, and for indices that the scene does not have.
+  Recognition recognize(const Cloud& scene, const pcl::Indices& cluster, const RecognitionOptions& options = {},
+                        const SeenSpace::ConstPtr& seen = nullptr) const;
+
+  /// The same for each of many clusters.
+  /// \param progress after each; where it returns false the rest stays unknown.
+  std::vector<Recognition> recognize(const std::vector<Cloud>& clusters, const RecognitionOptions& options = {},
+                                     const Viewpoint& viewpoint = {}, const BuildProgress& progress = {}) const;
+
+  /// The same for clouds of other point types; colours and other fields are not used.
+  template <typename PointT>
+  void add(const std::string& name, const pcl::PointCloud<PointT>& cloud, const ModelSource& source = {}) {
+    add(name, positionsOf(cloud), source);
+  }
+  /// As match() of a Cloud.
+  template <typename PointT>
+  std::vector<ModelMatch> match(const pcl::PointCloud<PointT>& cloud, int num_nearest = 10,
+                                const Viewpoint& viewpoint = {}) const {
+    return match(positionsOf(cloud), num_nearest, viewpoint);
+  }
+  /// As recognize() of a Cloud.
+  template <typename PointT>
+  Recognition recognize(const pcl::PointCloud<PointT>& scan, const RecognitionOptions& options = {},
+                        const Viewpoint& viewpoint = {}) const {
+    return recognize(positionsOf(scan), options, viewpoint);
+  }
+
+private:
+  template <typename PointT>
+  static Cloud positionsOf(const pcl::PointCloud<PointT>& cloud) {
+    Cloud positions;
+    pcl::copyPointCloud(cloud, positions);
+    return positions;
+  }
+
+  std::unique_ptr<detail::DatabaseParts> parts_;
+};
+
+}  // namespace pcl_symmetry

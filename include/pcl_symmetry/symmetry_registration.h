@@ -1,0 +1,290 @@
+#pragma once
+
+#include <pcl/registration/registration.h>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/pose_search.h"
+#include "pcl_symmetry/core/visibility.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// Poses around a guess.
+struct PoseNeighbourhood {
+  double angle;     ///< radians, greatest turn away from the guess, in (0, pi]
+  double distance;  ///< input units, greatest way from where the guess puts the center of the source, >= 0
+};
+
+/// The search for a pose and its refinement.
+struct CloudRegistrationOptions {
+  /// Only poses around the guess, as a track needs them; not set: all poses. Frames are then not looked for.
+  std::optional<PoseNeighbourhood> around = {};
+  bool frames = true;        ///< tries the poses that bring symmetry frames together, beside evenly spread rotations
+  FrameOptions frame;        ///< of these frames
+  PoseSearchOptions search;  ///< of the search for poses
+  int max_iterations = 30;   ///< of the refinement by PCL's point-to-plane ICP, >= 1
+  /// Greatest distance of corresponding points in the refinement, input units, > 0; not set: from the data.
+  std::optional<double> max_correspondence = {};
+  double transformation_epsilon = 1e-8;  ///< of the refinement, as in pcl::Registration, but in radii, >= 0
+  double rotation_epsilon = 0.0;         ///< of the refinement, as in pcl::Registration
+  std::uint64_t seed = 1;                ///< of all random draws
+  int num_threads = 0;                   ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// A pose of a cloud in another one.
+struct RegisteredPose {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();  ///< moves the source onto the target
+  /// Of this pose. The source counts as the scan, unless only the target was seen from one side.
+  PoseScore score;
+};
+
+/// The best pose of a cloud in another one, and the next ones.
+struct CloudRegistration : RegisteredPose {
+  /// Distinct poses by falling merit, the best one first, at most PoseSearchOptions::max_poses: those that symmetry
+  /// makes equal have like merits.
+  std::vector<RegisteredPose> poses;
+  /// How uncertain the best pose is: the covariance of the small motion m = (w, t) of the target's frame for which
+  /// exp(m) T_target_source is the true pose, so that a point x of the aligned source belongs at x + w x x + t. Order:
+  /// rotation vector w about the axes of the target's frame through its origin, radians; translation t, input units of
+  /// the target. From the Hessian of the point-to-plane distances at the result and their scatter: it tells of noise
+  /// and sampling. A pose that symmetry makes equal, a wrong pose, and what both clouds have wrong in common are not in
+  /// it; where noise is a third of the spacing of the points, true deviations are about twice as large. Directions that
+  /// the surface leaves open have the variance of a uniform rotation and of a way by the radius. Nothing where no pose
+  /// was found.
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance;
+  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+};
+
+class PreparedCloud;
+
+/// A cloud that others are registered to, again and again. Its normals, its trees, and its symmetry frame where that
+/// is asked for, are made when they are first needed, and kept. Copies share them; several threads may use them.
+class RegistrationTarget {
+public:
+  /// \param points 3 x N, finite, not all equal, input units.
+  /// \param seen what the scanner saw of them; nothing = the cloud shows its object from all sides.
+  /// \param options of the preparation: frame, seed and num_threads count.
+  /// \throws std::invalid_argument for bad options or points without extent.
+  RegistrationTarget(const Points& points, const std::optional<Visibility>& seen,
+                     const CloudRegistrationOptions& options = {});
+
+private:
+  friend CloudRegistration registerClouds(const Points&, const std::optional<Visibility>&, const RegistrationTarget&,
+                                          const Eigen::Isometry3d&, const CloudRegistrationOptions&);
+  std::shared_ptr<const PreparedCloud> cloud_;
+};
+
+/// Finds the best pose of two clouds (Section 5.1): hypotheses from symmetry frames, search, refinement by ICP, and a
+/// last comparison with more points.
+/// \param source,target 3 x N, finite, not all equal, input units.
+/// \param source_seen,target_seen what the scanners saw of them; nothing = the cloud shows its object from all sides.
+/// \param guess T_target_source, tried beside the hypotheses; the middle of options.around.
+/// \param options of frames, search and refinement.
+/// \return the poses of greatest merit; where none around the guess is left, the guess with a score of 0.
+/// \throws std::invalid_argument for bad options or points without extent.
+CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
+                                 const Points& target, const std::optional<Visibility>& target_seen,
+                                 const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options = {});
+
+/// The same for a target that is prepared once. Its frame is that of the options it was made with.
+CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
+                                 const RegistrationTarget& target, const Eigen::Isometry3d& guess,
+                                 const CloudRegistrationOptions& options = {});
+
+/// Registers a cloud to another one from any pose by their symmetries (Section 5.1 of the paper): a partial scan to a
+/// model of its object, two whole objects, or a whole object to a scan.
+///
+/// This is a pcl::Registration that needs no guess: align() it like PCL's own classes. Candidates are the poses that
+/// bring the symmetry frames of both clouds together in one of the ways that symmetry leaves open, the guess, and
+/// rotations spread evenly. A candidate is judged by the points of one cloud that lie on the other, and by the points
+/// that lie where the scanner saw that there is nothing. The best candidates are refined by PCL's point-to-plane ICP.
+///
+/// Honours setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
+/// epsilons of the refinement. Points that are not finite are left out. The target is prepared by the first align()
+/// after it was set, and kept: a change of the points in that cloud needs setInputTarget() again, as PCL's own classes
+/// need it.
+///
+/// "Nothing fits" is an answer: where nothing fits, or a cloud holds no answer, hasConverged() is false, the
+/// transformation is the identity, the output is the source as it was, getReason() says why, and getPoses() still lists
+/// the best poses that were found. Nothing is thrown; PCL_WARN prints the reason.
+///
+/// The contract of pcl::Registration holds with these exceptions:
+/// - align() without a guess does not start at the identity: it looks for the pose among all;
+/// - the output is not at the last pose of an iteration where align() has not converged, but the source as it was, and
+///   the transformation is the identity;
+/// - getFitnessScore() leaves out points that are not finite; called through pcl::Registration it is PCL's own;
+/// - setEuclideanFitnessEpsilon(), setRANSACIterations(), setRANSACOutlierRejectionThreshold(),
+///   setTransformationEstimation(), setCorrespondenceEstimation(), correspondence rejectors and
+///   registerVisualizationCallback() have no effect, and the trees of setSearchMethodTarget() and
+///   setSearchMethodSource() are not used by align(); getFitnessScore() uses that of the target;
+/// - setIndices() chooses points of the source, and the output holds these points, as in PCL; where something lies
+///   beside them it tells what hides them.
+///
+/// The library holds this class for PCL's point types with x, y and z. For other point types define PCL_NO_PRECOMPILE
+/// before the first include, as with PCL's own classes.
+///
+/// \code
+/// pcl_symmetry::SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
+/// registration.setInputSource(scan);
+/// registration.setInputTarget(model);
+/// registration.align(aligned);
+/// \endcode
+template <typename PointSource, typename PointTarget, typename Scalar = float>
+class SymmetryRegistration : public pcl::Registration<PointSource, PointTarget, Scalar> {
+public:
+  using Base = pcl::Registration<PointSource, PointTarget, Scalar>;
+  using Ptr = pcl::shared_ptr<SymmetryRegistration<PointSource, PointTarget, Scalar>>;
+  using ConstPtr = pcl::shared_ptr<const SymmetryRegistration<PointSource, PointTarget, Scalar>>;
+  using typename Base::Matrix4;
+  using typename Base::PointCloudSource;
+  using typename Base::PointCloudTargetConstPtr;
+
+  SymmetryRegistration();
+
+  /// The cloud that sources are brought to. It is prepared once, see above.
+  void setInputTarget(const PointCloudTargetConstPtr& cloud) override {
+    Base::setInputTarget(cloud);
+    prepared_target_.reset();
+  }
+
+  using Base::getFitnessScore;
+  /// Differs from the function of the base class, which in PCL 1.13 aborts at points that are not finite: here they are
+  /// left out.
+  /// \param max_range greatest squared distance of points that count, squared input units.
+  /// \return mean squared distance of the aligned source from the target; the greatest double where no point counts.
+  double getFitnessScore(double max_range = std::numeric_limits<double>::max());
+
+  /// Where the scanner of each cloud stood; by default the data decide, see ScanAnalysis.
+  void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = viewpoint; }
+  /// See setSourceViewpoint().
+  void setTargetViewpoint(const Viewpoint& viewpoint) {
+    target_viewpoint_ = viewpoint;
+    prepared_target_.reset();
+  }
+  /// Gives what the scanners of a scene saw, made once for all its objects, in place of what the viewpoint tells.
+  /// \param seen in the frame of that cloud; null (default): each align() finds out for itself.
+  void setSourceSeenSpace(const SeenSpace::ConstPtr& seen) { source_seen_space_ = seen; }
+  /// See setSourceSeenSpace().
+  void setTargetSeenSpace(const SeenSpace::ConstPtr& seen) {
+    target_seen_space_ = seen;
+    prepared_target_.reset();
+  }
+
+  /// \param min_merit a pose of at least this getScore().merit() has converged, in [-1, 1]; default 0.4: scans of
+  /// benchmark models, also scans with noise and holes, reach 0.5 at their own model and stay below 0.32 at models of
+  /// other kinds.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  void setMinMerit(double min_merit) {
+    if (!(min_merit >= -1.0 && min_merit <= 1.0)) {
+      std::ostringstream message;
+      message << "min_merit = " << min_merit << ", must be in [-1, 1]";
+      detail::throwBadArgument(message.str());
+    }
+    min_merit_ = min_merit;
+  }
+  /// Searches only around the guess that align() is given: a moving object is tracked from one frame to the next, and
+  /// does not turn to a pose farther away that symmetry makes equal. align() does not converge where nothing fits
+  /// there.
+  /// \param angle radians, in (0, pi].
+  /// \param distance of the center of the source, input units, >= 0.
+  void setSearchAround(double angle, double distance) {
+    detail::changeOptions(options_, [&](CloudRegistrationOptions& changed) { changed.around = {angle, distance}; });
+  }
+  /// Searches all poses again (default).
+  void setSearchEverywhere() { options_.around.reset(); }
+  /// \param use_frames whether the symmetry frames of both clouds give candidates (default), or evenly spread rotations
+  /// alone.
+  void setUseFrames(bool use_frames) { options_.frames = use_frames; }
+  /// \param options of the search for poses.
+  void setSearchOptions(const PoseSearchOptions& options) {
+    detail::changeOptions(options_.search, [&](PoseSearchOptions& changed) { changed = options; });
+  }
+  const PoseSearchOptions& getSearchOptions() const { return options_.search; }  ///< see setSearchOptions()
+  /// Larger clouds are reduced to this number of points, see CloudAnalysis::setMaxPoints().
+  /// \param max_points >= 3; default 10 000.
+  void setMaxPoints(std::size_t max_points) {
+    detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 3);
+    max_points_ = max_points;
+    prepared_target_.reset();
+  }
+  /// \param seed of all random draws.
+  void setRandomSeed(std::uint64_t seed) {
+    options_.seed = seed;
+    prepared_target_.reset();
+  }
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  void setNumberOfThreads(int num_threads) {
+    detail::checkAtLeast("num_threads", num_threads, 0);
+    options_.num_threads = num_threads;
+  }
+
+  /// \return how well the clouds agree with the transformation of the last align(), or with the best pose that was
+  /// found where nothing fits.
+  const PoseScore& getScore() const { return score_; }
+  /// \return the best poses that the last align() found, see CloudRegistration::poses; that of the transformation is the
+  /// first one. Empty where a cloud held no answer.
+  const std::vector<RegisteredPose>& getPoses() const { return poses_; }
+  /// \return how uncertain the transformation of the last align() is, see CloudRegistration::covariance; nothing where
+  /// it did not converge.
+  const std::optional<Eigen::Matrix<double, 6, 6>>& getCovariance() const { return covariance_; }
+  /// \return why the last align() did not converge, one sentence; empty where it did.
+  const std::string& getReason() const { return reason_; }
+  /// \return stages of the last align() and their milliseconds, in order.
+  const std::vector<std::pair<std::string, double>>& getTiming() const { return timing_ms_; }
+
+protected:
+  using Base::converged_;
+  using Base::corr_dist_threshold_;
+  using Base::final_transformation_;
+  using Base::getClassName;
+  using Base::indices_;
+  using Base::input_;
+  using Base::max_iterations_;
+  using Base::reg_name_;
+  using Base::target_;
+  using Base::transformation_;
+  using Base::transformation_epsilon_;
+  using Base::transformation_rotation_epsilon_;
+  using Base::tree_;
+
+  /// \throws pcl::BadArgumentException where points surround the viewpoint that was given for them.
+  void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
+
+private:
+  /// Prepares the target, or sets the reason why it holds no answer.
+  void prepareTarget();
+  /// Sets the transformation, or the reason where nothing fits.
+  void findPose(const Points& source, const Matrix4& guess);
+
+  Viewpoint source_viewpoint_, target_viewpoint_;
+  SeenSpace::ConstPtr source_seen_space_, target_seen_space_;
+  CloudRegistrationOptions options_;
+  std::optional<RegistrationTarget> prepared_target_;
+  // chosen: a lower value calls models of other kinds a fit, a higher one refuses scans with noise and holes.
+  double min_merit_ = 0.4;
+  std::size_t max_points_ = 10'000;
+  PoseScore score_;
+  std::vector<RegisteredPose> poses_;
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance_;
+  std::string reason_;
+  std::vector<std::pair<std::string, double>> timing_ms_;
+};
+
+}  // namespace pcl_symmetry
+
+#ifdef PCL_NO_PRECOMPILE
+#include "pcl_symmetry/impl/symmetry_registration.hpp"
+#endif

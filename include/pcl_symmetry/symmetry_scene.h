@@ -1,0 +1,139 @@
+/// One frame of a sensor, from points to objects: supporting planes, clusters, and what symmetry says of each cluster.
+#pragma once
+
+#include <pcl/common/io.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl_symmetry/completion.h"
+#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
+#include "pcl_symmetry/symmetry_database.h"
+#include "pcl_symmetry/viewpoint.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// How a scene falls into objects, and what is done with each.
+struct SceneOptions {
+  /// Points within this of a supporting plane belong to it, input units, >= 0; 0 = from the spacing and the roughness
+  /// of the points.
+  double plane_distance = 0.0;
+  /// Points closer than this are of one object, input units, >= 0; 0 = from the spacing of the points.
+  double cluster_distance = 0.0;
+  /// Clusters of fewer points are left out, >= 20. chosen: half reports specks, twice misses small things far away.
+  int min_points = 300;
+  /// Points at a greater depth than this, seen from the viewpoint, are background, input units, >= 0; 0 = none is.
+  double max_range = 0.0;
+  /// Points of a cluster that are analysed, >= 100. chosen: time grows with them; half makes weak planes less certain.
+  int max_points = 5'000;
+  bool filter = true;  ///< takes the errors of depth cameras out of organized frames, see withoutDepthErrors()
+  bool frames = true;  ///< finds the frame of each object
+  /// Completes objects whose best plane, or a plane through their axis, decides.
+  bool complete = true;
+  DetectionOptions detection;      ///< of the planes of each object
+  FrameOptions frame;              ///< of the frame of each object
+  CompletionOptions completion;    ///< of its completion
+  RecognitionOptions recognition;  ///< of its name, with a database
+  int num_threads = 0;             ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// A table, floor or wall: other points lie on the viewer's side of it.
+struct SupportingPlane {
+  Eigen::Vector4d coefficients;  ///< unit normal towards the viewer, then d: normal . x + d = 0 on the plane
+  pcl::Indices indices;          ///< of its points, into the scene
+};
+
+/// A cluster of a scene, and what was found.
+struct SceneObject {
+  pcl::Indices indices;                 ///< of its points, into the scene
+  std::string reason;                   ///< why the cluster holds no answer, one sentence; empty where it was analysed
+  std::vector<SymmetryPlane> planes;    ///< as in Detection, frame of the scene
+  std::vector<SymmetryAxis> axes;       ///< as in Detection
+  std::vector<SymmetryCenter> centers;  ///< as in Detection
+  std::optional<SymmetryFrame> frame;   ///< nothing without SceneOptions::frames
+  /// The plane that the object was completed by: the best one, or through the axis and across the view. Nothing where
+  /// no plane decides.
+  std::optional<ReflectionPlane> completed_by;
+  pcl::PointCloud<pcl::PointXYZ> added;  ///< points that this reflection adds to the cluster
+  Recognition models;                    ///< best first; empty without a database, and where the object is unknown
+};
+
+/// What SymmetryScene found.
+struct SceneAnalysis {
+  SeenSpace::ConstPtr seen;                               ///< what the sensor saw, for further analyses
+  std::vector<SupportingPlane> supports;                  ///< tables, floors and walls, as they were found
+  std::vector<SceneObject> objects;                       ///< most points first
+  double plane_distance = 0.0;                            ///< that was used, input units
+  double cluster_distance = 0.0;                          ///< that was used, input units
+  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+};
+
+/// Takes the errors of a depth camera out of its frame: each point becomes that of the plane through the pixels around
+/// it, and pixels that fly between two surfaces become NaN. Edges stay; parts that are narrower than two pixels are
+/// lost.
+/// \param frame organized.
+/// \param seen of this frame.
+/// \param num_threads 0 = one per core.
+/// \return a frame with the same pixels; \p frame itself where it is not organized or has no errors.
+pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& frame,
+                                                            const SeenSpace& seen, int num_threads = 0);
+
+/// Finds the objects of a scene and their symmetries.
+///
+/// Supporting planes are found by PCL's sample consensus and left out; the rest falls into clusters by PCL's Euclidean
+/// clustering, with distances that follow from the points. What the sensor saw is made once of the whole scene
+/// (SeenSpace), so that an object in front does not count as seen empty space beside the one behind it. Space behind a
+/// supporting plane counts as free of the objects before it (SeenSpace::withSupport()).
+///
+/// \code
+/// pcl_symmetry::SymmetryScene scene;
+/// scene.setInputCloud(frame);
+/// for (const auto& object : scene.compute().objects) std::cout << object.planes.size() << '\n';
+/// \endcode
+class SymmetryScene {
+public:
+  using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+  /// \throws pcl::BadArgumentException "field = value, must be rule".
+  void setOptions(const SceneOptions& options);
+  const SceneOptions& getOptions() const { return options_; }  ///< see setOptions()
+
+  /// Where the sensor stood; by default the data decide, see SeenSpace.
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
+
+  /// Names objects by the models that they show. Null (default): objects have no names.
+  void setDatabase(const std::shared_ptr<const SymmetryDatabase>& database) { database_ = database; }
+
+  /// \param cloud one frame: organized, or points without order with the viewpoint that they were seen from.
+  void setInputCloud(const Cloud::ConstPtr& cloud) { input_ = cloud; }
+  /// The same for other point types; their other fields are not used.
+  template <typename PointT>
+  void setInputCloud(const typename pcl::PointCloud<PointT>::ConstPtr& cloud) {
+    auto positions = pcl::make_shared<Cloud>();
+    pcl::copyPointCloud(*cloud, *positions);
+    input_ = positions;
+  }
+
+  /// \return what was found; no object where the scene holds no point, which PCL_WARN says.
+  /// \throws pcl::BadArgumentException where all points lie at the viewpoint that was given.
+  SceneAnalysis compute() const;
+
+private:
+  SceneOptions options_;
+  Viewpoint viewpoint_;
+  std::shared_ptr<const SymmetryDatabase> database_;
+  Cloud::ConstPtr input_;
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,99 @@
+#include "core/detection/cloud_subset.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "core/geometry/point_samples.h"
+#include "core/geometry/diameter.h"
+#include "core/geometry/distinct_points.h"
+#include "core/geometry/spread_subset.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Points that stand for a cloud at the usual tolerance. chosen: their spacing on a typical shape is below the
+// tolerance; at half, it is above, at twice, the time is twice as long. measured: 96 of 100 models of fold 1 are
+// decided alike at 20 000 and at 100 000 points (pcl_symmetry_evaluate shapes counts), 95 where all points decide.
+constexpr double kMostPoints = 20'000.0, kUsualTolerance = 0.01;
+// Points that are compared before and after one along the curve. measured: with 2, 4 and 8 the nearest is taken for 72,
+// 81 and 86 % of 100 000 points; with 4 the distance is 1.17 times the least on average.
+constexpr Eigen::Index kAlongCurve = 4;
+// Share of the extent from which the curve has jumped and the nearest point is searched. derived: an edge of its cells.
+constexpr float kSubsetReach = 1.0f / 64.0f;
+constexpr std::size_t kSearchBlock = 4096;  // points. chosen: large enough that threads start seldom
+
+/// As many points as show a surface at the tolerance: their number grows as the square of what the spacing falls by.
+double mostPoints(const PointsRef& points, const DetectionOptions& options) {
+  const double tolerance =
+      options.absolute_tolerance > 0.0 ? options.absolute_tolerance / farthestPair(points) : options.tolerance;
+  const double finer = std::max(1.0, kUsualTolerance / tolerance);
+  return kMostPoints * finer * finer;
+}
+
+}  // namespace
+
+std::vector<int> CloudSubset::nearTo(const PointsRef& all, int num_threads) const {
+  std::vector<int> near(beside);
+  std::vector<char> is_far(near.size(), 0);
+  const Eigen::Index last = points.cols() - 1;
+  const Eigen::Vector3f extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
+  const float sq_reach = kSubsetReach * kSubsetReach * extent.maxCoeff() * extent.maxCoeff();
+  parallelRanges(near.size(), kSearchBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Index from = std::max<Eigen::Index>(0, near[i] - kAlongCurve),
+                         to = std::min<Eigen::Index>(last, near[i] + kAlongCurve);
+      const Eigen::Vector3f x = all.col(static_cast<Eigen::Index>(i));
+      float least = std::numeric_limits<float>::infinity();
+      for (Eigen::Index k = from; k <= to; ++k) {
+        const float sq_distance = (points.col(k) - x).squaredNorm();
+        if (sq_distance >= least) continue;
+        least = sq_distance;
+        near[i] = static_cast<int>(k);
+      }
+      is_far[i] = least > sq_reach ? 1 : 0;
+    }
+  });
+  std::vector<int> far;
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (is_far[i]) far.push_back(static_cast<int>(i));
+  if (far.empty()) return near;
+  std::vector<int> nearest;
+  std::vector<float> sq_distances;
+  makeTreeSearch(points)->search(pointsAt(all, far), 1, nearest, sq_distances);
+  for (std::size_t i = 0; i < far.size(); ++i) near[static_cast<std::size_t>(far[i])] = nearest[i];
+  return near;
+}
+
+std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options) {
+  if (static_cast<double>(points.cols()) <= kMostPoints) return std::nullopt;
+  const double most = mostPoints(points, options);
+  if (!(static_cast<double>(points.cols()) > most)) return std::nullopt;
+  const DistinctPoints distinct(points);
+  if (static_cast<double>(distinct.points.cols()) <= most) return std::nullopt;
+  std::vector<int> first_of(static_cast<std::size_t>(distinct.points.cols()), -1);
+  for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
+    if (int& first = first_of[static_cast<std::size_t>(distinct.index_of[i])]; first < 0) first = static_cast<int>(i);
+  const SpreadSubset spread = spreadSubset(distinct.points, static_cast<std::size_t>(most), options.seed);
+  CloudSubset subset;
+  for (const int i : spread.kept) subset.kept.push_back(first_of[static_cast<std::size_t>(i)]);
+  for (const int i : distinct.index_of) subset.beside.push_back(spread.beside[static_cast<std::size_t>(i)]);
+  subset.points = pointsAt(points, subset.kept);
+  return subset;
+}
+
+void spreadSupport(Detection& detection, const std::vector<int>& place_of) {
+  const auto spread = [&](SymmetryPlane& plane) {
+    std::vector<float> support(place_of.size());
+    for (std::size_t i = 0; i < support.size(); ++i)
+      support[i] = plane.point_support[static_cast<std::size_t>(place_of[i])];
+    plane.point_support = std::move(support);
+  };
+  for (SymmetryPlane& plane : detection.planes) spread(plane);
+  if (detection.best) spread(*detection.best);
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "pcl_symmetry/core/gaussian_edt.h"
+
+namespace pcl_symmetry {
+
+/// Tells from a distance transform, without a search, that a point is far from the surface.
+class FarTest {
+public:
+  /// Tests points (x - center) / scale for x in the input frame.
+  /// \param edt distance transform of the surface; must outlive this object.
+  /// \param center,scale of the frame of the tested points, input units; scale > 0.
+  FarTest(const GaussianEdt& edt, const Eigen::Vector3d& center, double scale)
+      : edt_(edt), center_(center), scale_(scale) {}
+
+  /// \param distance in the frame of the tested points.
+  /// \return the least f of any cell that contains a point within \p distance of the surface.
+  float bound(double distance) const {
+    const double half_diagonal = 0.5 * std::sqrt(3.0) * edt_.cellSize();
+    const double reach = (distance * scale_ + half_diagonal) / edt_.sigma();
+    return static_cast<float>(std::exp(-reach * reach));
+  }
+
+  /// \param points 3 x M, side by side.
+  /// \param bound what bound() returned for a distance.
+  /// \return indices of the points that lie inside the grid and may be as near to the surface as that, rising.
+  std::vector<Eigen::Index> nearOf(const PointsRef& points, float bound) const;
+
+private:
+  static constexpr float kFarthest = 1e-3f;  // derived: below f at the cut of the transform, exp(-2.6^2) = 1.2e-3
+  const GaussianEdt& edt_;
+  Eigen::Vector3d center_;
+  double scale_;
+};
+
+}  // namespace pcl_symmetry

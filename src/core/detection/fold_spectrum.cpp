@@ -1,0 +1,255 @@
+#include "core/detection/fold_spectrum.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <iterator>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "core/base/median.h"
+#include "core/base/parallel.h"
+#include "core/detection/candidates.h"
+#include "core/geometry/point_samples.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr int kMostFrequency = 60;  // derived: 60 folds, as rotations of objects
+constexpr int kLeastFold = 3;       // derived: what is thinner on one side, or flat, has one and two
+// Rings about the line, each with as many points. chosen: with 1, what is outside cancels what is inside; at half,
+// walls that noise blurs share a ring with what is beside them, at twice, chance has twice the power.
+constexpr int kRings = 8;
+// Points counted. chosen: folds of 10 000 points that this leaves undecided are so with more; more cost time.
+constexpr int kSpectrumSamples = 20'000;
+// Slabs that tell the angle of the planes. chosen: the walls of cones are as wide at each height; to tell folds from
+// chance, fewer rings are better.
+constexpr int kSlabs = 4;
+constexpr int kAngles = 192;  // derived: three for each of 60 folds
+// Points reflected to find that angle. chosen: the mean of f has an error of 0.004; more cost time.
+constexpr int kPhaseSamples = 5000;
+// Times the power beside it from which reflections tell that angle better than rings. chosen: noise alone reaches it in
+// one of a million frequencies.
+constexpr double kReflectionsStandOut = 20.0;
+constexpr double kTiny = 1e-30;  // derived: below the rounding of sums of 5000 values; avoids a division by 0
+// Frequencies on either side that a frequency is compared with. chosen: few enough that their level is the same.
+constexpr int kBeside = 12;
+// Power. chosen: of eight round bodies in noise of two spacings, about their true axis, the strongest frequency has 15;
+// at half, all of them have folds, at twice, rims of 22 folds lose them.
+constexpr double kLeastPower = 20.0;
+// Times the median of the powers beside it, which is 4 to 5 in noise. chosen: handles and corners have power at all low
+// frequencies; at 8, folds of thin walls in noise are lost.
+constexpr double kStandsOut = 4.0;
+// Odds of planes at the places of a polygon, over those of other planes with the same evidence: what looks like a
+// symmetry in noise is often a fold that noise hides, and here the frequency shows the folds. chosen: all polygons of
+// 96 noisy clouds of the tuning half whose frequency stands out are true; at 2, one of them is lost, at 8, none more is
+// found.
+constexpr double kOddsOfPolygon = 4.0;
+constexpr std::size_t kMostLinePairs = 4;         // planes whose common lines are tried. chosen: 6 lines of 10 ms
+constexpr double kLeastLineAngle = 0.1;           // radians. chosen: at smaller angles errors move the line too far
+constexpr std::array<int, 3> kDivisors{2, 3, 5};  // derived: of parts of a polygon whose planes may differ
+
+/// How strongly a frequency stands out of those on both sides of it.
+/// \param power of a frequency.
+template <typename Power>
+double aboveBeside(int m, const Power& power) {
+  std::vector<double> beside;
+  for (int k = std::max(1, m - kBeside); k <= m + kBeside; ++k)
+    if (k != m) beside.push_back(power(k));
+  return power(m) / std::max(median(beside), kTiny);
+}
+
+/// The folds of points about a line.
+class FoldSpectrum {
+public:
+  /// \param num_slabs across the line, each of which is cut into rings of its own.
+  FoldSpectrum(const Points& points, const Line3d& line, int num_slabs)
+      : squares_(kMostFrequency + kBeside + 1, 0.0), powers_(squares_.size(), 0.0) {
+    const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
+    std::vector<Place> places;
+    for (const int i : drawSamples(points.cols(), kSpectrumSamples, 1)) {
+      const Eigen::Vector3d x = points.col(i).cast<double>() - line.origin();
+      const std::complex<double> across(x.dot(u), x.dot(v));
+      const double distance = std::abs(across);
+      if (distance > 0.0) places.push_back({x.dot(line.direction()), distance, across / distance});
+    }
+    inParts(places.begin(), places.end(), num_slabs, &Place::height, [&](Places first, Places last) {
+      inParts(first, last, kRings, &Place::distance, [&](Places from, Places to) { addRing(from, to); });
+    });
+  }
+
+  /// What planes at the best angle explain of the density of all rings at a frequency; 4 by chance.
+  double power(int m) const { return 0.5 * (powers_[m] + std::abs(squares_[m])); }
+  /// By how much the frequency has more power than those beside it; 0 where that may be chance.
+  double prominence(int m) const {
+    const double now = aboveBeside(m, [this](int k) { return power(k); });
+    return power(m) >= kLeastPower && now >= kStandsOut ? now : 0.0;
+  }
+  /// Angle of the normal of a plane, radians.
+  double phase(int m) const { return 0.5 * kPi + std::arg(squares_[m]) / (2.0 * m); }
+
+private:
+  /// Where a point lies about the line.
+  struct Place {
+    double height, distance;
+    std::complex<double> direction;
+  };
+  using Places = std::vector<Place>::iterator;
+
+  /// Sorts places by a member, and calls for parts that have as many of them each.
+  template <typename Call>
+  static void inParts(Places first, Places last, int num_parts, double Place::*member, const Call& call) {
+    std::sort(first, last, [&](const Place& a, const Place& b) { return a.*member < b.*member; });
+    const std::ptrdiff_t size = last - first;
+    for (int part = 0; part < num_parts; ++part)
+      call(first + size * part / num_parts, first + size * (part + 1) / num_parts);
+  }
+
+  void addRing(Places first, Places last) {
+    std::vector<std::complex<double>> sums(squares_.size(), 0.0);
+    for (auto place = first; place != last; ++place) {
+      std::complex<double> turned = 1.0;
+      for (std::size_t m = 1; m < sums.size(); ++m) sums[m] += turned *= place->direction;
+    }
+    const auto count = static_cast<double>(last - first);
+    for (std::size_t m = 1; m < sums.size() && count > 0.0; ++m) {
+      squares_[m] += sums[m] * sums[m] / count;
+      powers_[m] += std::norm(sums[m]) / count;
+    }
+  }
+
+  std::vector<std::complex<double>> squares_;  ///< by frequency: sums over the rings
+  std::vector<double> powers_;                 ///< the same without their angles
+};
+
+/// Angle of the normal of a plane of a polygon by the mean of f at the reflected points: by their angle, planes through
+/// the line reflect the cloud best there.
+/// \return none where the frequency does not stand out of the mean.
+std::optional<double> phaseByReflections(const NormalizedCloud& cloud, const Line3d& line, int fold, int num_threads) {
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), kPhaseSamples, 1);
+  const PlaneLattice fan{line, kAngles, 0.0, 0};
+  std::vector<double> mean(kAngles, 0.0);
+  parallelBlocks(kAngles, num_threads, [&](std::size_t k) {
+    const ReflectionPlane plane = cloud.toInput(fan.plane(static_cast<double>(k)));
+    for (const int i : samples)
+      mean[k] += cloud.edt(plane.reflect(cloud.points.col(i).cast<double>() * cloud.scale + cloud.center));
+  });
+  const auto coefficient = [&](int m) {
+    std::complex<double> sum = 0.0;
+    for (int k = 0; k < kAngles; ++k)
+      sum += mean[k] * std::polar(1.0, 2.0 * kPi * static_cast<double>(m) * k / kAngles);
+    return sum;
+  };
+  const double prominence = aboveBeside(fold, [&](int m) { return std::norm(coefficient(m)); });
+  if (prominence < kReflectionsStandOut) return std::nullopt;
+  return std::arg(coefficient(fold)) / (2.0 * fold);
+}
+
+/// What several planes say together.
+double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int step) {
+  PlaneEvidence mean = judged[first].evidence;
+  // derived: what differs from plane to plane of a cloud
+  static constexpr std::array kMeans{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
+                                     &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
+                                     &PlaneEvidence::unknown};
+  for (double PlaneEvidence::*member : kMeans) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t k = first; k < judged.size(); k += step) {
+      sum += judged[k].evidence.*member;
+      count += 1.0;
+    }
+    mean.*member = sum / count;
+  }
+  return planeConfidence(mean);
+}
+
+/// The least confidence of parts of a polygon that may be symmetries while the others are not.
+double leastTogether(const std::vector<JudgedPlane>& judged) {
+  double least = confidenceTogether(judged, 0, 1);
+  for (const int divisor : kDivisors)
+    if (judged.size() % divisor == 0 && judged.size() > static_cast<std::size_t>(divisor))
+      for (int first = 0; first < divisor; ++first) least = std::min(least, confidenceTogether(judged, first, divisor));
+  return least;
+}
+
+/// The line that two planes share, fitted to all planes that contain it.
+Line3d lineThrough(const std::vector<ReflectionPlane>& planes, const ReflectionPlane& a, const ReflectionPlane& b) {
+  const Line3d line = commonLine({a, b});
+  std::vector<ReflectionPlane> through;
+  std::copy_if(planes.begin(), planes.end(), std::back_inserter(through),
+               [&](const ReflectionPlane& plane) { return contains(plane, line, kContainedOffset); });
+  return commonLine(through.size() > 2 ? through : std::vector<ReflectionPlane>{a, b});
+}
+
+/// \param planes most confident first, input frame.
+std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                        const Points& all, int num_threads) {
+  std::vector<ReflectionPlane> likely;
+  for (const SymmetryPlane& plane : planes)
+    if (const ReflectionPlane normalized = cloud.toNormalized(plane);
+        (plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible) &&
+        !basinTolerance().anySame(likely, normalized))
+      likely.push_back(normalized);
+  const std::size_t size = std::min(likely.size(), kMostLinePairs);
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (likely[i].angleTo(likely[j]) >= kLeastLineAngle)
+        if (const auto lattice = latticeBySpectrum(cloud, all, lineThrough(likely, likely[i], likely[j]), num_threads))
+          return lattice;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Points& all, const Line3d& line,
+                                              int num_threads) {
+  const FoldSpectrum spectrum(all, line, 1);
+  int fold = 0;
+  double most = 0.0;
+  for (int m = kLeastFold; m <= kMostFrequency; ++m) {
+    const double now = spectrum.prominence(m);
+    if (now <= most) continue;
+    most = now;
+    fold = m;
+  }
+  if (fold == 0) return std::nullopt;
+  // A polygon has the multiples of its frequency, too; and so have two planes across each other, with the frequency 2.
+  for (int m = 2; m < fold; ++m)
+    if (fold % m == 0 && spectrum.prominence(m) > 0.0) {
+      fold = m;
+      break;
+    }
+  if (fold < kLeastFold) return std::nullopt;
+  const std::optional<double> phase = phaseByReflections(cloud, line, fold, num_threads);
+  return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kSlabs).phase(fold), 0};
+}
+
+PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
+                             const PlaneJudge& judge, const DetectionOptions& options) {
+  if (!cloud.isVolume()) return {std::move(planes), std::nullopt};
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.confidence > b.confidence; });
+  const std::optional<PlaneLattice> lattice = bestLattice(planes, cloud, all, options.num_threads);
+  if (!lattice) return {std::move(planes), std::nullopt};
+  std::vector<Candidate> candidates;
+  for (int k = 0; k < lattice->fold; ++k) candidates.push_back({lattice->plane(k), false});
+  std::vector<JudgedPlane> judged = judge.judgeWithEvidence(candidates);
+  const double least = kOddsOfPolygon * leastTogether(judged);
+  const double together = least / (least + 1.0 - least / kOddsOfPolygon);
+  if (together < options.min_confidence) return {std::move(planes), std::nullopt};
+  // All planes tell where the polygon lies: those that noise moved away from their place make way.
+  planes.erase(std::remove_if(planes.begin(), planes.end(),
+                              [&](const SymmetryPlane& plane) {
+                                return contains(cloud.toNormalized(plane), lattice->line, kContainedOffset);
+                              }),
+               planes.end());
+  for (JudgedPlane& one : judged) {
+    judge.decide(one.plane, std::max(one.plane.confidence, together));
+    planes.push_back(std::move(one.plane));
+  }
+  return {std::move(planes), lattice};
+}
+
+}  // namespace pcl_symmetry

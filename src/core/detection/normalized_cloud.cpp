@@ -1,0 +1,121 @@
+#include "core/detection/normalized_cloud.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "core/base/median.h"
+#include "core/base/parallel.h"
+#include "core/transform/edt_correlation.h"
+#include "core/evidence/plane_support.h"
+#include "core/geometry/diameter.h"
+#include "core/geometry/point_tree.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Spacings. chosen: half of it leaves reflected samples between the samples without weight, so that planes stop early;
+// twice lets the ends of a long shape pull at the plane of its middle.
+constexpr double kFinalSigmaInSpacings = 3.0;
+// Spacings. chosen: below the 0.42 of points that fill a volume evenly. Lower values judge noisy surfaces by density,
+// which blurs small asymmetries; above 0.42 nothing is a volume, and noise beyond the spacing leaves no symmetry.
+constexpr double kVolumeRoughness = 0.36;
+constexpr double kLeastSpacing = 1e-6;   // radii. derived: the rounding of coordinates about 1; avoids a division by 0
+constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supports of surfaces; avoids a division by 0
+
+/// A tree of points, and beside it the grid in which walks along its lists begin.
+std::shared_ptr<PointTree> treeOf(const Points& points, int num_threads, std::optional<ClosestPointGrid>& starts) {
+  std::shared_ptr<PointTree> tree;
+  parallelBlocks(NeighbourLists::isUseful(points.cols()) ? 2 : 1, num_threads, [&](std::size_t part) {
+    if (part == 0)
+      tree = std::make_shared<PointTree>(points);
+    else
+      starts = NeighbourLists::starts(points);
+  });
+  return tree;
+}
+
+/// The geometry of points, whose neighbours a tree uses from then on.
+/// \param search over the points.
+/// \param tree the same search, or null.
+/// \param starts of the lists of the tree; used up.
+/// \param[out] neighbours of the points.
+LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, PointTree* tree,
+                         std::optional<ClosestPointGrid>& starts, int num_threads, FoundNeighbours& neighbours) {
+  LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbours, num_threads, &neighbours);
+  static_assert(kNumSupportNeighbours == NeighbourLists::kNeighbours);
+  if (tree && starts)
+    tree->use(NeighbourLists(std::move(*starts), points, neighbours.indices, neighbours.sq_reach, num_threads));
+  return geometry;
+}
+
+/// Replaces estimated normals by those that the input has.
+LocalGeometry withNormals(LocalGeometry geometry, const Points* given) {
+  for (Eigen::Index i = 0; given && i < given->cols(); ++i) {
+    const float length = given->col(i).norm();
+    if (std::isfinite(length) && length > 0.0f) geometry.normals.col(i) = given->col(i) / length;
+  }
+  return geometry;
+}
+
+}  // namespace
+
+NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input,
+                                 ClosestPointSearch::Ptr input_search, const Visibility* seen, int num_threads,
+                                 const Points* given_normals)
+    : edt(edt_of_input),
+      center(edt.center()),
+      scale(edt.radius()),
+      points(normalizePoints(input, center, scale)),
+      tree(input_search ? nullptr : treeOf(points, num_threads, starts_)),
+      search(input_search ? std::move(input_search) : tree),
+      geometry(withNormals(geometryOf(points, *search, tree.get(), starts_, num_threads, neighbours), given_normals)),
+      samples(points, geometry, num_threads),
+      visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
+      far(edt, center, scale),
+      surface{points,
+              geometry.normals,
+              *search,
+              seen ? &geometry.at_border : nullptr,
+              &far,
+              num_threads,
+              visibility ? &*visibility : nullptr},
+      measures_(points, geometry, num_threads),
+      principal_axes(measures_.principal_axes),
+      extent(measures_.extent),
+      spacing(measures_.spacing),
+      roughness(measures_.roughness / std::max(spacing, kLeastSpacing)),
+      baseline(std::max(meanSupport(ownSupport(samples, num_threads)), kLeastBaseline)),
+      sigma(edt.sigma() / scale),
+      final_sigma(std::min(sigma, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing))) {}
+
+NormalizedCloud::Measures::Measures(const Points& points, const LocalGeometry& geometry, int num_threads) {
+  const std::array<std::function<void()>, 4> measurements{
+      [&] { extent = farthestPair(points); }, [&] { principal_axes = principalAxes(points); },
+      [&] { spacing = median(geometry.spacing); }, [&] { roughness = median(geometry.roughness); }};
+  parallelBlocks(measurements.size(), num_threads, [&](std::size_t i) { measurements[i](); });
+}
+
+bool NormalizedCloud::isVolume() const {
+  return roughness > kVolumeRoughness && !isScan();
+}
+
+ReflectionPlane NormalizedCloud::toNormalized(const ReflectionPlane& input_plane) const {
+  return ReflectionPlane(input_plane.normal(), input_plane.signedDistance(center) / -scale);
+}
+
+ReflectionPlane NormalizedCloud::toInput(const ReflectionPlane& plane) const {
+  return ReflectionPlane(plane.normal(), plane.offset() * scale + plane.normal().dot(center));
+}
+
+double NormalizedCloud::score(const ReflectionPlane& input_plane) const {
+  const ReflectionPlane cells(input_plane.normal(), input_plane.signedDistance(edt.origin()) / -edt.cellSize());
+  const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * input_plane.normal().x() * input_plane.normal();
+  return correlation(
+      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step, surface.num_threads);
+}
+
+}  // namespace pcl_symmetry

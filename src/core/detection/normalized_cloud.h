@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/evidence/surface_samples.h"
+#include "core/geometry/principal_axes.h"
+#include "core/geometry/closest_point_grid.h"
+#include "core/detection/far_test.h"
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
+#include "pcl_symmetry/core/visibility.h"
+
+namespace pcl_symmetry {
+
+class PointTree;
+
+/// The cloud as all stages of detection see it: in the unit ball about 0, with normals, spacing and roughness.
+///
+/// The normalised frame is (x - center) / scale. Lengths below are in this frame.
+struct NormalizedCloud {
+  /// \param input 3 x N, finite, distinct, input units.
+  /// \param edt_of_input distance transform of these points; must outlive this object.
+  /// \param input_search closest points among the normalised points; null = a k-d tree.
+  /// \param seen what a scanner saw, input frame; null = the points show the object from all sides.
+  /// \param num_threads 0 = one per core.
+  /// \param given_normals 3 x N, of any length and sign, used where they are finite and not zero; null = all estimated.
+  NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input, ClosestPointSearch::Ptr input_search,
+                  const Visibility* seen, int num_threads, const Points* given_normals = nullptr);
+  NormalizedCloud(const NormalizedCloud&) = delete;  // parts refer to each other
+  NormalizedCloud& operator=(const NormalizedCloud&) = delete;
+
+  const GaussianEdt& edt;        ///< input frame
+  const Eigen::Vector3d center;  ///< of the edt, input units
+  const double scale;            ///< radius of the edt, input units
+
+  const Points points;  ///< 3 x N
+
+private:
+  std::optional<ClosestPointGrid> starts_;  // until the lists of the tree take it
+
+public:
+  const std::shared_ptr<PointTree> tree;  ///< null: the search is of the caller
+  const ClosestPointSearch::Ptr search;
+  FoundNeighbours neighbours;  ///< of the points, found together with their geometry
+  const LocalGeometry geometry;
+  const SurfaceSamples samples;                ///< the points and their geometry
+  const std::optional<Visibility> visibility;  ///< of a scan
+  const FarTest far;
+  const IspSurface surface;  ///< the above, as Iterative Symmetric Points wants it
+
+private:
+  /// What is measured by passes over all points, at the same time.
+  struct Measures {
+    Measures(const Points& points, const LocalGeometry& geometry, int num_threads);
+
+    PrincipalAxes principal_axes;
+    double extent = 0.0, spacing = 0.0, roughness = 0.0;
+  };
+  const Measures measures_;
+
+public:
+  const PrincipalAxes principal_axes;  ///< of the points
+  const double extent;                 ///< greatest distance between two points, by farthestPair()
+  const double spacing;                ///< median of the points' spacing
+  const double roughness;              ///< median of the points' roughness, divided by the spacing
+  const double baseline;     ///< mean support of the points on the surface of all others, > 0: a symmetry reaches it
+  const double sigma;        ///< width of the weights when refinement starts: that of the edt
+  const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma
+
+  bool isScan() const { return visibility.has_value(); }
+
+  /// Whether the points have neighbours on all sides: noise beyond their spacing leaves no surface.
+  bool isVolume() const;
+
+  ReflectionPlane toNormalized(const ReflectionPlane& input_plane) const;
+  ReflectionPlane toInput(const ReflectionPlane& plane) const;
+
+  /// D(f, gamma) of equation 2 for a normalised f: the full sum over the cells of the edt.
+  /// \param input_plane in the input frame.
+  /// \return in [0, 1].
+  double score(const ReflectionPlane& input_plane) const;
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/evidence/plane_confidence.h"
+#include "core/detection/normalized_cloud.h"
+
+namespace pcl_symmetry {
+
+/// What a set of samples says about one plane.
+struct PlaneShares {
+  double support;                    ///< mean over the samples: the reflection lies on the surface
+  double conflict;                   ///< mean over the samples: the reflection lies where there is nothing
+  std::vector<float> point_support;  ///< of each sample, in [0, 1]
+};
+
+/// A plane on its way through the stages of refinement, normalised frame.
+struct Candidate {
+  ReflectionPlane plane;
+  bool from_map = false;  ///< a maximum of the map, whose cell it must not leave
+  int iterations = 0;     ///< of all stages
+  IspResult last = {};    ///< of the last stage; where points resolve no surface, only whether it converged
+  double merit = 0.0;     ///< PlaneFit::merit() after the last stage
+};
+
+/// One stage of refinement: how many samples are reflected, how wide the weights are, how often.
+///
+/// Candidates whose merit is too low for a symmetry never settle, and take fewer samples and iterations.
+struct RefinementStage {
+  int num_samples;        ///< of candidates that may be symmetries
+  int num_rough_samples;  ///< of the others
+  IspOptions isp;         ///< of candidates that may be symmetries
+  IspOptions rough_isp;   ///< of the others
+  double least_merit;     ///< of candidates that may be symmetries
+  bool undo_slides;       ///< of scans, at the narrowest weights
+};
+
+/// How well a cloud supports a plane, and the plane nearby that it supports best.
+///
+/// There are two forms: SurfaceFit for points that resolve a surface, and VolumeFit for points that do not.
+class PlaneFit {
+public:
+  virtual ~PlaneFit() = default;
+
+  /// Moves each candidate to the best plane nearby, and updates its merit.
+  virtual void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
+
+  /// Moves each candidate that has settled beside its place there, and updates its merit; takes as long as all stages.
+  /// \param stage the last one.
+  virtual void climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
+
+  /// The best plane nearby, at the narrowest weights.
+  /// \param samples indices of points.
+  /// \param max_iterations >= 1.
+  virtual ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
+                                  int max_iterations) const = 0;
+
+  /// \param samples indices of points.
+  /// \param step closest points to the reflections of these samples.
+  virtual PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples,
+                             const IspStep& step) const = 0;
+
+  PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples) const {
+    return shares(plane, samples, matches(plane, samples));
+  }
+
+  /// The closest points to the reflections of some samples, within reach of the narrowest weights.
+  /// \param guesses IspStep::closest of a plane nearby, which makes the search faster; null = not known.
+  IspStep matches(const ReflectionPlane& plane, const std::vector<int>& samples,
+                  const std::vector<int>* guesses = nullptr) const {
+    return matchSymmetricPoints(cloud_.surface, samples, plane, cloud_.final_sigma, guesses);
+  }
+
+  /// Support as a share of what the samples of a symmetry reach, in [0, 1].
+  virtual double relativeSupport(const PlaneShares& shares) const = 0;
+
+  /// One number to rank candidates by: high support, low conflict; about 1 for a symmetry, and may exceed it.
+  virtual double merit(const PlaneShares& shares) const = 0;
+
+  /// By how much the planes of a family may have less support than the best single plane.
+  virtual double familyAllowance() const = 0;
+
+  /// \param support,conflict mean shares.
+  /// \param score D of the plane.
+  virtual PlaneEvidence evidence(double support, double conflict, double score) const = 0;
+
+protected:
+  explicit PlaneFit(const NormalizedCloud& cloud) : cloud_(cloud) {}
+
+  const NormalizedCloud& cloud_;
+};
+
+struct PlaneFitOptions {
+  IspUpdate update;
+  int max_samples;     ///< of any stage
+  int max_iterations;  ///< of any stage
+  std::uint64_t seed;  ///< of the samples
+  int num_threads;     ///< 0 = one per core
+};
+
+/// \param cloud must outlive the result.
+/// \return the form that fits the cloud.
+std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const PlaneFitOptions& options);
+
+}  // namespace pcl_symmetry

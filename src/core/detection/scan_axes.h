@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "core/detection/turn_evidence.h"
+#include "pcl_symmetry/core/plane_detection.h"
+
+namespace pcl_symmetry {
+
+/// Axes of a scan: lines about which turns by any angle, or by 2 pi / n, map what was seen onto itself, to unseen
+/// places, and nowhere that the scanner saw to be empty. Beyond the paper, which leaves rotations to future work
+/// (Section 6).
+///
+/// Lines come from the normals (a body of revolution), from pairs of planes, and from maxima of a coarse axial
+/// transform. Each is moved to where the turns fit best, then judged. A fold has to beat the turns halfway between its
+/// own; round is what no turn contradicts.
+/// \param evidence of a scan.
+/// \param planes found so far, input frame.
+/// \return input frame, most confident first; no two along one line.
+std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vector<SymmetryPlane>& planes,
+                                   const std::vector<SymmetryAxis>& axes, const DetectionOptions& options);
+
+/// The same for points of which no planes are known.
+/// \param points 3 x N, finite, input units.
+/// \param edt of these points.
+/// \param axes lines that are tried first, input frame.
+/// \return nothing where the points hold no answer.
+std::vector<SymmetryTurn> turnsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
+                                      const std::vector<SymmetryAxis>& axes, const DetectionOptions& options);
+
+/// The axes of revolution of a scan with what the turns say of them: those that throw a visible handle into empty space
+/// are dropped, the others moved to where turns fit best, and round bodies added that showed too few planes.
+/// \param axes input frame, as from collectFamilies().
+/// \param turns as from scanAxes().
+std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vector<SymmetryAxis> axes,
+                                         const std::vector<SymmetryTurn>& turns, const DetectionOptions& options);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,49 @@
+#include "core/evidence/plane_stiffness.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr double kTiltRidge = 1e-4;  // chosen: any value far below the stiffness of tilts that are held
+
+}  // namespace
+
+Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
+                                const ReflectionPlane& plane) {
+  const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double count = 0.0;
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    if (!matched[i]) continue;
+    const auto column = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d x = points.col(column).cast<double>(), normal = normals.col(column).cast<double>();
+    // x is a reflection: x = y - 2 (n.y - r) n. Its derivatives along the normal of the match, by tilt and by offset.
+    const double distance = -plane.signedDistance(x);
+    const Eigen::Vector3d y = x + 2.0 * distance * n;
+    const auto by_tilt = [&](const Eigen::Vector3d& axis) {
+      return -2.0 * (axis.dot(y) * normal.dot(n) + distance * normal.dot(axis));
+    };
+    const Eigen::Vector3d gradient(by_tilt(u), by_tilt(v), 2.0 * normal.dot(n));
+    information += gradient * gradient.transpose();
+    count += 1.0;
+  }
+  return count > 0.0 ? Eigen::Matrix3d(information / count) : information;
+}
+
+double offsetStiffness(const Eigen::Matrix3d& stiffness) {
+  Eigen::Matrix2d tilts = stiffness.topLeftCorner<2, 2>();
+  tilts.diagonal().array() += kTiltRidge;
+  const Eigen::Vector2d coupling = stiffness.topRightCorner<2, 1>();
+  return std::max(0.0, stiffness(2, 2) - coupling.dot(tilts.ldlt().solve(coupling)));
+}
+
+double secondStiffness(const Eigen::Matrix3d& stiffness) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(stiffness, Eigen::EigenvaluesOnly);
+  return std::max(0.0, solver.eigenvalues()[1]);
+}
+
+}  // namespace pcl_symmetry

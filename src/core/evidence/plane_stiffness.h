@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+
+namespace pcl_symmetry {
+
+/// How firmly the matched samples hold a plane. A match is worth what it excludes: a sheet that is mirrored in itself
+/// matches under any tilt of the plane about its normal, a ball under all tilts.
+/// \param points 3 x N, in the unit ball, the reflections of the samples.
+/// \param normals 3 x N, unit, of the surface at their matches.
+/// \param matched N values.
+/// \param plane in the frame of the points.
+/// \return mean product of the changes of a match's distance per two tilts (radians) and the offset, in this order;
+/// symmetric, eigenvalues in [0, 12]; 0 where nothing matches.
+Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
+                                const ReflectionPlane& plane);
+
+/// How firmly a plane is held along its normal: of a tube mirrored across, only its ends say where.
+/// \param stiffness of motionStiffness().
+/// \return mean square of the change of a match's distance per change of the offset, after the best tilt, in [0, 4].
+double offsetStiffness(const Eigen::Matrix3d& stiffness);
+
+/// How firmly a plane is held but for one motion that it may be free to make, as planes through an axis are.
+/// \param stiffness of motionStiffness().
+/// \return the second of its three eigenvalues, in [0, 6].
+double secondStiffness(const Eigen::Matrix3d& stiffness);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/geometry/surface_normals.h"
+#include "pcl_symmetry/core/point_set.h"
+
+namespace pcl_symmetry {
+
+/// Radius of the disc of surface that a sample stands for, spacings.
+/// derived: a disc of that radius on a surface of density rho holds no sample with probability exp(-pi 1.25^2) = 1 /
+/// 135.
+constexpr float kDiscRadius = 1.25f;
+
+/// A sample of a surface and what its neighbourhood says, side by side: one line of the cache, as a query asks for
+/// samples anywhere.
+struct alignas(64) SurfaceSample {
+  Eigen::Vector3f point, normal;
+  float disc_radius;   ///< of the disc of surface that it stands for
+  float roughness;     ///< LocalGeometry::roughness
+  float normal_trust;  ///< how far the normal means anything, in [0, 1]: noise beyond the spacing leaves none
+  std::array<int, kNumWitnesses> nearest;
+};
+
+/// The samples of a surface.
+class SurfaceSamples {
+public:
+  /// \param points 3 x N.
+  /// \param geometry of the points.
+  /// \param num_threads 0 = one per core.
+  SurfaceSamples(const Points& points, const LocalGeometry& geometry, int num_threads = 1);
+
+  int size() const { return static_cast<int>(samples_.size()); }
+  const SurfaceSample& operator[](int i) const { return samples_[static_cast<std::size_t>(i)]; }
+
+private:
+  std::vector<SurfaceSample> samples_;
+};
+
+}  // namespace pcl_symmetry

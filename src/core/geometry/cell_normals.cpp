@@ -1,0 +1,109 @@
+#include "core/geometry/cell_normals.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace pcl_symmetry {
+
+namespace {
+
+// points around a cell that make a normal; chosen: twice the three that span a plane. Fewer give normals that follow
+// noise, more leave thin parts without a normal.
+constexpr int kFewestPoints = 6;
+
+/// Sums over points that give their mean and covariance, in one line of the cache.
+class Moments {
+public:
+  void add(const Eigen::Vector3f& p) {
+    sums_[0] += 1.0f;
+    sums_.segment<3>(1) += p;
+    sums_.segment<3>(4) += p.x() * p;
+    sums_.segment<2>(7) += p.y() * p.tail<2>();
+    sums_[9] += p.z() * p.z();
+  }
+  void operator+=(const Moments& other) { sums_ += other.sums_; }
+
+  float count() const { return sums_[0]; }
+
+  /// Sums of the products of offsets from the mean.
+  Eigen::Matrix3f covariance() const {
+    Eigen::Matrix3f squares;
+    squares << sums_[4], sums_[5], sums_[6], sums_[5], sums_[7], sums_[8], sums_[6], sums_[8], sums_[9];
+    const Eigen::Vector3f sum = sums_.segment<3>(1);
+    return squares - sum * sum.transpose() / count();
+  }
+
+private:
+  // Number; sums of x, y, z, of xx, xy, xz, of yy, yz, and of zz; padding.
+  Eigen::Matrix<float, 16, 1> sums_ = Eigen::Matrix<float, 16, 1>::Zero();
+};
+
+/// Moments of the points in each occupied cell. Occupied cells have slots, in the order of their first points.
+class CellMoments {
+public:
+  explicit CellMoments(int num_cells)
+      : side_(num_cells + 2), slot_of_cells_(static_cast<std::size_t>(side_) * side_ * side_, -1) {}
+
+  /// \param x position in cells from the corner of the cube.
+  /// \return the slot of its cell.
+  int add(const Eigen::Vector3d& x) {
+    const Eigen::Array3i at = (x.array() + 1.0).max(1.0).min(static_cast<double>(side_ - 2)).cast<int>();
+    const int index = (at.z() * side_ + at.y()) * side_ + at.x();
+    int& slot = slot_of_cells_[static_cast<std::size_t>(index)];
+    if (slot < 0) {
+      slot = static_cast<int>(occupied_.size());
+      occupied_.push_back(index);
+      moments_.emplace_back();
+    }
+    // Relative to the middle of the cube: floats are precise enough there.
+    moments_[static_cast<std::size_t>(slot)].add((x - Eigen::Vector3d::Constant(0.5 * (side_ - 2))).cast<float>());
+    return slot;
+  }
+
+  std::size_t numOccupied() const { return occupied_.size(); }
+
+  /// Sum over a cell and its 26 neighbours.
+  Moments around(std::size_t slot) const {
+    Moments sum;
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const int near = slot_of_cells_[static_cast<std::size_t>(occupied_[slot] + (z * side_ + y) * side_ + x)];
+          if (near >= 0) sum += moments_[static_cast<std::size_t>(near)];
+        }
+    return sum;
+  }
+
+private:
+  int side_;  // with a border of one empty cell
+  std::vector<int> slot_of_cells_;
+  std::vector<int> occupied_;  // index of the cell of each slot
+  std::vector<Moments> moments_;
+};
+
+}  // namespace
+
+CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, double cell_size, int num_cells) {
+  CellMoments cells(num_cells);
+  CellNormals result;
+  result.cell_of_points.resize(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    result.cell_of_points[static_cast<std::size_t>(i)] = cells.add((points.col(i).cast<double>() - origin) / cell_size);
+  result.normals.resize(3, static_cast<Eigen::Index>(cells.numOccupied()));
+  result.flatness.setZero(result.normals.cols());
+  for (std::size_t c = 0; c < cells.numOccupied(); ++c) {
+    const auto column = static_cast<Eigen::Index>(c);
+    result.normals.col(column).setUnit(2);
+    const Moments near = cells.around(c);
+    if (near.count() < kFewestPoints) continue;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+    solver.computeDirect(near.covariance());
+    const Eigen::Vector3f values = solver.eigenvalues();
+    if (!(values[2] > 0.0f) || !solver.eigenvectors().allFinite()) continue;
+    result.normals.col(column) = solver.eigenvectors().col(0).normalized();
+    result.flatness[column] = std::max(0.0f, (values[1] - values[0]) / values[2]);
+  }
+  return result;
+}
+
+}  // namespace pcl_symmetry

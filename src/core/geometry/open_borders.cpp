@@ -1,0 +1,114 @@
+#include "core/geometry/open_borders.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
+#include "core/geometry/point_samples.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+constexpr std::size_t kBorderBlock = 512;  // points; chosen: smaller blocks cost more calls, larger ones idle threads
+// Neighbours among which a gap is looked for. chosen: with half as many, gaps appear inside the surface; with twice as
+// many, narrow cuts close.
+constexpr int kBorderNeighbours = 16;
+// Radians. derived: the greatest gap g (in turns) between k = 16 random directions exceeds g with the probability
+// k (1 - g)^(k - 1) at most: 0.5 % for 150 degrees. At a straight border the gap is 180 degrees and more.
+constexpr float kGap = 150.0f * static_cast<float>(kPi) / 180.0f;
+// A neighbour is off the tangent plane if its offset across exceeds this share of its distance (30 degrees), and the
+// surface folds where more than this many are. chosen: at half, noise looks like folds; at twice, the edges of a box
+// look like borders.
+constexpr float kOffPlane = 0.5f;
+constexpr int kMostOffPlane = 2;
+
+/// The eighth of a full turn that a direction points to, counted from 0 against the clock.
+int octantOf(float x, float y) {
+  const float ax = std::abs(x), ay = std::abs(y);
+  const int of_quadrant = ay > ax ? 1 : 0;
+  if (y < 0.0f) return x < 0.0f ? 4 + of_quadrant : 7 - of_quadrant;
+  return x < 0.0f ? 3 - of_quadrant : of_quadrant;
+}
+
+/// Whether no two neighbouring octants are empty: gaps are of three octants (135 degrees) at most.
+bool leavesNoGap(unsigned octants) {
+  static_assert(kGap > 2.4f, "a gap of three octants is 2.356");
+  const unsigned empty = ~octants & 0xFFu, next = (empty >> 1 | empty << 7) & 0xFFu;
+  return (empty & next) == 0u;
+}
+
+/// Whether the neighbours of a sample leave a gap in its tangent plane.
+bool isAtBorder(int self, const int* neighbours, int count, const Points& samples, const Points& normals) {
+  const Eigen::Vector3f n = normals.col(self), u = n.unitOrthogonal(), v = n.cross(u);
+  std::array<Eigen::Vector2f, kBorderNeighbours + 1> directions;
+  std::array<float, kBorderNeighbours + 1> angles;
+  int num_angles = 0, num_off = 0;
+  unsigned octants = 0;
+  for (int k = 0; k < count; ++k) {
+    if (neighbours[k] == self) continue;
+    const Eigen::Vector3f difference = samples.col(neighbours[k]) - samples.col(self);
+    if (std::abs(n.dot(difference)) > kOffPlane * difference.norm()) {
+      ++num_off;
+      continue;
+    }
+    Eigen::Vector2f& direction = directions[num_angles++];
+    direction = {u.dot(difference), v.dot(difference)};
+    octants |= 1u << octantOf(direction.x(), direction.y());
+  }
+  if (num_off > kMostOffPlane || num_angles == 0 || leavesNoGap(octants)) return false;
+  for (int k = 0; k < num_angles; ++k) angles[k] = std::atan2(directions[k].y(), directions[k].x());
+  std::sort(angles.begin(), angles.begin() + num_angles);
+  float gap = angles[0] + 2.0f * static_cast<float>(kPi) - angles[num_angles - 1];
+  for (int k = 1; k < num_angles; ++k) gap = std::max(gap, angles[k] - angles[k - 1]);
+  return gap > kGap;
+}
+
+}  // namespace
+
+std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
+                              int num_threads, const FoundNeighbours* known) {
+  const auto size = static_cast<std::size_t>(samples.cols());
+  const int count = static_cast<int>(std::min<Eigen::Index>(samples.cols(), kBorderNeighbours + 1));
+  const int num_known = known ? std::min(count, static_cast<int>(known->indices.size() / size)) : 0;
+  std::vector<char> borders(size);
+  parallelRanges(size, kBorderBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> open, indices;
+    std::vector<float> sq_distances;
+    // More neighbours only fill gaps, or fold the surface: what is inside by some of them is inside by all.
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto self = static_cast<int>(i);
+      const int* const nearest = known ? known->indices.data() + i * known->indices.size() / size : nullptr;
+      if (!known || isAtBorder(self, nearest, num_known, samples, normals)) open.push_back(self);
+    }
+    search.search(pointsAt(samples, open), count, indices, sq_distances);
+    for (std::size_t k = 0; k < open.size(); ++k)
+      borders[open[k]] = isAtBorder(open[k], &indices[k * static_cast<std::size_t>(count)], count, samples, normals);
+  });
+  return borders;
+}
+
+std::vector<char> nearBorders(const std::vector<char>& borders, const LocalGeometry& geometry) {
+  std::vector<char> near = borders;
+  for (int step = 0; step < 2; ++step) {
+    const std::vector<char> before = near;
+    for (std::size_t i = 0; i < near.size(); ++i)
+      for (const int j : geometry.nearest[i]) near[i] |= before[j];
+  }
+  return near;
+}
+
+double shareNearBorders(const std::vector<char>& borders, const LocalGeometry& geometry) {
+  const std::vector<char> near = nearBorders(borders, geometry);
+  std::size_t num_pairs = 0, num_near = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    num_pairs += geometry.nearest[i].size();
+    for (const int j : geometry.nearest[i]) num_near += near[i] || near[j] ? 1 : 0;
+  }
+  return num_pairs > 0 ? static_cast<double>(num_near) / static_cast<double>(num_pairs) : 0.0;
+}
+
+}  // namespace pcl_symmetry

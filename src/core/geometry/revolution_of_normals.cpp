@@ -1,0 +1,108 @@
+#include "core/geometry/revolution_of_normals.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "core/geometry/weighted_products.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+// Radians by which a normal may miss at half its weight. chosen: the error of normals of samples with noise of a third
+// of their spacing; at half, good points lose their weight, at twice, handles keep theirs.
+constexpr double kMiss = 0.1;
+constexpr int kReweightings = 8;  // chosen: half leaves bodies with a base at the start, twice changes nothing
+// Radii. chosen: the speed of points nearer than this to the axis does not divide; at half, single points decide.
+constexpr double kLeastLever = 0.05;
+// Share of the trace. chosen: only keeps the translation along a cylinder from growing without bound.
+constexpr double kTranslationRidge = 1e-6;
+
+double weightOf(double miss) {
+  const double scaled = miss / kMiss, sum = 1.0 + scaled * scaled;
+  return 1.0 / (sum * sum);
+}
+
+/// A motion of space: turn and shift, so that a point x moves by shift + turn x x.
+struct Motion {
+  Eigen::Vector3d turn, shift;
+
+  Eigen::Vector3d velocityAt(const Eigen::Vector3d& x) const { return shift + turn.cross(x); }
+};
+
+/// The motion with a turn of length one that moves the samples the least along their normals.
+Motion slowestAlongNormals(const Matrix6d& sum) {
+  Eigen::Matrix3d shifts = sum.bottomRightCorner<3, 3>();
+  shifts.diagonal().array() += kTranslationRidge * std::max(1e-12, shifts.trace());
+  const Eigen::Matrix3d coupling = sum.topRightCorner<3, 3>();
+  const Eigen::Matrix3d best_shifts = -shifts.ldlt().solve(coupling.transpose());
+  const Eigen::Matrix3d turns = sum.topLeftCorner<3, 3>() + coupling * best_shifts;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (turns + turns.transpose()));
+  const Eigen::Vector3d turn = solver.eigenvectors().col(0);
+  const Eigen::Vector3d shift = best_shifts * turn;
+  return {turn, shift - turn.dot(shift) * turn};  // without the translation along the axis
+}
+
+/// A point of a surface.
+struct Oriented {
+  Eigen::Vector3d point, normal;
+};
+
+std::vector<Oriented> orientedAt(const Points& points, const Points& normals, const std::vector<int>& samples) {
+  std::vector<Oriented> oriented;
+  oriented.reserve(samples.size());
+  for (const int i : samples) oriented.push_back({points.col(i).cast<double>(), normals.col(i).cast<double>()});
+  return oriented;
+}
+
+}  // namespace
+
+Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Points& normals,
+                                                 const std::vector<int>& samples) {
+  const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
+  std::vector<double> weights(oriented.size(), 1.0);
+  Motion motion{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()};
+  for (int k = 0; k < kReweightings; ++k) {
+    WeightedProducts products;  // of how fast points move along their normals, by turn and by shift
+    for (std::size_t i = 0; i < oriented.size(); ++i)
+      products.add(oriented[i].point.cross(oriented[i].normal), oriented[i].normal, 0.0, weights[i]);
+    motion = slowestAlongNormals(products.sums().topLeftCorner<6, 6>());
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const Eigen::Vector3d velocity = motion.velocityAt(oriented[i].point);
+      const double lever = std::max(kLeastLever, velocity.norm());
+      weights[i] = weightOf(velocity.dot(oriented[i].normal) / lever) / (lever * lever);
+    }
+  }
+  // The axis is where the motion stands still.
+  return {motion.turn.cross(motion.shift), motion.turn};
+}
+
+Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
+  constexpr double kRidge = 1e-9;  // chosen: parallel normals leave the place along them open; far below any weight
+  const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
+  std::vector<double> weights(oriented.size(), 1.0);
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (int k = 0; k < kReweightings; ++k) {
+    // The point with the least sum of w |(I - n n^T) (x - center)|^2.
+    WeightedProducts products;
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const auto& [x, n] = oriented[i];
+      products.add(n, x - n.dot(x) * n, 1.0, weights[i]);
+    }
+    const WeightedProducts::Matrix sums = products.sums();
+    const Eigen::Matrix3d across = (sums(6, 6) + kRidge) * Eigen::Matrix3d::Identity() - sums.topLeftCorner<3, 3>();
+    const Eigen::Vector3d pull = sums.block<3, 1>(3, 6);
+    center = across.ldlt().solve(pull);
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const Eigen::Vector3d d = oriented[i].point - center;
+      const double lever = std::max(kLeastLever, d.norm());
+      weights[i] = weightOf(d.cross(oriented[i].normal).norm() / lever) / (lever * lever);
+    }
+  }
+  return center;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "pcl_symmetry/core/point_set.h"
+
+namespace pcl_symmetry {
+
+/// The first triangle that a ray meets.
+struct RayHit {
+  int triangle = -1;                                        ///< index of the triangle; -1 if the ray meets none
+  float distance = std::numeric_limits<float>::infinity();  ///< lengths of the direction
+};
+
+/// A bounding volume hierarchy for ray queries. (The tools use Embree; the library does not depend on it.)
+///
+/// A node has four children and a leaf four triangles, whose numbers lie side by side, so that four are tested in one
+/// instruction where the processor has it. Each of the four takes the steps that a single one would take.
+class TriangleTree {
+public:
+  /// \param corners 3 x V.
+  /// \param triangles indices into the corners. Rays do not meet triangles without area.
+  TriangleTree(const Points& corners, const std::vector<Eigen::Vector3i>& triangles);
+
+  /// \param direction not zero; its length is the unit of the distances.
+  /// \return the closest triangle at a distance in (nearest, farthest).
+  RayHit closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest = 0.0f,
+                 float farthest = std::numeric_limits<float>::infinity()) const;
+
+  /// \return whether a triangle lies between two points.
+  bool blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+
+private:
+  static constexpr int kWidth = 4;  // derived: floats in the smallest vector register of current processors
+  using Lanes = float[kWidth];
+
+  struct Node {
+    Lanes box[2][3];       // lower and upper bounds of the children, by axis
+    int child[kWidth];     // index of a node; ~index of a leaf
+    int num_children = 0;  // the lanes behind them are not set
+  };
+  /// Triangles a, a + u, a + v. Lanes without a triangle have no area.
+  struct Leaf {
+    Lanes a[3], u[3], v[3];
+    int triangle[kWidth];
+  };
+  struct Box {
+    Eigen::Array3f min, max;
+  };
+  struct Ray {
+    float origin[3], direction[3], inverse[3];
+    int side[3];  // of a box, by axis, that the ray enters through: 0 the lower one, 1 the upper one
+    float nearest;
+  };
+
+  struct Builder;
+
+  RayHit search(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest, float farthest,
+                bool any) const;
+  static void distancesTo(const Node& node, const Ray& ray, float farthest, Lanes& near, Lanes& far);
+  static void distancesTo(const Leaf& leaf, const Ray& ray, Lanes& distances);
+
+  std::vector<Node> nodes_;
+  std::vector<Leaf> leaves_;
+};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "core/matching/surface_points.h"
+
+namespace pcl_symmetry {
+
+/// A shape that has pairs of points like those of a scan.
+struct ShapeOfPairs {
+  int shape;                                    ///< number of the shape, in the order in which shapes were added
+  double votes;                                 ///< of the best pose
+  std::vector<Eigen::Isometry3d> T_shape_scan;  ///< poses, those with most votes first
+};
+
+struct PairSearchOptions {
+  int num_nearest = 10;  ///< shapes that are returned, >= 0. chosen: see RecognitionOptions::num_candidates
+  int num_poses = 6;     ///< poses of each shape, >= 1. chosen: half misses poses, twice takes twice the time to try
+  int num_threads = 0;   ///< >= 0; 0 = one per core
+};
+
+/// Finds shapes and poses by pairs of points with their normals (Drost et al. 2010; not in the paper): two points of a
+/// scan lie as far apart, and their normals as turned, as two points of the shape that it shows. What hides a part of
+/// the object takes away pairs, but changes no other: views of the whole, see ViewIndex, change with everything that is
+/// hidden.
+///
+/// Departures from the publication: normals have no sign, distances are compared by their ratio, so that shapes may be
+/// of any size, and pairs that many shapes have count less.
+class PointPairIndex {
+public:
+  /// Points of a shape. chosen: half gives poses that are off by twice as much, twice takes four times the memory.
+  static constexpr int kShapePoints = 250;
+  /// Points of a scan that are paired. chosen: time grows with them; half misses poses where little is seen.
+  static constexpr int kScanPoints = 120;
+
+  /// \param shapes the points of each, about kShapePoints.
+  /// \param num_threads >= 0; 0 = one per core.
+  explicit PointPairIndex(const std::vector<SurfacePoints>& shapes, int num_threads = 0);
+
+  int numShapes() const { return static_cast<int>(radii_.size()); }
+
+  /// \param scan some points, about kScanPoints, in random order, in the unit of the shapes.
+  /// \return most votes first, at most PairSearchOptions::num_nearest.
+  std::vector<ShapeOfPairs> nearest(const SurfacePoints& scan, const PairSearchOptions& options = {}) const;
+
+private:
+  /// A pose that one point of the scan votes for.
+  struct Vote {
+    Eigen::Quaterniond turn;
+    Eigen::Vector3d place;  // of the center of the scan, frame of the shape
+    double weight;
+  };
+
+  /// A few shapes whose votes fit into the memory next to the processor.
+  struct Block {
+    int first_shape, end_shape;
+    // Their pairs by key: the first point, counted from the first one of the block, and in the last 8 bits the turn of
+    // the second one about the normal of the first.
+    std::vector<std::uint32_t> key_begins, pairs;
+  };
+
+  /// Pairs of the shapes that a pair of the scan is like.
+  struct LookUp {
+    std::uint32_t key, turn;
+  };
+
+  /// A point of the scan that votes, with its normal of some sign.
+  struct Reference {
+    Eigen::Matrix3d frame;
+    Eigen::Vector3d point;
+    std::vector<LookUp> look_ups;
+  };
+
+  Block blockOf(int first_shape, int end_shape) const;
+  void fillWeights();
+  Reference referenceOf(const SurfacePoints& scan, int index, int sign) const;
+  void count(const Block& block, const std::vector<LookUp>& look_ups, std::vector<std::int32_t>& votes) const;
+  void collect(int shape, const Reference& reference, const Eigen::Vector3d& center, const std::int32_t* votes,
+               std::vector<Vote>& poses) const;
+  ShapeOfPairs clustered(int shape, std::vector<Vote> votes, const Eigen::Vector3d& center, int num_poses) const;
+  int keyOf(int distance, int angle, int other_angle, int between) const;
+  std::size_t numKeys() const { return weights_.size(); }
+
+  // Points of all shapes, one behind the other: places, normals, where the points of each shape begin.
+  Points points_, normals_;
+  std::vector<int> begins_ = {0};
+  std::vector<double> radii_;  // of the shapes
+  int first_distance_ = 0, num_distances_ = 0;
+  std::vector<Block> blocks_;
+  std::vector<std::uint8_t> weights_;  // of the keys
+};
+
+}  // namespace pcl_symmetry

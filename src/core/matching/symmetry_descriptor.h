@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/planar_transform.h"
+
+namespace pcl_symmetry {
+
+/// Bins of theta, of phi and of r, and cells along each side of the distance transform.
+constexpr int kDescriptorBins = 32;  // derived: 32^3 = 32 768 floats, Section 5.2
+constexpr int kPRSTSize = kDescriptorBins * kDescriptorBins * kDescriptorBins;  // derived: theta x phi x r
+constexpr int kPRSDSize = kDescriptorBins * kDescriptorBins;                    // derived: theta x phi
+constexpr int kGEDTSize = kPRSTSize;                                            // derived: cells x cells x cells
+
+struct DescriptorOptions {
+  /// Radius of the ball that is described, in mean distances of the points from the origin, > 0. chosen: half cuts away
+  /// the outer parts of most shapes, twice leaves most bins empty.
+  double radius = 2.0;
+  /// Samples of the transform, >= 1. chosen: half lets the error grow by sqrt(2), twice takes twice the time.
+  int num_samples = 256;
+  std::uint64_t seed = 1;
+  int num_threads = 0;  ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// The descriptors that the paper compares (Section 5.2), of one shape in one frame.
+struct SymmetryDescriptors {
+  /// Planar reflective symmetry transform at the centers of the bins (theta, phi, r), r fastest.
+  ///
+  /// Departure from equation 1, PRST = sqrt((1 + D) / 2): the values are sqrt(max(D, 0)). f is nowhere negative, so
+  /// that equation 1 maps all planes to [0.71, 1]; the root of D uses [0, 1] and is 0 for planes without any symmetry.
+  /// Both rise with D.
+  std::vector<float> prst;
+  /// PRSD, the reflective symmetry descriptor of Kazhdan et al. (2004): the same values for the planes through the
+  /// origin, (theta, phi), phi fastest.
+  std::vector<float> prsd;
+  /// GEDT, the Gaussian Euclidean distance transform f (Section 4.1) at the centers of its cells, x fastest.
+  std::vector<float> gedt;
+};
+
+/// \param points 3 x N, finite, input units, not all at the origin of the frame.
+/// \param T_frame_input from the input to the frame of the descriptors: a canonical frame, or the axes of the input
+/// about the center of mass.
+/// \throws std::invalid_argument for bad options or points without extent.
+SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Isometry3d& T_frame_input,
+                                        const DescriptorOptions& options = {});
+
+/// Sum of squared differences. All SIMD versions give the same bytes.
+/// \param a \p size values.
+/// \param b \p size values.
+float sqDistance(const float* a, const float* b, std::size_t size);
+
+/// L2 distance of two PRST or two PRSD descriptors, differences weighted by sqrt(sin theta), the size of the bins
+/// (Section 5.2).
+///
+/// Departure for PRSD: Kazhdan et al. (2004) take the maximum difference. L2 compares both descriptors alike.
+/// \param a \p size values.
+/// \param b \p size values.
+/// \param size kPRSTSize or kPRSDSize.
+/// \throws std::invalid_argument for a size that is no multiple of kDescriptorBins.
+float planeDescriptorDistance(const float* a, const float* b, std::size_t size);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,91 @@
+#include "core/registration/pose_covariance.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "core/base/median.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Numbers that a pose is made of. derived: three of the rotation, three of the translation.
+constexpr int kNumUnknowns = 6;
+// Radii, least standard deviation of a residual. derived: the rounding of coordinates that are stored as floats.
+constexpr double kLeastDeviation = 1e-7;
+
+/// Point-to-plane distances at a pose.
+struct Residuals {
+  double sum_squares = 0.0;
+  int count = 0;
+  MotionCovariance hessian = MotionCovariance::Zero();
+  /// What the Hessian gains per squared radian that the normals are off by.
+  MotionCovariance gain_of_noise = MotionCovariance::Zero();
+  std::vector<double> sq_sines;  ///< between the normals of corresponding points
+};
+
+Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
+                      int num_points, double reach) {
+  const auto size = std::min<Eigen::Index>(num_points, scan.points.cols());
+  const Eigen::Isometry3f pose = T_model_scan.cast<float>();
+  Points places(3, size);
+  for (Eigen::Index i = 0; i < size; ++i) places.col(i) = pose * scan.points.col(scan.order[i]);
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  model.search->search(places, 1, closest, sq_distances);
+  Residuals residuals;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    if (sq_distances[i] > reach * reach) continue;
+    const Eigen::Vector3d x = places.col(i).cast<double>(), n = model.normals.col(closest[i]).cast<double>();
+    const Eigen::Vector3d turned = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
+    Eigen::Matrix<double, kNumUnknowns, 3> lever;
+    lever << crossMatrix(x), Eigen::Matrix3d::Identity();
+    const Motion6d row = lever * n;
+    const double distance = n.dot(x - model.points.col(closest[i]).cast<double>());
+    residuals.hessian += row * row.transpose();
+    // A normal is off in the two directions across it, by half of the square in each.
+    residuals.gain_of_noise += 0.5 * lever * (Eigen::Matrix3d::Identity() - n * n.transpose()) * lever.transpose();
+    residuals.sum_squares += distance * distance;
+    residuals.sq_sines.push_back(n.cross(turned).squaredNorm());
+    ++residuals.count;
+  }
+  return residuals;
+}
+
+/// What the residuals know of the motion: their Hessian without what noise of the normals adds, which would fix
+/// directions along which the surface slides on itself.
+MotionCovariance hessianWithoutNoise(Residuals residuals) {
+  // derived: the squares of errors in two directions have an exponential distribution; its mean is the median over
+  // log 2.
+  const double sq_noise = median(std::move(residuals.sq_sines)) / std::log(2.0);
+  const Eigen::SelfAdjointEigenSolver<MotionCovariance> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -x.z(), x.y(), x.z(), 0.0, -x.x(), -x.y(), x.x(), 0.0;
+  return matrix;
+}
+
+MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& model,
+                                const Eigen::Isometry3d& T_model_scan, int num_points, double reach) {
+  // derived: the variance of an angle that is uniform in (-pi, pi), and a translation by the radius of the model.
+  const double sq_turn = kPi * kPi / 3.0, sq_way = 1.0;
+  MotionCovariance information = MotionCovariance::Zero();
+  information.diagonal().head<3>().setConstant(1.0 / sq_turn);
+  information.diagonal().tail<3>().setConstant(1.0 / sq_way);
+  Residuals residuals = residualsAt(scan, model, T_model_scan, num_points, reach);
+  if (residuals.count > kNumUnknowns) {
+    const double variance = residuals.sum_squares / (residuals.count - kNumUnknowns);
+    information += hessianWithoutNoise(std::move(residuals)) / std::max(kLeastDeviation * kLeastDeviation, variance);
+  }
+  return information.inverse();
+}
+
+}  // namespace pcl_symmetry

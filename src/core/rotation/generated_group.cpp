@@ -1,0 +1,248 @@
+/// The group of rotations that motions and axes generate, placed exactly.
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Angle up to which rotations are one. chosen: half refuses files that people rounded, twice takes folds of 180 as one.
+constexpr double kOneRotation = 1.0 * kDegree;
+// Rotations of a group at most. chosen: D_120; half refuses fine gears, twice takes four times as long to refuse.
+constexpr std::size_t kMostRotations = 240;
+// Distance of a motion's fixed points from the center, as a share of how far its translation is from none. chosen: half
+// refuses coarsely rounded files, twice takes screws for rotations.
+constexpr double kOffCenter = 0.02;
+
+using Rotations = std::vector<Eigen::Matrix3d>;
+using Kind = RotationGroupKind;
+
+Eigen::Matrix3d closestRotation(const Eigen::Matrix3d& matrix) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+bool isListed(const Rotations& rotations, const Eigen::Matrix3d& rotation) {
+  // Frobenius norm of the difference of two rotations by an angle: sqrt(8) sin(angle / 2).
+  const double greatest = std::sqrt(8.0) * std::sin(0.5 * kOneRotation);
+  return std::any_of(rotations.begin(), rotations.end(),
+                     [&](const Eigen::Matrix3d& other) { return (other - rotation).norm() < greatest; });
+}
+
+/// All products, the identity first.
+/// \throws std::invalid_argument where there is no end of them.
+Rotations productsOf(const Rotations& generators) {
+  Rotations elements{Eigen::Matrix3d::Identity()};
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    for (const Eigen::Matrix3d& generator : generators) {
+      const Eigen::Matrix3d product = generator * elements[i];
+      if (isListed(elements, product)) continue;
+      elements.push_back(product);
+      if (elements.size() > kMostRotations)
+        throw std::invalid_argument("discrete: the rotations generate no group of at most " +
+                                    std::to_string(kMostRotations) + " rotations");
+    }
+  }
+  return elements;
+}
+
+/// An axis of the products, whose rounding errors differ.
+struct GeneratedAxis {
+  Eigen::Vector3d direction;
+  int order;
+};
+
+std::vector<GeneratedAxis> axesOfProducts(const Rotations& elements) {
+  std::vector<GeneratedAxis> axes;
+  for (std::size_t i = 1; i < elements.size(); ++i) {
+    const Eigen::Vector3d direction = Eigen::AngleAxisd(elements[i]).axis();
+    // derived: axes of a group with at most 240 rotations are at least 1.5 degrees apart, and each is better known than
+    // its rotations.
+    const auto known = std::find_if(axes.begin(), axes.end(), [&](const GeneratedAxis& axis) {
+      return axis.direction.cross(direction).norm() < std::sin(0.7 * kDegree);
+    });
+    if (known == axes.end())
+      axes.push_back({direction, 2});
+    else
+      ++known->order;
+  }
+  return axes;
+}
+
+RotationGroup groupOf(std::size_t size, const std::vector<GeneratedAxis>& axes) {
+  std::map<int, int> num_axes;
+  for (const GeneratedAxis& axis : axes) ++num_axes[axis.order];
+  if (axes.empty()) return {Kind::Cyclic, 1};
+  if (axes.size() == 1) return {Kind::Cyclic, static_cast<int>(size)};
+  if (size == 12 && num_axes[3] == 4) return {Kind::Tetrahedral, 3};
+  if (size == 24 && num_axes[3] == 4) return {Kind::Octahedral, 4};
+  if (size == 60 && num_axes[3] == 10) return {Kind::Icosahedral, 5};
+  return {Kind::Dihedral, static_cast<int>(size / 2)};
+}
+
+/// A rotation that takes the axes z and x of a group's own frame to axes of the generated one.
+Eigen::Matrix3d roughFrame(const RotationGroup& group, const std::vector<GeneratedAxis>& axes) {
+  const int main_order = group.kind == Kind::Cyclic || group.kind == Kind::Dihedral ? group.fold
+                         : group.kind == Kind::Octahedral                           ? 4
+                                                                                    : 2;
+  const auto main = std::find_if(axes.begin(), axes.end(), [&](const auto& axis) { return axis.order == main_order; });
+  const Eigen::Vector3d z = main->direction;
+  Eigen::Vector3d x = z.unitOrthogonal();
+  if (group.kind != Kind::Cyclic) {
+    const int across_order = group.kind == Kind::Octahedral ? 4 : 2;
+    double least = 1.0;
+    for (const GeneratedAxis& axis : axes) {
+      const double along = std::abs(axis.direction.dot(z));
+      if (axis.order != across_order || along >= least) continue;
+      least = along;
+      x = axis.direction;
+    }
+  }
+  Eigen::Matrix3d frame;
+  frame.col(2) = z;
+  frame.col(1) = z.cross(x).normalized();
+  frame.col(0) = frame.col(1).cross(z);
+  return frame;
+}
+
+const Eigen::Matrix3d& closestOf(const Rotations& rotations, const Eigen::Matrix3d& rotation) {
+  return *std::min_element(rotations.begin(), rotations.end(), [&](const auto& a, const auto& b) {
+    return (a - rotation).squaredNorm() < (b - rotation).squaredNorm();
+  });
+}
+
+double misfitOf(const Rotations& own, const Rotations& generated, const Eigen::Matrix3d& frame) {
+  double sum = 0.0;
+  for (const Eigen::Matrix3d& rotation : generated)
+    sum += (closestOf(own, frame.transpose() * rotation * frame) - frame.transpose() * rotation * frame).squaredNorm();
+  return sum;
+}
+
+/// The frame in which the elements of a group are closest to the generated ones: the axes, weighted by the sine of half
+/// the angle, fit best.
+Eigen::Matrix3d closeFrame(const Rotations& own, const Rotations& generated, const Eigen::Matrix3d& frame) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const Eigen::Matrix3d& rotation : generated) {
+    const Eigen::Quaterniond to(rotation), from(closestOf(own, frame.transpose() * rotation * frame));
+    const Eigen::Vector3d moved = frame * from.vec();
+    sum += (moved.dot(to.vec()) < 0.0 ? -1.0 : 1.0) * to.vec() * from.vec().transpose();
+  }
+  if (sum.norm() == 0.0) return frame;
+  // One axis alone leaves the turn about it open; the part of the frame across it decides.
+  return closestRotation(sum / sum.norm() + 1e-6 * frame);
+}
+
+/// The generated group, exact.
+Rotations placed(const RotationGroup& group, const Rotations& generated, const std::vector<GeneratedAxis>& axes) {
+  const Rotations own = group.elements();
+  if (axes.empty()) return own;
+  Eigen::Matrix3d frame = roughFrame(group, axes);
+  // Three perpendicular axes of order 2 leave two ways to place an icosahedron: a quarter turn apart.
+  const Eigen::Matrix3d other = frame * rotationAbout(Eigen::Vector3d::UnitZ(), 0.5 * kPi);
+  if (misfitOf(own, generated, other) < misfitOf(own, generated, frame) - 1e-6) frame = other;
+  frame = closeFrame(own, generated, frame);
+  Rotations result;
+  for (const Eigen::Matrix3d& rotation : own) result.push_back(frame * rotation * frame.transpose());
+  return result;
+}
+
+/// The point that all motions fix, as close to the origin as there is one; in least squares.
+/// \throws std::invalid_argument where there is none.
+Eigen::Vector3d fixedPoint(const std::vector<Eigen::Isometry3d>& motions, const std::vector<ContinuousSymmetry>& axes) {
+  const auto num_rows = static_cast<Eigen::Index>(3 * (motions.size() + axes.size()));
+  if (num_rows == 0) return Eigen::Vector3d::Zero();
+  Eigen::MatrixX3d rows(num_rows, 3);
+  Eigen::VectorXd right(num_rows);
+  Eigen::Index row = 0;
+  double size = 0.0;
+  for (const Eigen::Isometry3d& motion : motions) {
+    rows.middleRows<3>(row) = Eigen::Matrix3d::Identity() - closestRotation(motion.linear());
+    right.segment<3>(row) = motion.translation();
+    size = std::max(size, motion.translation().norm());
+    row += 3;
+  }
+  for (const ContinuousSymmetry& symmetry : axes) {
+    const Eigen::Vector3d axis = symmetry.axis.normalized();
+    rows.middleRows<3>(row) = Eigen::Matrix3d::Identity() - axis * axis.transpose();
+    right.segment<3>(row) = rows.middleRows<3>(row) * symmetry.offset;
+    size = std::max(size, symmetry.offset.norm());
+    row += 3;
+  }
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
+  solver.setThreshold(kOffCenter);
+  solver.compute(rows);
+  const Eigen::Vector3d center = solver.solve(right);
+  if ((rows * center - right).cwiseAbs().maxCoeff() > kOffCenter * size)
+    throw std::invalid_argument("discrete: the motions and axes have no fixed point in common");
+  return center;
+}
+
+Eigen::Isometry3d motionFixing(const Eigen::Vector3d& center, const Eigen::Matrix3d& rotation) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = rotation;
+  motion.translation() = center - rotation * center;
+  return motion;
+}
+
+/// The axis that all axes of revolution share; nothing where motions or other axes tilt it, as on a sphere.
+std::optional<Eigen::Vector3d> sharedAxis(const std::vector<ContinuousSymmetry>& axes, const Rotations& rotations) {
+  const Eigen::Vector3d axis = axes.front().axis.normalized();
+  const auto tilts = [&](const Eigen::Vector3d& other) { return axis.cross(other).norm() > std::sin(kOneRotation); };
+  for (const ContinuousSymmetry& other : axes)
+    if (tilts(other.axis.normalized())) return std::nullopt;
+  for (const Eigen::Matrix3d& rotation : rotations)
+    if (tilts(rotation * axis)) return std::nullopt;
+  return axis;
+}
+
+void setRound(ObjectSymmetries& result, const std::vector<ContinuousSymmetry>& axes, const Rotations& rotations) {
+  result.fold = 0;
+  const std::optional<Eigen::Vector3d> axis = sharedAxis(axes, rotations);
+  if (!axis) {
+    result.kind = Kind::Spherical;
+    for (int k = 0; k < 3; ++k) result.continuous.push_back({Eigen::Vector3d::Unit(k), result.center});
+    return;
+  }
+  result.continuous.push_back({*axis, result.center});
+  const auto turns_over = [&](const Eigen::Matrix3d& rotation) { return axis->dot(rotation * *axis) < 0.0; };
+  const bool is_cylinder = std::any_of(rotations.begin(), rotations.end(), turns_over);
+  result.kind = is_cylinder ? Kind::Cylindrical : Kind::Revolution;
+  if (is_cylinder) result.discrete.push_back(motionFixing(result.center, rotationAbout(axis->unitOrthogonal(), kPi)));
+}
+
+}  // namespace
+
+ObjectSymmetries ObjectSymmetries::from(const std::vector<Eigen::Isometry3d>& discrete,
+                                        const std::vector<ContinuousSymmetry>& continuous) {
+  for (const ContinuousSymmetry& symmetry : continuous)
+    if (!(symmetry.axis.norm() > 0.0)) throw std::invalid_argument("continuous: axis = 0 0 0, must not be zero");
+  Rotations rotations;
+  for (const Eigen::Isometry3d& motion : discrete) rotations.push_back(closestRotation(motion.linear()));
+  ObjectSymmetries result;
+  result.center = fixedPoint(discrete, continuous);
+  if (!continuous.empty()) {
+    setRound(result, continuous, rotations);
+    return result;
+  }
+  const Rotations products = productsOf(rotations);
+  const std::vector<GeneratedAxis> axes = axesOfProducts(products);
+  const RotationGroup group = groupOf(products.size(), axes);
+  result.kind = group.kind;
+  result.fold = group.fold;
+  const Rotations elements = placed(group, products, axes);
+  for (std::size_t i = 1; i < elements.size(); ++i) result.discrete.push_back(motionFixing(result.center, elements[i]));
+  return result;
+}
+
+}  // namespace pcl_symmetry

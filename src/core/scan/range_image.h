@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "pcl_symmetry/core/point_set.h"
+
+namespace pcl_symmetry {
+
+/// Which points a picture holds.
+enum class FieldOfView {
+  Cone,     ///< within 75 degrees of the direction that the camera looks along
+  CubeFace  ///< a square of 90 degrees: six of them see all around
+};
+
+/// Points in the picture plane at depth one.
+struct SeenPlaces {
+  std::vector<Eigen::Array2d> places;
+  std::vector<float> depths;  ///< along the direction that the camera looks along, input units
+};
+
+/// The pixels of a picture. Pixel (u, v) contains the places about its integer coordinates; one empty pixel at least
+/// surrounds the filled ones.
+struct PixelGrid {
+  Eigen::Array2d low;  ///< least coordinates of the places
+  double size;         ///< of a pixel, at depth one
+  int width = 1, height = 1;
+
+  int column(const Eigen::Array2d& p) const { return static_cast<int>((p.x() - low.x()) / size) + 1; }
+  int row(const Eigen::Array2d& p) const { return static_cast<int>((p.y() - low.y()) / size) + 1; }
+  std::size_t at(const Eigen::Array2d& p) const { return static_cast<std::size_t>(row(p)) * width + column(p); }
+  std::size_t numPixels() const { return static_cast<std::size_t>(width) * height; }
+
+  /// Takes places at depth one to pixels.
+  Eigen::Matrix3d toPixels() const {
+    Eigen::Matrix3d to_pixels = Eigen::Matrix3d::Identity();
+    to_pixels(0, 0) = to_pixels(1, 1) = 1.0 / size;
+    to_pixels(0, 2) = 0.5 - low.x() / size;
+    to_pixels(1, 2) = 0.5 - low.y() / size;
+    return to_pixels;
+  }
+};
+
+/// Depths of the nearest point in each pixel; Visibility::kBackground where there is none.
+struct RangeImage {
+  PixelGrid grid;
+  std::vector<float> depths;
+};
+
+/// \param points 3 x N, finite.
+/// \param R_camera_input rows right, down and forward in the frame of the points.
+/// \return those of the points that lie in the field of view.
+SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input,
+                      FieldOfView field);
+
+/// A range image of the points of one object, without order. The size of the pixels follows the distance between the
+/// points in the picture; gaps between the points are closed. Empty pixels are background.
+/// \param seen at least one place.
+/// \param max_pixels least number of pixels that make them larger, >= 16.
+RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels);
+
+/// The same for a scene. Where its rays are denser in one direction than across, as in the rings of a LiDAR scanner,
+/// pixels are as small as the denser distance, and the gaps between the rings are bridged. Empty pixels beyond the
+/// measured part of the picture are Visibility::kNoRay: those with filled pixels in fewer than three of the four
+/// directions along rows and columns.
+/// \param seen at least one place.
+/// \param max_pixels least number of pixels that make them larger, >= 16.
+RangeImage sceneRangeImage(const SeenPlaces& seen, std::size_t max_pixels);
+
+}  // namespace pcl_symmetry

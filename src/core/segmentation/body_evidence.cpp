@@ -1,0 +1,135 @@
+#include "core/segmentation/body_evidence.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/constants.h"
+#include "core/base/median.h"
+#include "core/base/random.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// chosen: samples per patch and rays per sample, for one median per patch. Half as many make the thickness of a patch
+/// random; twice as many double the time.
+constexpr int kSamplesOfPatch = 6, kRaysOfSample = 6;
+/// chosen: radians; rays lie within this angle of the inward normal (35 degrees). At half, single rays miss the body's
+/// other side at dents; at twice, rays run along the body instead of across it.
+constexpr double kConeAngle = 0.61;
+/// chosen: radii; rays begin this far from the surface. Smaller values hit the element that a ray comes from, by
+/// rounding; larger values pass through thin walls.
+constexpr float kLeastReach = 1e-4f;
+/// chosen: the same for clouds, in square roots of the area of a point. At half, rays hit the triangles of neighbouring
+/// points, which overlap; at twice, they pass through thin walls.
+constexpr float kCloudReach = 2.5f;
+
+struct SurfacePoint {
+  Eigen::Vector3f position, normal;
+  float reach;  ///< input units; rays from here begin at this distance
+};
+
+/// Points spread over each patch by area, one in each of equal shares. The points of a cloud stand for themselves.
+std::vector<std::vector<SurfacePoint>> samplePatches(const SurfaceGraph& graph, const Patches& patches, float radius,
+                                                     std::uint64_t seed) {
+  RandomStream random(seed);
+  const double whole = graph.area();
+  std::vector<double> step(patches.areas.size()), next(step.size()), so_far(step.size(), 0.0);
+  for (std::size_t p = 0; p < step.size(); ++p) {
+    step[p] = patches.areas[p] * whole / kSamplesOfPatch;
+    next[p] = random.uniform() * step[p];
+  }
+  std::vector<std::vector<SurfacePoint>> samples(step.size());
+  for (std::size_t t = 0; t < graph.triangles.size(); ++t) {
+    const int element = graph.element_of_triangle[t], p = patches.of_element[element];
+    const auto corner = [&](int k) -> Eigen::Vector3f { return graph.corners.col(graph.triangles[t][k]); };
+    const Eigen::Vector3f u = corner(1) - corner(0), v = corner(2) - corner(0);
+    so_far[p] += graph.is_cloud ? graph.areas[element] : 0.5 * u.cross(v).norm();
+    for (; step[p] > 0.0 && next[p] < so_far[p]; next[p] += step[p]) {
+      SurfacePoint sample{graph.centers.col(element), graph.normals.col(element), kLeastReach * radius};
+      if (graph.is_cloud) {
+        sample.reach = std::max(kCloudReach * std::sqrt(graph.areas[element]), sample.reach);
+      } else {
+        const auto root = static_cast<float>(std::sqrt(random.uniform())), share = static_cast<float>(random.uniform());
+        sample.position = corner(0) + root * ((1.0f - share) * u + share * v);
+      }
+      samples[p].push_back(sample);
+    }
+  }
+  return samples;
+}
+
+/// Directions in a cone about the inward normal, one in each of kRaysOfSample sectors.
+std::vector<Eigen::Vector3f> inwardDirections(const Eigen::Vector3f& normal, RandomStream& random) {
+  const Eigen::Vector3f u = normal.unitOrthogonal(), v = normal.cross(u);
+  std::vector<Eigen::Vector3f> directions;
+  for (int k = 0; k < kRaysOfSample; ++k) {
+    const double around = 2.0 * kPi * (k + random.uniform()) / kRaysOfSample;
+    const double tilt = std::tan(kConeAngle) * std::sqrt(random.uniform());
+    const Eigen::Vector3f aside =
+        static_cast<float>(tilt * std::cos(around)) * u + static_cast<float>(tilt * std::sin(around)) * v;
+    directions.push_back((aside - normal).normalized());
+  }
+  return directions;
+}
+
+/// Median length of the rays from the samples of a patch, input units; 0 if none met another side.
+float depthBehind(const std::vector<SurfacePoint>& samples, const TriangleTree& tree, RandomStream& random) {
+  std::vector<float> distances;
+  for (const SurfacePoint& sample : samples) {
+    for (const Eigen::Vector3f& inward : inwardDirections(sample.normal, random)) {
+      const RayHit hit = tree.closest(sample.position, inward, sample.reach);
+      if (hit.triangle >= 0) distances.push_back(hit.distance);
+    }
+  }
+  return distances.empty() ? 0.0f : static_cast<float>(median(std::move(distances)));
+}
+
+/// The place half-way through the body behind the sample that is closest to the center of its patch.
+Eigen::Vector3f innerPlace(const std::vector<SurfacePoint>& samples, const Eigen::Vector3f& center, float depth,
+                           const TriangleTree& tree) {
+  const SurfacePoint& middle = *std::min_element(samples.begin(), samples.end(), [&](const auto& a, const auto& b) {
+    return (a.position - center).squaredNorm() < (b.position - center).squaredNorm();
+  });
+  depth = std::min(depth, tree.closest(middle.position, -middle.normal, middle.reach).distance);
+  return middle.position - 0.5f * depth * middle.normal;
+}
+
+Eigen::MatrixXf linesOfSight(const Points& places, const TriangleTree& tree) {
+  const Eigen::Index size = places.cols();
+  Eigen::MatrixXf sight = Eigen::MatrixXf::Identity(size, size);
+  for (Eigen::Index from = 0; from < size; ++from)
+    for (Eigen::Index to = 0; to < from; ++to)
+      sight(to, from) = tree.blocks(places.col(from), places.col(to)) ? 0.0f : 1.0f;
+  sight.triangularView<Eigen::StrictlyLower>() = sight.transpose();
+  return sight;
+}
+
+}  // namespace
+
+BodyEvidence bodyEvidence(const SurfaceGraph& graph, const TriangleTree& tree, const Patches& patches,
+                          std::uint64_t seed) {
+  const auto radius = static_cast<float>(boundingBall(graph.centers).radius);
+  const auto samples = samplePatches(graph, patches, radius, seed);
+  BodyEvidence evidence;
+  evidence.thickness.assign(samples.size(), 0.0);
+  Points inner = patches.centers;
+  for (std::size_t p = 0; p < samples.size(); ++p) {
+    if (samples[p].empty()) continue;
+    RandomStream random(seed, p);
+    const float depth = depthBehind(samples[p], tree, random);
+    const auto column = static_cast<Eigen::Index>(p);
+    evidence.thickness[p] = depth / radius;
+    inner.col(column) = innerPlace(samples[p], patches.centers.col(column), depth, tree);
+  }
+  evidence.sight = linesOfSight(inner, tree);
+  return evidence;
+}
+
+BodyEvidence noBodyEvidence(int num_patches) {
+  return {std::vector<double>(static_cast<std::size_t>(num_patches), 0.0),
+          Eigen::MatrixXf::Identity(num_patches, num_patches)};
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,100 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+#include "core/base/constants.h"
+#include "core/segmentation/graph_completion.h"
+#include "core/segmentation/surface_extent.h"
+#include "pcl_symmetry/core/surface_graph.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// The surface at a point of a cloud, from the point and its neighbours.
+struct LocalSurface {
+  Eigen::Vector3f normal, u, v;  ///< unit, perpendicular to each other: least, middle and greatest principal axis
+  float area;                    ///< that the point stands for, input units squared
+  float border;                  ///< with each neighbour, input units
+};
+
+LocalSurface localSurface(const PointsRef& points, Eigen::Index i, const std::vector<int>& neighbours) {
+  Points around(3, static_cast<Eigen::Index>(neighbours.size()) + 1);
+  around.col(0) = points.col(i);
+  for (std::size_t k = 0; k < neighbours.size(); ++k)
+    around.col(static_cast<Eigen::Index>(k) + 1) = points.col(neighbours[k]);
+  const Points offsets = around.colwise() - around.rowwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(offsets * offsets.transpose());
+  LocalSurface local{axes.eigenvectors().col(0), axes.eigenvectors().col(1), axes.eigenvectors().col(2), 0.0f, 0.0f};
+  // A disc through the last of k neighbours holds k points: each stands for pi r^2 / k.
+  const auto count = static_cast<float>(neighbours.size());
+  const float radius = (around.rightCols(1) - around.col(0)).norm();
+  local.area = static_cast<float>(kPi) * radius * radius / std::max(1.0f, count);
+  // Each neighbour takes 1 / k of the perimeter 2 sqrt(pi area) of the disc of that area.
+  local.border = 2.0f * std::sqrt(static_cast<float>(kPi) * local.area) / std::max(1.0f, count);
+  return local;
+}
+
+/// Adds an equilateral triangle in the tangent plane whose incircle has the area of the point.
+void addTriangle(SurfaceGraph& graph, Eigen::Index i, const LocalSurface& local) {
+  // derived: the circumradius of an equilateral triangle is twice its inradius
+  const float circumradius = 2.0f * std::sqrt(local.area / static_cast<float>(kPi));
+  for (int k = 0; k < 3; ++k) {
+    const float angle = static_cast<float>(2.0 * kPi * k / 3.0);
+    graph.corners.col(3 * i + k) =
+        graph.centers.col(i) + circumradius * (std::cos(angle) * local.u + std::sin(angle) * local.v);
+  }
+  const int first = static_cast<int>(3 * i);
+  graph.triangles.emplace_back(first, first + 1, first + 2);
+  graph.element_of_triangle.push_back(static_cast<int>(i));
+}
+
+/// Joins a point with its neighbours; the lower index of two mutual neighbours adds their edge.
+void addEdges(SurfaceGraph& graph, int i, const std::vector<std::vector<int>>& neighbours, float length) {
+  for (const int j : neighbours[i]) {
+    const bool mutual = std::find(neighbours[j].begin(), neighbours[j].end(), i) != neighbours[j].end();
+    if (mutual && j < i) continue;
+    graph.edges.push_back({i, j, length, 0.0f});
+  }
+}
+
+void checkNeighbours(const std::vector<std::vector<int>>& neighbours, Eigen::Index num_points) {
+  const auto size = static_cast<std::size_t>(num_points);
+  check(neighbours.size() == size, "number of lists of neighbours", static_cast<double>(neighbours.size()),
+        "that of the points");
+  for (const std::vector<int>& list : neighbours)
+    for (const int neighbour : list)
+      check(neighbour >= 0 && static_cast<std::size_t>(neighbour) < size, "neighbour", neighbour,
+            ">= 0 and < the number of points");
+}
+
+}  // namespace
+
+SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours) {
+  checkNeighbours(neighbours, points.cols());
+  checkExtent(points);
+  const BoundingBall ball = boundingBall(points);
+  check(ball.radius > 0.0, "extent of the points", ball.radius, "> 0");
+  const auto size = points.cols();
+  SurfaceGraph graph;
+  graph.is_cloud = true;
+  graph.centers = points;
+  graph.normals.resize(3, size);
+  graph.areas.resize(static_cast<std::size_t>(size));
+  graph.corners.resize(3, 3 * size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const LocalSurface local = localSurface(points, i, neighbours[i]);
+    graph.normals.col(i) = local.normal;
+    graph.areas[i] = local.area;
+    addTriangle(graph, i, local);
+    addEdges(graph, static_cast<int>(i), neighbours, local.border);
+  }
+  check(graph.area() > 0.0, "area of the cloud", graph.area(), "> 0");
+  std::vector<float> agreement;
+  for (const SurfaceGraph::Edge& edge : graph.edges)
+    agreement.push_back(graph.normals.col(edge.from).dot(graph.normals.col(edge.to)));
+  return completedGraph(std::move(graph), agreement);
+}
+
+}  // namespace pcl_symmetry

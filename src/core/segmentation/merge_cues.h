@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "pcl_symmetry/core/surface_segmentation.h"
+
+namespace pcl_symmetry {
+
+inline bool usesSymmetry(MergingEvidence evidence) {
+  return evidence != MergingEvidence::AllButSymmetry && evidence != MergingEvidence::Nothing;
+}
+inline bool usesConcavity(MergingEvidence evidence) {
+  return evidence != MergingEvidence::Symmetry && evidence != MergingEvidence::Nothing;
+}
+inline bool usesBody(MergingEvidence evidence) {
+  return evidence == MergingEvidence::All || evidence == MergingEvidence::AllButSymmetry;
+}
+
+/// What speaks for or against two neighbouring regions being one part.
+enum Cue {
+  kAlways,             ///< 1
+  kContact,            ///< length of the common border over the shorter perimeter, in [0, 1]
+  kSmallArea,          ///< log of the smaller area, a share of the surface
+  kLargeArea,          ///< log of the larger area, a share of the surface
+  kSupportDifference,  ///< root mean square difference of their support for the planes of the surface, in [0, 1]
+  kImages,             ///< 1 if some plane reflects each onto the other, else 0
+  kEdgeConcavity,      ///< mean concavity of the edges along the border, radians
+  kPatchConcavity,     ///< mean concavity between the patches on both sides of the border, as PatchBorder
+  kInnerConcavity,     ///< mean concavity between the patches within the two regions, as PatchBorder
+  kThicknessRatio,     ///< |log| of the ratio of their thicknesses
+  kConstriction,       ///< log of the thickness of the thinner region over the thickness at the border
+  kSight,              ///< share of the pairs of patches, one in each region, with a free line of sight within the body
+  kRelativeSight,      ///< kSight over the same share within the regions
+  kSightOfSmall,       ///< kSight * kSmallArea
+  kNumCues
+};
+using Cues = std::array<double, kNumCues>;
+
+/// Log odds per unit of each cue, in the order of Cue.
+using MergeWeights = std::array<double, kNumCues>;
+
+/// \return the cues that a kind of evidence has, in the order of Cue.
+std::vector<Cue> cuesOf(MergingEvidence evidence);
+
+/// \return the weights that were fitted for a kind of evidence.
+const MergeWeights& fittedWeights(MergingEvidence evidence);
+
+/// Log odds that two regions are one part: a weighted sum of the cues.
+/// \return > 0 if they are more likely one part than two.
+double logOddsOfOnePart(const Cues& cues, const MergeWeights& weights);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,97 @@
+#include "core/segmentation/orientation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "core/base/random.h"
+#include "core/geometry/triangle_tree.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// chosen: rays per connected piece at most. Half as many turn a ragged piece the wrong way more often; twice as many
+/// double the time.
+constexpr int kNumRays = 2000;
+/// chosen: where rays begin, in square roots of the area of their element. The triangles of neighbouring points of a
+/// cloud overlap: rays that begin at half this distance hit them; rays that begin at twice this distance pass through
+/// thin walls.
+constexpr float kRayStart = 2.0f;
+
+struct AlignedNormals {
+  Points normals;          ///< 3 x N, neighbours of a piece agree
+  std::vector<int> piece;  ///< the connected piece of each element
+};
+
+/// Turns normals so that neighbours agree, along the most certain edges first (Hoppe et al. 1992).
+AlignedNormals alignNeighbours(const SurfaceGraph& graph, const std::vector<float>& agreement) {
+  struct Entry {
+    float certainty;
+    int element;
+    float sign;
+    bool operator<(const Entry& other) const { return certainty < other.certainty; }
+  };
+  AlignedNormals aligned{graph.normals, std::vector<int>(static_cast<std::size_t>(graph.size()), -1)};
+  std::vector<int>& piece = aligned.piece;
+  int num_pieces = 0;
+  for (int start = 0; start < graph.size(); ++start) {
+    if (piece[start] >= 0) continue;
+    std::priority_queue<Entry> queue;
+    queue.push({1.0f, start, 1.0f});
+    while (!queue.empty()) {
+      const Entry next = queue.top();
+      queue.pop();
+      if (piece[next.element] >= 0) continue;
+      piece[next.element] = num_pieces;
+      aligned.normals.col(next.element) *= next.sign;
+      graph.visitNeighbours(next.element, [&](int neighbour, const SurfaceGraph::Edge& edge) {
+        const float agrees = agreement[&edge - graph.edges.data()];
+        if (piece[neighbour] < 0) queue.push({std::abs(agrees), neighbour, agrees < 0.0f ? -next.sign : next.sign});
+      });
+    }
+    ++num_pieces;
+  }
+  return aligned;
+}
+
+std::vector<std::vector<int>> membersOf(const std::vector<int>& piece) {
+  const int num_pieces = piece.empty() ? 0 : *std::max_element(piece.begin(), piece.end()) + 1;
+  std::vector<std::vector<int>> members(static_cast<std::size_t>(num_pieces));
+  for (std::size_t i = 0; i < piece.size(); ++i) members[piece[i]].push_back(static_cast<int>(i));
+  return members;
+}
+
+/// Area of the elements whose rays along the normal leave the shape, minus that of those whose rays against it do.
+double escapingArea(const SurfaceGraph& graph, const Points& normals, const TriangleTree& tree,
+                    const std::vector<int>& members, RandomStream& random) {
+  const int num_rays = static_cast<int>(std::min<std::size_t>(members.size(), kNumRays));
+  double escaped = 0.0;
+  for (int k = 0; k < num_rays; ++k) {
+    const int element = members[members.size() * k / num_rays];
+    const Eigen::Vector3f n = normals.col(element), center = graph.centers.col(element);
+    const float reach = kRayStart * std::sqrt(graph.areas[element]);
+    Eigen::Vector3f direction;
+    for (int axis = 0; axis < 3; ++axis) direction[axis] = static_cast<float>(random.uniform() - 0.5);
+    direction = (n + direction).normalized();
+    const bool out = tree.closest(center, direction, reach).triangle < 0;
+    const bool in = tree.closest(center, Eigen::Vector3f(-direction), reach).triangle < 0;
+    escaped += graph.areas[element] * (static_cast<double>(out) - static_cast<double>(in));
+  }
+  return escaped;
+}
+
+}  // namespace
+
+Points outwardNormals(const SurfaceGraph& graph, const std::vector<float>& agreement) {
+  auto [normals, piece] = alignNeighbours(graph, agreement);
+  const TriangleTree tree(graph.corners, graph.triangles);
+  RandomStream random(1);
+  for (const std::vector<int>& members : membersOf(piece)) {
+    if (escapingArea(graph, normals, tree, members, random) < 0.0)
+      for (const int element : members) normals.col(element) *= -1.0f;
+  }
+  return normals;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/triangle_tree.h"
+#include "core/segmentation/patches.h"
+#include "core/segmentation/symmetry_features.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
+
+namespace pcl_symmetry {
+
+/// What K small patches of a surface tell about its parts.
+struct PartEvidence {
+  Patches patches;
+  std::vector<PatchBorder> borders;
+  std::vector<double> thickness;  ///< K, as BodyEvidence
+  Eigen::MatrixXf sight;          ///< K x K, as BodyEvidence
+  std::vector<PartPlane> planes;  ///< of the whole surface, strongest first
+  Eigen::MatrixXf support;        ///< planes x K, in [0, 1]: means over the elements of a patch, by area
+  /// For each plane with share >= kMappedShare: the patch at the reflection of the center of each patch.
+  std::vector<std::vector<int>> images;
+
+  /// \return K.
+  int size() const { return patches.size(); }
+};
+
+/// What the divisions of one surface into patches have in common.
+class WholeEvidence {
+public:
+  /// \param graph N elements, kept by reference.
+  WholeEvidence(const SurfaceGraph& graph, const SegmentationOptions& options);
+
+  const SurfaceGraph& graph() const { return graph_; }
+  const std::vector<PartPlane>& planes() const { return features_.planes; }
+
+  /// Divides the surface into patches (over-segmentation) and gathers evidence.
+  /// \param division divisions with different numbers, from 0, grow their patches from different seeds.
+  /// \param kind that of the options, or one that uses less.
+  PartEvidence ofDivision(int division, MergingEvidence kind) const;
+
+private:
+  const SurfaceGraph& graph_;
+  const MergingOptions merging_;
+  const std::uint64_t seed_;
+  SymmetryFeatures features_;
+  std::optional<TriangleTree> tree_;
+};
+
+}  // namespace pcl_symmetry

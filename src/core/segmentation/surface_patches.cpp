@@ -1,0 +1,169 @@
+#include "core/segmentation/surface_patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <queue>
+
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// Elements of the num_pieces largest connected pieces.
+std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_pieces) {
+  const std::vector<int> piece = connectedPieces(graph, std::vector<int>(static_cast<std::size_t>(graph.size()), 0));
+  std::vector<double> areas(1 + static_cast<std::size_t>(*std::max_element(piece.begin(), piece.end())), 0.0);
+  for (int i = 0; i < graph.size(); ++i) areas[piece[i]] += graph.areas[i];
+  std::vector<int> order(areas.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return areas[a] > areas[b]; });
+  std::vector<char> large(areas.size(), 0);
+  for (std::size_t k = 0; k < order.size() && k < static_cast<std::size_t>(num_pieces); ++k)
+    large[order[k]] = areas[order[k]] > 0.0;
+  std::vector<int> elements;
+  for (int i = 0; i < graph.size(); ++i)
+    if (large[piece[i]]) elements.push_back(i);
+  return elements;
+}
+
+/// Steps between neighbouring elements, element by element as SurfaceGraph::edge_of.
+struct Steps {
+  struct Step {
+    int to;
+    float length;  ///< with the detour across concave edges, input units
+  };
+  const std::vector<int>& first;  ///< where the steps of each element begin
+  std::vector<Step> steps;
+
+  Steps(const SurfaceGraph& graph, float concave_detour) : first(graph.first_edge), steps(graph.edge_of.size()) {
+    std::vector<float> lengths;
+    lengths.reserve(graph.edges.size());
+    for (const SurfaceGraph::Edge& edge : graph.edges) {
+      const float step = (graph.centers.col(edge.to) - graph.centers.col(edge.from)).norm();
+      lengths.push_back(step * (1.0f + concave_detour * std::max(0.0f, edge.concavity)));
+    }
+    for (int element = 0; element < graph.size(); ++element) {
+      for (int i = first[element]; i < first[element + 1]; ++i) {
+        const SurfaceGraph::Edge& edge = graph.edges[graph.edge_of[i]];
+        steps[i] = {edge.from == element ? edge.to : edge.from, lengths[graph.edge_of[i]]};
+      }
+    }
+  }
+};
+
+/// Patches that grow around seeds; each element belongs to the seed with the shortest way along the surface.
+class GrowingPatches {
+public:
+  GrowingPatches(const SurfaceGraph& graph, float concave_detour)
+      : steps_(graph, concave_detour),
+        distance_(static_cast<std::size_t>(graph.size()), std::numeric_limits<float>::infinity()),
+        patch_(distance_.size(), -1) {}
+
+  /// \return length of the way from the closest seed; infinite if no patch has reached the element.
+  float distance(int element) const { return distance_[element]; }
+
+  /// \return the patch of each element; -1 for none.
+  const std::vector<int>& patches() const { return patch_; }
+
+  /// Adds a patch, which takes the elements that are closer to its seed than to earlier ones.
+  void addSeed(int seed) {
+    const int patch = num_patches_++;
+    distance_[seed] = 0.0f;
+    patch_[seed] = patch;
+    front_.assign(1, keyOf(0.0f, seed));
+    while (!front_.empty()) {
+      std::pop_heap(front_.begin(), front_.end(), std::greater<>());
+      const auto element = static_cast<int>(front_.back() & 0xffffffffu);
+      const float reached = wayOf(front_.back());
+      front_.pop_back();
+      if (reached > distance_[element]) continue;
+      for (int i = steps_.first[element]; i < steps_.first[element + 1]; ++i) {
+        const auto [to, length] = steps_.steps[i];
+        const float there = reached + length;
+        if (there >= distance_[to]) continue;
+        distance_[to] = there;
+        patch_[to] = patch;
+        front_.push_back(keyOf(there, to));
+        std::push_heap(front_.begin(), front_.end(), std::greater<>());
+      }
+    }
+  }
+
+  int size() const { return num_patches_; }
+
+private:
+  /// Numbers in the order of ways and, where these are equal, of elements: the bits of a float >= 0 rise with it, and
+  /// one number is compared faster than a pair.
+  static std::uint64_t keyOf(float way, int element) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &way, sizeof(bits));
+    return std::uint64_t{bits} << 32 | static_cast<std::uint32_t>(element);
+  }
+  static float wayOf(std::uint64_t key) {
+    const auto bits = static_cast<std::uint32_t>(key >> 32);
+    float way = 0.0f;
+    std::memcpy(&way, &bits, sizeof(way));
+    return way;
+  }
+
+  const Steps steps_;
+  std::vector<float> distance_;
+  std::vector<int> patch_;
+  std::vector<std::uint64_t> front_;  ///< a heap of keys, the shortest way first
+  int num_patches_ = 0;
+};
+
+}  // namespace
+
+std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch) {
+  std::vector<int> reached, missed;
+  for (int i = 0; i < graph.size(); ++i) (patch[i] >= 0 ? reached : missed).push_back(i);
+  if (missed.empty()) return patch;
+  const auto centersOf = [&](const std::vector<int>& elements) {
+    Points centers(3, static_cast<Eigen::Index>(elements.size()));
+    for (std::size_t k = 0; k < elements.size(); ++k)
+      centers.col(static_cast<Eigen::Index>(k)) = graph.centers.col(elements[k]);
+    return centers;
+  };
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  makeTreeSearch(centersOf(reached))->search(centersOf(missed), 1, closest, sq_distances);
+  for (std::size_t k = 0; k < missed.size(); ++k) patch[missed[k]] = patch[reached[closest[k]]];
+  return patch;
+}
+
+std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour, int first) {
+  GrowingPatches patches(graph, concave_detour);
+  if (first >= 0) patches.addSeed(first);
+  std::vector<int> elements = elementsOfLargestPieces(graph, num_patches);
+  elements.erase(std::remove_if(elements.begin(), elements.end(), [&](int i) { return !(graph.areas[i] > 0.0f); }),
+                 elements.end());
+  // Each large piece has a seed. After that the next one is the element farthest from all seeds.
+  std::vector<int> others;
+  for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
+    if (std::isinf(patches.distance(*element)))
+      patches.addSeed(*element);
+    else
+      others.push_back(*element);
+  }
+  std::vector<std::pair<float, int>> ways;
+  for (const int element : others) ways.emplace_back(patches.distance(element), element);
+  std::priority_queue farthest(std::less<>(), std::move(ways));
+  while (!farthest.empty() && patches.size() < num_patches) {
+    const auto [distance, element] = farthest.top();
+    farthest.pop();
+    if (distance > patches.distance(element))
+      farthest.emplace(patches.distance(element), element);  // a seed has come closer since
+    else
+      patches.addSeed(element);
+  }
+  return filledFromClosest(graph, patches.patches());
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "pcl_symmetry/core/surface_graph.h"
+
+namespace pcl_symmetry {
+
+/// Divides a surface into small patches of about equal size, whose borders prefer concave edges (over-segmentation).
+///
+/// Each of the num_patches largest connected pieces has at least one patch; smaller pieces belong to the closest patch.
+/// \param graph N elements.
+/// \param num_patches >= 1; there may be a few more or fewer patches.
+/// \param concave_detour >= 0, per radian: a step across an edge of concavity c > 0 is 1 + concave_detour * c times as
+/// long.
+/// \param first the element where the first patch grows; -1 for the last element with an area.
+/// \return the patch of each element, from 0.
+std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour, int first = -1);
+
+/// Gives the elements of no patch that of the closest element which has one.
+/// \param patch one per element; -1 for none. One element has a patch.
+std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch);
+
+}  // namespace pcl_symmetry

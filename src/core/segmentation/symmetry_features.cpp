@@ -1,0 +1,156 @@
+#include "core/segmentation/symmetry_features.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/geometry/mesh_sampling.h"
+#include "core/geometry/surface_normals.h"
+#include "pcl_symmetry/core/local_maxima.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
+#include "pcl_symmetry/core/planar_transform.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// chosen: points on the surface of a part. Half as many make planes less exact; twice as many double the time.
+constexpr int kNumSamples = 4000;
+/// chosen: samples that Iterative Symmetric Points reflects. Half as many make planes less exact; twice as many double
+/// the time of the refinement.
+constexpr int kNumRefined = 400;
+/// chosen: neighbours of a sample for its normal. Half as many follow the noise; twice as many round off edges.
+constexpr int kNumNormalNeighbours = 8;
+/// chosen: radians between normals and radii between planes of one basin of the transform. At half, one symmetry
+/// appears several times among the features; at twice, neighbouring symmetries become one.
+constexpr double kSameAngle = 0.1, kSameOffset = 0.06;
+/// chosen: radii that a plane may move in its refinement, within kSameAngle. At half, good planes keep their unrefined
+/// start; at twice, a start can move to another symmetry.
+constexpr double kMostMoved = 2.0 * kSameOffset;
+/// chosen: f from which on an element counts as mapped onto the surface, sigma * sqrt(ln 2) = 0.83 sigma away from it.
+/// At half, shares of planes grow towards 1; at 1, exact reflections alone would count.
+constexpr float kMapped = 0.5f;
+/// chosen: bins over theta, phi and r. Half as many miss narrow maxima; twice as many take eight times the time.
+constexpr int kNumTheta = 32, kNumPhi = 128, kNumRadius = 64;
+/// chosen: samples per bin of the map. Half as many make weak maxima random; twice as many double the time.
+constexpr int kNumMapSamples = 64;
+/// chosen: width of the weights at the end of the refinement, in sigma of the distance transform. Half of it follows
+/// the random gaps between samples; twice of it refines no further than the map.
+constexpr double kFinalSigma = 0.5;
+
+/// Points spread over elements by area.
+Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& elements, std::uint64_t seed) {
+  std::vector<char> inside(static_cast<std::size_t>(graph.size()), 0);
+  for (const int element : elements) inside[element] = 1;
+  std::vector<Eigen::Vector3i> triangles;
+  for (std::size_t t = 0; t < graph.triangles.size(); ++t)
+    if (inside[graph.element_of_triangle[t]]) triangles.push_back(graph.triangles[t]);
+  return sampleTriangles(graph.corners, triangles, kNumSamples, seed);
+}
+
+bool isNear(const ReflectionPlane& a, const ReflectionPlane& b, const Eigen::Vector3d& center, double most_offset) {
+  const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
+  return a.angleTo(b) < kSameAngle &&
+         std::abs(a.signedDistance(center) - sign * b.signedDistance(center)) < most_offset;
+}
+
+/// Whether no known plane shares the basin of a plane.
+bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& known, const GaussianEdt& edt) {
+  return std::none_of(known.begin(), known.end(), [&](const ReflectionPlane& k) {
+    return isNear(plane, k, edt.center(), kSameOffset * edt.radius());
+  });
+}
+
+PlaneGrid gridOf(const GaussianEdt& edt) {
+  return PlaneGrid(kNumTheta, kNumPhi, kNumRadius, edt.center(), edt.radius());
+}
+
+/// The strongest significant maxima of the transform, one of each basin (Section 4.4).
+std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt,
+                                               const SplittingOptions& options, std::uint64_t seed, int num_threads) {
+  const PlaneGrid grid = gridOf(edt);
+  PlanarTransformOptions transform;
+  transform.sampled.num_samples = kNumMapSamples;
+  transform.sampled.seed = seed;
+  transform.sampled.num_threads = num_threads;
+  LocalMaximaOptions significant;
+  significant.strength = options.strength;
+  significant.num_threads = num_threads;
+  const SymmetryMap map = planarTransform(edt, grid, centerOfMass(samples), transform);
+  std::vector<ReflectionPlane> maxima;
+  for (const LocalMaximum& maximum : findLocalMaxima(map, significant)) {
+    if (static_cast<int>(maxima.size()) == options.max_planes) break;
+    if (options.as_published || isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
+  }
+  return maxima;
+}
+
+/// Whether a refined plane lies in the cell of the grid that it started from.
+bool staysInCell(const ReflectionPlane& plane, const ReflectionPlane& start, const PlaneGrid& grid) {
+  const auto cell = grid.find(plane), first = grid.find(start);
+  return cell && first && grid.index(*cell) == grid.index(*first);
+}
+
+/// Refines planes by Iterative Symmetric Points (Section 4.4). A plane that leaves its basin keeps its start, a
+/// departure from the paper; as published, one that leaves its cell is dropped.
+std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
+                                     const GaussianEdt& edt, bool as_published, int num_threads) {
+  const auto search = makeTreeSearch(samples);
+  const LocalGeometry geometry = localGeometry(samples, *search, kNumNormalNeighbours, num_threads);
+  IspSurface surface{samples, geometry.normals, *search};
+  std::vector<int> reflected;
+  const Eigen::Index stride = std::max<Eigen::Index>(1, samples.cols() / kNumRefined);
+  for (Eigen::Index i = 0; i < samples.cols(); i += stride) reflected.push_back(static_cast<int>(i));
+  IspOptions isp;
+  isp.sigma = edt.sigma();
+  isp.final_sigma = kFinalSigma * edt.sigma();
+  std::vector<ReflectionPlane> ends(starts.size()), moved(starts.size());
+  parallelBlocks(starts.size(), num_threads, [&](std::size_t i) {
+    ends[i] = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;
+    moved[i] = isNear(ends[i], starts[i], edt.center(), kMostMoved * edt.radius()) ? ends[i] : starts[i];
+  });
+  std::vector<ReflectionPlane> planes;
+  if (as_published) {
+    const PlaneGrid grid = gridOf(edt);
+    for (std::size_t i = 0; i < starts.size(); ++i)
+      if (staysInCell(ends[i], starts[i], grid)) planes.push_back(ends[i].canonical());
+    return planes;
+  }
+  for (const ReflectionPlane& plane : moved)
+    if (isNew(plane, planes, edt)) planes.push_back(plane.canonical());
+  return planes;
+}
+
+}  // namespace
+
+SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
+                                  const SplittingOptions& options, std::uint64_t seed, int num_threads) {
+  const Points samples = sampleElements(graph, elements, seed);
+  GaussianEdtOptions edt_options;
+  edt_options.num_threads = num_threads;
+  const GaussianEdt edt(samples, edt_options);
+  SymmetryFeatures features;
+  features.radius = boundingBall(samples).radius;
+  const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, options, seed, num_threads);
+  for (const ReflectionPlane& plane : refined(maxima, samples, edt, options.as_published, num_threads))
+    features.planes.push_back({plane, 0.0});
+  features.support.resize(static_cast<Eigen::Index>(features.planes.size()),
+                          static_cast<Eigen::Index>(elements.size()));
+  double area = 0.0;
+  for (const int element : elements) area += graph.areas[element];
+  parallelBlocks(features.planes.size(), num_threads, [&](std::size_t k) {
+    PartPlane& plane = features.planes[k];
+    double mapped = 0.0;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const Eigen::Vector3d center = graph.centers.col(elements[i]).cast<double>();
+      const auto f = static_cast<float>(std::clamp(edt(plane.plane.reflect(center)), 0.0, 1.0));
+      features.support(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = f;
+      if (f > kMapped) mapped += graph.areas[elements[i]];
+    }
+    plane.share = area > 0.0 ? mapped / area : 0.0;
+  });
+  return features;
+}
+
+}  // namespace pcl_symmetry

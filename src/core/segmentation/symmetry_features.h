@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "pcl_symmetry/core/surface_segmentation.h"
+
+namespace pcl_symmetry {
+
+/// The planes of a part of a surface and how much each element of the part contributes to them (Section 5.3).
+struct SymmetryFeatures {
+  std::vector<PartPlane> planes;  ///< significant maxima of the transform, strongest first
+  Eigen::MatrixXf support;        ///< planes x elements, in [0, 1]: f at the reflection of the element
+  double radius = 0.0;            ///< of the part, input units
+};
+
+/// Finds the significant maxima of the transform of a part (Section 4.4) and the support of every element for them
+/// ("how well does the face map onto the surface after reflection across the plane", Section 5.3).
+/// \param graph the whole surface.
+/// \param elements those of the part, with an area > 0.
+/// \param options strength and max_planes choose the planes.
+/// \param seed of the samples of the part.
+/// \param num_threads 0: one per core.
+SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
+                                  const SplittingOptions& options, std::uint64_t seed, int num_threads);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/check.h"
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
+#include "core/transform/axial_turns.h"
+#include "core/transform/moved_lines.h"
+#include "pcl_symmetry/core/axial_transform.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Bins that are looked at, strongest first. chosen: half may miss small maxima beside large ones, twice takes longer.
+constexpr std::size_t kMostBins = 50'000;
+// Starts for each maximum that is asked for. chosen: half misses maxima whose bins are shoulders of others, twice takes
+// twice the time.
+constexpr int kStartsPerMaximum = 6;
+// Share of min_value that a bin has to reach. chosen: D between bins is up to half as great again as at their centers.
+constexpr double kLeastOfBin = 0.6;
+// Starts, and maxima, this near to a stronger one are left out: radians and sigmas. chosen: the half width of a
+// maximum; half repeats maxima, twice loses axes of polyhedra.
+constexpr double kSameStart = 0.14, kSameMaximum = 15.0 * kDegree, kSameOffset = 3.0;
+// Samples for climbing, times those of the map. chosen: their error is a third of that of the map.
+constexpr int kMoreSamples = 4;
+// Steps are halved this often. chosen: down to 0.05 degrees; once less doubles the error.
+constexpr int kHalvings = 6;
+
+bool isSameAxis(const Line3d& a, const Line3d& b, const Eigen::Vector3d& center, double angle, double distance) {
+  const double cosine = std::abs(a.direction().dot(b.direction()));
+  return cosine > std::cos(angle) && (a.projection(center) - b.projection(center)).norm() < distance;
+}
+
+/// D of axes between the bins, by the same estimate as at the bins.
+class AxisClimb {
+public:
+  AxisClimb(const GaussianEdt& edt, const AxisMap& map, const AxialTransformOptions& options)
+      : edt_(edt),
+        map_(map),
+        turns_(turnsOf(map.folds, options.num_turns, false)),
+        samples_(centeredSamples(edt, kMoreSamples * options.num_samples, options.seed, options.num_threads)) {}
+
+  std::vector<double> valuesAt(const Line3d& axis) const {
+    std::vector<double> values(map_.folds.size(), 0.0);
+    for (const AxialTurn& turn : turns_) {
+      const double d = symmetryAt(axis, turn.angle);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] += turn.weights[i] * d;
+    }
+    return values;
+  }
+
+  /// The axis moved to where D of its best fold is greatest, in steps of half a bin that are halved.
+  AxisMaximum climbed(Line3d axis) const {
+    const int fold = bestFold(map_.folds, valuesAt(axis));
+    const std::size_t place = std::find(map_.folds.begin(), map_.folds.end(), fold) - map_.folds.begin();
+    double angle = 0.25 * kPi / map_.grid.numTheta(), offset = 0.5 * map_.grid.offsetStep();
+    double best = valueAt(axis, place);
+    for (int halving = 0; halving < kHalvings; angle *= 0.5, offset *= 0.5, ++halving)
+      for (bool moved = true; moved;) {
+        moved = false;
+        for (int way = 0; way < 8; ++way) {
+          const Line3d next = stepped(axis, way, way % 2 ? -1.0 : 1.0, angle, offset);
+          const double value = valueAt(next, place);
+          if (value <= best) continue;
+          axis = next;
+          best = value;
+          moved = true;
+        }
+      }
+    AxisMaximum maximum{axis, fold, 0.0, valuesAt(axis)};
+    maximum.fold = bestFold(map_.folds, maximum.values);
+    maximum.value = *std::max_element(maximum.values.begin(), maximum.values.end());
+    return maximum;
+  }
+
+private:
+  double symmetryAt(const Line3d& axis, double angle) const {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, axis.direction()).toRotationMatrix();
+    const Eigen::Vector3d foot = toCells(edt_, axis.origin());
+    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1));
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < samples_.cols(); ++i)
+      sum += edt_.atCell(turn * (samples_.col(i).cast<double>() - foot) + foot + middle);
+    return edt_.sum() / edt_.sqNorm() * sum / static_cast<double>(samples_.cols());
+  }
+
+  double valueAt(const Line3d& axis, std::size_t fold) const {
+    double value = 0.0;
+    for (const AxialTurn& turn : turns_)
+      if (turn.weights[fold] > 0.0) value += turn.weights[fold] * symmetryAt(axis, turn.angle);
+    return value;
+  }
+
+  Line3d stepped(const Line3d& axis, int way, double sign, double angle, double offset) const {
+    const Eigen::Vector3d u = axis.direction().unitOrthogonal(), v = axis.direction().cross(u);
+    const Eigen::Vector3d& along = way / 2 % 2 ? v : u;
+    const Eigen::Vector3d foot = axis.projection(map_.grid.center());
+    if (way >= 4) return {foot + sign * offset * along, axis.direction()};
+    return {foot, (axis.direction() + sign * std::tan(angle) * along).normalized()};
+  }
+
+  const GaussianEdt& edt_;
+  const AxisMap& map_;
+  std::vector<AxialTurn> turns_;
+  Eigen::Matrix3Xf samples_;
+};
+
+/// Bins with great values, none near a stronger one.
+std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double least) {
+  std::vector<std::size_t> bins;
+  for (std::size_t i = 0; i < map.greatest.size(); ++i)
+    if (map.greatest[i] >= least) bins.push_back(i);
+  const std::size_t kept = std::min(bins.size(), kMostBins);
+  std::partial_sort(bins.begin(), bins.begin() + kept, bins.end(), [&](std::size_t a, std::size_t b) {
+    return std::make_pair(-map.greatest[a], a) < std::make_pair(-map.greatest[b], b);
+  });
+  bins.resize(kept);
+  std::vector<Line3d> starts;
+  for (const std::size_t bin : bins) {
+    if (starts.size() == count) break;
+    const Line3d axis = map.grid.axis(map.grid.bin(bin));
+    if (std::none_of(starts.begin(), starts.end(), [&](const Line3d& other) {
+          return isSameAxis(axis, other, map.grid.center(), kSameStart, kSameOffset * map.sigma);
+        }))
+      starts.push_back(axis);
+  }
+  return starts;
+}
+
+}  // namespace
+
+std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, int count, double min_value,
+                                    const AxialTransformOptions& options) {
+  options.validate();
+  check(count >= 1, "count", count, ">= 1");
+  check(min_value >= 0.0 && min_value <= 1.0, "min_value", min_value, "in [0, 1]");
+  if (map.empty()) return {};
+  const std::vector<Line3d> starts =
+      startsOf(map, static_cast<std::size_t>(count) * kStartsPerMaximum, kLeastOfBin * min_value);
+  const AxisClimb climb(edt, map, options);
+  std::vector<AxisMaximum> climbed(starts.size());
+  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { climbed[i] = climb.climbed(starts[i]); });
+  std::stable_sort(climbed.begin(), climbed.end(),
+                   [](const AxisMaximum& a, const AxisMaximum& b) { return a.value > b.value; });
+  std::vector<AxisMaximum> maxima;
+  for (const AxisMaximum& maximum : climbed) {
+    if (maximum.value < min_value || static_cast<int>(maxima.size()) == count) break;
+    if (std::none_of(maxima.begin(), maxima.end(), [&](const AxisMaximum& other) {
+          return isSameAxis(maximum.axis, other.axis, map.grid.center(), kSameMaximum, kSameOffset * map.sigma);
+        }))
+      maxima.push_back(maximum);
+  }
+  return maxima;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,151 @@
+#include "core/transform/bundle_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/base/simd.h"
+#include "core/transform/lookup_table.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Lines of a bundle may be farther apart by this than what was asked for, where rows are the closer. derived: two whole
+// cells in place of 0.9 sigmas of two cells.
+constexpr double kMostStretch = 1.12;
+// Points that are whole cells apart would all be rounded to the same side along an axis of the cells, and so would
+// rows: distances nearer to a whole number than this are avoided. chosen: over ten points the rest adds up to a cell;
+// twice as much takes more points of more grids.
+constexpr double kNearWhole = 0.1;
+constexpr double kLessThanWhole = 0.87;  // by which rows come closer. chosen: out of reach of kNearWhole, for few more
+constexpr float kFar = 1e6f;             // points. derived: farther than all of a line
+constexpr int kAtOnce = 16;              // bundles that are cut together. derived: floats in an AVX-512 register
+constexpr float kLeastSlope = 1e-5f;     // derived: along 512 cells a slab is left by less than its slack
+
+bool isNearlyWhole(double cells) {
+  return std::abs(cells - std::round(cells)) < kNearWhole;
+}
+
+/// Where bundles with their middles at x enter the last slab and leave the first one.
+PCL_SYMMETRY_MULTIVERSION
+void cutAtSlabs(const float* entry, const float* exit, const float* of_x, const float* x, float* first, float* last) {
+  typedef float Lanes __attribute__((vector_size(4 * kAtOnce)));
+  Lanes middle, low, high;
+  std::memcpy(&middle, x, sizeof middle);
+  low = entry[0] - middle * of_x[0];
+  high = exit[0] - middle * of_x[0];
+  for (int k = 1; k < kMostSlabs; ++k) {
+    const Lanes moved = middle * of_x[k];
+    const Lanes entered = entry[k] - moved, left = exit[k] - moved;
+    low = low < entered ? entered : low;
+    high = left < high ? left : high;
+  }
+  std::memcpy(first, &low, sizeof low);
+  std::memcpy(last, &high, sizeof high);
+}
+
+}  // namespace
+
+BundleLattice::BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas) : slabs(edt) {
+  middle = 0.5 * (edt.numCells() - 1);
+  clip = middle - 0.5;
+  center = ((grid.center() - edt.origin()) / edt.cellSize()).array() - middle;
+  grid_offset = grid.offset(0) / edt.cellSize();
+  radius_step = grid.radiusStep() / edt.cellSize();
+  spacing = spacing_in_sigmas * edt.sigma() / edt.cellSize();
+  step = std::max(1, static_cast<int>(kMostStretch * spacing));
+  refine = static_cast<int>(std::ceil(2.0 * radius_step / spacing));
+  if (isNearlyWhole(2.0 * radius_step / refine)) ++refine;
+  along = 2.0 * radius_step / refine;
+  most_ahead = half() / std::sqrt(3.0);  // the axis that is the farthest from n has at most 1 / sqrt(3) of it
+  num_along = static_cast<int>(std::ceil(2.0 * (clip + most_ahead + radius_step) / along)) + 2;
+}
+
+BundlesOfDirection::BundlesOfDirection(const BundleLattice& lattice, const Eigen::Vector3d& normal)
+    : lattice_(lattice) {
+  normal.cwiseAbs().minCoeff(&axis_);
+  n_ = {normal[axis_], normal[(axis_ + 1) % 3], normal[(axis_ + 2) % 3]};
+  across_ = std::hypot(n_.y(), n_.z());
+  v_ = Eigen::Vector3d(0.0, -n_.z(), n_.y()) / across_;
+  between_ = std::min(lattice.spacing, lattice.spacing * lattice.spacing / (lattice.step * across_));
+  if (isNearlyWhole(between_)) between_ *= kLessThanWhole;
+  const double first_offset = normal.dot(lattice.center) + lattice.grid_offset;
+  num_skipped_ = std::floor((-lattice.clip - lattice.most_ahead - first_offset) / lattice.radius_step);
+  t0_ = first_offset + num_skipped_ * lattice.radius_step;
+  for (int i = 0; i < 3; ++i) step_[i] = LookupTable::toFixed(lattice.along * n_[i]);
+  setSlabs();
+}
+
+void BundlesOfDirection::setSlabs() {
+  const Eigen::Vector3f n = n_.cast<float>(), v = v_.cast<float>();
+  for (int k = 0; k < kMostSlabs; ++k) {
+    const auto all = lattice_.slabs.axes.row(k);
+    const Eigen::Vector3f w(all[axis_], all[(axis_ + 1) % 3], all[(axis_ + 2) % 3]);
+    const float slope = std::copysign(std::max(std::abs(w.dot(n)), kLeastSlope), w.dot(n));
+    const float middle = w.sum() * static_cast<float>(lattice_.middle);
+    const float reach = std::abs(w.x()) * static_cast<float>(lattice_.half());
+    // Cells beyond the ball are 0 as well.
+    const float ball = static_cast<float>(lattice_.clip) * w.norm() + 0.5f * w.lpNorm<1>();
+    const float low = std::max(lattice_.slabs.low[k] - middle, -ball) - reach;
+    const float high = std::min(lattice_.slabs.high[k] - middle, ball) + reach;
+    entry_[k] = (slope > 0.0f ? low : high) / slope;
+    exit_[k] = (slope > 0.0f ? high : low) / slope;
+    of_b_[k] = w.dot(v) / slope;
+    of_x_[k] = w.x() / slope;
+  }
+}
+
+int BundlesOfDirection::numRows() const {
+  return static_cast<int>(std::ceil(lattice_.clip / between_));
+}
+
+/// Widens [first, last] to where bundles with their middles at x meet all slabs, in points of a line.
+void BundlesOfDirection::cutRow(const Row& row, const float* x, float* first, float* last) const {
+  float entry[kMostSlabs], exit[kMostSlabs], low[kAtOnce], high[kAtOnce];
+  for (int k = 0; k < kMostSlabs; ++k) {
+    entry[k] = entry_[k] - static_cast<float>(row.b) * of_b_[k];
+    exit[k] = exit_[k] - static_cast<float>(row.b) * of_b_[k];
+  }
+  cutAtSlabs(entry, exit, of_x_, x, low, high);
+  const auto scale = static_cast<float>(1.0 / lattice_.along), t0 = static_cast<float>(t0_),
+             nx = static_cast<float>(n_.x());
+  for (int i = 0; i < kAtOnce; ++i) {
+    const bool meets = low[i] <= high[i];
+    const float from = t0 - x[i] * nx;  // tau of point 0
+    first[i] = std::min(first[i], meets ? (low[i] - from) * scale : kFar);
+    last[i] = std::max(last[i], meets ? (high[i] - from) * scale : -kFar);
+  }
+}
+
+void BundlesOfDirection::addBundles(const Row* rows, std::vector<Bundle>& bundles) const {
+  // The ball casts an ellipse along n. Rows are shifted by up to half a step.
+  const double width = kRowLanes * lattice_.step;
+  const int num_side = static_cast<int>(std::ceil(lattice_.clip / (across_ * width) + 0.5 / kRowLanes));
+  for (int c = -num_side; c < num_side; c += kAtOnce) {
+    float x[kBundleRows][kAtOnce], first[kAtOnce], last[kAtOnce];
+    std::fill_n(first, kAtOnce, kFar);
+    std::fill_n(last, kAtOnce, -kFar);
+    for (int r = 0; r < kBundleRows; ++r) {
+      for (int i = 0; i < kAtOnce; ++i) x[r][i] = static_cast<float>((c + i + 0.5) * width + rows[r].shift);
+      cutRow(rows[r], x[r], first, last);
+    }
+    for (int i = 0; i < std::min(kAtOnce, num_side - c); ++i) {
+      Bundle bundle;
+      bundle.first = static_cast<int>(std::max(0.0f, first[i])) + 1;
+      bundle.last = std::min(lattice_.num_along, static_cast<int>(std::max(-1.0f, last[i])) + 1);
+      if (bundle.first >= bundle.last) continue;
+      for (int r = 0; r < kBundleRows; ++r) {
+        const double from = t0_ - x[r][i] * n_.x();
+        const Eigen::Vector3d start(x[r][i] - lattice_.half() + from * n_.x(), rows[r].b * v_.y() + from * n_.y(),
+                                    rows[r].b * v_.z() + from * n_.z());
+        for (int axis = 0; axis < 3; ++axis)
+          bundle.start[r][axis] = LookupTable::toFixed(start[axis] + lattice_.middle + 0.5);
+      }
+      std::copy_n(step_, 3, bundle.step);
+      bundles.push_back(bundle);
+    }
+  }
+}
+
+}  // namespace pcl_symmetry

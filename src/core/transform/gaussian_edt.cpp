@@ -1,0 +1,164 @@
+#include "pcl_symmetry/core/gaussian_edt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/base/simd.h"
+#include "core/transform/cell_distances.h"
+#include "core/transform/gaussian_width.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// points; chosen: larger clouds are dense enough for usual grids, and probing them takes long
+constexpr Eigen::Index kNumDense = 200'000;
+// points for each cell of a slice; chosen: fewer than that cost less than thinning
+constexpr std::size_t kDensePerCell = 8;
+// slots along a cell; chosen: thinning adds up to sqrt(3) / 4 cells to a distance; half adds twice as much, twice keeps
+// eight times as many points
+constexpr int kSlotsPerCell = 4;
+constexpr double kOfInterpolation = 1.0 / 12.0;  // derived: a value between cells is a mean over a box of one cell
+
+/// A float clamped to [low, high], as an integer; rounded towards zero.
+int clampedInt(float value, int low, int high) {
+  return static_cast<int>(std::clamp(value, static_cast<float>(low), static_cast<float>(high)));
+}
+
+/// One row of GaussianEdt::sharpened(), without its ends.
+PCL_SYMMETRY_MULTIVERSION
+void sharpenRow(const float* f, std::ptrdiff_t num_cells, std::ptrdiff_t slice_size, float weight, float* sharpened) {
+  for (std::ptrdiff_t x = 1; x + 1 < num_cells; ++x) {
+    const float laplacian =
+        f[x - 1] + f[x + 1] + f[x - num_cells] + f[x + num_cells] + f[x - slice_size] + f[x + slice_size] - 6.0f * f[x];
+    sharpened[x] = std::max(0.0f, f[x] - weight * laplacian);
+  }
+}
+
+/// Keeps the first point in each slot of 1/64 cell.
+/// \param points in cells.
+Points thin(const Points& points, int num_cells) {
+  const int side = kSlotsPerCell * num_cells;
+  std::vector<bool> taken(static_cast<std::size_t>(side) * side * side);
+  Points kept(3, points.cols());
+  Eigen::Index num_kept = 0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const auto at = [&](int axis) {
+      return static_cast<std::size_t>(clampedInt(kSlotsPerCell * (points(axis, i) + 0.5f), 0, side - 1));
+    };
+    const std::size_t slot = (at(2) * side + at(1)) * side + at(0);
+    if (taken[slot]) continue;
+    taken[slot] = true;
+    kept.col(num_kept++) = points.col(i);
+  }
+  kept.conservativeResize(3, num_kept);
+  return kept;
+}
+
+}  // namespace
+
+void GaussianEdtOptions::validate() const {
+  check(num_cells >= 8 && num_cells <= 512, "num_cells", num_cells, "in [8, 512]");
+  check(std::isfinite(sigma) && sigma >= 0.0, "sigma", sigma, "finite and >= 0");
+  check(std::isfinite(radius) && radius >= 0.0, "radius", radius, "finite and >= 0");
+  check(center.allFinite(), "center", center.transpose(), "finite");
+  checkNumThreads(num_threads);
+}
+
+GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options) {
+  options.validate();
+  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
+  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+  num_cells_ = options.num_cells;
+  center_ = options.center;
+  radius_ = options.radius;
+  if (radius_ == 0.0) {
+    const BoundingBall ball = boundingBall(points);
+    center_ = ball.center;
+    radius_ = ball.radius;
+  }
+  if (!(radius_ > std::numeric_limits<float>::epsilon() * center_.norm()))
+    throw std::invalid_argument("points: all at one place, must have an extent");
+  chooseWidth(points, options.sigma);
+  origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
+  computeValues(points, options.num_threads);
+  interpolation_ = sharpened(kOfInterpolation, options.num_threads);
+}
+
+void GaussianEdt::chooseWidth(const PointsRef& points, double sigma) {
+  const double half = 0.5 * num_cells_;
+  const auto take = [&](double width) {
+    sigma_ = width;
+    cell_size_ = (radius_ + kMarginInSigmas * sigma_) / half;
+  };
+  if (sigma > 0.0) return take(sigma);
+  cell_size_ = radius_ / std::max(half - kMarginInSigmas * kSigmaInCells, 0.5 * half);
+  sigma_ = kSigmaInCells * cell_size_;
+  const double spacing = points.cols() > kNumDense ? 0.0 : std::min(sampleSpacing(points), kMostSpacing * radius_);
+  if (spacing > sigma_) take(spacing);
+}
+
+void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
+  const int n = num_cells_;
+  const std::size_t slice_size = static_cast<std::size_t>(n) * n;
+  Points cells = normalizePoints(points, origin_, cell_size_);
+  if (static_cast<std::size_t>(cells.cols()) > kDensePerCell * slice_size) cells = thin(cells, n);
+  const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_), sq_reach = reach * reach;
+  filled_.assign(slice_size, {0, 0});
+  const CellDistances distances(cells, n, reach);
+  values_.resize(slice_size * n);
+  parallelBlocks(distances.numRows(), num_threads,
+                 [&](std::size_t row) { distances.fill(static_cast<int>(row), values_.data()); });
+  // Section 4.1: f = exp(-dist^2 / sigma^2).
+  const double scale = -1.0 / std::pow(sigma_ / cell_size_, 2);
+  std::vector<double> sums(n, 0.0), sq_sums(n, 0.0);
+  parallelBlocks(n, num_threads, [&](std::size_t slice) {
+    double sum = 0.0, sq_sum = 0.0;
+    for (std::size_t row = slice * n; row < (slice + 1) * n; ++row) {
+      float* const values = values_.data() + row * n;
+      Range& filled = filled_[row];
+      for (int x = 0; x < n; ++x) {
+        if (values[x] >= sq_reach) {
+          values[x] = 0.0f;
+          continue;
+        }
+        const double value = std::exp(scale * values[x]);
+        values[x] = static_cast<float>(value);
+        sum += value;
+        sq_sum += value * value;
+        filled = {filled.end == 0 ? x : filled.begin, x + 1};
+      }
+    }
+    sums[slice] = sum;
+    sq_sums[slice] = sq_sum;
+  });
+  sum_ = std::accumulate(sums.begin(), sums.end(), 0.0);
+  sq_norm_ = std::accumulate(sq_sums.begin(), sq_sums.end(), 0.0);
+  if (sq_norm_ == 0.0) throw std::invalid_argument("points: none near the ball given by center and radius");
+}
+
+Eigen::Vector3d GaussianEdt::cellCenter(std::size_t index) const {
+  const std::size_t n = num_cells_;
+  return origin_ + cell_size_ * Eigen::Vector3d(static_cast<double>(index % n), static_cast<double>(index / n % n),
+                                                static_cast<double>(index / n / n));
+}
+
+std::vector<float> GaussianEdt::sharpened(double c, int num_threads) const {
+  const int n = num_cells_;
+  const std::size_t slice_size = static_cast<std::size_t>(n) * n;
+  if (c == kOfInterpolation && !interpolation_.empty()) return interpolation_;
+  std::vector<float> result(values_);
+  parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
+    for (int y = 1; y + 1 < n; ++y) {
+      const std::size_t row = (slice + 1) * slice_size + static_cast<std::size_t>(y) * n;
+      sharpenRow(values_.data() + row, n, slice_size, static_cast<float>(c), result.data() + row);
+    }
+  });
+  return result;
+}
+
+}  // namespace pcl_symmetry

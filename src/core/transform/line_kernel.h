@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "pcl_symmetry/core/planar_transform.h"
+
+namespace pcl_symmetry {
+
+/// Lanes of the widest kernel; arrays of results are padded by twice as many. derived: 32-bit integers in an AVX-512
+/// register.
+constexpr int kLineLanes = 16;
+
+/// Lines that a kernel adds up at a time, at most. chosen: they stay in the first cache (30 kB), and sums of bytes fit
+/// in 32 bits.
+constexpr int kMostLines = 1024;
+
+/// Equally spaced planes of one normal: n.x = offset + k * step for k in [0, count).
+struct ParallelPlanes {
+  float normal[3];
+  float offset;  ///< cells from the middle of the EDT's cube
+  float step;    ///< cells
+  int count;
+};
+
+/// The EDT's cube of cells and its place in a LookupTable.
+struct CubeInTable {
+  float middle;    ///< coordinate of its middle, in cells from the first cell center
+  float sq_clip;   ///< squared radius of the ball about the middle beyond which f is taken as 0, in cells
+  float to_table;  ///< table coordinate of the middle, in cells
+};
+
+/// Straight lines through a LookupTable, one for each sample: point k of line i is start_i + k * step, in fixed-point
+/// table coordinates, inside the ball for k in [k_begin_i, k_end_i).
+struct Lines {
+  std::int32_t* x;        ///< start of each line
+  std::int32_t* y;        ///< start of each line
+  std::int32_t* z;        ///< start of each line
+  std::int32_t* k_begin;  ///< of each line
+  std::int32_t* k_end;    ///< of each line
+  int size;               ///< number of lines, <= kMostLines
+  std::int32_t step[3];   ///< of all lines
+  int count;              ///< of points of a line: none has a k_end beyond it
+};
+
+/// Coordinates of samples, each in an array of its own: vectors of several samples are loaded at once.
+struct SampleCoordinates {
+  const float *x, *y, *z;
+};
+
+/// Slabs around what is not 0, at most. derived: pairs of the 26 neighbours of a cell.
+constexpr int kMostSlabs = 13;
+
+/// Slabs that hold all that is not 0 in a table, as samples see them: low <= axis . (x - sample) <= high for each.
+struct SlabsOfSamples {
+  const float* axes;        ///< three numbers of each slab
+  const float *low, *high;  ///< one of each sample, slab by slab, cells
+  std::ptrdiff_t stride;    ///< from one slab to the next
+  int count;                ///< of slabs
+};
+
+/// Fills the lines that the images of points run along when the points are reflected in parallel planes.
+/// \param points lines.size of them, in cells from the first cell center.
+/// \param slabs beyond which lines end, as nothing is added there.
+/// \param[out] lines size is given; all but step and count are filled.
+void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube,
+                const SlabsOfSamples& slabs, Lines& lines);
+
+/// sums[g][k] += sum over lines of function g of the table at point k. The sums are integers, so that every kernel
+/// gives the same bytes.
+using LineKernel = void (*)(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums);
+
+/// \param num_functions functions in the table, 1 or 2.
+/// \return the kernel asked for; with Simd::Auto the fastest that this processor supports.
+LineKernel lineKernel(Simd simd, int num_functions);
+
+}  // namespace pcl_symmetry

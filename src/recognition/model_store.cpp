@@ -1,0 +1,337 @@
+#include "recognition/model_store.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "recognition/database_schema.h"
+#include "recognition/io_error.h"
+
+namespace pcl_symmetry::detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> splitLines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+ModelInfo infoOf(const SQLiteStatement& row) {
+  ModelInfo info;
+  info.name = row.text(1);
+  info.time = row.integer(2);
+  info.source = {row.text(3), row.text(4), splitLines(row.text(5))};
+  info.num_points = static_cast<std::size_t>(row.integer(6));
+  return info;
+}
+
+ModelInfo checkedInfo(const SQLiteStatement& row, const std::string& file) {
+  ModelInfo info = infoOf(row);
+  if (checksumOf(row.integer(0), info) != row.integer(7))
+    failIO(file, "the record of model " + std::to_string(row.integer(0)) + " is damaged");
+  return info;
+}
+
+const char* tableOf(ModelPart part) {
+  return part == ModelPart::Cloud ? "clouds" : part == ModelPart::Signatures ? "signatures" : "views";
+}
+
+}  // namespace
+
+ModelStore::ModelStore(const std::string& file, double lock_timeout, const std::string& unit)
+    : file_(file), unit_(unit), lock_timeout_(lock_timeout) {
+  if (file_ == kNoFile) {
+    connection_.emplace(file_, SQLiteAccess::Memory, lock_timeout_);
+    makeTables(*connection_);
+  } else {
+    open();
+  }
+}
+
+/// Opens the file where there is one, and refuses what this library did not write.
+void ModelStore::open() {
+  std::error_code error;
+  if (!fs::exists(file_, error) && !error) return;
+  if (error) failIO(file_, error.message());
+  refuseForeignFile(file_);
+  connection_.emplace(file_, SQLiteAccess::Change, lock_timeout_);
+  refuseOtherSchema(*connection_);
+}
+
+/// Makes an empty database under another name and then gives it its own: a file of that name is whole from the start,
+/// and one that another program made in the meantime is kept.
+void ModelStore::create() {
+  std::error_code error;
+  const fs::path folder = fs::absolute(file_).parent_path();
+  if (!fs::is_directory(folder, error)) failIO(file_, "cannot be made: there is no folder " + folder.string());
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+    failIO(file_, "cannot be made: its folder may only be read");
+  for (const char* ending : {"-wal", "-shm", "-journal"})
+    if (fs::exists(file_ + ending, error))
+      failIO(file_ + ending, "must not exist, as a new database needs a file of this name");
+  std::string made = file_ + ".new-" + std::to_string(::getpid());
+  while (fs::exists(made, error)) made += "_";
+  try {
+    makeTables(SQLiteConnection(made, SQLiteAccess::Create, lock_timeout_));
+    fs::create_hard_link(made, file_, error);
+    if (error && !fs::exists(file_, error)) fs::rename(made, file_);  // file systems without links
+  } catch (const fs::filesystem_error& reason) {
+    fs::remove(made, error);
+    failIO(file_, reason.code().message());
+  } catch (const std::exception& reason) {
+    for (const char* ending : {"", "-wal", "-shm", "-journal"}) fs::remove(made + ending, error);
+    const std::string text = reason.what();
+    failIO(file_, text.rfind(made + ": ", 0) == 0 ? text.substr(made.size() + 2) : text);
+  }
+  fs::remove(made, error);
+  open();
+}
+
+void ModelStore::makeTables(const SQLiteConnection& connection) const {
+  connection.run("PRAGMA journal_mode = WAL");
+  SQLiteTransaction transaction(connection);
+  createSchema(connection, unit_);
+  transaction.commit();
+}
+
+/// \return false where there is nothing to read.
+bool ModelStore::startReading() {
+  if (!connection_) return false;
+  if (connection_->inTransaction()) return true;
+  connection_->run("BEGIN");
+  connection_->integer("SELECT count(*) FROM facts");  // from here on the state is fixed
+  const std::int64_t data_version = connection_->integer("PRAGMA data_version");
+  if (std::exchange(data_version_, data_version) != data_version) ++version_;
+  return true;
+}
+
+void ModelStore::endReading() {
+  if (connection_ && connection_->inTransaction()) connection_->run("ROLLBACK");
+}
+
+void ModelStore::refresh() {
+  endReading();
+  if (!connection_) open();
+}
+
+std::uint64_t ModelStore::version() {
+  startReading();
+  return version_;
+}
+
+std::string ModelStore::fact(const std::string& key) {
+  if (!startReading()) return key == "unit" ? unit_ : "";
+  SQLiteStatement row = connection_->prepare("SELECT value FROM facts WHERE key = ?");
+  return row.bind(1, key).next() ? row.text(0) : "";
+}
+
+const std::vector<StoredModel>& ModelStore::models() {
+  if (!startReading() || models_version_ == version_) return models_;
+  std::vector<StoredModel> models;
+  SQLiteStatement row = connection_->prepare(kSelectModels);
+  while (row.next()) {
+    models.push_back({row.integer(0), checkedInfo(row, file_).name});
+  }
+  std::sort(models.begin(), models.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  models_ = std::move(models);
+  models_version_ = version_;
+  return models_;
+}
+
+std::optional<std::pair<std::int64_t, ModelInfo>> ModelStore::find(const std::string& name) {
+  if (!startReading()) return std::nullopt;
+  SQLiteStatement row = connection_->prepare(std::string(kSelectModels) + " WHERE name = ?");
+  if (!row.bind(1, name).next()) return std::nullopt;
+  return std::make_pair(row.integer(0), checkedInfo(row, file_));
+}
+
+std::string ModelStore::part(ModelPart part, const StoredModel& model) {
+  startReading();
+  const std::string table = tableOf(part);
+  const std::string what = "the " + table + " of model '" + model.name + "' ";
+  SQLiteStatement row = connection_->prepare("SELECT data, checksum FROM " + table + " WHERE model = ?");
+  if (!row.bind(1, model.id).next()) failIO(file_, what + "are missing");
+  std::string data = row.blob(0);
+  if (checksumOf(table, model.id, data) != row.integer(1)) failIO(file_, what + "are damaged");
+  return data;
+}
+
+std::vector<StoredModel> ModelStore::modelsWithoutForms() {
+  std::vector<StoredModel> models;
+  if (!startReading()) return models;
+  SQLiteStatement row = connection_->prepare(
+      "SELECT id, name FROM models WHERE id NOT IN (SELECT model FROM compact WHERE projection = ?1) "
+      "OR id NOT IN (SELECT model FROM view_codes WHERE projection = ?1) ORDER BY id");
+  row.bind(1, projectionId());
+  while (row.next()) models.push_back({row.integer(0), row.text(1)});
+  return models;
+}
+
+std::int64_t ModelStore::projectionId() {
+  return startReading() ? connection_->integer("SELECT max(id) FROM projections") : 0;
+}
+
+int ModelStore::numReferences() {
+  if (!startReading()) return 0;
+  return static_cast<int>(connection_->integer("SELECT num_references FROM projections ORDER BY id DESC LIMIT 1"));
+}
+
+std::int64_t ModelStore::size() {
+  return startReading() ? connection_->integer("SELECT count(*) FROM models") : 0;
+}
+
+std::optional<PackedProjection> ModelStore::projection() {
+  if (!startReading()) return std::nullopt;
+  SQLiteStatement row =
+      connection_->prepare("SELECT id, num_references, data, checksum FROM projections ORDER BY id DESC LIMIT 1");
+  if (!row.next()) return std::nullopt;
+  PackedProjection projection{row.integer(0), static_cast<int>(row.integer(1)), row.blob(2), ""};
+  SQLiteStatement coder = connection_->prepare("SELECT data, checksum FROM view_coders WHERE projection = ?");
+  const bool found = coder.bind(1, projection.id).next();
+  if (found) projection.view_coder = coder.blob(0);
+  if (!found || checksumOf("view_coders", projection.id, projection.view_coder) != coder.integer(1) ||
+      checksumOf("projections", projection.id, projection.values) != row.integer(3))
+    failIO(file_, "the projection is damaged, pcl_symmetry_database rebuild makes a new one");
+  return projection;
+}
+
+void ModelStore::each(const std::string& table, const std::string& what, std::int64_t projection,
+                      const EachBytes& take) {
+  if (!startReading()) return;
+  SQLiteStatement row =
+      connection_->prepare("SELECT model, data, checksum FROM " + table + " WHERE projection = ? ORDER BY model");
+  row.bind(1, projection);
+  while (row.next()) {
+    const std::int64_t model = row.integer(0);
+    const std::string data = row.blob(1);
+    if (checksumOf(table, model, data) != row.integer(2))
+      failIO(file_,
+             what + " of model " + std::to_string(model) + " is damaged, pcl_symmetry_database rebuild makes new ones");
+    take(model, data);
+  }
+}
+
+void ModelStore::eachForms(std::int64_t projection, const EachBytes& take) {
+  each("compact", "the compact form", projection, take);
+}
+
+void ModelStore::eachViewCodes(std::int64_t projection, const EachBytes& take) {
+  each("view_codes", "the code of views", projection, take);
+}
+
+template <typename Body>
+void ModelStore::change(const Body& body) {
+  endReading();
+  if (!connection_) open();
+  if (!connection_) create();
+  SQLiteTransaction transaction(*connection_);
+  body();
+  transaction.commit();
+  ++version_;
+}
+
+std::int64_t ModelStore::add(const ModelInfo& info, const PackedModel& model, std::int64_t projection,
+                             PackedForms forms) {
+  std::int64_t id = 0;
+  change([&] {
+    connection_->prepare("DELETE FROM models WHERE name = ?").bind(1, info.name).run();
+    // The id is known before the row is there, as the checksum holds it.
+    id = connection_->integer("SELECT seq FROM sqlite_sequence WHERE name = 'models'") + 1;
+    connection_->prepare("INSERT INTO models VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(1, id)
+        .bind(2, info.name)
+        .bind(3, info.time)
+        .bind(4, info.source.path)
+        .bind(5, info.source.checksum)
+        .bind(6, joinedTags(info.source.tags))
+        .bind(7, static_cast<std::int64_t>(info.num_points))
+        .bind(8, checksumOf(id, info))
+        .run();
+    for (const ModelPart kind : {ModelPart::Cloud, ModelPart::Signatures, ModelPart::Views}) {
+      const std::string& data = kind == ModelPart::Cloud        ? model.cloud
+                                : kind == ModelPart::Signatures ? model.signatures
+                                                                : model.views;
+      connection_->prepare(std::string("INSERT INTO ") + tableOf(kind) + " VALUES (?, ?, ?)")
+          .bind(1, id)
+          .bindBlob(2, data)
+          .bind(3, checksumOf(tableOf(kind), id, data))
+          .run();
+    }
+    forms.model = id;
+    if (projection != 0) insertForms(projection, {forms});
+  });
+  return id;
+}
+
+bool ModelStore::remove(const std::string& name) {
+  bool found = false;
+  refresh();
+  if (!connection_) return false;
+  change([&] {
+    found = connection_->prepare("SELECT 1 FROM models WHERE name = ?").bind(1, name).next();
+    connection_->prepare("DELETE FROM models WHERE name = ?").bind(1, name).run();
+  });
+  return found;
+}
+
+void ModelStore::setProjection(const PackedProjection& projection, const std::vector<PackedForms>& forms) {
+  change([&] {
+    connection_->run("DELETE FROM projections");
+    const std::int64_t id = connection_->integer("SELECT seq FROM sqlite_sequence WHERE name = 'projections'") + 1;
+    connection_->prepare("INSERT INTO projections VALUES (?, ?, ?, ?)")
+        .bind(1, id)
+        .bind(2, std::int64_t{projection.num_references})
+        .bindBlob(3, projection.values)
+        .bind(4, checksumOf("projections", id, projection.values))
+        .run();
+    connection_->prepare("INSERT INTO view_coders VALUES (?, ?, ?)")
+        .bind(1, id)
+        .bindBlob(2, projection.view_coder)
+        .bind(3, checksumOf("view_coders", id, projection.view_coder))
+        .run();
+    insertForms(id, forms);
+  });
+}
+
+void ModelStore::addForms(std::int64_t projection, const std::vector<PackedForms>& forms) {
+  change([&] { insertForms(projection, forms); });
+}
+
+/// Forms of models or of a projection that are gone are passed over.
+void ModelStore::insertForms(std::int64_t projection, const std::vector<PackedForms>& forms) {
+  const auto insert = [&](const std::string& table, std::string PackedForms::*data) {
+    SQLiteStatement statement =
+        connection_->prepare("INSERT OR REPLACE INTO " + table +
+                             " SELECT ?1, ?2, ?3, ?4 WHERE EXISTS (SELECT 1 FROM models WHERE id = ?1) " +
+                             "AND EXISTS (SELECT 1 FROM projections WHERE id = ?2)");
+    for (const PackedForms& packed : forms)
+      statement.bind(1, packed.model)
+          .bind(2, projection)
+          .bindBlob(3, packed.*data)
+          .bind(4, checksumOf(table, packed.model, packed.*data))
+          .run();
+  };
+  insert("compact", &PackedForms::forms);
+  insert("view_codes", &PackedForms::view_codes);
+}
+
+std::vector<std::string> ModelStore::damages() {
+  if (!startReading()) return {};
+  return damagesOf(*connection_, [&] {
+    std::vector<std::string> records;
+    SQLiteStatement row = connection_->prepare(kSelectModels);
+    while (row.next())
+      if (checksumOf(row.integer(0), infoOf(row)) != row.integer(7))
+        records.push_back("the record of model " + std::to_string(row.integer(0)) + " is damaged");
+    return records;
+  }());
+}
+
+}  // namespace pcl_symmetry::detail

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl_symmetry/symmetry_database.h"
+#include "recognition/sqlite_connection.h"
+
+namespace pcl_symmetry::detail {
+
+/// What a model is found and recognized by, as bytes of packing/packed_model.h.
+struct PackedModel {
+  std::string cloud, signatures, views;
+  std::size_t num_points = 0;
+};
+
+enum class ModelPart { Cloud, Signatures, Views };
+
+struct StoredModel {
+  std::int64_t id;  ///< of one model that was added once; never used again
+  std::string name;
+};
+
+/// What is fitted to a database, as bytes: CompactForms, and the ViewCoder as packedMatrix().
+struct PackedProjection {
+  std::int64_t id = 0;
+  int num_references = 0;
+  std::string values;
+  std::string view_coder;
+};
+/// What was made of a model with it: bytes of a CompactForm, and packedViewCodes().
+struct PackedForms {
+  std::int64_t model = 0;
+  std::string forms;
+  std::string view_codes;
+};
+
+/// The file of a database. Every function throws pcl::IOException, which names the file and the reason.
+///
+/// What is read is one consistent state, the one at the first reading, until refresh() or a change of this store. What
+/// was changed is on the disk when a function returns, all of it or nothing.
+class ModelStore {
+public:
+  /// Takes the id of a model and its bytes.
+  using EachBytes = std::function<void(std::int64_t, const std::string&)>;
+
+  /// Nothing is written before the first change: a file that is missing is an empty database.
+  /// \param file ":memory:" = no file.
+  /// \param unit stored in a new database.
+  ModelStore(const std::string& file, double lock_timeout, const std::string& unit);
+
+  const std::string& file() const { return file_; }
+  /// False where there is no file yet.
+  bool exists() const { return connection_.has_value(); }
+  /// Reads the newest state from now on.
+  void refresh();
+  /// A number that changes with the state that is read.
+  std::uint64_t version();
+  /// Facts about the database: "library_version", "unit".
+  std::string fact(const std::string& key);
+
+  /// Sorted by name.
+  const std::vector<StoredModel>& models();
+  std::int64_t size();
+  /// The id of a model, and where it comes from. It takes as long for many models as for few.
+  std::optional<std::pair<std::int64_t, ModelInfo>> find(const std::string& name);
+  std::string part(ModelPart part, const StoredModel& model);
+  /// The id of the projection that was stored last, 0 without one, and the models that it was fitted to.
+  std::int64_t projectionId();
+  int numReferences();
+  std::vector<StoredModel> modelsWithoutForms();
+  std::optional<PackedProjection> projection();
+  /// Compact forms of a projection, by rising id of the model.
+  void eachForms(std::int64_t projection, const EachBytes& take);
+  /// Codes of views, in the same way.
+  void eachViewCodes(std::int64_t projection, const EachBytes& take);
+
+  /// Adds a model or replaces that of its name.
+  /// \param forms of this model, of any id, and the projection that they were made with; 0: none.
+  /// \return the id of the new model.
+  std::int64_t add(const ModelInfo& info, const PackedModel& model, std::int64_t projection, PackedForms forms);
+  /// \return whether there was such a model.
+  bool remove(const std::string& name);
+  /// Replaces the projection and all that was made with it. Models that are gone are passed over.
+  void setProjection(const PackedProjection& projection, const std::vector<PackedForms>& forms);
+  /// Adds forms that are missing. Nothing happens where the projection is no longer the stored one.
+  void addForms(std::int64_t projection, const std::vector<PackedForms>& forms);
+
+  /// What is wrong with the contents, a sentence each.
+  std::vector<std::string> damages();
+
+private:
+  bool startReading();
+  void endReading();
+  void open();
+  void create();
+  void makeTables(const SQLiteConnection& connection) const;
+  void checkSchema() const;
+  template <typename Body>
+  void change(const Body& body);
+  void each(const std::string& table, const std::string& what, std::int64_t projection, const EachBytes& take);
+  void insertForms(std::int64_t projection, const std::vector<PackedForms>& forms);
+
+  std::string file_, unit_;
+  double lock_timeout_;
+  std::optional<SQLiteConnection> connection_;
+  std::vector<StoredModel> models_;
+  std::uint64_t version_ = 1, models_version_ = 0;
+  std::int64_t data_version_ = -1;  // SQLite's count of the changes of others
+};
+
+}  // namespace pcl_symmetry::detail

@@ -1,0 +1,75 @@
+#include "recognition/pair_search.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/parallel.h"
+
+namespace pcl_symmetry::detail {
+
+namespace {
+
+// Poses of each model that pairs vote for and that are tried. measured: of 35 objects of scenes of fold 0 that are
+// hidden by 50 to 70 %, with the noise of a depth camera, 29 have their model and a pose near the true one among ten
+// models with 24, 32 with 48 and 33 with 100.
+constexpr int kPosesOfModel = 48;
+// Seed of the choice of points. chosen: any number
+constexpr std::uint64_t kPairSeed = 1;
+
+}  // namespace
+
+PairSearch::PairSearch(std::vector<StoredModel> models, const PointReader& read, const PairSearch* before,
+                       int num_threads)
+    : models_(std::move(models)), shapes_(models_.size()) {
+  parallelBlocks(models_.size(), num_threads, [&](std::size_t i) {
+    const std::size_t known = before ? before->indexOf(models_[i].id) : 0;
+    if (before && known < before->shapes_.size()) {
+      shapes_[i] = before->shapes_[known];
+      return;
+    }
+    ModelPoints points = read(models_[i]);
+    std::vector<SurfacePoints> few =
+        evenSurfacePoints(points.fine, {PointPairIndex::kShapePoints, ScreenedSurface::kShapePoints}, kPairSeed);
+    shapes_[i] = std::make_shared<const Shape>(Shape{std::move(points), std::move(few[0]), ScreenedSurface(few[1])});
+  });
+  std::vector<SurfacePoints> of_pairs;
+  for (const auto& shape : shapes_) of_pairs.push_back(shape->of_pairs);
+  index_.emplace(of_pairs, num_threads);
+}
+
+std::size_t PairSearch::indexOf(std::int64_t model) const {
+  return static_cast<std::size_t>(
+      std::find_if(models_.begin(), models_.end(), [&](const StoredModel& other) { return other.id == model; }) -
+      models_.begin());
+}
+
+const ModelPoints* PairSearch::pointsOf(const StoredModel& model) const {
+  const std::size_t i = indexOf(model.id);
+  return i < shapes_.size() ? &shapes_[i]->points : nullptr;
+}
+
+std::vector<ModelOfView> PairSearch::nearest(const Points& scan, const Visibility& seen,
+                                             const std::vector<ModelOfView>& others,
+                                             const PoseScreeningOptions& options) const {
+  const SurfacePoints points = evenSurfacePoints(scan, PointPairIndex::kScanPoints, kPairSeed);
+  std::vector<PosesOfShape> poses;
+  for (const auto& shape : shapes_) poses.push_back({&shape->screened, {}});
+  const auto add = [&](std::size_t model, const std::vector<Eigen::Isometry3d>& more) {
+    auto& all = poses[model].T_shape_scan;
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  PairSearchOptions by_pairs;
+  by_pairs.num_nearest = index_->numShapes();
+  by_pairs.num_poses = kPosesOfModel;
+  by_pairs.num_threads = options.num_threads;
+  for (const ShapeOfPairs& shape : index_->nearest(points, by_pairs))
+    add(static_cast<std::size_t>(shape.shape), shape.T_shape_scan);
+  for (const ModelOfView& other : others)
+    if (const std::size_t model = indexOf(other.model.id); model < poses.size()) add(model, other.T_model_scan);
+  std::vector<ModelOfView> found;
+  for (ScreenedShape& shape : screenPoses(ScreenedSurface(points, seen), poses, options))
+    found.push_back({models_[static_cast<std::size_t>(shape.shape)], std::move(shape.T_shape_scan)});
+  return found;
+}
+
+}  // namespace pcl_symmetry::detail

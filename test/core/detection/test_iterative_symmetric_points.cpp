@@ -1,0 +1,367 @@
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <stdexcept>
+
+#include "core/geometry/surface_normals.h"
+#include "core/detection/step_equations.h"
+#include "pcl_symmetry/core/visibility.h"
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+ReflectionPlane randomPlane(RandomStream& random) {
+  return ReflectionPlane(randomDirection(random), 0.3 * symmetric(random));
+}
+
+/// The cost that fitReflectionPlane states: sum w |x' - y|^2.
+double cost(const Points& x, const Points& y, const std::vector<double>& weights, const ReflectionPlane& plane) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    sum += weights[i] * (plane.reflect(x.col(i).cast<double>()) - y.col(i).cast<double>()).squaredNorm();
+  return sum;
+}
+
+/// Minimises the cost by trying steps of falling length along three directions: knows nothing of the closed form.
+ReflectionPlane searchMinimum(const Points& x, const Points& y, const std::vector<double>& weights,
+                              ReflectionPlane plane) {
+  double least = cost(x, y, weights, plane);
+  for (double length = 0.3; length > 1e-9; length *= 0.5) {
+    for (bool moved = true; moved;) {
+      moved = false;
+      const Eigen::Vector3d u = plane.normal().unitOrthogonal(), v = plane.normal().cross(u);
+      for (const Eigen::Vector3d& d : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)}) {
+        for (const double sign : {-1.0, 1.0}) {
+          const ReflectionPlane next(plane.normal() + sign * length * (d[0] * u + d[1] * v),
+                                     plane.offset() + sign * length * d[2]);
+          const double value = cost(x, y, weights, next);
+          if (value >= least) continue;
+          least = value;
+          plane = next;
+          moved = true;
+        }
+      }
+    }
+  }
+  return plane;
+}
+
+struct Pairs {
+  Points x, y;
+  std::vector<double> weights;
+};
+
+/// Points and noisy images of them in a plane.
+Pairs noisyPairs(const ReflectionPlane& plane, double noise, std::uint64_t seed) {
+  RandomStream random(seed);
+  Pairs pairs{asymmetricBlob(200, seed).cloud(), Points(3, 200), std::vector<double>(200)};
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d error(gaussian(random), gaussian(random), gaussian(random));
+    pairs.y.col(i) = (plane.reflect(pairs.x.col(i).cast<double>()) + noise * error).cast<float>();
+    pairs.weights[i] = random.uniform();
+  }
+  return pairs;
+}
+
+TEST(FitReflectionPlane, RecoversAnExactReflection) {
+  RandomStream random(1);
+  for (int i = 0; i < 20; ++i) {
+    const ReflectionPlane plane = randomPlane(random);
+    const Pairs pairs = noisyPairs(plane, 0.0, i + 1);
+    const PlaneError error =
+        planeError(fitReflectionPlane(pairs.x, pairs.y, pairs.weights, {}), plane, Eigen::Vector3d::Zero());
+    EXPECT_LT(error.angle, 1e-6);  // coordinates are floats: 6e-8 each
+    EXPECT_LT(error.offset, 1e-6);
+  }
+}
+
+TEST(FitReflectionPlane, IsTheMinimumOfItsCost) {
+  RandomStream random(2);
+  for (int i = 0; i < 8; ++i) {
+    const ReflectionPlane plane = randomPlane(random);
+    const Pairs pairs = noisyPairs(plane, 0.2, i + 1);
+    const ReflectionPlane fitted = fitReflectionPlane(pairs.x, pairs.y, pairs.weights, {});
+    const double least = cost(pairs.x, pairs.y, pairs.weights, fitted);
+    // From the plane that made the pairs; a step of length e from the minimum costs e^2 of the curvature, which
+    // rounding of 1e-16 hides below e = 1e-8 or so.
+    const ReflectionPlane found = searchMinimum(pairs.x, pairs.y, pairs.weights, plane);
+    EXPECT_LE(least, cost(pairs.x, pairs.y, pairs.weights, found) * (1.0 + 1e-12));
+    EXPECT_LT(found.angleTo(fitted), 1e-6);
+    EXPECT_GT(plane.angleTo(fitted), 1e-4);  // there was something to minimise
+    for (int k = 0; k < 100; ++k) EXPECT_LE(least, cost(pairs.x, pairs.y, pairs.weights, randomPlane(random)));
+  }
+}
+
+TEST(FitReflectionPlane, IgnoresPairsWithoutWeight) {
+  const ReflectionPlane plane({1.0, 2.0, 3.0}, 0.1);
+  Pairs pairs = noisyPairs(plane, 0.0, 3);
+  for (int i = 0; i < 100; ++i) {
+    pairs.y.col(i).setConstant(7.0f);
+    pairs.weights[i] = 0.0;
+  }
+  EXPECT_LT(fitReflectionPlane(pairs.x, pairs.y, pairs.weights, {}).angleTo(plane), 1e-6);
+  const std::vector<double> none(200, 0.0);
+  EXPECT_EQ(fitReflectionPlane(pairs.x, pairs.y, none, plane).normal(), plane.normal());
+}
+
+/// Normal equations of pairs, one after the other, as they are stated.
+struct SinglePairs {
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+
+  void add(const StepEquations& at, const PairBlock& block, int i) {
+    const auto column = [i](const PairBlock::Coordinates& of) { return Eigen::Vector3d(of[0][i], of[1][i], of[2][i]); };
+    const Eigen::Vector3d p = column(block.x) - at.middle, q = column(block.y) - at.middle;
+    const Eigen::Vector3d x_normal = column(block.x_normals), y_normal = column(block.y_normals);
+    const double height = at.n.dot(p) - at.offset;
+    const Eigen::Vector3d turned = x_normal - 2.0 * at.n.dot(x_normal) * at.n;
+    const double cosine = turned.dot(y_normal);
+    const Eigen::Vector3d m = (y_normal + (cosine < 0.0 ? -turned : turned)).normalized();
+    const double m_n = m.dot(at.n), weight = block.weights[i] * cosine * cosine;
+    const Eigen::Vector3d slope(-2.0 * (at.u.dot(p) * m_n + height * m.dot(at.u)),
+                                -2.0 * (at.v.dot(p) * m_n + height * m.dot(at.v)), 2.0 * at.extent * m_n);
+    h.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
+    g += weight * m.dot(p - 2.0 * height * at.n - q) * slope;
+  }
+};
+
+TEST(StepEquations, OfABlockAreThoseOfItsPairs) {
+  RandomStream random(4);
+  for (const int size : {1, 7, 100, PairBlock::kMost}) {
+    PairBlock block;
+    block.size = size;
+    for (int i = 0; i < size; ++i) {
+      const Eigen::Vector3d x_normal = randomDirection(random), y_normal = randomDirection(random);
+      for (int k = 0; k < 3; ++k) {
+        block.x[k][i] = symmetric(random);
+        block.y[k][i] = symmetric(random);
+        block.x_normals[k][i] = x_normal[k];
+        block.y_normals[k][i] = y_normal[k];
+      }
+      block.weights[i] = i % 5 == 3 ? 0.0 : random.uniform();
+    }
+    StepEquations equations(randomPlane(random), {0.1, -0.2, 0.3}, 0.7);
+    SinglePairs single;
+    // Two blocks: sums go on.
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      StepTerms terms;
+      equations.pointToPlane(block, terms);
+      equations.add(terms);
+      for (int i = 0; i < size; ++i) single.add(equations, block, i);
+    }
+    // A sum of 2 size terms is rounded by as many units of its least digit; Eigen adds in an order of its own.
+    const double rounding = 1e-15 * size * (single.h.norm() + single.g.norm());
+    EXPECT_LE((equations.h - single.h).norm(), rounding);
+    EXPECT_LE((equations.g - single.g).norm(), rounding);
+  }
+}
+
+TEST(StepEquations, PointToPointIsTheGradientOfTheDistances) {
+  RandomStream random(5);
+  PairBlock block;
+  block.size = 50;
+  for (int i = 0; i < block.size; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      block.x[k][i] = symmetric(random);
+      block.y[k][i] = symmetric(random);
+    }
+    block.weights[i] = random.uniform();
+  }
+  const ReflectionPlane plane = randomPlane(random);
+  StepEquations equations(plane, {0.1, -0.2, 0.3}, 0.7);
+  StepTerms terms;
+  equations.pointToPoint(block, terms);
+  equations.add(terms);
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  for (int i = 0; i < block.size; ++i) {
+    const Eigen::Vector3d p = Eigen::Vector3d(block.x[0][i], block.x[1][i], block.x[2][i]) - equations.middle;
+    const Eigen::Vector3d q = Eigen::Vector3d(block.y[0][i], block.y[1][i], block.y[2][i]) - equations.middle;
+    const double height = equations.n.dot(p) - equations.offset;
+    Eigen::Matrix3d slopes;
+    slopes.col(0) = -2.0 * (equations.u.dot(p) * equations.n + height * equations.u);
+    slopes.col(1) = -2.0 * (equations.v.dot(p) * equations.n + height * equations.v);
+    slopes.col(2) = 2.0 * equations.extent * equations.n;
+    h += block.weights[i] * slopes.transpose() * slopes;
+    g += block.weights[i] * slopes.transpose() * (p - 2.0 * height * equations.n - q);
+  }
+  // Sums of 50 terms, rounded by as many units of their least digit.
+  EXPECT_LE((equations.h - h).norm(), 1e-14 * h.norm());
+  EXPECT_LE((equations.g - g).norm(), 1e-14 * (h.norm() + g.norm()));
+}
+
+/// A shape, its normals and its search.
+struct Surface {
+  explicit Surface(const Points& cloud)
+      : points(cloud),
+        search(makeFlannSearch(points)),
+        geometry(localGeometry(points, *search, 8, 1)),
+        all(points.cols()) {
+    std::iota(all.begin(), all.end(), 0);
+  }
+  IspSurface view() const { return {points, geometry.normals, *search}; }
+
+  Points points;
+  ClosestPointSearch::Ptr search;
+  LocalGeometry geometry;
+  std::vector<int> all;
+};
+
+ReflectionPlane disturbed(const ReflectionPlane& plane, double angle, double distance, std::uint64_t seed) {
+  RandomStream random(seed);
+  const Eigen::Vector3d u = plane.normal().unitOrthogonal(), v = plane.normal().cross(u);
+  const double direction = 2.0 * kPi * random.uniform();
+  const Eigen::Vector3d normal =
+      std::cos(angle) * plane.normal() + std::sin(angle) * (std::cos(direction) * u + std::sin(direction) * v);
+  return ReflectionPlane(normal, plane.offset() + (random.uniform() < 0.5 ? -distance : distance));
+}
+
+TEST(RefineSymmetricPoints, ConvergesFromFiveDegreesAndFivePerCent) {
+  // The shapes lie about 0, so that the offset is that at their center. Mirrored samples coincide with their images up
+  // to the rounding of coordinates, 6e-8: the plane is exact to that once every pair is the right one.
+  for (const IspUpdate update : {IspUpdate::PointToPoint, IspUpdate::PointToPlane}) {
+    for (const Shape& shape : {box(2000, Sampling::Mirrored, 1), prism(5, 2000, Sampling::Mirrored, 2)}) {
+      const Surface surface(shape.cloud());
+      const double size = diagonal(surface.points);
+      for (std::size_t p = 0; p < shape.planes.size(); ++p) {
+        const ReflectionPlane start = disturbed(shape.planes[p], 5.0 * kDegree, 0.05 * size, p);
+        IspOptions options;
+        options.update = update;
+        options.sigma = options.final_sigma = 0.2;
+        options.max_iterations = 200;
+        const ReflectionPlane near = refineSymmetricPoints(surface.view(), surface.all, start, options).plane;
+        // Narrow weights only where the plane already stands still: points between points hold on to wrong partners.
+        options.final_sigma = 0.05;
+        const IspResult result = refineSymmetricPoints(surface.view(), surface.all, near, options);
+        const PlaneError error = planeError(result.plane, shape.planes[p], Eigen::Vector3d::Zero());
+        const int kind = static_cast<int>(update);
+        EXPECT_TRUE(result.converged) << kind << ", plane " << p;
+        EXPECT_LT(error.angle, 1e-3 * kDegree) << kind << ", plane " << p << " after " << result.iterations;
+        EXPECT_LT(error.offset, 1e-5 * size) << kind << ", plane " << p;
+        EXPECT_LT(result.last.residual, 1e-4 * size);
+        EXPECT_GT(result.last.weight, 0.99);
+      }
+    }
+  }
+}
+
+TEST(RefineSymmetricPoints, PointToPlaneNeedsFewerIterations) {
+  const Shape shape = box(3000, Sampling::Random, 3);
+  const Surface surface(shape.cloud());
+  const ReflectionPlane start = disturbed(shape.planes[1], 3.0 * kDegree, 0.05, 1);
+  const auto refined = [&](IspUpdate update) {
+    IspOptions options;
+    options.update = update;
+    options.sigma = options.final_sigma = 0.1;
+    options.max_iterations = 300;
+    return refineSymmetricPoints(surface.view(), surface.all, start, options);
+  };
+  const IspResult point = refined(IspUpdate::PointToPoint), across = refined(IspUpdate::PointToPlane);
+  EXPECT_TRUE(point.converged);
+  EXPECT_TRUE(across.converged);
+  EXPECT_LT(2 * across.iterations, point.iterations);
+  // The samples lie 0.06 apart: residuals of about 0.03 over 3000 of them leave 0.03 / sqrt(3000) = 5e-4 and more.
+  EXPECT_LT(across.plane.angleTo(shape.planes[1]), 0.1 * kDegree);
+}
+
+TEST(RefineSymmetricPoints, StopsAfterMaxIterations) {
+  const Shape shape = box(500, Sampling::Mirrored, 4);
+  const Surface surface(shape.cloud());
+  IspOptions options;
+  options.sigma = options.final_sigma = 0.2;
+  options.max_iterations = 1;
+  const auto result =
+      refineSymmetricPoints(surface.view(), surface.all, disturbed(shape.planes[0], 0.08, 0.1, 2), options);
+  EXPECT_EQ(result.iterations, 1);
+  EXPECT_FALSE(result.converged);
+}
+
+TEST(IterateSymmetricPoints, ReflectionsBehindWhatWasSeenDoNotPull) {
+  // A camera at (0, 0, -10) looks along z and sees a wall at z = 0, in one pixel that is wide enough for all of it.
+  Visibility::Projection projection = Visibility::Projection::Zero();
+  projection(0, 0) = projection(1, 1) = 0.01;
+  projection(2, 2) = 1.0;
+  projection(2, 3) = 10.0;
+  const Visibility visibility(projection, 1, 1, {10.0f});
+  // The plane x = 0 takes the first point 0.3 behind the third, the second one 0.3 in front of it.
+  const Points points = (Points(3, 3) << -1, -1, 1, 0, 0, 0, 0.3, -0.3, 0).finished();
+  const auto search = makeFlannSearch(points);
+  const Points no_normals(3, 0);
+  IspSurface surface{points, no_normals, *search};
+  const double sigma = 0.5, weight = std::exp(-0.09 / 0.25);
+  const auto weightOf = [&](int sample) {
+    return iterateSymmetricPoints(surface, {sample}, ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0), sigma,
+                                  IspUpdate::PointToPoint)
+        .weight;
+  };
+  EXPECT_NEAR(weightOf(0), weight, 1e-6);
+  EXPECT_NEAR(weightOf(1), weight, 1e-6);
+  surface.visibility = &visibility;
+  EXPECT_LT(weightOf(0), 1e-12);
+  EXPECT_NEAR(weightOf(1), weight, 1e-6);
+}
+
+TEST(IterateSymmetricPoints, ReportsWhatItSaw) {
+  const Points points = (Points(3, 3) << 1, -1.1, 5, 0, 0, 0, 0, 0, 0).finished();
+  const auto search = makeFlannSearch(points);
+  const Points no_normals(3, 0);
+  const double sigma = 0.5;
+  const IspStep step =
+      iterateSymmetricPoints({points, no_normals, *search}, {0, 2}, ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0),
+                             sigma, IspUpdate::PointToPoint);
+  // (1, 0, 0) lands on (-1, 0, 0), 0.1 from its partner; (5, 0, 0) on (-5, 0, 0), 3.9 away: no weight to speak of.
+  EXPECT_EQ(step.closest, (std::vector<int>{1, -1}));
+  EXPECT_NEAR(step.sq_distances[0], 0.01, 1e-6);
+  EXPECT_TRUE(std::isinf(step.sq_distances[1]));
+  EXPECT_NEAR(step.weight, 0.5 * std::exp(-0.01 / 0.25), 1e-6);
+  EXPECT_NEAR(step.residual, 0.1, 1e-6);
+}
+
+TEST(StepReflectionPlane, LeavesTheFreeDirectionsOfASphere) {
+  // Pairs on a sphere say nothing about the direction of a plane through its center: only the offset may move.
+  const Points points = sphere(3000, 5).cloud();
+  const auto search = makeFlannSearch(points);
+  const Eigen::Vector3d normal = Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0;
+  const ReflectionPlane start(normal, 0.08);
+  const IspSurface surface{points, points, *search};  // the normals of a sphere are its points
+  std::vector<int> all(points.cols());
+  std::iota(all.begin(), all.end(), 0);
+  ReflectionPlane plane = start;
+  for (int i = 0; i < 10; ++i) plane = iterateSymmetricPoints(surface, all, plane, 0.3, IspUpdate::PointToPlane).plane;
+  // Samples 0.065 apart, 3000 of them; an unbounded Gauss-Newton step would turn by its limit of 0.2 at every turn.
+  EXPECT_LT(plane.angleTo(start), 0.02);
+  EXPECT_LT(std::abs(plane.offset()), 0.01);
+}
+
+TEST(StepReflectionPlane, DoesNotMoveWithoutWeightsOrExtent) {
+  const ReflectionPlane plane({1.0, 2.0, 3.0}, 0.5);
+  const Points x = sphere(10, 6).cloud();
+  EXPECT_EQ(stepReflectionPlane(x, x, x, x, std::vector<double>(10, 0.0), plane).coefficients(), plane.coefficients());
+  const Points one = Points::Constant(3, 5, 1.0f), up = Points::Constant(3, 5, std::sqrt(1.0f / 3.0f));
+  EXPECT_EQ(stepReflectionPlane(one, one, up, up, std::vector<double>(5, 1.0), plane).coefficients(),
+            plane.coefficients());
+}
+
+TEST(IspOptions, RefusesBadOnes) {
+  const auto refused = [](auto&& change) {
+    IspOptions options;
+    options.sigma = options.final_sigma = 1.0;
+    options.validate();
+    change(options);
+    EXPECT_THROW(options.validate(), std::invalid_argument);
+  };
+  refused([](auto& o) { o.sigma = 0.0; });
+  refused([](auto& o) { o.sigma = std::nan(""); });
+  refused([](auto& o) { o.final_sigma = 0.0; });
+  refused([](auto& o) { o.final_sigma = 2.0; });
+  refused([](auto& o) { o.max_iterations = 0; });
+  refused([](auto& o) { o.tolerance = -1.0; });
+  refused([](auto& o) { o.error_share = -1.0; });
+}
+
+}  // namespace

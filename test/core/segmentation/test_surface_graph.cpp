@@ -1,0 +1,136 @@
+#include "pcl_symmetry/core/surface_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "shapes/meshes.h"
+#include "shapes/neighbours.h"
+#include "shapes/shapes.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using test::Mesh;
+using test::neighboursOf;
+
+Mesh cube() {
+  return test::voxelMesh(4, [](int, int, int) { return true; });
+}
+
+/// The mesh of a step: a cube of 4 x 4 x 4 without its upper quarter.
+Mesh step() {
+  return test::voxelMesh(4, [](int x, int, int z) { return x < 2 || z < 2; });
+}
+
+TEST(SurfaceGraph, EveryFaceOfACubeHasFourNeighboursAndItsArea) {
+  const Mesh mesh = cube();
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  ASSERT_EQ(graph.size(), 6 * 16);
+  EXPECT_FLOAT_EQ(graph.area(), 96.0);
+  for (int i = 0; i < graph.size(); ++i) {
+    EXPECT_EQ(graph.first_edge[i + 1] - graph.first_edge[i], 4);
+    EXPECT_FLOAT_EQ(graph.areas[i], 1.0f);
+    EXPECT_GT(graph.normals.col(i).dot(graph.centers.col(i) - Eigen::Vector3f::Constant(2.0f)), 0.0f) << "outward";
+  }
+}
+
+TEST(SurfaceGraph, ConcaveEdgesArePositiveAndConvexOnesNegative) {
+  const Mesh mesh = step();
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  int num_concave = 0, num_convex = 0, num_flat = 0;
+  for (const SurfaceGraph::Edge& edge : graph.edges) {
+    if (std::abs(edge.concavity) < 1e-6f)
+      ++num_flat;
+    else if (edge.concavity > 0.0f)
+      ++num_concave;
+    else
+      ++num_convex;
+    EXPECT_NEAR(std::sin(2.0 * edge.concavity), 0.0, 1e-5) << "flat or right angles";
+  }
+  EXPECT_EQ(num_concave, 4) << "the inner edge of the step";
+  EXPECT_EQ(num_convex + num_flat + num_concave, 2 * graph.size());
+  EXPECT_GT(num_convex, 40);
+}
+
+TEST(SurfaceGraph, SoupsAndTurnedFacesGiveTheSameGraph) {
+  const Mesh mesh = step();
+  Mesh soup = test::soupOf(mesh);
+  for (std::size_t f = 0; f < soup.polygons.size(); f += 3)
+    std::reverse(soup.polygons[f].begin(), soup.polygons[f].end());
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons), same = meshGraph(soup.vertices, soup.polygons);
+  EXPECT_EQ(same.edges.size(), graph.edges.size());
+  EXPECT_TRUE(same.normals.isApprox(graph.normals, 1e-5f));
+  for (const auto* g : {&graph, &same}) {
+    const auto concave = std::count_if(g->edges.begin(), g->edges.end(), [](const auto& e) { return e.concavity > 1; });
+    EXPECT_EQ(concave, 4);
+  }
+}
+
+TEST(SurfaceGraph, BrokenFacesAreElementsToo) {
+  Mesh mesh = cube();
+  const int num_faces = static_cast<int>(mesh.polygons.size());
+  mesh.polygons.push_back(mesh.polygons[0]);                                                 // twice
+  mesh.polygons.push_back({mesh.polygons[1][0], mesh.polygons[1][1], mesh.polygons[1][0]});  // no area
+  const int nowhere = mesh.add(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  mesh.polygons.push_back({0, 1, nowhere});
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  ASSERT_EQ(graph.size(), num_faces + 3);
+  const auto num_neighbours = [&](int i) { return graph.first_edge[i + 1] - graph.first_edge[i]; };
+  EXPECT_GT(num_neighbours(num_faces), 0) << "the copy joins the faces of its edges";
+  EXPECT_GT(num_neighbours(num_faces + 1), 0);
+  EXPECT_EQ(graph.areas[num_faces + 1], 0.0f);
+  EXPECT_EQ(num_neighbours(num_faces + 2), 0);
+  EXPECT_TRUE(graph.centers.allFinite());
+  EXPECT_TRUE(graph.normals.allFinite());
+}
+
+TEST(SurfaceGraph, RefusesMissingVerticesAndNoArea) {
+  const Mesh mesh = cube();
+  EXPECT_THROW(meshGraph(mesh.vertices, {{0, 1, 1000}}), std::invalid_argument);
+  EXPECT_THROW(meshGraph(mesh.vertices, {{0, 1, 1}}), std::invalid_argument);
+  EXPECT_THROW(meshGraph(mesh.vertices, {}), std::invalid_argument);
+  EXPECT_THROW(cloudGraph(Points::Ones(3, 5), neighboursOf(Points::Ones(3, 5), 2)), std::invalid_argument);
+  const Points corners = mesh.vertices.cast<float>();
+  auto neighbours = neighboursOf(corners, 2);
+  EXPECT_NO_THROW(cloudGraph(corners, neighbours));
+  for (const int wrong : {-1, static_cast<int>(corners.cols())}) {
+    neighbours[0][0] = wrong;
+    EXPECT_THROW(cloudGraph(corners, neighbours), std::invalid_argument) << wrong;
+  }
+  EXPECT_THROW(cloudGraph(corners, {{1, 2}}), std::invalid_argument) << "one list for all points";
+  for (const float scale : {1e-20f, 1e20f}) {  // no squares in float
+    EXPECT_THROW(cloudGraph(scale * corners, neighboursOf(corners, 2)), std::invalid_argument) << scale;
+    EXPECT_THROW(meshGraph(scale * mesh.vertices, mesh.polygons), std::invalid_argument) << scale;
+  }
+  for (const float scale : {1e-12f, 1e12f}) EXPECT_GT(meshGraph(scale * mesh.vertices, mesh.polygons).area(), 0.0);
+}
+
+TEST(SurfaceGraph, CloudOfABoxHasItsAreaAndOutwardNormals) {
+  const Points points = test::box({1.0, 0.7, 0.45}, 4000, test::Sampling::Random, 3).cloud();
+  const SurfaceGraph graph = cloudGraph(points, neighboursOf(points, 12));
+  const double area = 8 * (0.7 + 0.45 + 0.7 * 0.45);
+  EXPECT_NEAR(graph.area(), area, 0.15 * area);
+  int num_outward = 0;
+  for (int i = 0; i < graph.size(); ++i) num_outward += graph.normals.col(i).dot(graph.centers.col(i)) > 0.0f;
+  EXPECT_GT(num_outward, 0.99 * graph.size());
+}
+
+TEST(SurfaceGraph, PiecesAreConnectedAndOfOneLabel) {
+  const Mesh mesh = cube();
+  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  std::vector<int> labels(static_cast<std::size_t>(graph.size()), 0);
+  EXPECT_EQ(connectedPieces(graph, labels), labels);
+  // Top and bottom have label 0 and do not touch; the other faces have no label.
+  for (int i = 0; i < graph.size(); ++i) labels[i] = std::abs(graph.normals(2, i)) > 0.5f ? 0 : -1;
+  const std::vector<int> pieces = connectedPieces(graph, labels);
+  EXPECT_EQ(*std::max_element(pieces.begin(), pieces.end()), 1);
+  EXPECT_EQ(std::count(pieces.begin(), pieces.end(), 0), 16);
+  EXPECT_EQ(std::count(pieces.begin(), pieces.end(), -1), 64);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry

@@ -1,0 +1,325 @@
+#include "pcl_symmetry/core/gaussian_edt.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "core/transform/edt_correlation.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr double kReach = 2.6;      // sigmas, within which the distances are promised to be exact
+constexpr double kLeast = 1.16e-3;  // exp(-kReach^2)
+
+GaussianEdtOptions cells(int num_cells) {
+  GaussianEdtOptions options;
+  options.num_cells = num_cells;
+  return options;
+}
+
+double distanceTo(const Points& points, const Eigen::Vector3d& x) {
+  double sq_least = std::numeric_limits<double>::max();
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    sq_least = std::min(sq_least, (points.col(i).cast<double>() - x).squaredNorm());
+  return std::sqrt(sq_least);
+}
+
+double definition(const Points& points, const Eigen::Vector3d& x, double sigma) {
+  const double distance = distanceTo(points, x);
+  return std::exp(-distance * distance / (sigma * sigma));
+}
+
+/// Every cell against brute force. Coordinates are floats in cells: they are rounded at 2^-24 of numCells(), which
+/// moves a distance d of up to 2.6 sigma, f by at most 0.86 / sigma of that.
+void expectExact(const Points& points, const GaussianEdt& edt) {
+  const double rounding = edt.numCells() * 0x1p-24 * 2.0 + 4e-7 * kReach * edt.sigma() / edt.cellSize();
+  const double tolerance = 0.86 * rounding / (edt.sigma() / edt.cellSize()) + 2e-7;
+  std::size_t num_within = 0;
+  for (std::size_t i = 0; i < edt.values().size(); ++i) {
+    const double expected = definition(points, edt.cellCenter(i), edt.sigma());
+    if (expected > kLeast * 1.001) {
+      ++num_within;
+      ASSERT_NEAR(edt.values()[i], expected, tolerance) << "cell " << i;
+    } else if (expected < kLeast * 0.999) {
+      ASSERT_EQ(edt.values()[i], 0.0f) << "cell " << i;
+    }
+  }
+  EXPECT_GT(num_within, 100u);
+}
+
+TEST(GaussianEdt, DistancesAreThoseOfBruteForce) {
+  expectExact(box(500, Sampling::Random, 1).cloud(), GaussianEdt(box(500, Sampling::Random, 1).cloud(), cells(24)));
+  const Points blob = moved(asymmetricBlob(300, 2), randomPose(1)).cloud();
+  expectExact(blob, GaussianEdt(blob, cells(27)));
+}
+
+TEST(GaussianEdt, SparseCloudsHaveExactDistancesToo) {
+  const Points sparse = scaleneTetrahedron(12, 1).cloud();
+  const GaussianEdt edt(sparse, cells(48));
+  EXPECT_GT(edt.sigma(), 2.001 * edt.cellSize());  // the spacing of twelve points is wider than two cells
+  expectExact(sparse, edt);
+  const Points pair = (Points(3, 2) << 0, 1, 0, 0, 0, 0).finished();
+  expectExact(pair, GaussianEdt(pair, cells(16)));
+}
+
+TEST(GaussianEdt, PositionsWithinACellMatter) {
+  GaussianEdtOptions options = cells(16);
+  options.radius = 1.0;
+  for (const float shift : {0.0f, 0.01f, 0.03f, 0.06f}) {
+    Points point(3, 1);
+    point << shift, 0.5f * shift, -shift;
+    expectExact(point, GaussianEdt(point, options));
+  }
+}
+
+TEST(GaussianEdt, OnePointIsAGaussianOfKnownSums) {
+  // The point lies on the corner of eight cells. The integral of f^2 = exp(-2 |x|^2 / s^2) is (sqrt(pi / 2) s)^3, which
+  // its sum over a lattice equals to 1e-4 with s = 2 cells, the cut at 2.6 s included.
+  GaussianEdtOptions options = cells(32);
+  options.radius = 1.0;
+  const GaussianEdt edt(Points::Zero(3, 1), options);
+  const double s = edt.sigma() / edt.cellSize();
+  double sum = 0.0;
+  for (int i = 0; i < 32 * 32 * 32; ++i) {
+    const double sq_distance = (Eigen::Vector3d(i % 32, i / 32 % 32, i / 1024).array() - 15.5).matrix().squaredNorm();
+    if (sq_distance < kReach * kReach * s * s) sum += std::exp(-sq_distance / (s * s));
+  }
+  EXPECT_NEAR(edt.sum(), sum, 1e-5 * sum);
+  EXPECT_NEAR(edt.sqNorm() / std::pow(std::sqrt(0.5 * kPi) * s, 3), 1.0, 1e-4);
+}
+
+TEST(GaussianEdt, DefaultsCoverThePointsWithTwoCellsOfSigma) {
+  const Points points = moved(box(3000, Sampling::Random, 3), randomPose(3)).cloud();
+  for (const int n : {16, 64}) {
+    const GaussianEdt edt(points, cells(n));
+    EXPECT_EQ(edt.numCells(), n);
+    EXPECT_NEAR(edt.sigma(), 2.0 * edt.cellSize(), 1e-12);
+    EXPECT_NEAR(edt.radius() + 2.0 * edt.sigma(), 0.5 * n * edt.cellSize(), 1e-9);
+    EXPECT_NEAR((edt.cellCenter(0) - edt.origin()).norm(), 0.0, 0.0);
+    const Eigen::Vector3d middle = 0.5 * (edt.cellCenter(0) + edt.cellCenter(edt.values().size() - 1));
+    EXPECT_LT((middle - edt.center()).norm(), 1e-12);
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      ASSERT_LE((points.col(i).cast<double>() - edt.center()).norm(), edt.radius() * (1.0 + 1e-6));
+  }
+}
+
+TEST(GaussianEdt, SigmaRadiusAndCenterAreTaken) {
+  const Points points = box(400, Sampling::Random, 4).cloud();
+  GaussianEdtOptions options = cells(20);
+  options.sigma = 0.4;
+  options.radius = 1.5;
+  options.center = {0.1, -0.2, 0.3};
+  const GaussianEdt edt(points, options);
+  EXPECT_EQ(edt.sigma(), 0.4);
+  EXPECT_EQ(edt.radius(), 1.5);
+  EXPECT_EQ(edt.center(), options.center);
+  EXPECT_NEAR(edt.cellSize(), (1.5 + 2.0 * 0.4) / 10.0, 1e-15);
+  expectExact(points, edt);
+}
+
+TEST(GaussianEdt, ACenterWithoutRadiusIsNotUsed) {
+  const Points points = box(400, Sampling::Random, 4).cloud();
+  GaussianEdtOptions options = cells(20);
+  const GaussianEdt edt(points, options);
+  options.center = {5.0, 5.0, 5.0};
+  EXPECT_EQ(GaussianEdt(points, options).values(), edt.values());
+}
+
+TEST(GaussianEdt, PointsOutsideTheBallAreNoHarm) {
+  Points points = box(400, Sampling::Random, 5).cloud();
+  GaussianEdtOptions options = cells(16);
+  options.radius = 0.5;
+  expectExact(points, GaussianEdt(points, options));
+  points.rowwise() += Eigen::RowVectorXf::Constant(400, 100.0f);
+  EXPECT_THROW(GaussianEdt(points, options), std::invalid_argument);  // none left near the ball
+}
+
+TEST(GaussianEdt, PointsFarOutsideTheBallAreNoHarm) {
+  // Their coordinates in cells exceed every integer.
+  Points points(3, 4);
+  points << 0.1f, 0.1f, 3e12f, -1e30f, 0.2f, -3e12f, 0.2f, 0.0f, 0.3f, 0.3f, 0.3f, 1e30f;
+  GaussianEdtOptions options = cells(16);
+  options.radius = 0.5;
+  options.sigma = 0.1;
+  EXPECT_EQ(GaussianEdt(points, options).values(), GaussianEdt(points.leftCols(1), options).values());
+}
+
+TEST(GaussianEdt, ScalesWithThePoints) {
+  // Powers of two are scaled without rounding: the same bytes.
+  const Points points = asymmetricBlob(400, 6).cloud();
+  const GaussianEdt edt(points, cells(20));
+  for (const int power : {-40, -30, -3, 1, 30, 40}) {
+    const double scale = std::ldexp(1.0, power);
+    const GaussianEdt other(points * static_cast<float>(scale), cells(20));
+    EXPECT_EQ(other.sigma(), scale * edt.sigma());
+    EXPECT_EQ(other.values(), edt.values()) << "2^" << power;
+  }
+}
+
+TEST(GaussianEdt, MovesWithThePoints) {
+  // Multiples of 1/1024 up to 4 are exact floats, and stay so after adding 512.
+  Points points = asymmetricBlob(400, 6).cloud();
+  points = (points * 1024.0f).array().round() / 1024.0f;
+  const GaussianEdt edt(points, cells(20));
+  const Points far = points.colwise() + Eigen::Vector3f(512.0f, -256.0f, 128.0f);
+  const GaussianEdt other(far, cells(20));
+  EXPECT_NEAR((other.center() - edt.center() - Eigen::Vector3d(512.0, -256.0, 128.0)).norm(), 0.0, 1e-9);
+  for (std::size_t i = 0; i < edt.values().size(); ++i) ASSERT_NEAR(other.values()[i], edt.values()[i], 2e-3);
+}
+
+TEST(GaussianEdt, DenseCloudsAreThinned) {
+  // More than 64 points to a cell of the surface are thinned to one in each slot of 1/4 cell, whose diagonal of
+  // sqrt(3) / 4 bounds what a distance may grow. On average, a surface with 16 random points to a square cell has its
+  // nearest at a mean squared distance of 1 / (16 pi) beside the foot of x, which lowers f by 1 / (16 pi s^2) = 0.5 %
+  // of its value with s = 2; edges, seen from inside, lose more.
+  const Points points = moved(box(150'000, Sampling::Random, 7), randomPose(1)).cloud();
+  const GaussianEdt edt(points, cells(32));
+  const auto search = makeFlannSearch(points);
+  const double cell = edt.cellSize(), s = edt.sigma() / cell;
+  Points centers(3, edt.values().size() / 5);
+  for (Eigen::Index i = 0; i < centers.cols(); ++i) centers.col(i) = edt.cellCenter(5 * i).cast<float>();
+  std::vector<int> indices;
+  std::vector<float> sq_distances;
+  search->search(centers, 1, indices, sq_distances);
+  double sum = 0.0, sum_expected = 0.0;
+  for (Eigen::Index i = 0; i < centers.cols(); ++i) {
+    const double distance = std::sqrt(sq_distances[i]) / cell, at_worst = distance + std::sqrt(3.0) / 4.0;
+    if (at_worst > kReach * s) continue;
+    const double value = edt.values()[5 * i], expected = std::exp(-distance * distance / (s * s));
+    ASSERT_LE(value, expected + 1e-5);  // fewer points are never nearer
+    ASSERT_GE(value, std::exp(-at_worst * at_worst / (s * s)) - 1e-5);
+    sum += value;
+    sum_expected += expected;
+  }
+  EXPECT_LT(sum, 0.9995 * sum_expected);  // it was thinned
+  EXPECT_GT(sum, 0.99 * sum_expected);
+}
+
+TEST(GaussianEdt, InterpolationKeepsTheCorrelation) {
+  // What D needs is the mean of f(x) interpolated(x) over the places of f. Interpolation multiplies a wave of k radians
+  // per cell by sinc^2(k / 2) on each axis, sharpening by 1 + sum (2 - 2 cos k) / 12: together 1 - sum k^4 / 90 - sum
+  // of k_i^2 k_j^2 / 144 over pairs. The power of a Gaussian of width s = 2 has E k_i^2 = 1/4 and E k_i^4 = 3/16, which
+  // leaves 1 - 3 * (3/16) / 90 - 3 * (1/16) / 144 = 0.9924 and, without sharpening, about 1 - 3 * (1/4) / 12 = 0.94.
+  GaussianEdtOptions options = cells(32);
+  options.radius = 1.0;
+  const GaussianEdt edt(Points::Zero(3, 1), options);
+  RandomStream random(8);
+  double interpolated = 0.0, exact = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    // Drawn with probability f: a normal distribution of variance s^2 / 2.
+    const Eigen::Vector3d x =
+        edt.sigma() * std::sqrt(0.5) * Eigen::Vector3d(gaussian(random), gaussian(random), gaussian(random));
+    interpolated += edt(x);
+    exact += std::exp(-x.squaredNorm() / (edt.sigma() * edt.sigma()));
+  }
+  EXPECT_NEAR(interpolated / exact, 0.9924, 0.002);  // the next terms of the series are of the size of 1e-3
+}
+
+TEST(GaussianEdt, InterpolationIsZeroOutside) {
+  const GaussianEdt edt(sphere(500, 8).cloud(), cells(16));
+  EXPECT_EQ(edt(edt.center() + Eigen::Vector3d(100.0, 0.0, 0.0)), 0.0);
+  EXPECT_EQ(edt(Eigen::Vector3d::Constant(std::nan(""))), 0.0);
+}
+
+TEST(GaussianEdt, SharpeningTakesTheLaplacianAway) {
+  const GaussianEdt edt(sphere(2000, 9).cloud(), cells(24));
+  const int n = edt.numCells();
+  const auto& f = edt.values();
+  const auto sharp = edt.sharpened(0.05);
+  for (const int at : {n / 2, n / 2 + 3, 4}) {
+    const std::size_t i = (static_cast<std::size_t>(at) * n + n / 2) * n + at;
+    const double laplacian = f[i - 1] + f[i + 1] + f[i - n] + f[i + n] + f[i - n * n] + f[i + n * n] - 6.0 * f[i];
+    EXPECT_NEAR(sharp[i], std::max(0.0, f[i] - 0.05 * laplacian), 1e-6);
+  }
+  EXPECT_EQ(edt.sharpened(0.0), f);
+}
+
+TEST(GaussianEdt, SameBytesForAnyNumberOfThreads) {
+  const Points points = moved(box(2000, Sampling::Random, 10), randomPose(10)).cloud();
+  GaussianEdtOptions options = cells(32);
+  options.num_threads = 1;
+  const GaussianEdt one(points, options);
+  for (const int num_threads : {2, 8}) {
+    options.num_threads = num_threads;
+    const GaussianEdt many(points, options);
+    EXPECT_EQ(many.values(), one.values());
+    EXPECT_EQ(many.sum(), one.sum());
+    EXPECT_EQ(many.sqNorm(), one.sqNorm());
+  }
+}
+
+TEST(GaussianEdt, RefusesPointsThatAreNoShape) {
+  EXPECT_THROW(GaussianEdt(Points(3, 0)), std::invalid_argument);
+  EXPECT_THROW(GaussianEdt(Points::Constant(3, 1, 2.0f)), std::invalid_argument);
+  EXPECT_THROW(GaussianEdt(Points::Constant(3, 50, 2.0f)), std::invalid_argument);
+  Points points = box(100, Sampling::Random, 11).cloud();
+  points(1, 50) = kNaN;
+  EXPECT_THROW(GaussianEdt{points}, std::invalid_argument);
+  points(1, 50) = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(GaussianEdt{points}, std::invalid_argument);
+}
+
+TEST(GaussianEdt, OnePointWithARadiusIsAShape) {
+  GaussianEdtOptions options = cells(16);
+  options.radius = 1.0;
+  options.center = Eigen::Vector3d::Constant(2.0);
+  EXPECT_GT(GaussianEdt(Points::Constant(3, 50, 2.0f), options).sum(), 0.0);
+}
+
+TEST(GaussianEdt, RefusesBadOptions) {
+  const Points points = box(100, Sampling::Random, 12).cloud();
+  const auto refused = [&](auto&& change) {
+    GaussianEdtOptions options;
+    change(options);
+    EXPECT_THROW(GaussianEdt(points, options), std::invalid_argument);
+  };
+  refused([](auto& o) { o.num_cells = 7; });
+  refused([](auto& o) { o.num_cells = 513; });
+  refused([](auto& o) { o.sigma = -1.0; });
+  refused([](auto& o) { o.sigma = std::nan(""); });
+  refused([](auto& o) { o.radius = -1.0; });
+  refused([](auto& o) { o.radius = std::numeric_limits<double>::infinity(); });
+  refused([](auto& o) { o.center.x() = std::nan(""); });
+  refused([](auto& o) { o.num_threads = -1; });
+  try {
+    GaussianEdtOptions options;
+    options.sigma = -1.0;
+    options.validate();
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "sigma = -1, must be finite and >= 0");
+  }
+}
+
+TEST(GaussianEdt, ProductsOfARowAreThoseOfItsCells) {
+  const GaussianEdt edt(asymmetricBlob(500, 2).cloud(), cells(33));
+  RandomStream random(4);
+  const int n = edt.numCells();
+  int num_filled = 0;
+  for (int row = 0; row < n * n; ++row) {
+    const GaussianEdt::Range filled = edt.filledRanges()[static_cast<std::size_t>(row)];
+    const float* const f = edt.values().data() + static_cast<std::ptrdiff_t>(row) * n;
+    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * n);
+    const Eigen::Vector3d step(symmetric(random), symmetric(random), symmetric(random));
+    const ImageOfRow image{middle - 0.5 * n * step, step};
+    std::array<double, kProductSums> sums, expected;
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = expected[k] = random.uniform();
+    for (int x = filled.begin; x < filled.end; ++x) {
+      const double product = f[x] * edt.atCell(image.first + x * image.step);
+      expected[static_cast<std::size_t>(x - filled.begin) % sums.size()] += product;
+      num_filled += product > 0.0 ? 1 : 0;
+    }
+    rowProducts()(edt, f, image, filled, sums.data());
+    EXPECT_EQ(sums, expected);
+  }
+  EXPECT_GT(num_filled, 100);
+}
+
+}  // namespace

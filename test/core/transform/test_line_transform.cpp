@@ -1,0 +1,257 @@
+#include "pcl_symmetry/core/line_transform.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "shapes/contours.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using namespace test;
+
+/// One disk for all shapes of the unit circle, so that their functions f can be compared cell by cell.
+GaussianEdt2D edtOf(const Points2D& points, double radius = 1.2) {
+  GaussianEdt2DOptions options;
+  options.radius = radius;
+  return GaussianEdt2D(points, options);
+}
+
+LineMap mapOf(const GaussianEdt2D& edt, int bins = 96) {
+  return lineTransform(edt, LineGrid(bins, bins, edt.center(), edt.radius()), Eigen::Vector2d::Zero());
+}
+
+std::vector<LineMaximum> linesOf(const Points2D& points) {
+  const GaussianEdt2D edt = edtOf(points);
+  return findLineMaxima(edt, mapOf(edt, 128));
+}
+
+double largestDifference(const LineMap& a, const LineMap& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.values.size(); ++i)
+    largest = std::max(largest, std::abs(static_cast<double>(a[i]) - b[i]));
+  return largest;
+}
+
+/// || f / |f| - g / |g| ||.
+double distance(const GaussianEdt2D& f, const GaussianEdt2D& g) {
+  double sq_sum = 0.0;
+  for (std::size_t i = 0; i < f.values().size(); ++i)
+    sq_sum += std::pow(f.values()[i] / std::sqrt(f.sqNorm()) - g.values()[i] / std::sqrt(g.sqNorm()), 2);
+  return std::sqrt(sq_sum);
+}
+
+/// Greatest distance of a point of one contour from the other one.
+double hausdorff(const Points2D& a, const Points2D& b) {
+  double sq_largest = 0.0;
+  const auto from = [&](const Points2D& p, const Points2D& q) {
+    for (Eigen::Index i = 0; i < p.cols(); ++i)
+      sq_largest =
+          std::max(sq_largest, static_cast<double>((q.colwise() - p.col(i)).colwise().squaredNorm().minCoeff()));
+  };
+  from(a, b);
+  from(b, a);
+  return std::sqrt(sq_largest);
+}
+
+TEST(LineTransform, AgreesWithTheSumOverExactDistances) {
+  const Points2D contour = starfish(0.02, 3, 240);
+  const GaussianEdt2D edt = edtOf(contour);
+  const auto f = [&](const Eigen::Vector2d& x) {
+    const double sq_distance = (contour.cast<double>().colwise() - x).colwise().squaredNorm().minCoeff();
+    return std::exp(-sq_distance / (edt.sigma() * edt.sigma()));
+  };
+  const LineMap map = mapOf(edt, 24);
+  const int n = edt.numCells();
+  for (std::size_t i = 0; i < map.values.size(); i += 29) {
+    const ReflectionLine line = map.grid.line(map.grid.bin(i));
+    double sum = 0.0;
+    for (int cell = 0; cell < n * n; ++cell) {
+      const double here = edt.values()[cell];
+      if (here == 0.0) continue;
+      const Eigen::Vector2d x = edt.origin() + edt.cellSize() * Eigen::Vector2d(cell % n, cell / n);
+      sum += here * f(line.reflect(x));
+    }
+    // f is not smooth where two points of the contour are equally near.
+    EXPECT_NEAR(map[i], sum / edt.sqNorm(), 2e-3);
+    EXPECT_NEAR(map[i], lineSymmetry(edt, line), 1e-4);
+  }
+}
+
+TEST(LineTransform, EqualBitsForAnyNumberOfThreads) {
+  const GaussianEdt2D edt = edtOf(starfish(0.0, 1));
+  const LineGrid grid(40, 40, edt.center(), edt.radius());
+  EXPECT_EQ(lineTransform(edt, grid, {0, 0}, 1).values, lineTransform(edt, grid, {0, 0}, 2).values);
+  EXPECT_EQ(lineTransform(edt, grid, {0, 0}, 1).values, lineTransform(edt, grid, {0, 0}, 8).values);
+}
+
+class RegularPolygon : public testing::TestWithParam<int> {};
+
+TEST_P(RegularPolygon, HasOneLineForEachCorner) {
+  const int n = GetParam();
+  const std::vector<LineMaximum> lines = linesOf(regularPolygon(n));
+  // The others are symmetries of parts. 0.97: what the cells leave of 1 at lines between them.
+  ASSERT_GE(static_cast<int>(lines.size()), n);
+  for (int i = 0; i < n; ++i) EXPECT_GT(lines[i].value, 0.97);
+  if (static_cast<int>(lines.size()) > n) {
+    EXPECT_LT(lines[n].value, 0.9);
+  }
+  for (int k = 0; k < n; ++k) {
+    const ReflectionLine expected(kPi * k / n, 0.0);
+    const auto best = std::min_element(lines.begin(), lines.begin() + n, [&](const auto& a, const auto& b) {
+      return a.line.angleTo(expected) < b.line.angleTo(expected);
+    });
+    EXPECT_LT(best->line.angleTo(expected), 0.2 * kDegree) << k;
+    EXPECT_LT(std::abs(best->line.signedDistance(Eigen::Vector2d::Zero())), 0.004) << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(TriangleToOctagon, RegularPolygon, testing::Values(3, 4, 5, 6, 8));
+
+TEST(LineTransform, RectangleHasTwoLinesAndACircleAllThroughItsCenter) {
+  const std::vector<LineMaximum> lines = linesOf(rectangle(1.6, 0.9));
+  ASSERT_GE(lines.size(), 2u);
+  EXPECT_GT(lines[1].value, 0.97);
+  if (lines.size() > 2) {
+    EXPECT_LT(lines[2].value, 0.8);
+  }
+  EXPECT_NEAR(lines[0].line.angleTo(lines[1].line), 0.5 * kPi, 0.2 * kDegree);
+
+  const GaussianEdt2D circle = edtOf(regularPolygon(2400));
+  for (int k = 0; k < 12; ++k) EXPECT_GT(lineSymmetry(circle, ReflectionLine(k * kPi / 12.0 + 0.1, 0.0)), 0.98);
+  EXPECT_LT(lineSymmetry(circle, ReflectionLine(0.4, 0.3)), 0.4);
+}
+
+TEST(LineTransform, LinesMoveTurnAndScaleWithTheContour) {
+  const Eigen::Rotation2Df rotation(0.7f);
+  const Eigen::Vector2f shift(40.0f, -7.0f);
+  const Points2D original = starfish(0.0, 1);
+  const Points2D moved = ((rotation.toRotationMatrix() * (250.0f * original)).colwise() + shift);
+  const GaussianEdt2D edt(moved);
+  const LineMap map = lineTransform(edt, LineGrid(128, 128, edt.center(), edt.radius()), edt.center());
+  const std::vector<LineMaximum> lines = findLineMaxima(edt, map);
+  ASSERT_GE(lines.size(), 5u);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_GT(lines[k].value, 0.97);
+    EXPECT_LT(std::abs(lines[k].line.signedDistance(shift.cast<double>())), 1.0) << "0.4 % of the radius";
+    double nearest = kPi;
+    for (int j = 0; j < 5; ++j)
+      nearest = std::min(nearest, lines[k].line.angleTo(ReflectionLine(0.7 + kPi * j / 5, 0)));
+    EXPECT_LT(nearest, 0.2 * kDegree);
+  }
+}
+
+// Section 3, "it is not sensitive to noise and varies continuously with deformations". With f and g normalised,
+// |f.Rf - g.Rg| = |(f - g).Rf + g.R(f - g)| <= 2 |f - g|, for every line at once. 0.01 is left for the cells.
+double boundOf(const GaussianEdt2D& f, const GaussianEdt2D& g) {
+  return 2.0 * distance(f, g) + 0.01;
+}
+
+TEST(Stability, MapMovesByAtMostTwiceTheChangeOfTheFunction) {
+  const GaussianEdt2D star = edtOf(starfish(0.0, 1));
+  const LineMap star_map = mapOf(star);
+  for (const double noise : {0.005, 0.01, 0.02, 0.04}) {
+    const GaussianEdt2D noisy = edtOf(starfish(noise, 7));
+    EXPECT_LE(largestDifference(star_map, mapOf(noisy)), boundOf(star, noisy)) << noise;
+  }
+}
+
+TEST(Stability, FunctionMovesByAtMostTheDistanceOfTheContours) {
+  // exp(-d^2 / sigma^2) has no slope above sqrt(2 / e) / sigma, and distances move by no more than the Hausdorff
+  // distance of the contours; 1.2e-3 is where f is cut off.
+  const Points2D clean = starfish(0.0, 1);
+  const GaussianEdt2D star = edtOf(clean);
+  for (const double noise : {0.005, 0.02}) {
+    const Points2D contour = starfish(noise, 7);
+    const GaussianEdt2D noisy = edtOf(contour);
+    const double bound = std::sqrt(2.0 / std::exp(1.0)) * hausdorff(clean, contour) / star.sigma() + 1.2e-3;
+    for (std::size_t i = 0; i < star.values().size(); ++i)
+      ASSERT_LE(std::abs(star.values()[i] - noisy.values()[i]), bound);
+  }
+}
+
+TEST(Stability, NoiseLeavesTheLinesOfAStarfish) {
+  const std::vector<LineMaximum> clean = linesOf(starfish(0.0, 1));
+  const std::vector<LineMaximum> noisy = linesOf(starfish(0.02, 7));
+  ASSERT_GE(noisy.size(), 5u);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_GT(noisy[k].value, noisy.size() > 5 ? 1.3 * noisy[5].value : 0.0);
+    double nearest = kPi;
+    for (int j = 0; j < 5; ++j) nearest = std::min(nearest, noisy[k].line.angleTo(clean[j].line));
+    // Noise of 2 % on 2400 points: the mean over the contour of its moment about the center moves a line by about
+    // 0.02 / (0.6 sqrt(2400)) = 0.04 degrees; ten times that.
+    EXPECT_LT(nearest, 0.4 * kDegree);
+  }
+}
+
+TEST(Stability, PolygonsRunIntoTheCircle) {
+  // The n-gon is within 1 - cos(pi / n) of the circle, so the maps have to close in with it.
+  const GaussianEdt2D circle = edtOf(regularPolygon(2400));
+  const LineMap circle_map = mapOf(circle);
+  double before = std::numeric_limits<double>::infinity();
+  for (const int n : {4, 6, 9, 14, 24}) {
+    const GaussianEdt2D ngon = edtOf(regularPolygon(n));
+    const double difference = largestDifference(circle_map, mapOf(ngon));
+    EXPECT_LE(difference, boundOf(circle, ngon)) << n;
+    EXPECT_LE(difference, before) << n;
+    before = difference;
+  }
+  // At 24 corners the contours are 0.0086 apart and sigma is 0.04: f moves by 0.18 at most, where the contours are
+  // farthest apart, a third of that root mean square; twice.
+  EXPECT_LT(before, 0.15);
+}
+
+TEST(Stability, ASquareRunsIntoARectangleInSmallSteps) {
+  const auto step = [](double from, double to) {
+    const GaussianEdt2D a = edtOf(rectangle(1.0, from)), b = edtOf(rectangle(1.0, to));
+    const double difference = largestDifference(mapOf(a), mapOf(b));
+    EXPECT_LE(difference, boundOf(a, b));
+    return difference;
+  };
+  // Half the step moves the map by half as much: it is continuous, with a slope (measured: 0.48 and 0.50).
+  const double coarse = step(1.0, 0.98), fine = step(1.0, 0.99);
+  EXPECT_LT(fine, 0.75 * coarse);
+}
+
+TEST(Stability, ABumpMovesTheMapByItsShareOfTheContour) {
+  const Points2D plain = rectangle(1.6, 0.9), bumped = bumpedRectangle(1.6, 0.9, 0.3, 0.16, 0.08);
+  const GaussianEdt2D plain_edt = edtOf(plain), bumped_edt = edtOf(bumped);
+  const double difference = largestDifference(mapOf(plain_edt), mapOf(bumped_edt));
+  // The bump replaces 0.16 of a perimeter of 5 by 0.23 of other line: f changes by at most the square root of
+  // (0.16 + 0.23) / 5 in norm, the map by twice that; both parts overlap the old contour near their ends.
+  EXPECT_LE(difference, 2.0 * std::sqrt((0.16 + 0.23) / 5.0));
+  EXPECT_LE(difference, boundOf(plain_edt, bumped_edt));
+  const std::vector<LineMaximum> before = findLineMaxima(plain_edt, mapOf(plain_edt));
+  const std::vector<LineMaximum> after = findLineMaxima(bumped_edt, mapOf(bumped_edt));
+  for (int k = 0; k < 2; ++k) {
+    const bool same = after[0].line.angleTo(before[k].line) < after[1].line.angleTo(before[k].line);
+    const LineMaximum& line = after[same ? 0 : 1];
+    EXPECT_LT(line.line.angleTo(before[k].line), 0.2 * kDegree);
+    EXPECT_NEAR(line.line.canonical().offset(), before[k].line.offset(), 0.004);
+    EXPECT_GT(line.value, 0.9);
+  }
+}
+
+TEST(PointSymmetry2D, TheCenterOfACircleIsTheDarkestPoint) {
+  const GaussianEdt2D edt(regularPolygon(2400));
+  const LineMap map = lineTransform(edt, LineGrid(96, 96, edt.center(), edt.radius()), edt.center());
+  Points2D probes(2, 2);
+  probes << 0.0f, 0.5f, 0.0f, 0.6f;
+  const std::vector<float> values = pointSymmetry(map, probes);
+  // Every point lies on a line through the center, and all of these are symmetries.
+  EXPECT_GT(values[0], 0.95f);
+  EXPECT_GT(values[1], 0.9f);
+
+  const GaussianEdt2D rectangle_edt(rectangle(1.6, 0.9));
+  const LineMap rectangle_map = lineTransform(
+      rectangle_edt, LineGrid(96, 96, rectangle_edt.center(), rectangle_edt.radius()), rectangle_edt.center());
+  const std::vector<float> of_rectangle = pointSymmetry(rectangle_map, probes);
+  // Its two lines lie half a bin from the directions of the map.
+  EXPECT_GT(of_rectangle[0], 0.85f);
+  EXPECT_LT(of_rectangle[1], 0.6f);
+}
+
+}  // namespace
+}  // namespace pcl_symmetry

@@ -1,0 +1,86 @@
+/// Models of different kinds for tests of the database, and scans of them.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdint>
+
+#include "core/base/random.h"
+#include "pcl_symmetry/symmetry_database.h"
+
+namespace pcl_symmetry::test {
+
+using Cloud = SymmetryDatabase::Cloud;
+
+/// A box with a rod on top.
+inline Cloud rodOnBox(const Eigen::Vector3d& half, double rod, const Eigen::Isometry3d& pose, std::uint64_t seed) {
+  Cloud cloud;
+  RandomStream random(seed);
+  const auto side = [&] { return 2.0 * random.uniform() - 1.0; };
+  for (int i = 0; i < 5000; ++i) {
+    Eigen::Vector3d x(side(), side(), side());
+    if (i % 5 == 0) {
+      const double angle = M_PI * side();
+      x = Eigen::Vector3d(0.1 * std::cos(angle) + 0.5 * half.x(), 0.1 * std::sin(angle),
+                          half.z() + rod * random.uniform());
+    } else {
+      const int axis = i % 3;
+      x[axis] = x[axis] < 0.0 ? -1.0 : 1.0;
+      x = x.cwiseProduct(half);
+    }
+    cloud.push_back({});
+    cloud.back().getVector3fMap() = (pose * x).cast<float>();
+  }
+  return cloud;
+}
+
+inline Cloud ball() {
+  Cloud cloud;
+  RandomStream random(9);
+  while (cloud.size() < 5000) {
+    const Eigen::Vector3d x = Eigen::Vector3d::NullaryExpr([&] { return 2.0 * random.uniform() - 1.0; });
+    if (x.norm() > 1.0 || x.norm() < 0.1) continue;
+    cloud.push_back({});
+    cloud.back().getVector3fMap() = x.normalized().cast<float>();
+  }
+  return cloud;
+}
+
+/// The points that a scanner there sees.
+inline Cloud seenFrom(const Cloud& whole, const Eigen::Vector3f& viewpoint) {
+  const Points points = whole.getMatrixXfMap(3, 4, 0);
+  const auto seen = Visibility::fromPoints(points, viewpoint.cast<double>());
+  Cloud cloud;
+  for (const pcl::PointXYZ& point : whole)
+    if (seen->depthBehind(point.getVector3fMap().cast<double>()) < 0.1) cloud.push_back(point);
+  cloud.sensor_origin_ << viewpoint, 1.0f;
+  return cloud;
+}
+
+struct Kind {
+  const char* name;
+  Eigen::Vector3d half;
+  double rod;
+};
+inline const Kind kKinds[] = {{"cube", {1.0, 0.95, 0.9}, 0.5},
+                              {"plate", {1.0, 0.8, 0.1}, 0.6},
+                              {"beam", {1.5, 0.2, 0.3}, 0.3},
+                              {"post", {0.3, 0.3, 0.6}, 2.0}};
+
+/// Points drawn at random lie less evenly, and meet less well, than those of scanners and of samples of meshes.
+inline RecognitionOptions optionsForRandomPoints() {
+  RecognitionOptions options;
+  options.min_merit = 0.5;
+  return options;
+}
+
+inline const Eigen::Isometry3d kHere = Eigen::Isometry3d::Identity();
+
+inline Eigen::Isometry3d elsewhere() {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(2.1, Eigen::Vector3d(0.3, -1.0, 0.8).normalized()).toRotationMatrix();
+  pose.translation() << 4.0, -2.0, 1.0;
+  return pose;
+}
+
+}  // namespace pcl_symmetry::test

@@ -1,0 +1,62 @@
+#include "pcl_symmetry/axial_symmetry_transform.h"
+
+#include <gtest/gtest.h>
+
+#include "pcl/clouds.h"
+#include "pcl/error_message.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using test::messageOf;
+using test::Sampling;
+
+AxialSymmetryTransform<pcl::PointXYZ> small() {
+  AxialSymmetryTransform<pcl::PointXYZ> transform;
+  transform.setMapSize(8, 32, 16);
+  transform.setFolds({0, 2, 5});
+  return transform;
+}
+
+TEST(AxialSymmetryTransform, FindsTheAxisOfAPrism) {
+  auto transform = small();
+  transform.setInputCloud(test::toCloud(test::prism(5, 3000, Sampling::Random, 2)));
+  EXPECT_TRUE(transform.getAxes().empty());
+  const AxisMap map = transform.compute();
+  EXPECT_EQ(map.greatest.size(), 8u * 32u * 16u * 16u);
+  EXPECT_EQ(map.folds, (std::vector<int>{0, 2, 5}));
+  const std::vector<AxisMaximum> axes = transform.getAxes(8);
+  const bool found = std::any_of(axes.begin(), axes.end(), [](const AxisMaximum& maximum) {
+    return maximum.fold == 5 && std::abs(maximum.axis.direction().z()) > 0.99 && maximum.value > 0.9;
+  });
+  EXPECT_TRUE(found);
+  // A new cloud forgets the last one.
+  transform.setInputCloud(test::toCloud(test::box(1000, Sampling::Random, 2)));
+  EXPECT_TRUE(transform.getAxes().empty());
+}
+
+TEST(AxialSymmetryTransform, FindsTheCenterOfABox) {
+  auto transform = small();
+  transform.setInputCloud(test::toCloud(test::box(3000, Sampling::Random, 2)));
+  const CenterMap map = transform.computeCenters(32);
+  ASSERT_EQ(map.values.size(), 32u * 32u * 32u);
+  EXPECT_LT(map.center(map.strongest()).norm(), 2.0 * map.step);
+}
+
+TEST(AxialSymmetryTransform, DataWithoutAnAnswerGiveNone) {
+  auto transform = small();
+  transform.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>());
+  EXPECT_TRUE(transform.compute().empty());
+  EXPECT_TRUE(transform.computeCenters().values.empty());
+  EXPECT_FALSE(transform.getReason().empty());
+}
+
+TEST(AxialSymmetryTransform, RefusesBadValues) {
+  auto transform = small();
+  EXPECT_EQ(messageOf([&] { transform.setFolds({1}); }), "fold = 1, must be 0 or in [2, 60]");
+  EXPECT_EQ(messageOf([&] { transform.setNumCells(4); }), "num_cells = 4, must be in [8, 512]");
+  EXPECT_EQ(messageOf([&] { transform.setMapSize(8, 7, 8); }), "num_phi = 7, must be even and in [2, 1024]");
+}
+
+}  // namespace
+}  // namespace pcl_symmetry

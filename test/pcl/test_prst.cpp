@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+#include <pcl/features/feature.h>
+#include <pcl/io/pcd_io.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/base/random.h"
+#include "core/matching/symmetry_descriptor.h"
+#include "pcl/error_message.h"
+#include "pcl_symmetry/prst.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+Cloud::Ptr boxCloud(const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity(), double unit = 1.0) {
+  auto cloud = pcl::make_shared<Cloud>();
+  RandomStream random(5);
+  for (int i = 0; i < 6000; ++i) {
+    Eigen::Vector3d x;
+    for (int k = 0; k < 3; ++k) x[k] = (1.0 - 0.3 * k) * (2.0 * random.uniform() - 1.0);
+    const int axis = i % 3;
+    x[axis] = (1.0 - 0.3 * axis) * (random.uniform() < 0.5 ? -1.0 : 1.0);
+    cloud->push_back({});
+    cloud->back().getVector3fMap() = (pose * (unit * x)).cast<float>();
+  }
+  return cloud;
+}
+
+pcl::PointCloud<PRSTSignature32768> describe(const Cloud::ConstPtr& cloud, bool use_input_axes) {
+  PRSTEstimation<pcl::PointXYZ> estimation;
+  estimation.setUseInputAxes(use_input_axes);
+  estimation.setInputCloud(cloud);
+  pcl::PointCloud<PRSTSignature32768> output;
+  estimation.compute(output);
+  return output;
+}
+
+float norm(const PRSTSignature32768& a) {
+  return descriptorDistance(a, PRSTSignature32768());
+}
+
+}  // namespace
+
+TEST(PRSTEstimation, GivesOneDescriptorThatPeaksAtTheSymmetries) {
+  const auto output = describe(boxCloud(), true);
+  ASSERT_EQ(output.size(), 1u);
+  EXPECT_EQ(output.width, 1u);
+  EXPECT_EQ(output.height, 1u);
+  float greatest = 0.0f;
+  int at = 0;
+  for (int i = 0; i < kPRSTSize; ++i) {
+    EXPECT_GE(output[0].prst[i], 0.0f);
+    if (output[0].prst[i] > greatest) greatest = output[0].prst[at = i];
+  }
+  EXPECT_GT(greatest, 0.9f);
+  // The planes of a box pass through its center: the bins of r on either side of 0.
+  EXPECT_TRUE(at % kDescriptorBins == 15 || at % kDescriptorBins == 16);
+}
+
+TEST(PRSTEstimation, DescribesInTheCanonicalFrame) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
+  pose.translation() << 3.0, -1.0, 2.0;
+  const auto a = describe(boxCloud(), false), b = describe(boxCloud(pose, 0.01), false);
+  EXPECT_LT(descriptorDistance(a[0], b[0]), 0.15f * norm(a[0]));
+  const auto raw_a = describe(boxCloud(), true), raw_b = describe(boxCloud(pose, 0.01), true);
+  EXPECT_GT(descriptorDistance(raw_a[0], raw_b[0]), 0.2f * norm(a[0]));
+}
+
+TEST(PRSTEstimation, HonoursIndicesAndWorksThroughTheBaseClass) {
+  const Cloud::Ptr box = boxCloud();
+  const std::size_t size = box->size();
+  auto mixed = pcl::make_shared<Cloud>(*box);
+  for (int i = 0; i < 500; ++i) mixed->push_back(pcl::PointXYZ(5.0f + 0.01f * static_cast<float>(i), 4.0f, 3.0f));
+  mixed->push_back(pcl::PointXYZ(std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f));
+  auto indices = pcl::make_shared<pcl::Indices>();
+  for (std::size_t i = 0; i < size; ++i) indices->push_back(static_cast<int>(i));
+  PRSTEstimation<pcl::PointXYZ> estimation;
+  estimation.setUseInputAxes(true);
+  estimation.setInputCloud(mixed);
+  estimation.setIndices(indices);
+  pcl::Feature<pcl::PointXYZ, PRSTSignature32768>& base = estimation;
+  pcl::PointCloud<PRSTSignature32768> output;
+  base.compute(output);
+  ASSERT_EQ(output.size(), 1u);
+  EXPECT_EQ(descriptorDistance(output[0], describe(box, true)[0]), 0.0f);
+  base.compute(output);
+  ASSERT_EQ(output.size(), 1u);
+}
+
+TEST(PRSTEstimation, WorksWithPointTypesThatAreNotPrecompiled) {
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointWithRange>>();
+  const Cloud::Ptr box = boxCloud();
+  for (const pcl::PointXYZ& point : *box) {
+    cloud->push_back({});
+    cloud->back().getVector3fMap() = point.getVector3fMap();
+  }
+  PRSTEstimation<pcl::PointWithRange> estimation;
+  estimation.setUseInputAxes(true);
+  estimation.setInputCloud(cloud);
+  pcl::PointCloud<PRSTSignature32768> output;
+  estimation.compute(output);
+  ASSERT_EQ(output.size(), 1u);
+  EXPECT_EQ(descriptorDistance(output[0], describe(box, true)[0]), 0.0f);
+}
+
+TEST(PRSTEstimation, SurvivesAFile) {
+  const auto output = describe(boxCloud(), true);
+  const std::string path = testing::TempDir() + "prst_estimation.pcd";
+  for (const bool binary : {true, false}) {
+    ASSERT_EQ(pcl::io::savePCDFile(path, output, binary), 0);
+    pcl::PointCloud<PRSTSignature32768> loaded;
+    ASSERT_EQ(pcl::io::loadPCDFile(path, loaded), 0);
+    ASSERT_EQ(loaded.size(), 1u);
+    EXPECT_LT(descriptorDistance(loaded[0], output[0]), 1e-4f);
+  }
+  std::remove(path.c_str());
+}
+
+TEST(PRSTEstimation, CloudsWithoutAnswerGiveAnEmptyOutputAndAWarning) {
+  PRSTEstimation<pcl::PointXYZ> estimation;
+  pcl::PointCloud<PRSTSignature32768> output;
+  const auto warningFor = [&](const Cloud::ConstPtr& cloud) {
+    if (cloud) estimation.setInputCloud(cloud);
+    output.resize(3);
+    testing::internal::CaptureStderr();
+    estimation.compute(output);
+    EXPECT_TRUE(output.empty());
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_NE(warningFor(nullptr).find("input cloud: not set"), std::string::npos);
+  EXPECT_NE(warningFor(pcl::make_shared<Cloud>()).find("no finite point"), std::string::npos);
+  const std::string same = warningFor(pcl::make_shared<Cloud>(10, 1, pcl::PointXYZ(1.0f, 2.0f, 3.0f)));
+  EXPECT_NE(same.find("1 distinct point"), std::string::npos) << same;
+  EXPECT_NE(same.find("[pcl_symmetry::PRSTEstimation]"), std::string::npos) << same;
+  // The object works again with another input.
+  estimation.setInputCloud(boxCloud());
+  estimation.setUseInputAxes(true);
+  estimation.compute(output);
+  ASSERT_EQ(output.size(), 1u);
+  EXPECT_EQ(descriptorDistance(output[0], describe(boxCloud(), true)[0]), 0.0f);
+}
+
+TEST(PRSTEstimation, WrongParametersThrow) {
+  PRSTEstimation<pcl::PointXYZ> estimation;
+  EXPECT_EQ(test::messageOf([&] { estimation.setRadius(0.0); }), "radius = 0, must be finite and > 0");
+  EXPECT_EQ(test::messageOf([&] { estimation.setMaxPoints(1); }), "max_points = 1, must be >= 2");
+  EXPECT_EQ(test::messageOf([&] { estimation.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
+  estimation.setInputCloud(boxCloud());
+  Viewpoint inside;
+  inside.mode = Viewpoint::Mode::Given;
+  estimation.setViewpoint(inside);
+  pcl::PointCloud<PRSTSignature32768> output;
+  EXPECT_NE(test::messageOf([&] { estimation.compute(output); }).find("viewpoint"), std::string::npos);
+  EXPECT_DOUBLE_EQ(estimation.getRadius(), 2.0);
+}
+
+TEST(PRSTEstimation, SaysOnceThatASearchRadiusIsIgnored) {
+  PRSTEstimation<pcl::PointXYZ> estimation;
+  estimation.setUseInputAxes(true);
+  estimation.setInputCloud(boxCloud());
+  estimation.setRadiusSearch(0.1);
+  pcl::PointCloud<PRSTSignature32768> output;
+  testing::internal::CaptureStderr();
+  estimation.compute(output);
+  estimation.compute(output);
+  const std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("setRadiusSearch"), std::string::npos) << text;
+  EXPECT_EQ(text.find("setRadiusSearch"), text.rfind("setRadiusSearch")) << text;
+  EXPECT_EQ(descriptorDistance(output.at(0), describe(boxCloud(), true)[0]), 0.0f);
+}
+
+TEST(ProductDistance, MultipliesTheDistancesOfBothDescriptors) {
+  PRSTSignature32768 prst, no_prst;
+  GEDTSignature32768 gedt, no_gedt;
+  prst.prst[5] = 2.0f;
+  gedt.gedt[7] = 3.0f;
+  const float sine = std::sin(0.5f * static_cast<float>(M_PI_2) / 32.0f);  // of the first of 32 bins of theta
+  EXPECT_NEAR(descriptorDistance(prst, no_prst), 2.0f * std::sqrt(sine), 1e-5f);
+  EXPECT_NEAR(descriptorDistance(gedt, no_gedt), 3.0f, 1e-5f);
+  EXPECT_NEAR(productDistance(prst, gedt, no_prst, no_gedt), 6.0f * std::sqrt(sine), 1e-5f);
+  EXPECT_EQ(productDistance(prst, gedt, no_prst, gedt), 0.0f);
+}
+
+}  // namespace pcl_symmetry

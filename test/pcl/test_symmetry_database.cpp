@@ -1,0 +1,494 @@
+#include "pcl_symmetry/symmetry_database.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl/error_message.h"
+#include "pcl/kinds.h"
+#include "recognition/model_store.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+class SymmetryDatabaseTest : public testing::Test {
+protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static void fill(SymmetryDatabase& database) {
+    for (const Kind& kind : kKinds) database.add(kind.name, rodOnBox(kind.half, kind.rod, kHere, 1));
+  }
+
+  /// A beam and a cube, seen from two sides: for what happens to the file.
+  void fillQuickly() const {
+    SymmetryDatabase database(file_, quick());
+    for (const Kind& kind : {kKinds[0], kKinds[2]}) database.add(kind.name, rodOnBox(kind.half, kind.rod, kHere, 1));
+  }
+  static DatabaseOptions quick() {
+    DatabaseOptions options;
+    options.num_views = 2;
+    return options;
+  }
+  static DatabaseOptions fewViews() {
+    DatabaseOptions options;
+    options.num_views = 20;
+    options.num_references = 20;
+    return options;
+  }
+  /// \return a file with a model of each kind.
+  std::string filled(const DatabaseOptions& options) const {
+    const std::string file = folder_ + "/few.db";
+    SymmetryDatabase database(file, options);
+    fill(database);
+    return file;
+  }
+  static Cloud cube() { return rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 1); }
+
+  const std::string folder_ =
+      testing::TempDir() + "symmetry_database_" + testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string file_ = folder_ + "/models.db";
+};
+
+/// The message of the pcl::IOException that \p body throws.
+template <typename Body>
+std::string ioMessageOf(const Body& body) {
+  try {
+    body();
+  } catch (const pcl::IOException& error) {
+    return error.what();
+  }
+  return "no exception";
+}
+
+TEST_F(SymmetryDatabaseTest, FindsShapesOfAnySizeInAnyPose) {
+  SymmetryDatabase database(":memory:");
+  fill(database);
+  EXPECT_EQ(database.names(), (std::vector<std::string>{"beam", "cube", "plate", "post"}));
+  for (const Kind& kind : kKinds) {
+    Cloud query = rodOnBox(kind.half, kind.rod, elsewhere(), 2);
+    for (auto& point : query) point.getVector3fMap() *= 0.01f;
+    const auto matches = database.match(query, 3);
+    ASSERT_EQ(matches.size(), 3u) << kind.name;
+    EXPECT_EQ(matches[0].name, kind.name);
+    EXPECT_LT(matches[0].distance, 0.9 * matches[1].distance);
+  }
+  // Compact forms that are stored give what those give that each program makes for itself.
+  const Cloud query = rodOnBox(kKinds[3].half, kKinds[3].rod, elsewhere(), 5);
+  const auto before = database.match(query, 4);
+  database.save();
+  const auto after = database.match(query, 4);
+  ASSERT_EQ(after.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(after[i].name, before[i].name);
+    EXPECT_NEAR(after[i].distance, before[i].distance, 1e-3);
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, RecognizesWithPoseAndKnowsWhatItDoesNotKnow) {
+  SymmetryDatabase database(":memory:");
+  fill(database);
+  std::vector<std::string> said;
+  const std::vector<Cloud> scans{rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2), ball()};
+  const auto all = database.recognize(scans, optionsForRandomPoints());
+  ASSERT_EQ(all.size(), 2u);
+  const Recognition& found = all[0];
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].name, "plate");
+  EXPECT_GT(found[0].confidence, 0.25);
+  EXPECT_LE(found[0].confidence, 1.0);
+  const Eigen::Isometry3d error = found[0].T_model_scan * elsewhere();
+  EXPECT_LT(error.translation().norm(), 0.05);
+  EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.05);
+  EXPECT_TRUE(all[1].empty());
+  // Cancelled after the first one.
+  const auto first = database.recognize({ball(), scans[0]}, optionsForRandomPoints(), {}, [](double) { return false; });
+  EXPECT_TRUE(first[1].empty());
+}
+
+TEST_F(SymmetryDatabaseTest, RecognizesAViewWithItsPose) {
+  SymmetryDatabase database(":memory:");
+  fill(database);
+  for (const Kind& kind : kKinds) {
+    const Cloud view = seenFrom(rodOnBox(kind.half, kind.rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+    const auto found = database.recognize(view, optionsForRandomPoints());
+    ASSERT_FALSE(found.empty()) << kind.name;
+    EXPECT_EQ(found[0].name, kind.name);
+    const Eigen::Isometry3d error = found[0].T_model_scan * elsewhere();
+    EXPECT_LT(error.translation().norm(), 0.05) << kind.name;
+    EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.05) << kind.name;
+  }
+  EXPECT_TRUE(database.recognize(seenFrom(ball(), {0.0f, 0.0f, 6.0f}), optionsForRandomPoints()).empty());
+}
+
+TEST_F(SymmetryDatabaseTest, PreparedOnesRecognizeTheSame) {
+  SymmetryDatabase database(":memory:"), prepared(":memory:");
+  fill(database);
+  prepared.prepare();  // nothing is there yet
+  fill(prepared);
+  prepared.prepare();
+  const Cloud view = seenFrom(rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const auto expected = database.recognize(view, optionsForRandomPoints());
+  const auto found = prepared.recognize(view, optionsForRandomPoints());
+  ASSERT_FALSE(expected.empty());
+  ASSERT_EQ(found.size(), expected.size());
+  EXPECT_EQ(found[0].name, expected[0].name);
+  EXPECT_EQ(found[0].confidence, expected[0].confidence);
+  EXPECT_EQ(found[0].T_model_scan.matrix(), expected[0].T_model_scan.matrix());
+}
+
+/// An object, and a wall that hides one side of it from a scanner.
+struct HalfHidden {
+  Cloud scene;
+  pcl::Indices cluster;       // what is seen of the object
+  std::size_t num_alone = 0;  // points that are seen without the wall
+
+  HalfHidden(const Cloud& object, const Eigen::Vector3f& viewpoint) {
+    num_alone = seenFrom(object, viewpoint).size();
+    const Eigen::Vector3f middle = elsewhere().translation().cast<float>();
+    const Eigen::Vector3f ahead = (middle - viewpoint).normalized();
+    const Eigen::Vector3f right = ahead.cross(Eigen::Vector3f::UnitZ()).normalized(), up = right.cross(ahead);
+    Cloud both = object;
+    RandomStream random(3);
+    for (int i = 0; i < 20'000; ++i) {
+      both.push_back({});
+      both.back().getVector3fMap() = viewpoint + 0.5f * (middle - viewpoint) +
+                                     static_cast<float>(0.1 + 1.5 * random.uniform()) * right +
+                                     static_cast<float>(3.0 * random.uniform() - 1.5) * up;
+    }
+    scene = seenFrom(both, viewpoint);
+    for (std::size_t i = 0; i < scene.size(); ++i)
+      if ((scene[i].getVector3fMap() - viewpoint).dot(ahead) > 0.6f * (middle - viewpoint).norm())
+        cluster.push_back(static_cast<pcl::index_t>(i));
+  }
+};
+
+TEST_F(SymmetryDatabaseTest, RecognizesWhatIsHiddenInPart) {
+  SymmetryDatabase database(":memory:");
+  fill(database);
+  const Eigen::Vector3f viewpoint(-2.0f, 6.0f, 4.0f);
+  Viewpoint given;
+  given.mode = Viewpoint::Mode::Given;
+  given.position = viewpoint.cast<double>();
+  for (const Kind& kind : kKinds) {
+    const HalfHidden view(rodOnBox(kind.half, kind.rod, elsewhere(), 2), viewpoint);
+    EXPECT_LT(view.cluster.size(), 0.8 * static_cast<double>(view.num_alone)) << kind.name;
+    const auto seen = std::make_shared<const SeenSpace>(view.scene, given);
+    const Recognition found = database.recognize(view.scene, view.cluster, optionsForRandomPoints(), seen);
+    ASSERT_FALSE(found.empty()) << kind.name;
+    EXPECT_EQ(found[0].name, kind.name);
+    double sum = 0.0;
+    for (const RecognizedModel& model : found) sum += model.confidence;
+    EXPECT_LE(sum, 1.0 + 1e-9);
+    EXPECT_GE(found[0].confidence, 0.5);
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, AModelThatIsStoredTwiceIsAsCertainAsOnce) {
+  SymmetryDatabase database(":memory:");
+  fill(database);
+  // Another one of its kind fits, but not well.
+  const Cloud view = seenFrom(rodOnBox(1.05 * kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const Recognition once = database.recognize(view, optionsForRandomPoints());
+  ASSERT_EQ(once.size(), 1u);
+  EXPECT_EQ(once[0].name, "cube");
+  database.add("cube again", rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 9));
+  const Recognition twice = database.recognize(view, optionsForRandomPoints());
+  ASSERT_EQ(twice.size(), 2u);
+  for (const RecognizedModel& model : twice) {
+    EXPECT_EQ(model.name.substr(0, 4), "cube");
+    EXPECT_NEAR(model.confidence, once[0].confidence, 0.1) << model.name;
+    EXPECT_LT(model.score.merit(), 0.84) << "alone ahead of nothing, it would not be accepted";
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, ModelsOfAnotherSizeHaveNoPairsInCommon) {
+  SymmetryDatabase database(":memory:", quick());
+  database.add("cube", cube());
+  for (const double scale : {1e-4, 1e4}) {
+    Cloud scaled = cube();
+    for (auto& point : scaled) point.getVector3fMap() *= static_cast<float>(scale);
+    database.add("cube" + std::to_string(scale), scaled);
+  }
+  const Cloud view = seenFrom(rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const Recognition found = database.recognize(view, optionsForRandomPoints());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].name, "cube");
+}
+
+/// Stores a model \p count times, under its name and a number.
+/// \param views of which it has the looks.
+void addCopies(detail::ModelStore& source, const detail::StoredModel& model, const detail::StoredModel& views,
+               int count, detail::ModelStore& target) {
+  const detail::PackedModel packed{source.part(detail::ModelPart::Cloud, model),
+                                   source.part(detail::ModelPart::Signatures, model),
+                                   source.part(detail::ModelPart::Views, views), 5000};
+  for (int i = 0; i < count; ++i) target.add({model.name + std::to_string(i), 0, {}, packed.num_points}, packed, 0, {});
+}
+
+/// The models of a file under \p count names each.
+void fillWithCopies(const std::string& from, const std::string& to, int count) {
+  detail::ModelStore source(from, 10.0, ""), target(to, 10.0, "");
+  for (const detail::StoredModel& model : source.models()) addCopies(source, model, model, count, target);
+}
+
+TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreCompared) {
+  const DatabaseOptions options = fewViews();
+  const std::string few = filled(options);
+  fillWithCopies(few, file_, 52);
+  RecognitionOptions recognition = optionsForRandomPoints();
+  recognition.num_candidates = 2;
+  recognition.num_refined = 1;
+  const Cloud view = seenFrom(rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const auto nameIn = [&](const SymmetryDatabase& database) {
+    const Recognition found = database.recognize(view, recognition);
+    return found.empty() ? "" : found[0].name;
+  };
+  SymmetryDatabase database(file_, options);
+  ASSERT_EQ(database.size(), 208u);
+  const std::string made = nameIn(database);
+  EXPECT_EQ(made.substr(0, 5), "plate") << "its codes are made";
+  database.save();
+  EXPECT_EQ(nameIn(database), made) << "its codes are stored";
+  database.add("another", rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 1));
+  EXPECT_EQ(nameIn(SymmetryDatabase(file_, options)), made) << "codes of a new model are stored with it";
+  EXPECT_TRUE(SymmetryDatabase::check(file_).empty());
+}
+
+TEST_F(SymmetryDatabaseTest, TriesMoreModelsWhereNoneOfTheFirstIsAccepted) {
+  const DatabaseOptions options = fewViews();
+  const std::string few = filled(options);
+  {
+    detail::ModelStore source(few, 10.0, ""), target(file_, 10.0, "");
+    const auto models = source.models();                  // beam, cube, plate, post
+    addCopies(source, models[1], models[2], 30, target);  // cubes that look like the plate
+    addCopies(source, models[2], models[2], 1, target);
+    addCopies(source, models[0], models[0], 280, target);  // so many that pairs of points are not searched
+  }
+  const SymmetryDatabase database(file_, options);
+  const Cloud view = seenFrom(rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  RecognitionOptions recognition = optionsForRandomPoints();
+  recognition.num_candidates = 2;
+  recognition.max_candidates = 2;
+  EXPECT_TRUE(database.recognize(view, recognition).empty());
+  recognition.max_candidates = 70;
+  const Recognition found = database.recognize(view, recognition);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].name, "plate0");
+}
+
+TEST_F(SymmetryDatabaseTest, ChangesAreStoredAtOnce) {
+  fillQuickly();
+  SymmetryDatabase database(file_, quick());
+  const SymmetryDatabase reader(file_, quick());
+  EXPECT_EQ(reader.size(), 2u);
+  database.save();
+  database.remove("cube");
+  const Cloud rod = rodOnBox({0.1, 0.1, 2.0}, 0.5, kHere, 3);
+  database.add("rod", rod, {"shop/rod.ply", "17", {"long", "thin things"}});
+  database.add("beam", rodOnBox(kKinds[2].half, 1.0, kHere, 3));
+  EXPECT_TRUE(reader.contains("cube")) << "it keeps its state";
+  EXPECT_EQ(reader.cloud("cube").size(), 5000u);
+  SymmetryDatabase other(file_, quick());
+  EXPECT_EQ(other.names(), (std::vector<std::string>{"beam", "rod"}));
+  EXPECT_EQ(other.match(rodOnBox({0.1, 0.1, 2.0}, 0.5, elsewhere(), 4), 1).at(0).name, "rod");
+  const ModelInfo info = other.info("rod");
+  EXPECT_EQ(info.num_points, 5000u);
+  EXPECT_EQ(info.source.path, "shop/rod.ply");
+  EXPECT_EQ(info.source.checksum, "17");
+  EXPECT_EQ(info.source.tags, (std::vector<std::string>{"long", "thin things"}));
+  database.remove("rod");
+  EXPECT_EQ(other.size(), 2u);
+  other.refresh();
+  EXPECT_EQ(other.names(), std::vector<std::string>{"beam"});
+  EXPECT_EQ(other.match(rod, 5).size(), 1u);
+}
+
+TEST_F(SymmetryDatabaseTest, CloudsAreKeptToTheStatedError) {
+  fillQuickly();
+  const SymmetryDatabase database(file_);
+  const Cloud stored = database.cloud("cube"), added = cube();
+  const auto extent = [](const Cloud& cloud) {
+    const auto points = cloud.getMatrixXfMap(3, 4, 0);
+    return Eigen::Vector3f(points.rowwise().maxCoeff() - points.rowwise().minCoeff());
+  };
+  ASSERT_EQ(stored.size(), added.size());
+  const float step = extent(added).maxCoeff() / 65535.0f;
+  // Points have another order: the nearest one of the other cloud is half a step away, in each coordinate.
+  int num_far = 0;
+  for (std::size_t i = 0; i < stored.size(); i += 50) {
+    float least = 1.0f;
+    for (const auto& point : added)
+      least = std::min(least, (stored[i].getVector3fMap() - point.getVector3fMap()).cwiseAbs().maxCoeff());
+    num_far += least > 0.51f * step ? 1 : 0;
+  }
+  EXPECT_EQ(num_far, 0);
+  EXPECT_LT((extent(stored) - extent(added)).cwiseAbs().maxCoeff(), step);
+}
+
+TEST_F(SymmetryDatabaseTest, BuildsReportFailuresAndGoOnWhereTheyStopped) {
+  std::vector<ModelInput> inputs;
+  std::atomic<int> num_loaded{0};
+  for (const Kind& kind : kKinds)
+    inputs.push_back({kind.name,
+                      [&] {
+                        return ModelSource{"here", "checksum of today", {}};
+                      },
+                      [&] {
+                        ++num_loaded;
+                        return rodOnBox(kind.half, kind.rod, kHere, 1);
+                      }});
+  inputs.push_back({"cube", {}, [] { return ball(); }});
+  inputs.push_back({"broken", {}, []() -> Cloud { throw std::runtime_error("cannot be read today"); }});
+  inputs.push_back({"flat", {}, [] { return Cloud(10, 1, pcl::PointXYZ(1.0f, 1.0f, 1.0f)); }});
+  {
+    SymmetryDatabase database(file_, quick());
+    EXPECT_TRUE(database.build(inputs, [](double) { return false; }).cancelled);
+    EXPECT_GE(database.size(), 1u);
+    EXPECT_LT(database.size(), 4u);
+  }
+  SymmetryDatabase database(file_, quick());
+  const std::size_t before = database.size();
+  const BuildReport report = database.build(inputs);
+  EXPECT_EQ(num_loaded, 4) << "each model once";
+  EXPECT_EQ(report.num_kept, before);
+  EXPECT_EQ(report.num_added, 4 - before);
+  ASSERT_EQ(report.failures.size(), 3u);
+  EXPECT_EQ(report.failures[0].first, "cube");
+  EXPECT_EQ(report.failures[1].second, "cannot be read today");
+  EXPECT_EQ(report.failures[2].first, "flat");
+  EXPECT_EQ(database.names(), (std::vector<std::string>{"beam", "cube", "plate", "post"}));
+}
+
+TEST_F(SymmetryDatabaseTest, TakesOverOtherDatabases) {
+  fillQuickly();
+  SymmetryDatabase database(":memory:", quick());
+  database.add("post", rodOnBox(kKinds[3].half, kKinds[3].rod, kHere, 1));
+  EXPECT_EQ(database.importFrom(file_).num_added, 2u);
+  EXPECT_EQ(database.match(cube(), 5).size(), 3u);
+  // A folder of version 0.1.
+  const std::string folder = folder_ + "/old";
+  fs::create_directories(folder);
+  std::ofstream(folder + "/manifest.txt") << "pcl_symmetry database 2\n4 2 3_all 2\nold 1_old\ngone 2_gone\n";
+  const Cloud rod = rodOnBox({0.1, 0.1, 2.0}, 0.5, kHere, 3);
+  std::ofstream cloud(folder + "/1_old.pcd", std::ios::binary);
+  cloud << "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << rod.size()
+        << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << rod.size() << "\nDATA binary\n";
+  for (const auto& point : rod) cloud.write(reinterpret_cast<const char*>(point.data), 3 * sizeof(float));
+  cloud.close();
+  const BuildReport report = database.importFrom(folder);
+  EXPECT_EQ(report.num_added, 1u);
+  ASSERT_EQ(report.failures.size(), 1u);
+  EXPECT_EQ(report.failures[0].first, "gone");
+  EXPECT_EQ(database.match(rod, 1).at(0).name, "old");
+  EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase{folder}; }),
+            folder + ": is a folder, must be a file; pcl_symmetry_database import reads databases that were folders");
+}
+
+TEST_F(SymmetryDatabaseTest, TakesAllPointTypes) {
+  SymmetryDatabase database(":memory:", quick());
+  pcl::PointCloud<pcl::PointXYZRGBNormal> cloud;
+  pcl::copyPointCloud(cube(), cloud);
+  database.add("cube", cloud);
+  EXPECT_EQ(database.match(cloud, 1).at(0).name, "cube");
+  EXPECT_FALSE(database.recognize(cloud, optionsForRandomPoints()).empty());
+}
+
+TEST_F(SymmetryDatabaseTest, CanBeMoved) {
+  SymmetryDatabase database(":memory:", quick());
+  database.add("cube", cube());
+  SymmetryDatabase moved = std::move(database);
+  EXPECT_TRUE(moved.contains("cube"));
+  database = std::move(moved);
+  EXPECT_EQ(database.cloud("cube").size(), 5000u);
+}
+
+TEST_F(SymmetryDatabaseTest, CloudsWithoutAnswerFindNothing) {
+  SymmetryDatabase database(file_);
+  const Cloud same(100, 1, pcl::PointXYZ(1.0f, 1.0f, 1.0f));
+  Viewpoint given;
+  given.mode = Viewpoint::Mode::Given;
+  for (const Cloud& cloud : {Cloud(), same}) {
+    testing::internal::CaptureStderr();
+    EXPECT_TRUE(database.match(cloud, 3, given).empty());
+    EXPECT_TRUE(database.recognize(cloud, {}, given).empty());
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("[pcl_symmetry::SymmetryDatabase] input cloud: "),
+              std::string::npos);
+  }
+}
+
+TEST_F(SymmetryDatabaseTest, EmptyOnesFindNothing) {
+  SymmetryDatabase database(file_, quick());
+  EXPECT_TRUE(database.match(cube()).empty());
+  EXPECT_TRUE(database.recognize(cube()).empty());
+  database.save();
+  EXPECT_FALSE(fs::exists(file_)) << "nothing was added";
+  database.add("only", cube());
+  database.remove("only");
+  EXPECT_TRUE(database.match(cube()).empty());
+  EXPECT_EQ(SymmetryDatabase(file_).size(), 0u);
+}
+
+TEST_F(SymmetryDatabaseTest, NamesAreAnyTextButPaths) {
+  SymmetryDatabase database(file_, quick());
+  database.add("first", cube());
+  const std::string good[] = {"O'Neill; DROP TABLE models",
+                              "Gr\xc3\xbc\xc3\x9f"
+                              "e aus \xe6\x9d\xb1\xe4\xba\xac",
+                              "a \"b\" %s \\", std::string(200, 'x')};
+  for (const std::string& name : good) {
+    database.add(name, cube());
+    EXPECT_EQ(SymmetryDatabase(file_).info(name).name, name);
+  }
+  const std::string bad[] = {"",         "../evil",   "a/b",
+                             ".hidden",  "new\nline", std::string("nul\0", 4),
+                             "\xff\xfe", "\xc3",      std::string(10'000, 'x')};
+  for (const std::string& name : bad) {
+    const std::string message = test::messageOf([&] { database.add(name, cube()); });
+    EXPECT_NE(message.find("must be 1 to 200 bytes of UTF-8 without '/' and control characters"), std::string::npos);
+    EXPECT_LT(message.size(), 250u);
+    EXPECT_FALSE(database.contains(name));
+  }
+  EXPECT_EQ(database.size(), 5u);
+  EXPECT_TRUE(SymmetryDatabase::check(file_).empty());
+}
+
+TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
+  SymmetryDatabase database(file_);
+  EXPECT_EQ(test::messageOf([&] { database.add("../evil", cube()); }),
+            "name = '../evil' (7 bytes), must be 1 to 200 bytes of UTF-8 without '/' and control characters, not '.' "
+            "first");
+  EXPECT_THROW(database.add("flat", Cloud(10, 1, pcl::PointXYZ(1.0f, 1.0f, 1.0f))), pcl::BadArgumentException);
+  EXPECT_EQ(test::messageOf([&] { database.remove("nobody"); }), "name = 'nobody', must be that of a model");
+  EXPECT_THROW(database.cloud("nobody"), pcl::BadArgumentException);
+  RecognitionOptions options;
+  options.num_candidates = 0;
+  EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "num_candidates = 0, must be >= 1");
+  options.num_candidates = 1;
+  options.max_candidates = 0;
+  EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "max_candidates = 0, must be >= 1");
+  options = {};
+  options.min_confidence = 1.5;
+  EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "min_confidence = 1.5, must be in [0, 1]");
+  EXPECT_EQ(test::messageOf([&] { database.match(cube(), -1); }), "num_nearest = -1, must be >= 0");
+  EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase::check(file_); }), file_ + ": there is no such file");
+  EXPECT_EQ(ioMessageOf([&] { database.importFrom(folder_ + "/x"); }), folder_ + "/x: there is no such file or folder");
+}
+
+}  // namespace
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,73 @@
+"""Shapes and drawings of the gallery: what they make is what they say."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+try:
+    import vtkmodules  # noqa: F401
+except ImportError:
+    print("skipped: python3-vtk9 is not installed")
+    sys.exit(77)
+
+import pcl_symmetry
+
+GALLERY = Path(__file__).resolve().parents[2] / "apps" / "gallery"
+sys.path.insert(0, str(GALLERY))
+import shapes  # noqa: E402
+
+
+class Shapes(unittest.TestCase):
+    def test_vehicles_and_the_teapot_have_the_plane_between_their_sides(self):
+        for shape in (shapes.car, shapes.teapot):
+            vertices, triangles = shape()
+            found = pcl_symmetry.planes(pcl_symmetry.sample_mesh(vertices, triangles))
+            self.assertGreater(len(found), 0, shape.__name__)
+            self.assertGreater(abs(found[0].normal[1]), np.cos(0.01), shape.__name__)
+            self.assertLess(abs(found[0].offset), 0.01, shape.__name__)
+
+    def test_a_sphere_of_marching_cubes_is_as_wide_as_asked_for(self):
+        vertices, triangles = shapes.surface(shapes.ellipsoid((0, 0, 0), (1, 1, 1)), (-2, -2, -2), (2, 2, 2), 40)
+        np.testing.assert_allclose(np.linalg.norm(vertices, axis=1), 1, atol=0.01)
+        edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        _, count = np.unique(edges, axis=0, return_counts=True)
+        self.assertTrue((count == 2).all(), "closed")
+
+    def test_without_a_folder_it_prints_its_usage(self):
+        result = subprocess.run([sys.executable, "-B", GALLERY / "shapes.py"], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("usage", result.stderr)
+
+
+class MedialAxis(unittest.TestCase):
+    def test_of_a_rectangle_is_a_ridge_with_a_branch_to_each_corner(self):
+        try:
+            import matplotlib.image
+        except ImportError:
+            self.skipTest("python3-matplotlib is not installed")
+        across, along = np.arange(-1, 1.001, 0.01), np.arange(-0.49, 0.491, 0.01)
+        border = [(x, y) for x in across for y in (0.5, -0.5)] + [(x, y) for y in along for x in (1, -1)]
+        with tempfile.TemporaryDirectory() as folder:
+            contour, picture = Path(folder) / "rectangle.pcd", Path(folder) / "axis.png"
+            contour.write_text("DATA ascii\n" + "".join(f"{x:.2f} {y:.2f} 0\n" for x, y in border))
+            subprocess.run([sys.executable, "-B", GALLERY / "drawings.py", "medial_axis", picture, contour], check=True,
+                           stdout=subprocess.DEVNULL)
+            image = matplotlib.image.imread(picture)[:, :, :3].max(axis=2)
+        size = len(image)
+
+        def is_dark(x, y):
+            column, row = int(size * (0.5 + x / 2.24)), int(size * (0.5 - y / 2.24))
+            return image[row - 2 : row + 3, column - 2 : column + 3].min() < 0.5
+
+        for x, y in [(0, 0), (0.4, 0)] + [(x, y) for x in (-0.75, 0.75) for y in (-0.25, 0.25)]:
+            self.assertTrue(is_dark(x, y), (x, y))
+        for x, y in [(0, 0.25), (0.85, 0)]:
+            self.assertFalse(is_dark(x, y), (x, y))
+
+
+if __name__ == "__main__":
+    unittest.main()

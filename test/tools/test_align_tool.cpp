@@ -1,0 +1,222 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "tools/tool_run.h"
+#include "scanner/virtual_scanner.h"
+#include "io/shape_input.h"
+#include "pcl_symmetry/completion.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+class AlignTool : public ToolTest {
+protected:
+  AlignTool() : ToolTest(toolPath("align")) {}
+
+  /// Two boxes, a seat and its back: one plane of symmetry, x = 0.
+  const std::string chair_ =
+      folder_.write("chair.off",
+                    "OFF\n16 12 0\n-1 -1 -0.2\n1 -1 -0.2\n1 1 -0.2\n-1 1 -0.2\n-1 -1 0.2\n1 -1 0.2\n1 1 0.2\n-1 1 0.2\n"
+                    "-0.8 0.8 0.2\n0.8 0.8 0.2\n0.8 1 0.2\n-0.8 1 0.2\n-0.8 0.8 2\n0.8 0.8 2\n0.8 1 2\n-0.8 1 2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n"
+                    "4 11 10 9 8\n4 12 13 14 15\n4 8 9 13 12\n4 10 11 15 14\n4 9 10 14 13\n4 11 8 12 15\n");
+  const std::string box_ =
+      folder_.write("box.off",
+                    "OFF\n8 6 12\n-1 -1.5 -2\n1 -1.5 -2\n1 1.5 -2\n-1 1.5 -2\n-1 -1.5 2\n1 -1.5 2\n1 1.5 2\n-1 1.5 2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+
+  nlohmann::json report() const { return nlohmann::json::parse(contentOf(folder_ / "r.json")); }
+
+  /// What a scanner sees of the chair, with normals that look to the scanner; the scanner stands where VIEWPOINT says.
+  std::string scanOfChair(Eigen::Isometry3d& T_scan_model) const {
+    const VirtualScanner scanner(*loadShape(chair_).mesh);
+    VirtualScannerOptions options;
+    options.num_points = 4000;
+    options.random_pose = true;
+    options.seed = 5;
+    const VirtualScan scan = scanner.scan({-0.6, -1.0, 0.7}, options);
+    T_scan_model = scan.T_scan_model;
+    const Eigen::Vector4f origin = scan.cloud->sensor_origin_;
+    std::string points;
+    int size = 0;
+    for (const pcl::PointXYZ& point : *scan.cloud) {
+      if (!point.getVector3fMap().allFinite()) continue;
+      const Eigen::Vector3f n = (origin.head<3>() - point.getVector3fMap()).normalized();
+      for (const float value : {point.x, point.y, point.z, n.x(), n.y(), n.z()}) points += std::to_string(value) + " ";
+      points += std::to_string(size++) + "\n";
+    }
+    return folder_.write("scan.pcd",
+                         "VERSION 0.7\nFIELDS x y z normal_x normal_y normal_z label\nSIZE 4 4 4 4 4 4 4\n"
+                         "TYPE F F F F F F U\nCOUNT 1 1 1 1 1 1 1\nWIDTH " +
+                             std::to_string(size) + "\nHEIGHT 1\nVIEWPOINT " + std::to_string(origin.x()) + " " +
+                             std::to_string(origin.y()) + " " + std::to_string(origin.z()) + " 1 0 0 0\nPOINTS " +
+                             std::to_string(size) + "\nDATA ascii\n" + points);
+  }
+
+  static Eigen::Isometry3d transformOf(const nlohmann::json& json) {
+    const auto numbers = json.at("transform").get<std::vector<double>>();
+    EXPECT_EQ(numbers.size(), 16u);
+    Eigen::Isometry3d transform;
+    transform.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
+    return transform;
+  }
+};
+
+template <typename T>
+T fieldOf(const pcl::PCLPointCloud2& cloud, const std::string& name, std::size_t point) {
+  for (const auto& field : cloud.fields) {
+    if (field.name != name) continue;
+    T value;
+    std::memcpy(&value, &cloud.data[point * cloud.point_step + field.offset], sizeof(value));
+    return value;
+  }
+  ADD_FAILURE() << "no field " << name;
+  return T();
+}
+
+TEST_F(AlignTool, WritesPagesOfFramesAndPoses) {
+  const std::string page = folder_ / "page.html", flags = " -quiet -points 2000 -html " + page;
+  ASSERT_EQ(run(chair_ + flags), 0) << error_;
+  EXPECT_NE(contentOf(page).find("center and axes: 1 red"), std::string::npos);
+  EXPECT_NE(contentOf(page).find("axis 1"), std::string::npos) << "what the tool prints";
+  Eigen::Isometry3d T_scan_model;
+  const std::string scan = scanOfChair(T_scan_model);
+  ASSERT_EQ(run(scan + " -target " + chair_ + flags), 0) << error_;
+  EXPECT_NE(contentOf(page).find("target (1) and the input in it (2)"), std::string::npos);
+  EXPECT_GT(contentOf(page).size(), 500'000u) << "with the library that draws";
+}
+
+TEST_F(AlignTool, TurnsAWholeIntoItsFrame) {
+  ASSERT_EQ(run(box_ + " " + (folder_ / "out.pcd") + " -json " + (folder_ / "r.json")), 0) << error_;
+  const nlohmann::json json = report();
+  for (const double x : json["center"].get<std::vector<double>>()) EXPECT_NEAR(x, 0.0, 0.03);
+  const Eigen::Isometry3d transform = transformOf(json);
+  EXPECT_NEAR(transform.linear().determinant(), 1.0, 1e-9);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_GT(transform.linear().row(k).cwiseAbs().maxCoeff(), std::cos(0.02)) << "an axis of the box";
+    const auto axis = json["axes"][k].get<std::vector<double>>();
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(axis.at(i), transform(k, i), 1e-9) << "axes are the rows of the transform";
+    EXPECT_GT(json["scores"][k].get<double>(), 0.5);
+  }
+  EXPECT_EQ(json["revolution_axis"], -1);
+  const Shape out = loadShape(folder_ / "out.pcd");
+  EXPECT_EQ(out.points->size(), 10000u);
+  EXPECT_NE(output_.find("center"), std::string::npos);
+}
+
+TEST_F(AlignTool, KeepsCoordinatesBeyondFloatPrecision) {
+  const std::string far =
+      folder_.write("far.off",
+                    "OFF\n8 6 12\n500000 5000000 100\n500001 5000000 100\n500001 5000000.8 100\n500000 5000000.8 100\n"
+                    "500000 5000000 100.6\n500001 5000000 100.6\n500001 5000000.8 100.6\n500000 5000000.8 100.6\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+  ASSERT_EQ(run(far + " " + (folder_ / "out.pcd") + " -json " + (folder_ / "r.json")), 0) << error_;
+  const Eigen::Vector3d center(500000.5, 5000000.4, 100.3);
+  const auto found = report()["center"].get<std::vector<double>>();
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(found.at(k), center[k], 0.01);
+  EXPECT_LT((transformOf(report()) * center).norm(), 0.02) << "of the input frame";
+  const Shape turned = loadShape(folder_ / "out.pcd");
+  for (const pcl::PointXYZ& point : *turned.points)
+    ASSERT_LT(point.getVector3fMap().norm(), 0.75f) << "half of the diagonal is 0.71";
+}
+
+TEST_F(AlignTool, BringsAScanToItsModel) {
+  Eigen::Isometry3d T_scan_model;
+  const std::string scan = scanOfChair(T_scan_model);
+  ASSERT_EQ(run(scan + " " + (folder_ / "out.pcd") + " -target " + chair_ + " -json " + (folder_ / "r.json")), 0)
+      << error_;
+  const nlohmann::json json = report();
+  EXPECT_EQ(json["converged"], true);
+  const Eigen::Isometry3d transform = transformOf(json);
+  const Eigen::Isometry3d error = transform * T_scan_model;
+  EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.02) << "the chair has no rotation of its own";
+  EXPECT_LT(error.translation().norm(), 0.03);
+  EXPECT_LT(json["fitness"].get<double>(), 0.03 * 0.03) << "mean squared distance";
+
+  const Shape before = loadShape(scan), after = loadShape(folder_ / "out.pcd");
+  ASSERT_EQ(before.points->size(), after.points->size());
+  const Eigen::Vector3d p = (*before.points)[7].getVector3fMap().cast<double>();
+  EXPECT_LT((transform * p - (*after.points)[7].getVector3fMap().cast<double>()).norm(), 1e-4);
+  Eigen::Vector3f n, moved;
+  const char* names[3] = {"normal_x", "normal_y", "normal_z"};
+  for (int k = 0; k < 3; ++k) {
+    n[k] = fieldOf<float>(before.cloud, names[k], 7);
+    moved[k] = fieldOf<float>(after.cloud, names[k], 7);
+  }
+  EXPECT_LT((transform.linear().cast<float>() * n - moved).norm(), 1e-4) << "normals turn";
+  EXPECT_EQ(fieldOf<std::uint32_t>(after.cloud, "label", 7), 7u) << "other fields stay";
+  const Eigen::Vector3d sensor = transform * before.sensor_origin.head<3>().cast<double>();
+  EXPECT_LT((sensor - after.sensor_origin.head<3>().cast<double>()).norm(), 1e-3) << "the scanner moves along";
+}
+
+TEST_F(AlignTool, SaysThatNothingFits) {
+  Eigen::Isometry3d T_scan_model;
+  const std::string scan = scanOfChair(T_scan_model);
+  EXPECT_EQ(run(scan + " " + (folder_ / "never.pcd") + " -quiet -target " + box_ + " -json " + (folder_ / "r.json")),
+            1);
+  EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
+  EXPECT_NE(error_.find("does not fit"), std::string::npos) << error_;
+  EXPECT_EQ(report()["converged"], false);
+  EXPECT_EQ(contentOf(folder_ / "never.pcd"), "");
+}
+
+TEST_F(AlignTool, CompletesAScanAndMarksWhatItAdds) {
+  Eigen::Isometry3d T_scan_model;
+  const std::string scan = scanOfChair(T_scan_model);
+  ASSERT_EQ(run(scan + " " + (folder_ / "out.pcd") + " -complete -target " + chair_), 0) << error_;
+  const Shape before = loadShape(scan), after = loadShape(folder_ / "out.pcd");
+  const Eigen::Vector3d normal = T_scan_model.linear().col(0);
+  const ReflectionPlane true_plane(normal, normal.dot(T_scan_model.translation()));
+  pcl::PointCloud<pcl::PointXYZ> cloud = *before.points;
+  cloud.sensor_origin_ = before.sensor_origin;
+  const auto expected = static_cast<double>(completeBySymmetry(cloud, true_plane).added.size());
+  ASSERT_GT(expected, 100.0) << "a side of it was hidden";
+  EXPECT_NEAR(static_cast<double>(after.points->size() - before.points->size()), expected, 0.2 * expected);
+  for (std::size_t i = 0; i < after.points->size(); ++i) {
+    const int source = fieldOf<std::int32_t>(after.cloud, "reflected_of", i);
+    if (i < before.points->size()) {
+      ASSERT_EQ(source, -1) << i;
+      continue;
+    }
+    ASSERT_GE(source, 0);
+    ASSERT_EQ(fieldOf<std::uint32_t>(after.cloud, "label", i), static_cast<std::uint32_t>(source));
+    const auto p = (*after.points)[i].getVector3fMap(), q = (*after.points)[source].getVector3fMap();
+    ASSERT_LT((Eigen::Vector3f(-q.x(), q.y(), q.z()) - p).norm(), 0.1) << "reflected at x = 0 of the model";
+  }
+}
+
+TEST_F(AlignTool, GivesTheSameBytesForAnyNumberOfThreads) {
+  Eigen::Isometry3d T_scan_model;
+  const std::string scan = scanOfChair(T_scan_model);
+  std::string expected;
+  for (const char* threads : {"1", "3"}) {
+    ASSERT_EQ(run(scan + " -target " + chair_ + " -threads " + threads + " -json " + (folder_ / "r.json")), 0);
+    nlohmann::json json = report();
+    json.erase("timing_ms");
+    if (expected.empty()) expected = json.dump();
+    EXPECT_EQ(json.dump(), expected) << threads << " threads";
+  }
+}
+
+TEST_F(AlignTool, AnswersBadInputWithOneLineAndAnExitCode) {
+  const std::string one = folder_.write("one.pcd",
+                                        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
+                                        "HEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3\n1 2 3\n");
+  EXPECT_EQ(run(one + " -quiet"), 1);
+  EXPECT_NE(error_.find("one.pcd"), std::string::npos) << error_;
+  EXPECT_EQ(run(one + " -quiet -target " + box_), 1);
+  EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
+  EXPECT_EQ(run(box_ + " out.xyz"), 2) << "an unknown extension";
+  EXPECT_EQ(run(""), 2);
+  EXPECT_EQ(run("-h"), 0);
+  EXPECT_NE((output_ + error_).find("pcl_symmetry_align scan.pcd"), std::string::npos);
+}
+
+}  // namespace

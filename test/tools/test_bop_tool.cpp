@@ -1,0 +1,344 @@
+#include <gtest/gtest.h>
+#include <pcl/common/io.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/lathe_mesh.h"
+#include "tools/tool_run.h"
+#include "pictures/raster_image.h"
+#include "io/shape_input.h"
+#include "shapes/turning_shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using nlohmann::json;
+
+std::string offOf(const test::TurningShape& shape) {
+  std::string text =
+      "OFF\n" + std::to_string(shape.vertices.size()) + " " + std::to_string(shape.triangles.size()) + " 0\n";
+  for (const Eigen::Vector3d& v : shape.vertices)
+    text += std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + "\n";
+  for (const Eigen::Vector3i& t : shape.triangles)
+    text += "3 " + std::to_string(t.x()) + " " + std::to_string(t.y()) + " " + std::to_string(t.z()) + "\n";
+  return text;
+}
+
+class BopTool : public ToolTest {
+protected:
+  BopTool() : ToolTest(toolPath("bop")) {}
+
+  json infoOf(const std::string& arguments) {
+    EXPECT_EQ(run(arguments + " -quiet -json " + json_), 0) << error_;
+    return json::parse(contentOf(json_));
+  }
+
+  static Eigen::Matrix4d matrixOf(const json& numbers) {
+    const auto values = numbers.get<std::vector<double>>();
+    EXPECT_EQ(values.size(), 16u);
+    return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
+  }
+
+  const std::string json_ = folder_ / "models_info.json";
+  const std::string box_ = folder_.write("obj_000003.off", boxOFF());
+  const std::string vase_ = folder_.write("obj_000012.off", vaseOFF());
+};
+
+TEST_F(BopTool, DescribesABoxAsTheBenchmarkDoes) {
+  const json info = infoOf(box_);
+  ASSERT_EQ(info.size(), 1u);
+  const json& box = info.at("3");
+  EXPECT_EQ(box["diameter"], 2.0 * std::sqrt(1.0 + 1.5 * 1.5 + 4.0)) << "of the vertices, exactly";
+  EXPECT_EQ(box["min_x"], -1.0);
+  EXPECT_EQ(box["min_y"], -1.5);
+  EXPECT_EQ(box["min_z"], -2.0);
+  EXPECT_EQ(box["size_x"], 2.0);
+  EXPECT_EQ(box["size_y"], 3.0);
+  EXPECT_EQ(box["size_z"], 4.0);
+  EXPECT_FALSE(box.contains("symmetries_continuous")) << "what there is none of is left out";
+  ASSERT_EQ(box["symmetries_discrete"].size(), 3u);
+  for (const json& symmetry : box["symmetries_discrete"]) {
+    const Eigen::Matrix4d T = matrixOf(symmetry);
+    EXPECT_EQ(T.row(3), Eigen::RowVector4d(0, 0, 0, 1)) << "row by row";
+    EXPECT_NEAR(T.determinant(), 1.0, 1e-9);
+    EXPECT_NEAR(T.trace(), 0.0, 1e-9) << "by pi";
+    EXPECT_LT((T.cwiseAbs() - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff(), 0.02) << "about a coordinate axis";
+  }
+}
+
+TEST_F(BopTool, GivesBodiesOfRevolutionAnAxisAndCylindersAFlip) {
+  const json vase = infoOf(vase_).at("12");
+  EXPECT_FALSE(vase.contains("symmetries_discrete"));
+  ASSERT_EQ(vase["symmetries_continuous"].size(), 1u);
+  const auto axis = vase["symmetries_continuous"][0]["axis"].get<std::vector<double>>();
+  const auto offset = vase["symmetries_continuous"][0]["offset"].get<std::vector<double>>();
+  EXPECT_NEAR(std::abs(axis[2]), 1.0, 1e-4);
+  EXPECT_NEAR(offset[0], 0.0, 0.01);
+  EXPECT_NEAR(offset[1], 0.0, 0.01);
+
+  const json cylinder = infoOf(folder_.write("can.off", offOf(test::cylinderShape()))).at("1");
+  ASSERT_EQ(cylinder["symmetries_continuous"].size(), 1u);
+  ASSERT_EQ(cylinder["symmetries_discrete"].size(), 1u);
+  const Eigen::Matrix4d flip = matrixOf(cylinder["symmetries_discrete"][0]);
+  EXPECT_NEAR(flip(2, 2), -1.0, 1e-3) << "end over end";
+}
+
+TEST_F(BopTool, GivesASphereAnAxisAndTiltsAndAnAsymmetricModelNothing) {
+  const std::string ball = folder_.write("ball.off", sphereOFF());
+  const json sphere = infoOf(ball + " -sphere_angle 90").at("1");
+  EXPECT_EQ(sphere["symmetries_continuous"].size(), 1u);
+  ASSERT_EQ(sphere["symmetries_discrete"].size(), 1u) << "upside down";
+  EXPECT_NEAR(matrixOf(sphere["symmetries_discrete"][0])(2, 2), -1.0, 1e-9);
+  const json tetrahedron = infoOf(folder_.write("m7.off", tetrahedronOFF())).at("7");
+  EXPECT_FALSE(tetrahedron.contains("symmetries_continuous"));
+  EXPECT_FALSE(tetrahedron.contains("symmetries_discrete"));
+  EXPECT_NE(output_.find("group C1"), std::string::npos) << output_;
+}
+
+TEST_F(BopTool, FindsPropellersThatNoPlaneShows) {
+  const json propeller = infoOf(folder_.write("fan.off", offOf(test::propellerShape(3, true)))).at("1");
+  EXPECT_EQ(propeller["symmetries_discrete"].size(), 2u);
+  EXPECT_NE(output_.find("fold 3"), std::string::npos) << output_;
+}
+
+TEST_F(BopTool, ExplainsWhatFails) {
+  const std::string mug = folder_.write("mug.off", offOf(test::cupShape(true)));
+  infoOf(mug + " -explain -failures " + (folder_ / "failures"));
+  EXPECT_NE(output_.find("  tolerance "), std::string::npos) << output_;
+  ASSERT_NE(output_.find("  rejected "), std::string::npos) << output_;
+  const Shape shape = loadShape(folder_ / "failures/mug_rejected_1.ply");
+  EXPECT_EQ(shape.points->size(), 20'000u);
+  EXPECT_GE(pcl::getFieldIndex(shape.cloud, "rgb"), 0);
+}
+
+TEST_F(BopTool, NumbersModelsAsTheirFilesOrElseByTheFirstFreeNumber) {
+  const std::string zero = folder_.write("obj_000000.off", boxOFF()), plain = folder_.write("vase.off", vaseOFF());
+  const json info = infoOf(vase_ + " " + box_ + " " + plain + " " + zero + " -points 1000");
+  EXPECT_EQ(info.size(), 4u);
+  for (const char* key : {"0", "1", "3", "12"}) EXPECT_TRUE(info.contains(key)) << key;
+  const std::string text = contentOf(json_);
+  EXPECT_LT(text.find("\"3\""), text.find("\"12\"")) << "by number";
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 6) << "a line for each";
+}
+
+TEST_F(BopTool, RefusesTwoModelsOfOneNumber) {
+  const std::string other = folder_.write("copy_3.off", boxOFF());
+  EXPECT_EQ(run(box_ + " " + other + " -json " + json_), 2);
+  EXPECT_NE(error_.find("both model 3"), std::string::npos) << error_;
+}
+
+TEST_F(BopTool, TakesClouds) {
+  const test::Shape shape = test::prismShape(6, 0.8).sampled(3000, 1);
+  std::string pcd =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3001\nHEIGHT 1\n"
+      "POINTS 3001\nDATA ascii\nnan nan nan\n";
+  for (Eigen::Index i = 0; i < shape.points.cols(); ++i) {
+    for (int k = 0; k < 3; ++k) pcd += std::to_string(shape.points(k, i)) + (k < 2 ? " " : "\n");
+  }
+  EXPECT_EQ(infoOf(folder_.write("obj_6.pcd", pcd)).at("6")["symmetries_discrete"].size(), 11u);
+}
+
+TEST_F(BopTool, GivesTheSameBytesForAnyNumberOfThreads) {
+  std::string expected;
+  for (const char* threads : {"1", "3"}) {
+    ASSERT_EQ(run(box_ + " " + vase_ + " -points 1000 -threads " + threads + " -json " + json_), 0) << error_;
+    if (expected.empty()) expected = contentOf(json_);
+    EXPECT_EQ(contentOf(json_), expected) << threads << " threads";
+  }
+}
+
+TEST_F(BopTool, TakesFolders) {
+  boost::filesystem::create_directories(folder_ / "models");
+  folder_.write("models/obj_000002.off", boxOFF());
+  folder_.write("models/obj_000010.off", "OFF\n1 0 0\n0 0 0\n");
+  folder_.write("models/obj_000011.off", boxOFF());
+  folder_.write("models/other.off", boxOFF());
+  folder_.write("models/readme.txt", "no model");
+  EXPECT_EQ(run((folder_ / "models") + " -quiet -points 1000 -grid 32 -json " + json_), 1) << "one has no surface";
+  const json info = json::parse(contentOf(json_));
+  EXPECT_EQ(info.size(), 2u);
+  EXPECT_TRUE(info.contains("2") && info.contains("11"));
+  EXPECT_NE(error_.find("obj_000010.off"), std::string::npos) << error_;
+  EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
+  boost::filesystem::create_directories(folder_ / "empty");
+  EXPECT_EQ(run((folder_ / "empty") + " -json " + json_), 1);
+  EXPECT_NE(error_.find("holds no .pcd"), std::string::npos) << error_;
+}
+
+/// The box has D2; its file lists one of three half turns, and one turn that is none.
+TEST_F(BopTool, SaysWhereAFileDisagreesWithTheSurface) {
+  const std::string given =
+      folder_.write("given.json", R"({"3": {"symmetries_discrete": [[1,0,0,0, 0,-1,0,0, 0,0,-1,0, 0,0,0,1]]},
+          "12": {"symmetries_continuous": [{"axis": [0,0,1], "offset": [0,0,0]}]}})");
+  const std::string report = folder_ / "report.json", plain = folder_.write("plain.off", boxOFF());
+  ASSERT_EQ(
+      run(box_ + " " + vase_ + " " + plain + " -quiet -points 2000 -grid 32 -check " + given + " -report " + report), 0)
+      << error_;
+  EXPECT_NE(output_.find("model 12     file Cinf  surface Cinf  agree"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("1 of 2 models disagree"), std::string::npos) << output_;
+  const json checked = json::parse(contentOf(report));
+  EXPECT_EQ(checked["missing"], json::array({"1"}));
+  EXPECT_EQ(checked["disagreeing"], 1);
+  const json& box = checked["models"]["3"];
+  EXPECT_EQ(box["file"], "C2");
+  EXPECT_EQ(box["surface"], "D2");
+  ASSERT_EQ(box["disagreements"].size(), 2u) << "axes y and z";
+  for (const json& row : box["disagreements"]) {
+    EXPECT_EQ(row["says"], "surface only");
+    EXPECT_NEAR(row["angle"].get<double>(), 180.0, 1e-6);
+    EXPECT_GT(row["share"].get<double>(), 0.97);
+    EXPECT_LT(row["deviation_of_diameter"].get<double>(), 0.01);
+  }
+  EXPECT_EQ(run(box_ + " -report " + report), 2) << "nothing to compare with";
+}
+
+TEST_F(BopTool, ShowsThatATurnInAFileIsNone) {
+  const std::string given =
+      folder_.write("model_info.json", R"({"symmetries_discrete": [[0,-1,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1]]})");
+  const std::string report = folder_ / "report.json";
+  ASSERT_EQ(run(box_ + " -quiet -points 2000 -grid 32 -check " + given + " -report " + report), 0) << error_;
+  const json box = json::parse(contentOf(report))["models"]["3"];
+  EXPECT_EQ(box["file"], "C4");
+  EXPECT_EQ(box["remark"], "lists 1 of the 3 rotations of C4");
+  const json& row = box["disagreements"][0];
+  EXPECT_EQ(row["says"], "file only");
+  // A quarter turn about z swaps sides of 2 and 3: the long sides, 2 x 2 x 4 of the area 52, land 0.5 inside or
+  // outside.
+  EXPECT_LT(row["share"].get<double>(), 0.5);
+  EXPECT_GT(row["deviation"].get<double>(), 0.3);
+  EXPECT_EQ(run(box_ + " " + vase_ + " -quiet -check " + given), 1) << "a file of one model";
+}
+
+TEST_F(BopTool, AgreesWithWhatItWroteInEveryFormat) {
+  const std::string isaac = folder_ / "isaac.yaml", dope = folder_ / "dope";
+  ASSERT_EQ(run(box_ + " -quiet -points 2000 -grid 32 -json " + json_ + " -isaac " + isaac + " -dope " + dope), 0)
+      << error_;
+  EXPECT_NE(contentOf(isaac).find(R"("3": ["x_180", "y_180", "z_180"]  # D2)"), std::string::npos) << contentOf(isaac);
+  for (const std::string& file : {json_, isaac, dope + "/obj_000003/model_info.json"}) {
+    ASSERT_EQ(run(box_ + " -quiet -points 2000 -grid 32 -check " + file), 0) << error_;
+    EXPECT_NE(output_.find("0 of 1 models disagree"), std::string::npos) << file << output_;
+  }
+}
+
+/// A cube of 6 x 6 squares a side, its side at the given place red and all others grey.
+std::string cubePLY(bool has_red_side) {
+  std::string vertices, faces;
+  int num_vertices = 0, num_faces = 0;
+  constexpr int kSize = 6;
+  for (int side = 0; side < 6; ++side) {
+    const int first = num_vertices;
+    for (int i = 0; i <= kSize; ++i) {
+      for (int k = 0; k <= kSize; ++k, ++num_vertices) {
+        Eigen::Vector3d p;
+        p[side % 3] = side < 3 ? 1.0 : -1.0;
+        p[(side + 1) % 3] = 2.0 * i / kSize - 1.0;
+        p[(side + 2) % 3] = 2.0 * k / kSize - 1.0;
+        vertices += std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) +
+                    (side == 2 && has_red_side ? " 200 20 20\n" : " 120 120 120\n");
+      }
+    }
+    for (int i = 0; i < kSize; ++i)
+      for (int k = 0; k < kSize; ++k, ++num_faces) {
+        const int a = first + i * (kSize + 1) + k;
+        faces += "4 " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(a + kSize + 2) + " " +
+                 std::to_string(a + kSize + 1) + "\n";
+      }
+  }
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(num_vertices) +
+         "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+         "property uchar blue\nelement face " +
+         std::to_string(num_faces) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces;
+}
+
+/// A cube of 24 vertices. Its sides show the white half of the picture, but one: that shows the whole picture if \p
+/// is_printed.
+std::string texturedCube(const std::string& texture, bool is_printed) {
+  std::string vertices, faces;
+  for (int side = 0; side < 6; ++side) {
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    normal[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
+    const Eigen::Vector3d a = Eigen::Vector3d::Unit((side / 2 + 1) % 3), b = normal.cross(a);
+    const double top = is_printed && side == 4 ? 1.0 : 0.45;
+    for (const auto& [u, v] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+      const Eigen::Vector3d x = normal + (2.0 * u - 1.0) * a + (2.0 * v - 1.0) * b;
+      vertices += std::to_string(x.x()) + " " + std::to_string(x.y()) + " " + std::to_string(x.z()) + " " +
+                  std::to_string(0.05 + 0.9 * u) + " " + std::to_string(0.05 + (top - 0.1) * v) + "\n";
+    }
+    faces += "4";
+    for (int k = 0; k < 4; ++k) faces += " " + std::to_string(4 * side + k);
+    faces += "\n";
+  }
+  return "ply\nformat ascii 1.0\ncomment TextureFile " + texture +
+         "\nelement vertex 24\nproperty float x\nproperty float y\nproperty float z\nproperty float texture_u\n"
+         "property float texture_v\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n" +
+         vertices + faces;
+}
+
+TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
+  const std::string plain = folder_.write("obj_1.ply", cubePLY(false)), red = folder_.write("obj_2.ply", cubePLY(true));
+  ASSERT_EQ(run(red + " -quiet -points 2000 -grid 32"), 0) << error_;
+  EXPECT_NE(output_.find("1 of 1 models have colours, which were not looked at"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("obj_2.ply  group O"), std::string::npos) << output_;
+  ASSERT_EQ(run(plain + " " + red + " -quiet -points 2000 -grid 32 -colour"), 0) << error_;
+  EXPECT_EQ(output_.find("not looked at"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("obj_1.ply  group O"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("obj_2.ply  group C4"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("without its colours the group is O"), std::string::npos) << output_;
+  // The same red cube with its colours as coordinates in a texture that it does not name.
+  std::string textured = cubePLY(true);
+  for (const auto& [from, to] : {std::pair("uchar red", "uchar texture_u"), std::pair("uchar green", "uchar texture_v"),
+                                 std::pair("uchar blue", "uchar other")})
+    textured.replace(textured.find(from), std::string(from).size(), to);
+  ASSERT_EQ(run(folder_.write("obj_3.ply", textured) + " -quiet -points 1000 -grid 32 -colour"), 0) << error_;
+  EXPECT_NE(output_.find("only those of vertices, and textures that PLY files name, can be read"), std::string::npos)
+      << output_;
+}
+
+TEST_F(BopTool, ReadsTheTextureThatAModelOfTheBenchmarkNames) {
+  apps::RasterImage image(64, 64);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x) image.set(x, y, {1.0, 0.0, 0.0});
+  apps::writeImage(image, folder_ / "print.png");
+  const std::string red = texturedCube("print.png", true), white = texturedCube("print.png", false);
+  ASSERT_EQ(run(folder_.write("obj_1.ply", white) + " " + folder_.write("obj_2.ply", red) +
+                " -quiet -points 2000 -grid 32 -colour"),
+            0)
+      << error_;
+  EXPECT_EQ(output_.find("not looked at"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("obj_1.ply  group O"), std::string::npos) << output_;
+  // v runs from bottom to top: half of that side is red.
+  EXPECT_NE(output_.find("obj_2.ply  group C1"), std::string::npos) << output_;
+  EXPECT_EQ(run(folder_.write("obj_3.ply", texturedCube("missing.png", true)) + " -quiet -colour"), 1);
+  EXPECT_NE(error_.find("missing.png"), std::string::npos) << error_;
+}
+
+TEST_F(BopTool, AnswersBadInputWithOneLineAndAnExitCodeAndDoesTheRest) {
+  const std::string point = folder_.write("point.pcd",
+                                          "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
+                                          "HEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3\n1 2 3\n");
+  EXPECT_EQ(run(point + " " + box_ + " -points 1000 -quiet -json " + json_), 1);
+  EXPECT_NE(error_.find("point.pcd: "), std::string::npos) << error_;
+  EXPECT_NE(error_.find("1 distinct point, at least 20 are needed"), std::string::npos) << error_;
+  EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
+  const json rest = json::parse(contentOf(json_));
+  EXPECT_EQ(rest.size(), 1u);
+  EXPECT_TRUE(rest.contains("3")) << "the box is written all the same";
+  boost::filesystem::remove(json_);
+  const std::string flat = folder_.write("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
+  EXPECT_EQ(run(flat + " -quiet -json " + json_), 1);
+  EXPECT_NE(error_.find("flat.off: "), std::string::npos) << error_;
+  EXPECT_EQ(run((folder_ / "missing.ply") + " -json " + json_), 1);
+  const auto names = folder_.names();
+  EXPECT_EQ(std::count(names.begin(), names.end(), "models_info.json"), 0);
+  EXPECT_EQ(run(""), 2);
+  EXPECT_EQ(run(box_ + " -jsn a.json"), 2);
+  EXPECT_NE(error_.find("did you mean -json?"), std::string::npos) << error_;
+  EXPECT_EQ(run(box_ + " -feature 2"), 2);
+  EXPECT_EQ(run("-h"), 0);
+  EXPECT_NE(output_.find("pcl_symmetry_bop models -json"), std::string::npos) << output_;
+}
+
+}  // namespace

@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+#include <pcl/common/io.h>
+#include <pcl/conversions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "tools/tool_run.h"
+#include "pictures/raster_image.h"
+#include "io/shape_input.h"
+
+namespace {
+
+using namespace pcl_symmetry::apps;
+
+class MapTool : public ToolTest {
+protected:
+  MapTool() : ToolTest(toolPath("map")) {}
+
+  const std::string mesh_ =
+      folder_.write("box.off",
+                    "OFF\n8 6 12\n-1 -1.4 -2\n1 -1.4 -2\n1 1.4 -2\n-1 1.4 -2\n-1 -1.4 2\n1 -1.4 2\n1 1.4 2\n-1 1.4 2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+};
+
+TEST_F(MapTool, PointsOnThePlanesOfABoxAreTheMostSymmetric) {
+  ASSERT_EQ(run(mesh_ + " " + (folder_ / "box.pcd") + " -quiet -json " + (folder_ / "a.json")), 0) << error_;
+  pcl::PointCloud<pcl::PointXYZI> points;
+  pcl::fromPCLPointCloud2(loadShape(folder_ / "box.pcd").cloud, points);
+  ASSERT_EQ(points.size(), 10000u);
+  double near = 0.0, far = 0.0;
+  int num_near = 0, num_far = 0;
+  for (const pcl::PointXYZI& point : points) {
+    const float distance = point.getVector3fMap().cwiseAbs().minCoeff();
+    if (distance < 0.05f) {
+      near += point.intensity;
+      ++num_near;
+    } else if (distance > 0.5f) {
+      far += point.intensity;
+      ++num_far;
+    }
+  }
+  EXPECT_GT(near / num_near, 0.85);
+  EXPECT_LT(far / num_far, 0.75);
+  EXPECT_EQ(nlohmann::json::parse(contentOf(folder_ / "a.json"))["num_points"], 10000);
+}
+
+TEST_F(MapTool, Equation1LiesBetweenItsEnds) {
+  const std::string common = mesh_ + " -quiet -grid 32 -points 2000 -json " + (folder_ / "a.json");
+  const auto ends = [&](const std::string& measure) {
+    EXPECT_EQ(run(common + " -measure " + measure), 0) << error_;
+    const auto summary = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+    return std::make_pair(summary["least"].get<double>(), summary["greatest"].get<double>());
+  };
+  const auto [least, greatest] = ends("D");
+  const auto [least_prst, greatest_prst] = ends("prst");
+  EXPECT_NEAR(least_prst, std::sqrt(0.5 * (1.0 + least)), 1e-5);
+  EXPECT_NEAR(greatest_prst, std::sqrt(0.5 * (1.0 + std::min(1.0, greatest))), 1e-5);
+  EXPECT_LE(greatest_prst, 1.0);
+  EXPECT_EQ(run(common + " -measure PRST"), 2);
+}
+
+TEST_F(MapTool, KeepsFieldsAndPointsThatAreNotFinite) {
+  std::string cloud =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 40\n"
+      "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 40\nDATA ascii\nnan nan nan 7\n";
+  for (int i = 1; i < 40; ++i)
+    cloud += std::to_string(i % 5) + " " + std::to_string(i % 7) + " " + std::to_string(i % 3) + " 7\n";
+  ASSERT_EQ(run(folder_.write("a.pcd", cloud) + " " + (folder_ / "b.pcd") + " -quiet -viewpoint none"), 0) << error_;
+  const Shape shape = loadShape(folder_ / "b.pcd");
+  ASSERT_EQ(shape.points->size(), 40u);
+  EXPECT_GE(pcl::getFieldIndex(shape.cloud, "input_intensity"), 0);
+  pcl::PointCloud<pcl::PointXYZI> points;
+  pcl::fromPCLPointCloud2(shape.cloud, points);
+  EXPECT_TRUE(std::isnan(points[0].intensity));
+  EXPECT_TRUE(std::isfinite(points[1].intensity));
+}
+
+TEST_F(MapTool, WritesAVTKImageAndSlices) {
+  ASSERT_EQ(
+      run(mesh_ + " -quiet -cells 20 -size 50 -volume " + (folder_ / "a.vti") + " -slices " + (folder_ / "a.png")), 0)
+      << error_;
+  const std::string vti = contentOf(folder_ / "a.vti");
+  EXPECT_NE(vti.find("WholeExtent=\"0 11 0 14 0 19\""), std::string::npos) << vti.substr(0, 400);
+  EXPECT_NE(vti.find("Name=\"symmetry\""), std::string::npos);
+  const RasterImage slices = readImage(folder_ / "a.png");
+  EXPECT_EQ(slices.width, 158);
+  EXPECT_EQ(slices.height, 50);
+}
+
+TEST_F(MapTool, ABoxHasThreeAxesOfHalfTurnsAndACenter) {
+  const std::string common = mesh_ + " -quiet -grid 32 -points 3000 -json " + (folder_ / "a.json");
+  ASSERT_EQ(run(common + " -of axes -fold 2 -png " + (folder_ / "a.png")), 0) << error_;
+  EXPECT_NE(output_.find("symmetry of the axes through the points"), std::string::npos);
+  const auto axes = nlohmann::json::parse(contentOf(folder_ / "a.json"))["axes"];
+  ASSERT_GE(axes.size(), 3u);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(axes[k]["fold"], 2);
+    double greatest = 0.0;
+    for (const double c : axes[k]["direction"]) greatest = std::max(greatest, std::abs(c));
+    // 2 cells of 16 in the cube are wide; measured: 1 to 2 degrees
+    EXPECT_GT(greatest, 0.995);
+    EXPECT_GT(axes[k]["symmetry"], 0.9);
+  }
+  ASSERT_EQ(run(common + " -of centers"), 0) << error_;
+  const auto center = nlohmann::json::parse(contentOf(folder_ / "a.json"))["centers"][0]["point"];
+  for (const double c : center) EXPECT_NEAR(c, 0.0, 0.2);
+}
+
+TEST_F(MapTool, RefusesFoldsThatHaveNoMeaning) {
+  EXPECT_EQ(run(mesh_ + " -fold 3"), 2);
+  EXPECT_NE(error_.find("-fold goes with -of axes"), std::string::npos) << error_;
+  EXPECT_EQ(run(mesh_ + " -of axes -fold 1"), 2);
+  EXPECT_NE(error_.find("a turn of order 1 changes nothing"), std::string::npos) << error_;
+  EXPECT_EQ(run(mesh_ + " -of lines"), 2);
+}
+
+}  // namespace

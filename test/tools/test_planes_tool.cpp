@@ -1,0 +1,274 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tools/lathe_mesh.h"
+#include "tools/tool_run.h"
+#include "io/shape_input.h"
+
+namespace {
+
+using namespace pcl_symmetry::apps;
+
+class PlanesTool : public ToolTest {
+protected:
+  PlanesTool() : ToolTest(toolPath("planes")) {}
+
+  const std::string box_ =
+      folder_.write("box.off",
+                    "OFF\n8 6 12\n-1 -1.5 -2\n1 -1.5 -2\n1 1.5 -2\n-1 1.5 -2\n-1 -1.5 2\n1 -1.5 2\n1 1.5 2\n-1 1.5 2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+  const std::string tetrahedron_ = folder_.write(
+      "t.off", "OFF\n4 4 6\n0 0 0\n2 0.1 0\n0.4 1.3 0.1\n0.7 0.2 0.9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+};
+
+TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
+  ASSERT_EQ(run(box_ + " -json " + (folder_ / "a.json")), 0) << error_;
+  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+  ASSERT_EQ(report["planes"].size(), 3u);
+  std::array<int, 3> along{};
+  for (const auto& plane : report["planes"]) {
+    const auto c = plane["coefficients"].get<std::vector<double>>();
+    ASSERT_EQ(c.size(), 4u);
+    EXPECT_NEAR(c[0] * c[0] + c[1] * c[1] + c[2] * c[2], 1.0, 1e-9);
+    EXPECT_NEAR(c[3], 0.0, 0.005);
+    for (int axis = 0; axis < 3; ++axis) along[axis] += std::abs(c[axis]) > std::cos(0.0017) ? 1 : 0;
+    EXPECT_GT(plane["support"].get<double>(), 0.98);
+    EXPECT_EQ(plane["kind"], "symmetry");
+    EXPECT_GT(plane["confidence"].get<double>(), 0.9);
+    EXPECT_LE(plane["confidence"].get<double>(), 1.0);
+    EXPECT_NEAR(plane["seen"].get<double>(), 1.0, 1e-6);
+  }
+  EXPECT_EQ(along, (std::array<int, 3>{1, 1, 1})) << "each axis once, within 0.1 degrees";
+  EXPECT_TRUE(report["axes"].is_array() && report["axes"].empty());
+  EXPECT_TRUE(report["centers"].is_array() && report["centers"].empty());
+  EXPECT_EQ(report["partial"], false);
+  EXPECT_GT(report["timing_ms"]["total"].get<double>(), 0.0);
+  EXPECT_NE(output_.find("symmetry"), std::string::npos);
+}
+
+/// A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a metre.
+TEST_F(PlanesTool, KeepsCoordinatesBeyondFloatPrecision) {
+  const Eigen::Vector3d center(500000.3, 5000000.7, 100.2), half(0.5, 0.4, 0.3);
+  std::string off = "OFF\n8 6 12\n";
+  for (int i = 0; i < 8; ++i)
+    for (int k = 0; k < 3; ++k)
+      off += std::to_string(center[k] + (i >> k & 1 ? half[k] : -half[k])) + (k < 2 ? " " : "\n");
+  off += "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+  const std::string far = folder_.write("far.off", off);
+  ASSERT_EQ(run(far + " -json " + (folder_ / "a.json") + " -support " + (folder_ / "s.pcd")), 0) << error_;
+  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+  ASSERT_EQ(report["planes"].size(), 3u);
+  std::array<int, 3> along{};
+  for (const auto& plane : report["planes"]) {
+    const auto c = plane["coefficients"].get<std::vector<double>>();
+    const Eigen::Vector3d n(c[0], c[1], c[2]);
+    int axis = 0;
+    n.cwiseAbs().maxCoeff(&axis);
+    ++along[axis];
+    EXPECT_NEAR(n.dot(center) + c[3], 0.0, 1e-3) << "distance of the box's center from the plane";
+  }
+  EXPECT_EQ(along, (std::array<int, 3>{1, 1, 1}));
+  std::istringstream table(output_);
+  std::string line;
+  std::getline(table, line);
+  for (const auto& plane : report["planes"]) {
+    double number = 0.0, a = 0.0, b = 0.0, c = 0.0, d = 0.0;
+    std::getline(table, line);
+    ASSERT_TRUE(std::istringstream(line) >> number >> a >> b >> c >> d) << line;
+    EXPECT_NEAR(d, plane["coefficients"][3].get<double>(), 1e-3) << "the table shows enough digits";
+  }
+  const Shape saved = loadShape(folder_ / "s.pcd");
+  for (const pcl::PCLPointField& field : saved.cloud.fields)
+    if (field.name == "x") {
+      EXPECT_EQ(field.datatype, pcl::PCLPointField::FLOAT64);
+    }
+  const Eigen::Vector3d first = (*saved.points)[0].getVector3fMap().cast<double>() + saved.shift;
+  EXPECT_LT(((first - center).cwiseAbs() - half).maxCoeff(), 1e-6) << "on the box, in the input frame";
+}
+
+TEST_F(PlanesTool, SaysNone) {
+  ASSERT_EQ(run(tetrahedron_ + " -quiet -json " + (folder_ / "t.json")), 0) << error_;
+  EXPECT_EQ(output_.find("no symmetry plane\nbest plane "), 0u) << output_;
+  EXPECT_EQ(error_, "");
+  const nlohmann::json answer = nlohmann::json::parse(contentOf(folder_ / "t.json"));
+  EXPECT_TRUE(answer["planes"].empty());
+  EXPECT_LT(answer["best"]["share"].get<double>(), 0.9);
+  EXPECT_GT(answer["best"]["deviation"].get<double>(), answer["tolerance"].get<double>());
+  ASSERT_EQ(run(tetrahedron_ + " -quiet --approximate"), 0);
+  EXPECT_NE(output_.find("approximate"), std::string::npos);
+}
+
+TEST_F(PlanesTool, WritesTheSupportOfEveryPointAndKeepsItsFields) {
+  const std::string input = folder_.write("c.pcd", [] {
+    std::string text =
+        "VERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 1201\nHEIGHT 1\n"
+        "VIEWPOINT 1 2 3 1 0 0 0\nPOINTS 1201\nDATA ascii\nnan nan nan 7\n";
+    for (int i = 0; i < 1200; ++i) {
+      const double u = std::fmod(i * 0.754877666, 1.0), v = std::fmod(i * 0.569840291, 1.0), s = i % 2 ? 1 : -1;
+      const double p[3][3] = {
+          {s, 3 * v - 1.5, 4 * u - 2}, {2 * u - 1, 1.5 * s, 4 * v - 2}, {2 * u - 1, 3 * v - 1.5, 2 * s}};
+      const auto* q = p[i % 3];
+      text += std::to_string(q[0]) + " " + std::to_string(q[1]) + " " + std::to_string(q[2]) + " " + std::to_string(i) +
+              "\n";
+    }
+    return text;
+  }());
+  ASSERT_EQ(run(input + " -support " + (folder_ / "s.pcd") + " -json " + (folder_ / "s.json")), 0) << error_;
+  const std::size_t num_planes = nlohmann::json::parse(contentOf(folder_ / "s.json"))["planes"].size();
+  ASSERT_GE(num_planes, 1u);
+  const Shape shape = loadShape(folder_ / "s.pcd");
+  std::vector<std::string> names;
+  for (const auto& field : shape.cloud.fields) names.push_back(field.name);
+  for (const char* name : {"x", "y", "z", "label", "support_1"})
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  EXPECT_EQ(std::count_if(names.begin(), names.end(), [](const auto& n) { return n.rfind("support_", 0) == 0; }),
+            static_cast<std::ptrdiff_t>(num_planes));
+  EXPECT_EQ(shape.points->size(), 1201u);
+  EXPECT_EQ(shape.sensor_origin.head<3>(), Eigen::Vector3f(1, 2, 3));
+  const auto& field = *std::find_if(shape.cloud.fields.begin(), shape.cloud.fields.end(),
+                                    [](const auto& f) { return f.name == "support_1"; });
+  const auto support = [&](std::size_t i) {
+    float value;
+    std::memcpy(&value, &shape.cloud.data[i * shape.cloud.point_step + field.offset], sizeof(value));
+    return value;
+  };
+  EXPECT_TRUE(std::isnan(support(0)));
+  double sum = 0.0;
+  for (std::size_t i = 1; i <= 1200; ++i) sum += support(i) / 1200;
+  EXPECT_GT(sum, 0.9);
+}
+
+TEST_F(PlanesTool, DrawsAPicture) {
+  ASSERT_EQ(run(box_ + " -png " + (folder_ / "p.png")), 0) << error_;
+  EXPECT_EQ(contentOf(folder_ / "p.png").substr(1, 3), "PNG");
+}
+
+TEST_F(PlanesTool, GivesTheSameBytesForAnyNumberOfThreads) {
+  std::string expected;
+  for (const char* threads : {"1", "3"}) {
+    ASSERT_EQ(run(box_ + " -threads " + threads + " -json " + (folder_ / "j.json")), 0);
+    auto report = nlohmann::json::parse(contentOf(folder_ / "j.json"));
+    report.erase("timing_ms");
+    if (expected.empty()) expected = report.dump();
+    EXPECT_EQ(report.dump(), expected) << threads << " threads";
+  }
+}
+
+TEST_F(PlanesTool, ReportsAnAxisOfRevolution) {
+  const std::string cylinder =
+      folder_.write("cylinder.off", latheOFF({{0.001, -1.0}, {0.6, -1.0}, {0.6, 1.0}, {0.001, 1.0}}, 128));
+  ASSERT_EQ(run(cylinder + " -json " + (folder_ / "c.json")), 0) << error_;
+  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "c.json"));
+  ASSERT_EQ(report["axes"].size(), 1u);
+  const auto& axis = report["axes"][0];
+  const auto direction = axis["direction"].get<std::vector<double>>(), point = axis["point"].get<std::vector<double>>();
+  EXPECT_GT(std::abs(direction.at(2)), std::cos(0.01));
+  EXPECT_LT(std::hypot(point.at(0), point.at(1)), 0.01);
+  EXPECT_GE(axis["confidence"].get<double>(), 0.5);
+  EXPECT_GT(axis["support"].get<double>(), 0.9);
+  EXPECT_GT(axis["score"].get<double>(), 0.9);
+  EXPECT_TRUE(report["centers"].empty());
+  ASSERT_EQ(report["planes"].size(), 1u);
+  EXPECT_GT(std::abs(report["planes"][0]["coefficients"][2].get<double>()), std::cos(0.01));
+  EXPECT_NE(output_.find("axis of revolution"), std::string::npos);
+
+  const std::string ball = folder_.write("ball.off", sphereOFF());
+  ASSERT_EQ(run(ball + " -json " + (folder_ / "b.json")), 0) << error_;
+  const nlohmann::json round = nlohmann::json::parse(contentOf(folder_ / "b.json"));
+  ASSERT_EQ(round["centers"].size(), 1u);
+  EXPECT_TRUE(round["planes"].empty());
+  EXPECT_TRUE(round["axes"].empty());
+  for (const double x : round["centers"][0]["point"].get<std::vector<double>>()) EXPECT_NEAR(x, 0.0, 0.01);
+}
+
+TEST_F(PlanesTool, TakesTheViewpoint) {
+  // The three faces of the box of half sizes 1, 1.5 and 2 that are seen from (8, 9, 10).
+  const std::string input = folder_.write("scan.pcd", [] {
+    std::string text =
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3000\nHEIGHT 1\n"
+        "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3000\nDATA ascii\n";
+    for (int i = 0; i < 3000; ++i) {
+      const double u = std::fmod(i * 0.754877666, 1.0), v = std::fmod(i * 0.569840291, 1.0);
+      const double p[3][3] = {{1, 3 * v - 1.5, 4 * u - 2}, {2 * u - 1, 1.5, 4 * v - 2}, {2 * u - 1, 3 * v - 1.5, 2}};
+      const auto* q = p[i % 3];
+      text += std::to_string(q[0]) + " " + std::to_string(q[1]) + " " + std::to_string(q[2]) + "\n";
+    }
+    return text;
+  }());
+  const auto report = [&](const std::string& viewpoint) {
+    EXPECT_EQ(run(input + viewpoint + " -json " + (folder_ / "v.json")), 0) << viewpoint << ": " << error_;
+    return nlohmann::json::parse(contentOf(folder_ / "v.json"));
+  };
+  // The origin is in the middle of the box. As many points on faces of 12, 8 and 6 units are those of a view from far
+  // away in the direction of (8, 12, 16).
+  const nlohmann::json own = report("");
+  EXPECT_EQ(own["viewpoint"]["from"], "inferred");
+  const auto position = own["viewpoint"]["position"].get<std::vector<double>>();
+  for (const double coordinate : position) EXPECT_GT(coordinate, 2.0);
+  EXPECT_EQ(report(" -viewpoint auto")["viewpoint"], own["viewpoint"]);
+  EXPECT_EQ(report(" -viewpoint none")["viewpoint"], (nlohmann::json{{"from", "none"}}));
+  const nlohmann::json seen = report(" -viewpoint 8,9,10");
+  EXPECT_EQ(seen["partial"], true);
+  EXPECT_EQ(seen["viewpoint"]["from"], "given");
+  const auto given = seen["viewpoint"]["position"].get<std::vector<double>>();
+  ASSERT_EQ(given.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(given[k], 8.0 + static_cast<double>(k), 1e-9);
+  ASSERT_FALSE(seen["planes"].empty());
+  std::array<int, 3> along{};
+  for (const auto& plane : seen["planes"]) {
+    EXPECT_TRUE(plane["kind"] == "symmetry" || plane["kind"] == "possible");
+    EXPECT_GE(plane["confidence"].get<double>(), 0.0);
+    EXPECT_LE(plane["confidence"].get<double>(), 1.0);
+    EXPECT_GT(plane["seen"].get<double>(), 0.0);
+    EXPECT_LE(plane["seen"].get<double>(), 1.0);
+    const auto c = plane["coefficients"].get<std::vector<double>>();
+    for (int axis = 0; axis < 3; ++axis) along[axis] += std::abs(c[axis]) > std::cos(0.03) && std::abs(c[3]) < 0.1;
+  }
+  EXPECT_EQ(along, (std::array<int, 3>{1, 1, 1}));
+  for (const char* wrong : {"never", "1,2", "1,2,3,4", "1,2,x", "\"\""}) {
+    EXPECT_EQ(run(input + " -viewpoint " + wrong), 2) << wrong;
+    EXPECT_NE(error_.find("-viewpoint"), std::string::npos) << wrong << ": " << error_;
+  }
+  EXPECT_EQ(run(input + " -viewpoint 0,0,0 -quiet"), 1) << "among the points";
+  EXPECT_NE(error_.find("viewpoint"), std::string::npos) << error_;
+}
+
+TEST_F(PlanesTool, AnswersBadInputWithOneLineAndAnExitCode) {
+  const auto oneLine = [&] { return std::count(error_.begin(), error_.end(), '\n') == 1; };
+  for (const auto& [name, content] : std::vector<std::pair<std::string, std::string>>{
+           {"empty.pcd", ""},
+           {"garbage.pcd", "not a point cloud at all"},
+           {"no_z.pcd",
+            "VERSION 0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA "
+            "ascii\n1 2\n"},
+           {"promises.ply",
+            "ply\nformat binary_little_endian 1.0\nelement vertex 2000000000\nproperty float x\n"
+            "property float y\nproperty float z\nend_header\n"},
+           {"one.pcd",
+            "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS "
+            "2\nDATA ascii\n1 2 3\n1 2 3\n"}}) {
+    EXPECT_EQ(run(folder_.write(name, content) + " -quiet -json " + (folder_ / "never.json")), 1) << name;
+    EXPECT_TRUE(oneLine()) << name << ": " << error_;
+    EXPECT_NE(error_.find(name), std::string::npos) << error_;
+  }
+  EXPECT_EQ(contentOf(folder_ / "never.json"), "");
+  EXPECT_EQ(run(folder_ / "missing.pcd"), 1);
+  EXPECT_EQ(run(box_ + " -min_confidence 2"), 2);
+  EXPECT_NE(error_.find("min_confidence"), std::string::npos);
+  EXPECT_EQ(run(box_ + " -nonsense"), 2);
+  EXPECT_EQ(run(box_ + " -png out.jpg"), 2);
+  EXPECT_NE(error_.find("-png = out.jpg, must end in .png"), std::string::npos) << error_;
+  EXPECT_EQ(run("--version"), 0);
+  EXPECT_EQ(output_.rfind("pcl_symmetry_planes ", 0), 0u) << output_;
+  EXPECT_EQ(run(""), 2);
+  EXPECT_EQ(run("-h"), 0);
+  EXPECT_NE((output_ + error_).find("pcl_symmetry_planes chair.pcd"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,233 @@
+#include <gtest/gtest.h>
+#include <pcl/io/pcd_io.h>
+
+#include <boost/filesystem.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/lathe_mesh.h"
+#include "tools/temporary_folder.h"
+#include "tools/tool_run.h"
+#include "core/matching/shape_signature.h"
+#include "core/matching/symmetry_descriptor.h"
+#include "pcl_symmetry/point_types.h"
+#include "recognition/model_store.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using nlohmann::json;
+
+class DescribeTool : public ToolTest {
+protected:
+  DescribeTool() : ToolTest(toolPath("describe")) {
+    folder_.write("vase.off", vaseOFF());
+    folder_.write("box.off", boxOFF());
+  }
+};
+
+TEST_F(DescribeTool, WritesSignaturesThatPCLReads) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(run(out + " " + (folder_ / "vase.off") + " " + (folder_ / "box.off") + " -points 2000"), 0) << error_;
+  pcl::PointCloud<ShapeSignature20736> signatures;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/vase.pcd", signatures), 0);
+  ASSERT_EQ(signatures.size(), 2u);
+  EXPECT_NEAR(sqDistance(signatures[0].signature, ShapeSignature20736().signature, kSignatureSize), 1.0, 1e-4);
+  const std::string once = contentOf(out + "/box.pcd");
+  ASSERT_EQ(run(out + " " + (folder_ / "box.off") + " -points 2000 -threads 1"), 0);
+  EXPECT_EQ(contentOf(out + "/box.pcd"), once);
+}
+
+TEST_F(DescribeTool, WritesThePapersDescriptors) {
+  const std::string out = folder_ / "out", box = folder_ / "box.off";
+  ASSERT_EQ(run(out + " " + box + " -type prst -input_axes -points 2000"), 0) << error_;
+  pcl::PointCloud<PRSTSignature32768> prst;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prst), 0);
+  EXPECT_EQ(prst.size(), 1u);
+  ASSERT_EQ(run(out + " " + box + " -type gedt -points 2000"), 0) << error_;
+  pcl::PointCloud<GEDTSignature32768> gedt;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", gedt), 0);
+  ASSERT_EQ(run(out + " " + box + " -type prsd -points 2000"), 0) << error_;
+  pcl::PointCloud<PRSDSignature1024> prsd;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prsd), 0);
+}
+
+TEST_F(DescribeTool, WritesATableAndGoesOnWhereItStopped) {
+  const std::string out = folder_ / "out", csv = folder_ / "t.csv",
+                    both = (folder_ / "vase.off") + " " + (folder_ / "box.off");
+  const std::string flags = " -points 2000 -quiet -type prsd -csv " + csv;
+  ASSERT_EQ(run(out + " " + (folder_ / "box.off") + flags), 0) << error_;
+  std::string table = contentOf(csv);
+  EXPECT_EQ(table.rfind("file,number,prsd_1,prsd_2,", 0), 0u);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2);
+  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 2 * 1025);
+  pcl::PointCloud<PRSDSignature1024> prsd;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prsd), 0);
+  const std::string row = table.substr(table.find('\n') + 1);
+  EXPECT_EQ(std::stof(row.substr(row.find(",1,") + 3)), prsd[0].prsd[0]) << "nine digits tell all floats apart";
+  // A descriptor of the type that stands there is kept, whatever it is; one of another type is not.
+  prsd[0].prsd[0] = 42.0f;
+  pcl::io::savePCDFileBinary(out + "/box.pcd", prsd);
+  ASSERT_EQ(run(out + " " + both + flags + " -resume"), 0) << error_;
+  table = contentOf(csv);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+  EXPECT_NE(table.find("box.off,1,42,"), std::string::npos);
+  ASSERT_EQ(run(out + " " + both + " -points 2000 -quiet -type gedt -resume"), 0) << error_;
+  pcl::PointCloud<GEDTSignature32768> gedt;
+  EXPECT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", gedt), 0);
+}
+
+TEST_F(DescribeTool, SaysWhatIsWrongAndDoesTheRest) {
+  const std::string out = folder_ / "out";
+  folder_.write("broken.off", "OFF\n3 1 0\n0 0 0\n");
+  EXPECT_EQ(run(out + " " + (folder_ / "broken.off") + " " + (folder_ / "box.off") + " -points 2000 -quiet"), 1);
+  EXPECT_NE(error_.find("broken.off"), std::string::npos) << "-quiet hides no failure: " << error_;
+  EXPECT_TRUE(boost::filesystem::exists(out + "/box.pcd"));
+  boost::filesystem::create_directories(folder_ / "other");
+  folder_.write("other/box.off", boxOFF());
+  EXPECT_EQ(run(out + " " + (folder_ / "box.off") + " " + (folder_ / "other/box.off")), 1);
+  EXPECT_NE(error_.find("names must differ"), std::string::npos) << error_;
+  EXPECT_EQ(run(out + " " + (folder_ / "box.off") + " -type nonsense"), 2);
+}
+
+class DatabaseTools : public ToolTest {
+protected:
+  DatabaseTools() : ToolTest("cd " TOOLS_FOLDER " &&") {
+    folder_.write("vase.off", vaseOFF());
+    folder_.write("box.off", boxOFF());
+    folder_.write("tetrahedron.off", tetrahedronOFF());
+  }
+
+  int database(const std::string& arguments) { return run("./pcl_symmetry_database " + arguments); }
+  int match(const std::string& arguments) { return run("./pcl_symmetry_match " + arguments); }
+
+  const std::string models_ = folder_ / "models.db";
+};
+
+TEST_F(DatabaseTools, BuildAskAndChange) {
+  const std::string vase = folder_ / "vase.off", box = folder_ / "box.off", other = folder_ / "tetrahedron.off";
+  ASSERT_EQ(database("build " + models_ + " " + vase + " " + box), 0) << error_;
+  ASSERT_EQ(database("add " + models_ + " " + (folder_ / "nothing.off") + " " + other), 1) << "one file is missing";
+  EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
+  ASSERT_EQ(database("list " + models_), 0);
+  EXPECT_EQ(output_, "box\ntetrahedron\nvase\n");
+  const std::string found = folder_ / "found.json";
+  ASSERT_EQ(match(models_ + " " + vase + " -max 2 -json " + found), 0) << error_;
+  json answer = json::parse(contentOf(found));
+  ASSERT_EQ(answer["matches"].size(), 2u);
+  EXPECT_EQ(answer["matches"][0]["name"], "vase");
+  ASSERT_EQ(match(models_ + " " + box + " -recognize -json " + found), 0) << error_;
+  answer = json::parse(contentOf(found));
+  EXPECT_TRUE(answer["known"]);
+  EXPECT_EQ(answer["models"][0]["name"], "box");
+  EXPECT_EQ(answer["models"][0]["transform"].size(), 16u);
+  ASSERT_EQ(database("remove " + models_ + " box vase"), 0) << error_;
+  ASSERT_EQ(database("rebuild " + models_), 0) << error_;
+  ASSERT_EQ(match(models_ + " " + box + " -recognize -min_merit 1"), 0) << error_;
+  EXPECT_EQ(output_, "unknown object\n");
+}
+
+TEST_F(DatabaseTools, SayWhatIsWrong) {
+  EXPECT_EQ(database("burn " + models_), 2);
+  EXPECT_EQ(database("add " + models_), 2);
+  EXPECT_EQ(database("list " + models_ + " more"), 2);
+  EXPECT_EQ(database("list " + models_), 1);
+  EXPECT_NE(error_.find("there is no such file"), std::string::npos) << error_;
+  EXPECT_EQ(match(models_ + " " + (folder_ / "box.off")), 1);
+  EXPECT_NE(error_.find("there is no such file"), std::string::npos) << error_;
+  EXPECT_EQ(database("build " + models_ + " " + (folder_ / "nothing.off")), 1);
+  EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
+  ASSERT_EQ(database("build " + models_ + " " + (folder_ / "box.off") + " -points 2000"), 0) << error_;
+  EXPECT_EQ(database("remove " + models_ + " nobody"), 1);
+  EXPECT_NE(error_.find("nobody"), std::string::npos) << error_;
+  EXPECT_EQ(database("build " + models_ + " '" + (folder_ / "*.xyz") + "'"), 1);
+  EXPECT_NE(error_.find("no file has such a name"), std::string::npos) << error_;
+  ASSERT_EQ(database("remove " + models_ + " box"), 0) << error_;
+  EXPECT_EQ(match(models_ + " " + (folder_ / "box.off")), 1);
+  EXPECT_NE(error_.find("holds no models"), std::string::npos) << error_;
+  EXPECT_EQ(database("list " + (folder_ / "box.off")), 1);
+  EXPECT_NE(error_.find("is no database of pcl_symmetry"), std::string::npos) << error_;
+  EXPECT_EQ(contentOf(folder_ / "box.off"), boxOFF());
+}
+
+TEST_F(DatabaseTools, GoOnTakeFoldersAndTellWhatTheyHold) {
+  boost::filesystem::create_directories(folder_ / "shapes/more");
+  folder_.write("shapes/a.off", boxOFF());
+  folder_.write("shapes/more/b.off", tetrahedronOFF());
+  folder_.write("shapes/notes.txt", "mine");
+  folder_.write("list.txt", "# files\n" + (folder_ / "vase.off") + "\n" + (folder_ / "sha*") + "\n");
+  const std::string build = "build " + models_ + " -points 2000 -names path -unit m -tag thing ";
+  ASSERT_EQ(database(build + (folder_ / "shapes")), 0) << error_;
+  folder_.write("shapes/a.off", boxOFF() + "\n");
+  const std::string report = folder_ / "report.json";
+  ASSERT_EQ(database(build + (folder_ / "shapes") + " '" + (folder_ / "va*.off") + "' -json " + report), 0) << error_;
+  const json built = json::parse(contentOf(report));
+  EXPECT_EQ(built["added"], 2) << "the file that changed and the new one";
+  EXPECT_EQ(built["kept"], 1);
+  ASSERT_EQ(database("list " + models_ + " -csv " + (folder_ / "list.csv") + " -json " + report), 0) << error_;
+  EXPECT_EQ(output_, "a\nmore_b\nvase\n");
+  EXPECT_EQ(contentOf(folder_ / "list.csv").rfind("name,points,time,source,checksum,tags\na,2000,", 0), 0u);
+  EXPECT_EQ(json::parse(contentOf(report))["models"][1]["tags"][0], "thing");
+  ASSERT_EQ(database("info " + models_), 0) << error_;
+  EXPECT_EQ(output_.rfind("models  3\nunit    m\n", 0), 0u) << output_;
+  ASSERT_EQ(database("info " + models_ + " vase"), 0) << error_;
+  EXPECT_NE(output_.find("vase.off"), std::string::npos) << output_;
+  ASSERT_EQ(database("export " + models_ + " " + (folder_ / "clouds")), 0) << error_;
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  ASSERT_EQ(pcl::io::loadPCDFile(folder_ / "clouds/more_b.pcd", cloud), 0);
+  EXPECT_EQ(cloud.size(), 2000u);
+  EXPECT_EQ(database("export " + models_ + " " + (folder_ / "clouds") + " a"), 1) << "files that are there stay";
+  ASSERT_EQ(database("import " + (folder_ / "other.db") + " " + models_), 0) << error_;
+  ASSERT_EQ(database("check " + (folder_ / "other.db")), 0) << error_ << output_;
+  ASSERT_EQ(database("build " + (folder_ / "third.db") + " @" + (folder_ / "list.txt") + " -points 2000"), 0) << error_;
+  ASSERT_EQ(database("list " + (folder_ / "third.db")), 0) << error_;
+  EXPECT_EQ(output_, "a\nb\nvase\n");
+}
+
+/// What a database holds of each model, but the time.
+std::map<std::string, std::vector<std::string>> contentsOf(const std::string& file) {
+  detail::ModelStore store(file, 10.0, "");
+  std::map<std::string, std::vector<std::string>> contents;
+  for (const detail::StoredModel& model : store.models()) {
+    const ModelInfo info = store.find(model.name).value().second;
+    std::vector<std::string>& parts = contents[model.name];
+    parts = {info.source.path, info.source.checksum, std::to_string(info.num_points)};
+    for (const auto part : {detail::ModelPart::Cloud, detail::ModelPart::Signatures, detail::ModelPart::Views})
+      parts.push_back(store.part(part, model));
+  }
+  contents["projection"] = {std::to_string(store.projectionId())};
+  return contents;
+}
+
+TEST_F(DatabaseTools, ProcessesShareABuild) {
+#ifndef MPI_RUN
+  GTEST_SKIP() << "the tools are built without MPI";
+#else
+  const std::string processes = MPI_RUN " -n 2 --allow-run-as-root --oversubscribe --bind-to none ";
+  const std::string files = " " + (folder_ / "vase.off") + " " + (folder_ / "box.off") + " " +
+                            (folder_ / "nothing.off") + " " + (folder_ / "tetrahedron.off") + " -points 2000";
+  const std::string shared = folder_ / "shared.db", one = folder_ / "one.db";
+  ASSERT_EQ(database("build " + one + files), 1);
+  const std::string said = error_;
+  const auto build = [&](const std::string& more) {
+    return run(processes + "./pcl_symmetry_database build " + shared + files + more);
+  };
+  EXPECT_NE(build(" -quiet"), 0) << "a file is missing";
+  EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
+  EXPECT_EQ(contentsOf(shared), contentsOf(one));
+  EXPECT_NE(build(" -json " + (folder_ / "again.json")), 0);
+  EXPECT_EQ(json::parse(contentOf(folder_ / "again.json"))["kept"], 3) << "it goes on where it was";
+  const std::string out = folder_ / "out", alone = folder_ / "alone";
+  const std::string inputs = " " + (folder_ / "vase.off") + " " + (folder_ / "box.off") + " -points 2000";
+  ASSERT_EQ(run(processes + "./pcl_symmetry_describe " + out + inputs), 0) << error_;
+  ASSERT_EQ(run("./pcl_symmetry_describe " + alone + inputs), 0) << error_;
+  for (const char* name : {"/vase.pcd", "/box.pcd"}) EXPECT_EQ(contentOf(out + name), contentOf(alone + name));
+  // Where the first process cannot go on, none waits.
+  EXPECT_NE(run(processes + "./pcl_symmetry_database build " + (folder_ / "no/folder.db") + files), 0);
+  EXPECT_NE(error_.find("there is no folder"), std::string::npos) << error_;
+#endif
+}
+
+}  // namespace

@@ -1,0 +1,203 @@
+/// Files that are written survive kills and full disks; files that are read cannot ask for more memory than they hold.
+#include <gtest/gtest.h>
+#include <pcl/conversions.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/filesystem.hpp>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "tools/temporary_folder.h"
+#include "io/cloud_files.h"
+#include "io/shape_input.h"
+#include "io/face_labels.h"
+#include "io/shape_output.h"
+
+namespace {
+
+using namespace pcl_symmetry::apps;
+
+/// All points of a cloud have the number of the cloud as coordinates.
+pcl::PCLPointCloud2 cloudOf(int number, std::uint32_t size) {
+  const auto value = static_cast<float>(number);
+  const pcl::PointCloud<pcl::PointXYZ> cloud(size, 1, pcl::PointXYZ(value, value, value));
+  pcl::PCLPointCloud2 fields;
+  pcl::toPCLPointCloud2(cloud, fields);
+  return fields;
+}
+
+using Writer = std::function<void(const std::string& path, int number)>;
+
+/// What the tools write their files with, by the extension.
+std::map<std::string, Writer> writers(std::uint32_t size) {
+  const auto cloud = [size](PCDEncoding encoding) -> Writer {
+    return [=](const std::string& path, int number) {
+      saveCloud(path, cloudOf(number, size), Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity(), encoding);
+    };
+  };
+  return {{"ascii.pcd", cloud(PCDEncoding::Ascii)},
+          {"binary.pcd", cloud(PCDEncoding::Binary)},
+          {"compressed.pcd", cloud(PCDEncoding::BinaryCompressed)},
+          {"cloud.ply", cloud(PCDEncoding::Binary)},
+          {"labels.seg",
+           [size](const std::string& path, int number) { writeFaceLabels(path, std::vector<int>(size, number)); }}};
+}
+
+/// \return the number that everything in the file has; -1 where it is not the whole file.
+int numberIn(const std::string& path, std::size_t size) {
+  if (path.substr(path.size() - 4) == ".seg") {
+    const std::vector<int> labels = readFaceLabels(path);
+    return labels.size() == size &&
+                   std::count(labels.begin(), labels.end(), labels[0]) == static_cast<std::ptrdiff_t>(size)
+               ? labels[0]
+               : -1;
+  }
+  const auto points = loadShape(path).points;
+  for (const pcl::PointXYZ& point : *points)
+    if (point.x != (*points)[0].x || point.z != point.x) return -1;
+  return points->size() == size ? static_cast<int>((*points)[0].x) : -1;
+}
+
+/// Writes the files again and again, until it is killed, and a byte into a pipe after each.
+[[noreturn]] void writeForever(const TemporaryFolder& folder, std::uint32_t size, int pipe) {
+  const auto all = writers(size);
+  for (int number = 1;; ++number)
+    for (const auto& [name, write] : all) {
+      write(folder / name, number);
+      if (::write(pipe, "", 1) != 1) _exit(1);
+    }
+}
+
+TEST(SafeFiles, KilledWritersLeaveWholeFiles) {
+  const TemporaryFolder folder;
+  constexpr std::uint32_t kSize = 3000;
+  const auto all = writers(kSize);
+  for (const auto& [name, write] : all) write(folder / name, 0);  // loads the module before the forks
+  std::mt19937 generator(1);
+  int num_within_rounds = 0;
+  for (int kill = 0; kill < 200; ++kill) {
+    std::array<int, 2> pipe{};
+    ASSERT_EQ(::pipe(pipe.data()), 0);
+    const pid_t child = fork();
+    if (child == 0) writeForever(folder, kSize, pipe[1]);
+    close(pipe[1]);
+    // Some files on, however busy the machine is, and somewhere in the next one.
+    char byte = 0;
+    for (auto num_files = generator() % 10; num_files > 0; --num_files) ASSERT_EQ(read(pipe[0], &byte, 1), 1);
+    std::this_thread::sleep_for(std::chrono::microseconds(generator() % 1000));
+    ::kill(child, SIGKILL);
+    ASSERT_EQ(waitpid(child, nullptr, 0), child);
+    close(pipe[0]);
+    std::set<int> numbers;
+    for (const auto& [name, write] : all) {
+      const int number = numberIn(folder / name, kSize);
+      ASSERT_GE(number, 0) << name << " after kill " << kill;
+      numbers.insert(number);
+      write(folder / name, 0);
+    }
+    num_within_rounds += numbers.size() > 1;
+  }
+  EXPECT_GT(num_within_rounds, 50) << "the kills came while files were written";
+}
+
+/// The size of files is limited: the kernel then answers a write as on a full disk, with another error number.
+TEST(SafeFiles, FullDisksLeaveTheOldFile) {
+  const TemporaryFolder folder;
+  constexpr std::uint32_t kSize = 3000;
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (const auto& [name, write] : writers(kSize)) {
+    write(folder / name, 1);
+    const std::uint64_t size = boost::filesystem::file_size(folder / name);
+    for (const std::uint64_t limit : {std::uint64_t{1}, std::uint64_t{100}, size / 2, size - 1}) {
+      const rlimit full{limit, before.rlim_max};
+      ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+      std::string message;
+      try {
+        write(folder / name, 7);
+      } catch (const InputError& error) {
+        message = error.what();
+      }
+      ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+      EXPECT_NE(message.find(name), std::string::npos)
+          << name << ", " << limit << " bytes of " << size << ": " << message;
+      EXPECT_EQ(numberIn(folder / name, kSize), 1) << name << ", " << limit << " bytes of " << size;
+    }
+  }
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(folder.names().size(), 5u) << "nothing half-written stays";
+}
+
+/// Reads in a process of its own with less memory than the headers ask for.
+/// \return the message, or that of a failure.
+std::string messageWithLittleMemory(const std::string& path) {
+  int ends[2];
+  if (pipe(ends) != 0) return "no pipe";
+  const pid_t child = fork();
+  if (child == 0) {
+    std::ifstream status("/proc/self/statm");
+    std::uint64_t pages = 0;
+    status >> pages;
+    const rlim_t bytes = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + (64u << 20);
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_AS, &limit);
+    std::string message = "was read";
+    try {
+      loadShape(path);
+    } catch (const std::exception& error) {
+      message = error.what();
+    }
+    const auto written = ::write(ends[1], message.data(), message.size());
+    _exit(written == static_cast<ssize_t>(message.size()) ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string message(4096, '\0');
+  const ssize_t size = ::read(ends[0], message.data(), message.size());
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  message.resize(static_cast<std::size_t>(std::max<ssize_t>(0, size)));
+  return message.empty() ? "the reader crashed" : message;
+}
+
+TEST(SafeFiles, HeadersCannotAskForMoreMemoryThanTheFileHolds) {
+  const TemporaryFolder folder;
+  const std::string fields = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
+  const auto pcd = [&](const std::string& points, const std::string& rest) {
+    return fields + "WIDTH " + points + "\nHEIGHT 1\nPOINTS " + points + "\nDATA " + rest;
+  };
+  const std::string vertices = "property float x\nproperty float y\nproperty float z\n";
+  const auto ply = [&](const std::string& format, const std::string& faces) {
+    return "ply\nformat " + format + " 1.0\nelement vertex 1\n" + vertices + faces + "end_header\n";
+  };
+  const std::string face = "element face 1\nproperty list uint int vertex_indices\n";
+  const std::map<std::string, std::string> files = {
+      {"ascii.pcd", pcd("2000000000", "ascii\n1 2 3\n")},
+      {"binary.pcd", pcd("2000000000", "binary\n" + std::string(12, '\1'))},
+      {"compressed.pcd", pcd("300000000", "binary_compressed\n" + std::string("\x04\0\0\0\0\xa4\x93\xd6....", 12))},
+      {"vertices.ply", "ply\nformat ascii 1.0\nelement vertex 2000000000\n" + vertices + "end_header\n1 2 3\n"},
+      {"list.ply", ply("binary_little_endian", face) + std::string(12, '\0') + "\xff\xff\xff\x7f"},
+      {"text_list.ply", ply("ascii", face) + "1 2 3\n2000000000 0 0 0\n"},
+      {"vertices.off", "OFF\n2000000000 1 0\n0 0 0\n"},
+      {"faces.off", "OFF\n1 2000000000 0\n0 0 0\n"},
+      {"corners.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n"},
+      {"triangles.stl", std::string(80, ' ') + "\xff\xff\xff\x7f" + std::string(50, '\0')}};
+  for (const auto& [name, content] : files) {
+    const std::string message = messageWithLittleMemory(folder.write(name, content));
+    EXPECT_NE(message.find(name), std::string::npos) << name << ": " << message;
+    EXPECT_EQ(message.find("memory"), std::string::npos) << message;
+  }
+  EXPECT_EQ(messageWithLittleMemory(folder.write("good.pcd", pcd("1", "ascii\n1 2 3\n"))), "was read");
+}
+
+}  // namespace

@@ -1,0 +1,229 @@
+/// Files of symmetries: what is written comes back, and means what those who read it make of it.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "tools/temporary_folder.h"
+#include "bop/isaac_axes.h"
+#include "bop/models_info.h"
+#include "core/base/constants.h"
+#include "core/base/random.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+const Eigen::Vector3d kX = Eigen::Vector3d::UnitX(), kZ = Eigen::Vector3d::UnitZ(), kCenter(10.0, -4.0, 7.0);
+
+Eigen::Isometry3d turn(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& center = kCenter) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = rotationAbout(axis, angle);
+  motion.translation() = center - motion.linear() * center;
+  return motion;
+}
+
+Eigen::Matrix3d randomRotation(RandomStream& random) {
+  Eigen::Vector4d q;
+  do {
+    for (int k = 0; k < 4; ++k) q[k] = 2.0 * random.uniform() - 1.0;
+  } while (q.norm() > 1.0);
+  return Eigen::Quaterniond(q.normalized()).toRotationMatrix();
+}
+
+double angleBetween(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  return Eigen::AngleAxisd(a.transpose() * b).angle();
+}
+
+TEST(ModelsInfo, BopComposesDiscreteTransformsWithTurnsAboutOneAxis) {
+  const ListedSymmetries can{{turn(kX, kPi)}, {{kZ, kCenter}}};
+  const std::vector<Eigen::Isometry3d> transforms = bopTransforms(can, 0.1);
+  ASSERT_EQ(transforms.size(), 2u * 32u) << "pi / 0.1, rounded up";
+  const ObjectSymmetries group = ObjectSymmetries::from(can.discrete, can.continuous);
+  for (const Eigen::Isometry3d& transform : transforms) {
+    EXPECT_LT(group.distance(transform, Eigen::Isometry3d::Identity()).angle, 1e-7);
+    EXPECT_LT((transform * kCenter - kCenter).norm(), 1e-12);
+  }
+  EXPECT_EQ(bopTransforms({}, 0.1).size(), 1u) << "the identity";
+  EXPECT_EQ(bopTransforms({{turn(kX, kPi)}, {}}, 0.1).size(), 2u);
+  // Two axes stand beside each other: no turn about one follows a turn about the other.
+  for (const Eigen::Isometry3d& transform : bopTransforms({{}, {{kZ, kCenter}, {kX, kCenter}}}, 0.1))
+    EXPECT_GT(std::max(std::abs(transform.linear()(0, 0)), std::abs(transform.linear()(2, 2))), 1.0 - 1e-9);
+}
+
+/// By bop_toolkit's rule one axis and the tilts reach every rotation within the angle, up to half a step of its turns.
+TEST(ModelsInfo, SpheresReachEveryRotationWithinTheAngle) {
+  const ObjectSymmetries ball = ObjectSymmetries::from({}, {{kZ, kCenter}, {kX, kCenter}});
+  RandomStream random(1);
+  for (const double degrees : {10.0, 30.0, 60.0}) {
+    const ListedSymmetries listed = bopSymmetries(ball, degrees * kDegree);
+    ASSERT_EQ(listed.continuous.size(), 1u);
+    constexpr double kStep = 0.1;
+    const std::vector<Eigen::Isometry3d> transforms = bopTransforms(listed, kStep);
+    double farthest = 0.0;
+    for (int k = 0; k < 300; ++k) {
+      const Eigen::Matrix3d rotation = randomRotation(random);
+      double greatest = -1.0;
+      for (const Eigen::Isometry3d& transform : transforms)
+        greatest = std::max(greatest, transform.linear().cwiseProduct(rotation).sum());
+      farthest = std::max(farthest, std::acos(std::min(1.0, 0.5 * (greatest - 1.0))));
+    }
+    EXPECT_LE(farthest, std::hypot(degrees * kDegree, 0.5 * 2.0 * kPi / 32.0)) << degrees;
+    EXPECT_GE(farthest, 0.6 * degrees * kDegree) << "no more tilts than needed";
+    EXPECT_EQ(ObjectSymmetries::from(listed.discrete, listed.continuous).name(), "SO3") << "and is read as a sphere";
+  }
+}
+
+TEST(ModelsInfo, ComesBackAsItWasWritten) {
+  const TemporaryFolder folder;
+  const ObjectSymmetries prism = ObjectSymmetries::from({turn(kZ, kPi / 3.0), turn(kX, kPi)}, {});
+  const nlohmann::ordered_json file{{"7", symmetriesJson({prism.discrete, {}})},
+                                    {"12", symmetriesJson({{}, {{kZ, kCenter}}})},
+                                    {"13", {{"diameter", 3.0}}}};
+  const auto models = readModelsInfo(folder.write("models_info.json", file.dump()));
+  ASSERT_EQ(models.size(), 3u);
+  const ListedSymmetries& read = models.at("7");
+  ASSERT_EQ(read.discrete.size(), 11u);
+  for (std::size_t i = 0; i < 11; ++i) EXPECT_TRUE(read.discrete[i].isApprox(prism.discrete[i], 1e-9));
+  ASSERT_EQ(models.at("12").continuous.size(), 1u);
+  EXPECT_EQ(models.at("12").continuous[0].offset, kCenter);
+  EXPECT_TRUE(models.at("13").discrete.empty() && models.at("13").continuous.empty());
+}
+
+TEST(ModelsInfo, OfDopeIsAFileOfOneModel) {
+  const TemporaryFolder folder;
+  const ObjectSymmetries can = ObjectSymmetries::from({turn(kX, kPi)}, {{kZ, kCenter}});
+  const nlohmann::ordered_json entry = dopeJson(can, 0.3);
+  ASSERT_EQ(entry["align_axes"].size(), 2u);
+  const auto across = entry["align_axes"][0]["object"].get<std::vector<double>>();
+  EXPECT_NEAR(across[2], 0.0, 1e-12) << "across the axis";
+  EXPECT_EQ(entry["align_axes"][1]["object"].get<std::vector<double>>(), (std::vector<double>{0.0, 0.0, 1.0}));
+  const auto models = readModelsInfo(folder.write("model_info.json", entry.dump()));
+  ASSERT_EQ(models.count(""), 1u);
+  EXPECT_EQ(models.at("").discrete.size(), 1u);
+  EXPECT_TRUE(dopeJson(ObjectSymmetries::from({}, {}), 0.3).empty()) << "nothing to choose from";
+  const auto rows = readModelsInfo(folder.write(
+      "rows.json", R"({"symmetries_discrete": [[[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]]})"));
+  EXPECT_EQ(rows.at("").discrete.size(), 1u) << "a matrix as rows";
+}
+
+TEST(ModelsInfo, NamesModelsOnOneShortLine) {
+  const TemporaryFolder folder;
+  const auto messageOf = [&](const std::string& name) -> std::string {
+    try {
+      readModelsInfo(folder.write("names.json", "{\"" + name + "\": []}"));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "a list was read as a model";
+  };
+  EXPECT_NE(messageOf("a\\nb").find("model a\\nb must be an object"), std::string::npos) << messageOf("a\\nb");
+  const std::string of_long = messageOf("x" + std::string(39, 'y') + std::string(1000, 'z'));
+  EXPECT_NE(of_long.find("model x" + std::string(39, 'y') + "... must be"), std::string::npos) << of_long;
+  std::string letters = "x";
+  for (int i = 0; i < 40; ++i) letters += "\xc3\xa4";  // the 40th byte begins a letter of two
+  EXPECT_NE(messageOf(letters).find("... must be an object"), std::string::npos) << messageOf(letters);
+}
+
+TEST(ModelsInfo, RefusesWhatIsNoMotion) {
+  const TemporaryFolder folder;
+  const auto messageOf = [&](const std::string& text) -> std::string {
+    try {
+      readModelsInfo(folder.write("bad.json", text));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(messageOf("[1]").find("bad.json: must be a JSON object"), std::string::npos);
+  EXPECT_NE(
+      messageOf(R"({"3": {"symmetries_discrete": [[1, 2]]}})").find("model 3: symmetries_discrete[0], must be 16"),
+      std::string::npos);
+  EXPECT_NE(messageOf(R"({"3": {"symmetries_discrete": [[2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]]}})").find("rigid motion"),
+            std::string::npos);
+  EXPECT_NE(
+      messageOf(R"({"3": {"symmetries_discrete": [[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]]}})").find("rigid motion"),
+      std::string::npos)
+      << "a reflection";
+  EXPECT_NE(messageOf(R"({"3": {"symmetries_continuous": [{"axis": [0,0,0]}]}})").find("must not be zero"),
+            std::string::npos);
+  EXPECT_NE(messageOf(R"({"3": {"symmetries_continuous": {"axis": [0,0,1]}}})").find("must be a list"),
+            std::string::npos);
+}
+
+/// Isaac composes a turn about z with one about y and one about x, the identity among each.
+std::size_t numIsaacRotations(const std::vector<std::string>& axes) {
+  std::vector<Eigen::Matrix3d> about[3], all;
+  for (int k = 0; k < 3; ++k) about[k].push_back(Eigen::Matrix3d::Identity());
+  for (const std::string& text : axes) {
+    const int k = text[0] - 'x';
+    about[k].push_back(rotationAbout(Eigen::Vector3d::Unit(k), std::stod(text.substr(2)) * kDegree));
+  }
+  for (const auto& x : about[0])
+    for (const auto& y : about[1])
+      for (const auto& z : about[2]) {
+        const Eigen::Matrix3d rotation = z * y * x;
+        if (std::none_of(all.begin(), all.end(),
+                         [&](const auto& other) { return angleBetween(rotation, other) < 1e-4; }))
+          all.push_back(rotation);
+      }
+  return all.size();
+}
+
+TEST(IsaacAxes, ComposeTheGroup) {
+  using Kind = RotationGroupKind;
+  const auto groupOf = [](Kind kind, int fold) {
+    std::vector<Eigen::Isometry3d> generators;
+    for (const Eigen::Matrix3d& rotation : RotationGroup{kind, fold}.generators()) {
+      const Eigen::AngleAxisd angle_axis(rotation);
+      generators.push_back(turn(angle_axis.axis(), angle_axis.angle()));
+    }
+    return ObjectSymmetries::from(generators, {});
+  };
+  for (const auto& [kind, fold] : {std::pair(Kind::Cyclic, 1), std::pair(Kind::Cyclic, 4), std::pair(Kind::Cyclic, 7),
+                                   std::pair(Kind::Dihedral, 2), std::pair(Kind::Dihedral, 3),
+                                   std::pair(Kind::Dihedral, 6), std::pair(Kind::Octahedral, 4)}) {
+    const ObjectSymmetries group = groupOf(kind, fold);
+    SCOPED_TRACE(group.name());
+    const IsaacAxes axes = isaacAxes(group);
+    EXPECT_TRUE(axes.is_complete);
+    EXPECT_EQ(numIsaacRotations(axes.axes), group.discrete.size() + 1);
+  }
+  EXPECT_FALSE(isaacAxes(groupOf(Kind::Tetrahedral, 3)).is_complete);
+  EXPECT_FALSE(isaacAxes(groupOf(Kind::Icosahedral, 5)).is_complete);
+  EXPECT_FALSE(isaacAxes(ObjectSymmetries::from({turn({0.6, 0.8, 0.0}, kPi)}, {})).is_complete) << "a slanted axis";
+  EXPECT_EQ(isaacAxes(ObjectSymmetries::from({}, {{kX, kCenter}})).axes, std::vector<std::string>{"x_full"});
+  EXPECT_EQ(isaacAxes(ObjectSymmetries::from({}, {{kX, kCenter}, {kZ, kCenter}})).axes,
+            (std::vector<std::string>{"x_full", "y_full", "z_full"}));
+}
+
+TEST(IsaacAxes, ComeBackAsTheyWereWritten) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("axes.yaml", "# two models\n" + isaacLine("\"2\"", {"z_90", "z_180", "z_-90"}) +
+                                                         "  # C4\n7: ['x_full', y_180]\n");
+  const auto models = readIsaacAxes(path);
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_EQ(ObjectSymmetries::from(models.at("2").discrete, models.at("2").continuous).name(), "C4");
+  EXPECT_EQ(ObjectSymmetries::from(models.at("7").discrete, models.at("7").continuous).name(), "Dinf");
+  const auto one = readIsaacAxes(
+      folder.write("node.yaml", "/**:\n  ros__parameters:\n    symmetry_axes: [\"z_180\"]\n    max_hypothesis: 252\n"));
+  ASSERT_EQ(one.count(""), 1u);
+  EXPECT_EQ(one.at("").discrete.size(), 1u);
+  EXPECT_THROW(readIsaacAxes(folder.write("bad.yaml", "symmetry_axes: [\"w_180\"]\n")), InputError);
+  EXPECT_THROW(readIsaacAxes(folder.write("word.yaml", "symmetry_axes: [\"z_half\"]\n")), InputError);
+  EXPECT_THROW(readIsaacAxes(folder.write("none.yaml", "a: 1\n")), InputError);
+  EXPECT_THROW(readIsaacAxes(folder.write("blank.yaml", "symmetry_axes: [z 180]\n")), InputError);
+}
+
+/// A long line takes memory in proportion to it, and no more of the stack than a short one.
+TEST(IsaacAxes, ReadsLinesOfAnyLength) {
+  const TemporaryFolder folder;
+  std::string list = "z_1";
+  for (int i = 0; i < 100'000; ++i) list += ", z_1";
+  EXPECT_EQ(readIsaacAxes(folder.write("long.yaml", "a: [" + list + "]\n")).at("a").discrete.size(), 100'001u);
+  EXPECT_THROW(readIsaacAxes(folder.write("letters.yaml", std::string(1'000'000, 'a') + "\n")), InputError);
+}
+
+}  // namespace

@@ -1,0 +1,175 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tools/box_mesh.h"
+#include "tools/tool_run.h"
+#include "pictures/raster_image.h"
+#include "core/base/random.h"
+#include "viewer/isp_frames.h"
+#include "viewer/viewer_model.h"
+#include "viewer/viewer_state.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::apps;
+
+ViewerState stateWith(int num_planes) {
+  ViewerState state;
+  state.num_planes = num_planes;
+  state.has_mesh = true;
+  state.camera = CameraMove::Stay;
+  return state;
+}
+
+TEST(ViewerKeys, DoWhatTheHelpSays) {
+  ViewerState state = stateWith(3);
+  pressKey(state, "n");
+  EXPECT_EQ(state.plane, 1);
+  pressKey(state, "b");
+  pressKey(state, "Left");
+  EXPECT_EQ(state.plane, 2) << "round";
+  pressKey(state, "Right");
+  EXPECT_EQ(state.plane, 0);
+  const auto toggles = [&](const char* key, bool ViewerState::*field) {
+    const bool before = state.*field;
+    pressKey(state, key);
+    EXPECT_NE(state.*field, before) << key;
+    pressKey(state, key);
+    EXPECT_EQ(state.*field, before) << key;
+  };
+  toggles("g", &ViewerState::patch);
+  toggles("s", &ViewerState::support);
+  toggles("o", &ViewerState::reflection);
+  toggles("a", &ViewerState::axes);
+  toggles("m", &ViewerState::mesh);
+  toggles("c", &ViewerState::parts);
+  toggles("h", &ViewerState::help);
+  pressKey(state, "i");
+  pressKey(state, "i");
+  EXPECT_EQ(state.step, 1);
+  pressKey(state, "u");
+  EXPECT_EQ(state.step, 0);
+  pressKey(state, "n");
+  EXPECT_EQ(state.step, -1) << "of another plane";
+  pressKey(state, "w");
+  EXPECT_EQ(state.camera, CameraMove::Worst);
+  pressKey(state, "v");
+  EXPECT_EQ(state.camera, CameraMove::Best);
+  pressKey(state, "e");
+  EXPECT_EQ(state.camera, CameraMove::Along);
+  pressKey(state, "p");
+  EXPECT_TRUE(state.save);
+  EXPECT_FALSE(state.quit);
+  pressKey(state, "Escape");
+  EXPECT_TRUE(state.quit);
+  EXPECT_FALSE(pressKey(state, "F7"));
+}
+
+TEST(ViewerKeys, AreEachNamedOnceInTheHelp) {
+  std::set<std::string> symbols;
+  for (const ViewerKey& key : viewerKeys()) {
+    for (const std::string& symbol : key.symbols) EXPECT_TRUE(symbols.insert(symbol).second) << symbol;
+    EXPECT_NE(viewerHelp().find(key.symbols[0] + "  " + key.help), std::string::npos);
+  }
+}
+
+TEST(ViewerKeys, WithoutPlanesNothingIsSteppedThrough) {
+  ViewerState state = stateWith(0);
+  for (const ViewerKey& key : viewerKeys()) pressKey(state, key.symbols[0]);
+  EXPECT_EQ(state.plane, 0);
+  EXPECT_EQ(state.step, -1);
+}
+
+TEST(IspFrames, LeadBackToThePlane) {
+  RandomStream random(3);
+  Points box(3, 4'000);
+  const Eigen::Vector3f half(0.8f, 0.5f, 0.3f);
+  for (Eigen::Index i = 0; i < box.cols(); ++i) {
+    for (int k = 0; k < 3; ++k) box(k, i) = half[k] * static_cast<float>(2.0 * random.uniform() - 1.0);
+    const int face = static_cast<int>(random.below(3));
+    box(face, i) = random.uniform() < 0.5 ? -half[face] : half[face];
+  }
+  const ReflectionPlane plane(Eigen::Vector3d::UnitX(), 0.0);
+  const std::vector<IspFrame> frames = ispFrames(box, plane);
+  ASSERT_GE(frames.size(), 2u);
+  EXPECT_NEAR(frames.front().plane.angleTo(plane), 12.0 * M_PI / 180.0, 1e-9);
+  EXPECT_LT(frames.back().plane.angleTo(plane), 0.01);
+  EXPECT_LT(std::abs(frames.back().plane.offset()), 0.01);
+  EXPECT_LT(frames.back().residual, frames.front().residual);
+  for (const IspFrame& frame : frames) {
+    ASSERT_EQ(frame.samples.cols(), frame.reflections.cols());
+    ASSERT_EQ(frame.samples.cols(), frame.closest.cols());
+    for (Eigen::Index i = 0; i < frame.samples.cols(); ++i)
+      EXPECT_LT(
+          (frame.plane.reflect(frame.samples.col(i).cast<double>()) - frame.reflections.col(i).cast<double>()).norm(),
+          1e-6);
+  }
+}
+
+TEST(ViewerModel, IsOfUnitSizeAboutTheOriginWithItsPlanes) {
+  ViewerModelOptions options;
+  const Eigen::Vector3f center(40, -30, 20);
+  const ViewerModel model = makeViewerModel(shapeFromMesh(boxMesh({2.0f, 3.0f, 4.0f}, center)), options);
+  ASSERT_EQ(model.planes.size(), 3u);
+  EXPECT_EQ(model.labels.size(), 3u);
+  Eigen::AlignedBox3d box;
+  for (const pcl::PointXYZ& point : *model.points) box.extend(point.getVector3fMap().cast<double>());
+  for (const SymmetryPlane& plane : model.planes) {
+    EXPECT_LT(std::abs(plane.signedDistance(box.center())), 0.005) << "through the middle of the box";
+    EXPECT_EQ(plane.point_support.size(), model.points->size());
+  }
+  float farthest = 0.0f;
+  for (const pcl::PointXYZ& point : *model.points) farthest = std::max(farthest, point.getVector3fMap().norm());
+  EXPECT_NEAR(farthest, 1.0f, 0.02f);
+}
+
+TEST(ViewerModel, IsCutIntoPartsOfTheMeshOrOfTheCloud) {
+  ViewerModelOptions options;
+  options.num_parts = 2;
+  Shape shape = shapeFromMesh(boxMesh({2.0f, 3.0f, 4.0f}, Eigen::Vector3f::Zero()));
+  ViewerModel model = makeViewerModel(shape, options);
+  EXPECT_EQ(findParts(model).size(), model.mesh->polygons.size());
+  shape.points = model.points;
+  shape.mesh.reset();
+  model = makeViewerModel(shape, options);
+  const std::vector<int> parts = findParts(model);
+  EXPECT_EQ(parts.size(), model.points->size());
+  EXPECT_EQ(std::set<int>(parts.begin(), parts.end()), (std::set<int>{0, 1}));
+}
+
+class ViewerTool : public ToolTest {
+protected:
+  ViewerTool() : ToolTest("env -u DISPLAY " + toolPath("viewer")) {}
+
+  const std::string mesh_ =
+      folder_.write("box.off",
+                    "OFF\n8 6 12\n-1 -1.4 -2\n1 -1.4 -2\n1 1.4 -2\n-1 1.4 -2\n-1 -1.4 2\n1 -1.4 2\n1 1.4 2\n-1 1.4 2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+};
+
+TEST_F(ViewerTool, MakesPicturesWithoutAScreen) {
+  const std::string common = mesh_ + " -quiet -symmetries -width 320 -height 240 -screenshot ";
+  ASSERT_EQ(run(common + (folder_ / "a.png")), 0) << error_;
+  ASSERT_EQ(run(common + (folder_ / "b.png") + " -keys n,o,h"), 0) << error_;
+  ASSERT_EQ(run(common + (folder_ / "c.png") + " -keys i,i"), 0) << error_;
+  ASSERT_EQ(run(common + (folder_ / "d.png") + " -keys c -parts 2"), 0) << error_;
+  const RasterImage a = readImage(folder_ / "a.png"), b = readImage(folder_ / "b.png"),
+                    c = readImage(folder_ / "c.png"), d = readImage(folder_ / "d.png");
+  EXPECT_EQ(a.width, 320);
+  EXPECT_EQ(a.height, 240);
+  EXPECT_NE(a.pixels, b.pixels);
+  EXPECT_NE(a.pixels, c.pixels);
+  EXPECT_NE(a.pixels, d.pixels);
+}
+
+TEST_F(ViewerTool, SaysWhyThereIsNoWindow) {
+  EXPECT_EQ(run(mesh_), 1);
+  EXPECT_NE(error_.find("there is no display"), std::string::npos);
+  EXPECT_NE(error_.find("-screenshot FILE needs none"), std::string::npos);
+  EXPECT_EQ(run(mesh_ + " -screenshot " + (folder_ / "a.png") + " -keys F7"), 2);
+  EXPECT_NE(error_.find("there is no key F7"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/tool_run.h"
+#include "pictures/raster_image.h"
+
+namespace {
+
+using namespace pcl_symmetry::apps;
+
+class ViewpointTool : public ToolTest {
+protected:
+  ViewpointTool() : ToolTest(toolPath("viewpoint")) {}
+
+  const std::string mesh_ =
+      folder_.write("box.off",
+                    "OFF\n8 6 12\n-1 -1.4 -2\n1 -1.4 -2\n1 1.4 -2\n-1 1.4 -2\n-1 -1.4 2\n1 -1.4 2\n1 1.4 2\n-1 1.4 2\n"
+                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+};
+
+TEST_F(ViewpointTool, LooksAtABoxFromACornerAndWorstAlongItsPlanes) {
+  ASSERT_EQ(run(mesh_ + " -quiet -json " + (folder_ / "a.json")), 0) << error_;
+  const nlohmann::json answer = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+  const auto best = answer["best"]["direction"].get<std::vector<double>>();
+  const auto worst = answer["worst"]["direction"].get<std::vector<double>>();
+  double largest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_GT(std::abs(best[k]), 0.3);
+    largest = std::max(largest, std::abs(worst[k]));
+  }
+  EXPECT_GT(largest, 0.99);
+  EXPECT_GT(answer["best"]["score"].get<double>(), answer["worst"]["score"].get<double>());
+  EXPECT_EQ(answer["best"]["pose"].size(), 16u);
+  EXPECT_EQ(answer["good"][0], answer["best"]);
+  EXPECT_NE(output_.find("worst"), std::string::npos);
+}
+
+TEST_F(ViewpointTool, DrawsTheScoreAndTheViews) {
+  ASSERT_EQ(run(mesh_ + " -size 120 -png " + (folder_ / "a.png") + " -icon " + (folder_ / "b.png")), 0) << error_;
+  EXPECT_EQ(readImage(folder_ / "a.png").width, 360);
+  EXPECT_EQ(readImage(folder_ / "b.png").width, 120);
+}
+
+TEST_F(ViewpointTool, ComputesWithoutADisplayAndSaysWhyAPictureIsMissing) {
+  const std::string environment = "env -u DISPLAY PATH=/nowhere ";
+  ASSERT_EQ(
+      std::system(
+          (environment + toolPath("viewpoint") + " " + mesh_ + " -quiet >" + (folder_ / "out") + " 2>&1").c_str()),
+      0);
+  EXPECT_NE(std::system((environment + toolPath("viewpoint") + " " + mesh_ + " -quiet -png " + (folder_ / "a.png") +
+                         " >" + (folder_ / "out") + " 2>&1")
+                            .c_str()),
+            0);
+  const std::string output = contentOf(folder_ / "out");
+  EXPECT_NE(output.find("best"), std::string::npos) << "what was computed is printed all the same";
+  EXPECT_NE(output.find("there is no display, and Xvfb is missing"), std::string::npos);
+}
+
+TEST_F(ViewpointTool, RefusesWhatMakesNoSense) {
+  EXPECT_EQ(run(mesh_ + " -up 0,0,0"), 2);
+  EXPECT_EQ(run(mesh_ + " -views 0"), 2);
+  EXPECT_EQ(run(folder_ / "missing.off"), 1);
+}
+
+}  // namespace
