@@ -17,78 +17,29 @@ import numpy as np
 
 import pcl_symmetry
 
-# Eight colours that remain apart for colour-blind eyes (Okabe and Ito), as in the pictures of the tools.
+# Eight colors that remain apart for color-blind eyes (Okabe and Ito), as in the pictures of the tools.
 COLORS = ["#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#595959"]
 
 
-def axes_for(points, title):
-    figure = plt.figure(figsize=(6, 6), dpi=100)
-    axes = figure.add_subplot(projection="3d")
-    low, high = points.min(axis=0), points.max(axis=0)
-    middle, half = (low + high) / 2, (high - low).max() / 2
-    axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), title=title)
-    axes.set_zlim(middle[2] - half, middle[2] + half)
-    axes.set_box_aspect((1, 1, 1))
+def draw_values(points, title, **how):
+    axes = plt.figure(figsize=(6, 6), dpi=100).add_subplot(projection="3d")
+    axes.set(title=title, aspect="equal")
     axes.set_axis_off()
-    return figure, axes
-
-
-def corners_of(plane, points):
-    """The corners of a square in the plane around the points, (4, 3)."""
-    normal = np.asarray(plane.normal)
-    u = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
-    u /= np.linalg.norm(u)
-    v = np.cross(normal, u)
-    center = points.mean(axis=0)
-    center = center - (normal @ center - plane.offset) * normal
-    half = 0.6 * np.linalg.norm(points.max(axis=0) - points.min(axis=0)) / np.sqrt(2)
-    return np.array([center + half * (a * u + b * v) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
-
-
-def draw_planes(points, found):
-    figure, axes = axes_for(points, f"{len(found)} planes, {len(found.axes)} axes")
-    axes.scatter(*points.T, s=1, c="#4D6185")
-    for plane, color in zip(found, COLORS):
-        axes.plot_trisurf(*corners_of(plane, points).T, triangles=[(0, 1, 2), (0, 2, 3)], color=color, alpha=0.25)
-    for axis in found.axes:
-        reach = np.array([-1, 1])[:, None] * np.linalg.norm(np.ptp(points, axis=0)) / 2
-        axes.plot(*(np.asarray(axis.point) + reach * np.asarray(axis.direction)).T, color=COLORS[4], linewidth=2)
-    return figure
+    return axes, axes.scatter(*points.T, s=1, **how)
 
 
 def draw_support(points, found):
-    figure, axes = axes_for(points, "support of the first plane" if len(found) else "no plane")
     values = found.point_support(0) if len(found) else np.zeros(len(points))
-    shown = axes.scatter(*points.T, s=1, c=values, cmap="cividis", vmin=0, vmax=1)
-    figure.colorbar(shown, shrink=0.6)
-    return figure
-
-
-def draw_frame(points):
-    frame = pcl_symmetry.frame(points)
-    figure, axes = axes_for(points, "center of symmetry and principal symmetry axes")
-    axes.scatter(*points.T, s=1, c="#4D6185")
-    length = np.linalg.norm(np.ptp(points, axis=0)) / 2
-    for k in range(3):
-        ends = frame.center + np.array([[-1], [1]]) * length * frame.axes[:, k] * frame.scores[k]
-        axes.plot(*ends.T, color=COLORS[k], linewidth=2)
-    return figure
-
-
-def draw_map(points):
-    values = pcl_symmetry.transform(points).values
-    figure, axes = plt.subplots(figsize=(6, 4), dpi=100)
-    shown = axes.imshow(values.max(axis=2), aspect="auto", cmap="cividis", extent=(0, 360, 90, 0))
-    axes.set(xlabel="phi, degrees", ylabel="theta, degrees", title="greatest symmetry of each direction of normals")
-    figure.colorbar(shown)
-    return figure
+    title = "support of the first plane" if len(found) else "no plane"
+    axes, shown = draw_values(points, title, c=values, cmap="cividis", vmin=0, vmax=1)
+    axes.figure.colorbar(shown, shrink=0.6)
+    return axes
 
 
 def draw_parts(points):
     labels = np.asarray(pcl_symmetry.segment(points))
-    figure, axes = axes_for(points, f"{labels.max() + 1} parts")
-    axes.scatter(*points.T, s=1, c=[COLORS[label % 8] if label >= 0 else "#BFBFBF" for label in labels])
-    return figure
+    colors = [COLORS[label % 8] if label >= 0 else "#BFBFBF" for label in labels]
+    return draw_values(points, f"{labels.max() + 1} parts", c=colors)[0]
 
 
 def main(folder, *models):
@@ -98,16 +49,16 @@ def main(folder, *models):
         points = np.ascontiguousarray(points[:, :3], dtype=np.float32)
         found = pcl_symmetry.planes(points)
         pictures = {
-            "planes": draw_planes(points, found),
+            "planes": found.plot(points),
             "support": draw_support(points, found),
-            "frame": draw_frame(points),
-            "map": draw_map(points),
+            "frame": pcl_symmetry.frame(points).plot(points),
+            "map": pcl_symmetry.transform(points).plot(),
             "parts": draw_parts(points),
         }
-        for name, figure in pictures.items():
+        for name, axes in pictures.items():
             path = Path(folder) / f"{Path(model).stem}_{name}.png"
-            figure.savefig(path)
-            plt.close(figure)
+            axes.figure.savefig(path)
+            plt.close(axes.figure)
             print(path)
 
 

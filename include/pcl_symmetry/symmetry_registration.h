@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/pose_search.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
@@ -53,6 +53,10 @@ struct RegisteredPose {
 
 /// The best pose of a cloud in another one, and the next ones.
 struct CloudRegistration : RegisteredPose {
+  /// Whether a pose was found that the clouds bear out: scans of a wrong object stay below 0.32, those of the right one
+  /// reach 0.5.
+  bool converged(double min_merit = 0.4) const { return covariance.has_value() && score.merit() >= min_merit; }
+
   /// Distinct poses by falling merit, the best one first, at most PoseSearchOptions::max_poses: those that symmetry
   /// makes equal have like merits.
   std::vector<RegisteredPose> poses;
@@ -67,6 +71,9 @@ struct CloudRegistration : RegisteredPose {
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
+
+/// Fewer points fit other clouds in wrong poses as well as in the right one.
+constexpr int kLeastRegistrationPoints = 100;
 
 class PreparedCloud;
 

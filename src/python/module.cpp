@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,11 +14,11 @@
 
 #include "core/geometry/mesh_sampling.h"
 #include "core/matching/shape_description.h"
-#include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/closest_point_search.h"
-#include "pcl_symmetry/core/symmetric_completion.h"
-#include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
+#include "pcl_symmetry/core/symmetric_completion.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/viewpoint_score.h"
 #include "python/input_points.h"
 #include "python/motions.h"
@@ -182,10 +183,24 @@ SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, co
   return planarTransform(edt, grid, centerOfMass(input.points()), options);
 }
 
-std::vector<RankedView> viewpoints(const std::vector<SymmetryPlane>& planes) {
+std::vector<RankedView> viewpoints(const std::vector<std::pair<Eigen::Vector3d, double>>& planes) {
   std::vector<ViewPlane> view_planes;
-  for (const SymmetryPlane& plane : planes) view_planes.push_back({plane.normal(), plane.score});
+  for (const auto& [normal, score] : planes) view_planes.push_back({normal, score});
   return bestViews(view_planes);
+}
+
+/// \return for each query the row of the closest point, and its distance in input units.
+std::pair<py::array_t<int>, py::array_t<float>> closest(const AnyArray& points, const AnyArray& queries) {
+  const InputPoints input("points", points, 0, 0), asked("queries", queries, 0, 0);
+  std::vector<int> indices;
+  std::vector<float> distances;
+  {
+    const py::gil_scoped_release release;
+    makeTreeSearch(input.points())->search(asked.points(), 1, indices, distances);
+    for (float& distance : distances) distance = std::sqrt(distance);
+  }
+  const auto size = static_cast<py::ssize_t>(indices.size());
+  return {py::array_t<int>(size, indices.data()), py::array_t<float>(size, distances.data())};
 }
 
 void addFrame(py::module_& module) {
@@ -226,16 +241,8 @@ void addMap(py::module_& module) {
             return py::array_t<float>(shape, map.values.data(), self);
           },
           "(theta, phi, r) values of D, 1 for a perfect symmetry; a view of the map's memory")
-      .def(
-          "plane",
-          [](const SymmetryMap& map, int theta, int phi, int r) {
-            if (theta < 0 || phi < 0 || r < 0 || theta >= map.grid.numTheta() || phi >= map.grid.numPhi() ||
-                r >= map.grid.numRadius())
-              throw py::index_error("bin outside the map");
-            return map.grid.plane({theta, phi, r}).coefficients();
-          },
-          py::arg("theta"), py::arg("phi"), py::arg("r"),
-          "(4,) coefficients a, b, c, d of the plane at the center of a bin")
+      .def_property_readonly("center", [](const SymmetryMap& map) { return map.grid.center(); })
+      .def_property_readonly("radius", [](const SymmetryMap& map) { return map.grid.radius(); })
       .def_readonly("sigma", &SymmetryMap::sigma, "width of the Gaussian, input units");
 }
 
@@ -286,6 +293,7 @@ void addShapeFunctions(py::module_& module) {
   module.def("frame", &frame, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
              py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0,
              "Canonical frame of a cloud (Section 5.1). Parameters as in planes(). Returns Frame.");
+  module.def("closest", &closest, py::arg("points"), py::arg("queries"));
   module.def("segment", &segment, py::arg("points"), py::arg("faces") = py::none(), py::kw_only(), py::arg("parts") = 0,
              py::arg("progress") = py::none(), py::arg("seed") = 1, py::arg("threads") = 0,
              "Cuts a surface into parts by its symmetries (Section 5.3).\n\n"

@@ -4,8 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <limits>
+#include <vector>
 
 #include "pcl_symmetry/core/viewpoint_score.h"
 
@@ -71,15 +70,6 @@ void addScores(py::class_<Symmetry>& type) {
 
 }  // namespace
 
-py::array_t<float> PlaneSearch::pointSupport(std::size_t index) const {
-  const std::vector<float>& values = found.planes.at(index).point_support;
-  py::array_t<float> result(static_cast<py::ssize_t>(num_rows));
-  float* row = result.mutable_data();
-  std::fill_n(row, num_rows, std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < values.size(); ++i) row[rows.empty() ? i : rows[i]] = values[i];
-  return result;
-}
-
 void addPlaneResults(py::module_& module) {
   addPlane(module);
   py::class_<SymmetryAxis> axis(module, "Axis", "All planes through a line are symmetries: a body of revolution.");
@@ -125,13 +115,16 @@ void addPlaneResults(py::module_& module) {
           "reason", [](const PlaneSearch& s) { return s.found.reason; },
           "why there is no answer; empty where the search ran")
       .def_readonly("viewpoint", &PlaneSearch::viewpoint, "(3,) where the scanner stood; None: seen from all sides")
-      .def("point_support", &PlaneSearch::pointSupport, py::arg("index"),
-           "(N,) support for a plane at each row of the input, in [0, 1]; NaN for rows that were not used")
-      .def("__len__", [](const PlaneSearch& s) { return s.found.planes.size(); })
-      .def("__getitem__", [](const PlaneSearch& s, py::ssize_t i) {
-        const auto size = static_cast<py::ssize_t>(s.found.planes.size());
-        if (i < -size || i >= size) throw py::index_error("no such plane");
-        return s.found.planes[static_cast<std::size_t>(i < 0 ? i + size : i)];
+      .def_property_readonly("support",
+                             [](const PlaneSearch& s) {
+                               std::vector<py::array_t<float>> supports;
+                               for (const SymmetryPlane& plane : s.found.planes)
+                                 supports.emplace_back(static_cast<py::ssize_t>(plane.point_support.size()),
+                                                       plane.point_support.data());
+                               return supports;
+                             })
+      .def_property_readonly("rows", [](const PlaneSearch& s) {
+        return py::array_t<std::size_t>(static_cast<py::ssize_t>(s.rows.size()), s.rows.data());
       });
 }
 

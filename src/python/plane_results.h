@@ -17,11 +17,6 @@ struct PlaneSearch {
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used, frame of the points
   std::size_t num_rows = 0;                  ///< of the array
   std::vector<std::size_t> rows;             ///< the row of each point; empty: all rows
-
-  /// \param index of a plane, >= 0.
-  /// \return one value for each row, NaN for those that were not used.
-  /// \throws std::out_of_range where there is no such plane.
-  pybind11::array_t<float> pointSupport(std::size_t index) const;
 };
 
 /// Adds the classes Plane, Axis, Center, View and Planes to the module.

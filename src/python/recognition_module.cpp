@@ -119,6 +119,7 @@ void addRegistration(py::module_& module) {
           "(4, 4) from the frame of the source to that of the target")
       .def_property_readonly(
           "score", [](const CloudRegistration& r) { return r.score; }, "PoseScore of the transform")
+      .def_property_readonly("converged", &CloudRegistration::converged)
       .def_property_readonly(
           "poses",
           [](const CloudRegistration& r) {

@@ -80,6 +80,18 @@ void addClass(py::module_& module) {
 
 void addRotations(py::module_& module) {
   addClass(module);
+  module.def(
+      "rotations_of",
+      [](const std::vector<RowMajor4>& discrete,
+         const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& continuous) {
+        std::vector<Eigen::Isometry3d> motions;
+        for (const RowMajor4& motion : discrete) motions.push_back(motionOf("discrete", motion));
+        std::vector<ContinuousSymmetry> axes;
+        for (const auto& [point, direction] : continuous) axes.push_back({direction, point});
+        return ObjectSymmetries::from(motions, axes);
+      },
+      py::arg("discrete"), py::arg("continuous"),
+      "Rotations of given motions, (K, 4, 4), and (point, direction) of axes.");
   const ObjectSymmetryOptions standard;
   module.def(
       "rotations",

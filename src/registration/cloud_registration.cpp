@@ -5,8 +5,8 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/stopwatch.h"
-#include "core/registration/pose_covariance.h"
 #include "core/registration/frame_hypotheses.h"
+#include "core/registration/pose_covariance.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/ranked_poses.h"
 #include "registration/pose_refinement.h"
@@ -185,6 +185,11 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   const auto done = [&](const char* stage) { result.timing_ms.emplace_back(stage, watch.lap()); };
 
   const PreparedCloud prepared_source("source", source, source_seen, options);
+  if (std::min(source.cols(), target.cloud_->size()) < kLeastRegistrationPoints) {
+    result.poses.push_back({guess, {}});
+    result.T_target_source = guess;
+    return result;
+  }
   const CloudPair clouds(prepared_source, *target.cloud_);
   const CloudRegistrationOptions inner = inSearchUnits(options, clouds.frames().scale);
   done("prepare");

@@ -33,6 +33,7 @@ public:
   std::shared_ptr<const SymmetryFrame> frame(double unit) const;
   /// Of this cloud as the model that others are refined against.
   std::shared_ptr<const RefinementTarget> refinementTarget(double unit) const;
+  Eigen::Index size() const { return points_.cols(); }
 
 private:
   const Points points_;

@@ -64,8 +64,9 @@ void checkAtLeast(const char* field, std::int64_t value, std::int64_t least);
 
 /// \param points 3 x N, finite.
 /// \param input what the points are called in the sentence.
-/// \return why the points hold no answer, one sentence; empty where they can be analysed.
-std::string reasonForNoAnswer(const Points& points, const std::string& input = "input cloud");
+/// \param min_points that an answer needs.
+/// \return why the points hold no answer, one sentence; empty where they can be analyzed.
+std::string reasonForNoAnswer(const Points& points, const std::string& input = "input cloud", int min_points = 0);
 
 /// Prints "[pcl_symmetry::SOURCE] REASON." by PCL_WARN.
 void warnOfNoAnswer(const std::string& source, const std::string& reason);
@@ -155,8 +156,8 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
 SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const StoredPose& stored);
 
 /// Seen, free and unknown space of a cloud.
-/// \param points the points of the cloud that are analysed, 3 x N, finite, N >= 1.
-/// \param is_part the analysed points are a part of the cloud: the others may hide it.
+/// \param points the points of the cloud that are analyzed, 3 x N, finite, N >= 1.
+/// \param is_part the analyzed points are a part of the cloud: the others may hide it.
 /// \throws std::invalid_argument where the points surround a viewpoint that was given.
 template <typename PointT>
 SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& points, const Viewpoint& viewpoint,

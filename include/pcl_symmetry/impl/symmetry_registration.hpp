@@ -45,7 +45,7 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
   covariance_.reset();
   timing_ms_.clear();
   const detail::SelectedPoints source = detail::selectPoints(*input_, indices_.get(), max_points_, options_.seed);
-  reason_ = detail::reasonForNoAnswer(source.points, "source");
+  reason_ = detail::reasonForNoAnswer(source.points, "source", kLeastRegistrationPoints);
   detail::withBadArguments([&] {
     if (reason_.empty()) prepareTarget();
     if (reason_.empty()) findPose(source.points, guess);
@@ -65,7 +65,7 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::prepareTarget() {
   if (prepared_target_) return;
   const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
-  reason_ = detail::reasonForNoAnswer(target.points, "target");
+  reason_ = detail::reasonForNoAnswer(target.points, "target", kLeastRegistrationPoints);
   if (!reason_.empty()) return;
   const std::optional<Visibility> seen = target_seen_space_
                                              ? detail::visibilityOf(*target_seen_space_)

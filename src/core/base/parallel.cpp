@@ -1,42 +1,59 @@
 #include "core/base/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <mutex>
-#if defined(__SANITIZE_THREAD__)
-#include <atomic>
 #include <thread>
 #include <vector>
-#else
+#if !defined(__SANITIZE_THREAD__)
 #include <omp.h>
+#include <pthread.h>
 #endif
 
 namespace pcl_symmetry {
 
 namespace {
 
+/// Starts threads that end with the loop. Loops inside a block run on the thread of the block.
+void runOnNewThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
+  thread_local bool is_inside = false;
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    const bool was_inside = is_inside;
+    is_inside = true;
+    for (std::size_t b; (b = next++) < num_blocks;) block(b);
+    is_inside = was_inside;
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < num_threads && !is_inside; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+}
+
 #if defined(__SANITIZE_THREAD__)
-// The thread sanitizer does not see how OpenMP's runtime synchronises, and would report every loop.
+// The thread sanitizer does not see how OpenMP's runtime synchronizes, and would report every loop.
 int numCores() {
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 void runOnThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t b; (b = next++) < num_blocks;) block(b);
-  };
-  std::vector<std::thread> others;
-  for (int i = 1; i < num_threads; ++i) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
+  runOnNewThreads(num_threads, num_blocks, block);
 }
 #else
 int numCores() {
   return std::max(1, omp_get_num_procs());
 }
 
+// OpenMP's threads do not survive fork(): its next loop in the child would wait for them forever.
+std::atomic<bool> was_forked{false};
+[[maybe_unused]] const int is_registered = pthread_atfork(nullptr, nullptr, [] { was_forked = true; });
+
 void runOnThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
+  if (was_forked) {
+    runOnNewThreads(num_threads, num_blocks, block);
+    return;
+  }
   if (omp_in_parallel()) {
     // Threads that have finished their own blocks take over some of these.
 #pragma omp taskloop grainsize(1) default(none) shared(num_blocks, block)

@@ -16,7 +16,7 @@ constexpr std::size_t kMostPairs = 6;    // planes whose common lines are tried.
 constexpr double kLeastPairAngle = 0.1;  // radians. chosen: at smaller angles errors move the line too far
 // Share of the angle between two planes by which planes may be off. chosen: at half, planes of noisy clouds do not fit
 // many folds; at twice, any plane fits.
-constexpr double kMostOff = 0.2;
+constexpr double kMostFolded = 0.2;
 constexpr double kMostOffAngle = 0.05;  // radians. chosen: planes of symmetries are off by less, in noise too
 constexpr double kMostChance = 1e-3;    // chosen: of a hundred round bodies, with some lines each, none has a lattice
 
@@ -39,10 +39,10 @@ std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<R
     const double phase = std::arg(sum) / (2.0 * fold), step = kPi / fold;
     double most = 0.0;
     for (const double angle : angles) most = std::max(most, std::abs(std::remainder(angle - phase, step)));
-    if (most > std::min(kMostOff * step, kMostOffAngle)) continue;
+    if (most > std::min(kMostFolded * step, kMostOffAngle)) continue;
     // Two of the angles give line and phase; each other one falls this close to a plane by chance, and the folds below
     // were tried before.
-    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * kMostOff * step) / step);
+    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * kMostFolded * step) / step);
     const double chance = fold * std::pow(by_chance, static_cast<double>(angles.size()) - 1.0);
     if (chance > kMostChance) return std::nullopt;
     return PlaneLattice{line, fold, phase, static_cast<int>(angles.size())};

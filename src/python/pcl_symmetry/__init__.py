@@ -8,39 +8,47 @@
 ['symmetry', 'symmetry', 'symmetry']
 """
 
-from ._pcl_symmetry import (
+import importlib.util
+from typing import TYPE_CHECKING, Any, List
+
+from ._pcl_symmetry import __version__
+from .functions import complete, describe, frame, planes, rotations, sample_mesh, segment, transform, viewpoints
+from .results import (
     Axis,
+    BuildReport,
     Center,
     Frame,
     Map,
+    Match,
     Plane,
     Planes,
+    PoseScore,
     ProbableFrame,
+    Recognized,
     ReflectionPlane,
+    Registration,
     Rotations,
     Turn,
     View,
-    __version__,
-    complete,
-    describe,
-    frame,
-    planes,
-    rotations,
-    sample_mesh,
-    segment,
-    transform,
-    viewpoints,
 )
+
+if TYPE_CHECKING:
+    from .database import Database, register
 
 __all__ = [
     "Axis",
+    "BuildReport",
     "Center",
     "Frame",
     "Map",
+    "Match",
     "Plane",
     "Planes",
+    "PoseScore",
     "ProbableFrame",
+    "Recognized",
     "ReflectionPlane",
+    "Registration",
     "Rotations",
     "Turn",
     "View",
@@ -54,62 +62,20 @@ __all__ = [
     "transform",
     "viewpoints",
 ]
+# The libraries of PCL take longer to load than the rest: what needs them is loaded when it is first used. It is missing where
+# the library was built without PCL.
+if importlib.util.find_spec("._recognition", __name__):
+    __all__ += ["Database", "register"]
 
 
-def _text_of(value):
-    value = value.tolist() if hasattr(value, "tolist") else value
-    if isinstance(value, list):
-        return "[" + ", ".join(_text_of(each) for each in value) + "]"
-    return f"{value:.4g}" if isinstance(value, float) else repr(value)
-
-
-def _show(**members):
-    """Gives classes, by their names, a text with the members that tell most."""
-    for kind, names in members.items():
-
-        def text(self, names=tuple(names.split())):
-            shown = (f"{name}={_text_of(getattr(self, name))}" for name in names)
-            return f"{type(self).__name__}({', '.join(shown)})"
-
-        globals()[kind].__repr__ = text
-
-
-def _text_of_planes(found):
-    return "Planes([" + "".join(f"\n  {plane!r}," for plane in found) + ("\n])" if len(found) else "])")
-
-
-_show(
-    ReflectionPlane="normal offset",
-    Plane="kind normal offset confidence share",
-    Axis="point direction confidence",
-    Turn="point direction fold confidence",
-    Center="point confidence",
-    View="direction score",
-    Frame="center axes revolution_axis",
-    ProbableFrame="center axes probability",
-    Rotations="name center support confidence",
-    Map="sigma",
-)
-Planes.__repr__ = _text_of_planes
-
-# What needs the libraries of PCL, which take longer to load, is loaded when it is first used. It is missing where the library
-# was built without PCL.
-_WITH_PCL = ("BuildReport", "Database", "Match", "PoseScore", "Recognized", "Registration", "register")
-
-
-def __getattr__(name):
-    if name not in _WITH_PCL:
+def __getattr__(name: str) -> Any:
+    if name not in ("Database", "register") or name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from . import _recognition
+    from . import database
 
-    for each in _WITH_PCL:
-        globals()[each] = getattr(_recognition, each)
-    _show(
-        BuildReport="num_added failures cancelled",
-        Match="name distance",
-        PoseScore="support conflict merit",
-        Recognized="name confidence transform",
-        Registration="transform score",
-    )
-    globals()["Database"].__repr__ = lambda self: f"Database(models={len(self)})"
+    globals().update(Database=database.Database, register=database.register)
     return globals()[name]
+
+
+def __dir__() -> List[str]:
+    return sorted(__all__ + ["__all__", "__doc__", "__file__", "__name__", "__path__", "__version__"])

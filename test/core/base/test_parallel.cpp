@@ -1,6 +1,8 @@
 #include "core/base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -21,6 +23,22 @@ TEST(Parallel, EveryBlockRunsOnce) {
     parallelBlocks(runs.size(), num_threads, [&](std::size_t b) { ++runs[b]; });
     for (const auto& run : runs) ASSERT_EQ(run, 1) << num_threads << " threads";
   }
+}
+
+TEST(Parallel, AForkedChildRunsLoopsAfterItsParentHas) {
+  const auto sum = [] {
+    std::atomic<int> result{0};
+    parallelBlocks(10, 4, [&](std::size_t b) {
+      parallelBlocks(3, 2, [&](std::size_t c) { result += static_cast<int>(10 * b + c); });
+    });
+    return result.load();
+  };
+  const int expected = sum();
+  const pid_t child = fork();
+  if (child == 0) _exit(sum() == expected ? 0 : 1);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
 TEST(Parallel, NothingToDoIsDone) {

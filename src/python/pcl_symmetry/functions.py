@@ -1,0 +1,273 @@
+"""The functions of pcl_symmetry that need no library of PCL."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+
+from . import _pcl_symmetry as core
+from .results import Axis, Center, Frame, Map, Plane, Planes, ProbableFrame, ReflectionPlane, Rotations, Turn, View
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Shift = Optional[NDArray[np.float64]]
+
+Viewpoint = Union[str, None, "ArrayLike"]
+"""Where a scanner stood: "auto" (the points decide), None (seen from all sides) or (x, y, z), input frame."""
+
+_NUM_MESH_POINTS = 10_000
+
+
+def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> Tuple["NDArray[Any]", "Shift"]:
+    """The points of an array or an object of Open3D or trimesh, and what was subtracted from them, if anything.
+
+    Double coordinates far from the origin are centered before they become float32. Meshes are sampled.
+    """
+    import numpy as np
+
+    if points is None or isinstance(points, str):
+        raise TypeError(f"{name} = {points!r}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh")
+    faces = getattr(points, "triangles", getattr(points, "faces", None))
+    if faces is not None and len(faces) and hasattr(points, "vertices"):
+        return sample_mesh(points.vertices, faces, num_mesh_points), None
+    for member in ("points", "vertices"):
+        if not hasattr(points, "__array__") and hasattr(points, member):
+            points = getattr(points, member)
+    try:
+        array = np.asarray(points)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}, must be (N, 3)") from None
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu" or not len(array):
+        return array, None  # the core says what is wrong
+    # A few rows tell how far away the points are; the whole array is looked at only where that is far.
+    few = array[:: max(1, len(array) // 64)].astype(float)
+    with np.errstate(invalid="ignore"):
+        greatest = float(np.nanmax(np.abs(few), initial=0.0))
+        if not np.isfinite(greatest) or greatest <= 64 * float(np.nanmax(np.ptp(few, axis=0), initial=0.0)):
+            return array, None
+    used = array[np.isfinite(array).all(axis=1)].astype(float)
+    if not len(used):
+        return array, None
+    low, high = used.min(axis=0), used.max(axis=0)
+    extent, greatest = float(np.linalg.norm(high - low)), float(max(abs(low).max(), abs(high).max()))
+    if array.dtype.kind == "f" and array.dtype.itemsize <= 4:
+        rounding = float(np.finfo(np.float32).eps) * greatest
+        if extent > 0 and rounding > 1e-4 * extent:
+            digits = max(0, int(np.floor(np.log10(extent / rounding))))
+            warnings.warn(
+                f"{name}: float32 coordinates up to {greatest:.4g} leave {digits} digits of an extent of {extent:.4g}; "
+                "subtract an offset in float64 before they become float32",
+                RuntimeWarning,
+                stacklevel=3,
+            )
+        return array, None
+    if greatest <= 64 * extent:
+        return array, None
+    shift = (low + high) / 2
+    return (array - shift).astype(np.float32), shift
+
+
+def _seen_from(viewpoint: Viewpoint, shift: "Shift") -> Any:
+    import numpy as np
+
+    if shift is None or viewpoint is None or isinstance(viewpoint, str):
+        return viewpoint
+    return np.asarray(viewpoint, dtype=float) - shift
+
+
+def _fields(found: Any, *names: str) -> Dict[str, Any]:
+    return {name: getattr(found, name) for name in names}
+
+
+def _plane(p: Any) -> Plane:
+    plane = object.__new__(Plane)
+    names = ("kind", "confidence", "share", "share_interval", "score", "support", "deviation", "seen", "residual")
+    for name, value in _fields(p, "normal", "offset", *names).items():
+        object.__setattr__(plane, name, value)
+    return plane
+
+
+def _turn(t: Any) -> Turn:
+    return Turn(**_fields(t, "point", "direction", "fold", "confidence", "support", "off"))
+
+
+def _core_plane(plane: ReflectionPlane) -> Any:
+    return core.ReflectionPlane(plane.normal, plane.offset)
+
+
+def planes(
+    points: Any,
+    *,
+    viewpoint: Viewpoint = "auto",
+    tolerance: float = 0.01,
+    absolute_tolerance: float = 0.0,
+    approximate: bool = False,
+    max_planes: int = 12,
+    normals: Optional["ArrayLike"] = None,
+    max_points: int = 50_000,
+    evidence: bool = False,
+    seed: int = 1,
+    threads: int = 0,
+) -> Planes:
+    """Planes of symmetry of a cloud (Sections 4.1 to 4.4).
+
+    points: (N, 3), input units, or a cloud or mesh of Open3D or trimesh; float32 rows are not copied. Rows that are not
+        finite are left out.
+    viewpoint: where the scanner stood: "auto" (the points decide), None (seen from all sides) or (x, y, z).
+    tolerance: how far a symmetric surface may be off, share of the greatest distance between two points, in (0, 0.1].
+    absolute_tolerance: the same in input units; 0: tolerance decides.
+    approximate: also the other maxima of the transform, and symmetries of parts.
+    normals: (N, 3), of any length and sign; None: estimated.
+    max_points: larger clouds are thinned to so many. threads: 0 = one per core.
+    evidence: also what the decisions are taken from; takes about as long again.
+    Raises ValueError for bad parameters.
+    """
+    import numpy as np
+
+    array, shift = prepare("points", points)
+    options: Dict[str, Any] = dict(evidence=evidence) if evidence else {}
+    found = core.planes(
+        array,
+        viewpoint=_seen_from(viewpoint, shift),
+        tolerance=tolerance,
+        absolute_tolerance=absolute_tolerance,
+        approximate=approximate,
+        max_planes=max_planes,
+        normals=normals,
+        max_points=max_points,
+        seed=seed,
+        threads=threads,
+        **options,
+    )
+    scores = ("confidence", "score", "support")
+    result = Planes(
+        planes=[_plane(p) for p in found.planes],
+        axes=[Axis(**_fields(a, "point", "direction", *scores)) for a in found.axes],
+        centers=[Center(**_fields(c, "point", *scores)) for c in found.centers],
+        turns=[_turn(t) for t in found.turns],
+        best=None if found.best is None else _plane(found.best),
+        evidence=found.evidence if evidence else None,
+        turn_evidence=found.turn_evidence if evidence else None,
+        _support=found.support,
+        _rows=np.asarray(found.rows, dtype=np.int64),
+        _num_rows=len(array),
+        **_fields(found, "flat", "tolerance", "reason", "viewpoint"),
+    )
+    return result if shift is None else result._moved(shift)
+
+
+def complete(
+    points: Any, plane: ReflectionPlane, *, viewpoint: Viewpoint = "auto", threads: int = 0
+) -> Tuple["NDArray[Any]", List[int]]:
+    """Completes a scan by its reflection in a plane.
+
+    Returns (added, rows): (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
+    empty, and the row of the point that each is the reflection of.
+    """
+    array, shift = prepare("points", points)
+    moved = plane if shift is None else plane._moved(-shift)
+    added, rows = core.complete(array, _core_plane(moved), viewpoint=_seen_from(viewpoint, shift), threads=threads)
+    return (added if shift is None else added + shift), list(rows)
+
+
+def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
+    """Directions from the object to the camera that show the least repetition (Section 5.4), best first."""
+    return [View(v.direction, v.score) for v in core.viewpoints([(p.normal, p.score) for p in planes])]
+
+
+def sample_mesh(vertices: "ArrayLike", faces: "ArrayLike", num_points: int = 10_000, *, seed: int = 1) -> "NDArray[Any]":
+    """(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces."""
+    array, shift = prepare("vertices", vertices)
+    points: "NDArray[Any]" = core.sample_mesh(array, faces, num_points, seed=seed)
+    return points if shift is None else points + shift
+
+
+def frame(
+    points: Any,
+    *,
+    viewpoint: Viewpoint = "auto",
+    max_points: int = 50_000,
+    evidence: bool = False,
+    seed: int = 1,
+    threads: int = 0,
+) -> Frame:
+    """Canonical frame of a cloud (Section 5.1). Parameters as in planes()."""
+    array, shift = prepare("points", points)
+    found = core.frame(array, viewpoint=_seen_from(viewpoint, shift), max_points=max_points, seed=seed, threads=threads)
+    result = Frame(
+        probable=[ProbableFrame(**_fields(f, "center", "axes", "probability", "revolution_axis")) for f in found.probable],
+        turns=[_turn(t) for t in found.turns],
+        evidence=found.evidence if evidence else None,
+        **_fields(found, "center", "axes", "scores", "revolution_axis", "transform", "equivalent"),
+    )
+    return result if shift is None else result._moved(shift)
+
+
+def rotations(
+    points: Any,
+    *,
+    tolerance: float = 0.01,
+    absolute_tolerance: float = 0.0,
+    max_feature: float = 0.1,
+    seed: int = 1,
+    threads: int = 0,
+) -> Rotations:
+    """The group of rotations that map a whole object onto itself (Section 6).
+
+    tolerance, absolute_tolerance: as in planes().
+    max_feature: share of the surface, such as a screw or a notch, that a symmetry may map off it, in [0, 1].
+    Raises ValueError for bad parameters, fewer than 20 distinct points, and points on a line.
+    """
+    array, shift = prepare("points", points)
+    found = core.rotations(
+        array,
+        tolerance=tolerance,
+        absolute_tolerance=absolute_tolerance,
+        max_feature=max_feature,
+        seed=seed,
+        threads=threads,
+    )
+    names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance")
+    result = Rotations(**_fields(found, *names))
+    return result if shift is None else result._moved(shift)
+
+
+def segment(
+    points: Any,
+    faces: Optional["ArrayLike"] = None,
+    *,
+    parts: int = 0,
+    progress: Optional[Callable[[float], None]] = None,
+    seed: int = 1,
+    threads: int = 0,
+) -> List[int]:
+    """Cuts a surface into parts by its symmetries (Section 5.3).
+
+    points: (N, 3), points of a cloud or vertices of a mesh. faces: (F, 3), or None for a cloud.
+    parts: number of parts; 0: the method finds it. progress: called with the share done, in [0, 1].
+    Returns the label of each point or face; -1 for points that were left out.
+    """
+    array, _ = prepare("points", points)
+    return list(core.segment(array, faces, parts=parts, progress=progress, seed=seed, threads=threads))
+
+
+def describe(points: Any, *, viewpoint: Viewpoint = "auto", seed: int = 1, threads: int = 0) -> "NDArray[np.float32]":
+    """(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2)."""
+    array, shift = prepare("points", points)
+    result: "NDArray[np.float32]" = core.describe(array, viewpoint=_seen_from(viewpoint, shift), seed=seed, threads=threads)
+    return result
+
+
+def transform(
+    points: Any, bins: Sequence[int] = (64, 64, 64), *, method: str = "sampled", seed: int = 1, threads: int = 0
+) -> Map:
+    """The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.
+
+    method: sampled, convolution or voting.
+    """
+    array, shift = prepare("points", points)
+    found = core.transform(array, tuple(bins), method=method, seed=seed, threads=threads)
+    result = Map(**_fields(found, "sigma", "center", "radius", "values"))
+    return result if shift is None else result._moved(shift)

@@ -1,0 +1,72 @@
+"""Pictures of results, made with matplotlib."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+if TYPE_CHECKING:
+    from .results import Frame, Map, Planes, ReflectionPlane
+
+# Colors that remain apart for color-blind eyes (Okabe and Ito), as in the pictures of the tools.
+COLORS = ["#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#595959"]
+
+
+def _axes_for(points: Any, axes: Any, title: str) -> Any:
+    """Axes of projection 3d with the points in them, all directions to one scale."""
+    if axes is None:
+        axes = plt.figure(figsize=(6, 6), dpi=100).add_subplot(projection="3d")
+    low, high = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
+    middle, half = (low + high) / 2, (high - low).max() / 2
+    axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), title=title)
+    axes.set_zlim(middle[2] - half, middle[2] + half)
+    axes.set_box_aspect((1, 1, 1))
+    axes.set_axis_off()
+    axes.scatter(*points.T, s=1, c="#4D6185")
+    return axes
+
+
+def _diagonal(points: Any) -> float:
+    return float(np.linalg.norm(np.nanmax(points, axis=0) - np.nanmin(points, axis=0)))
+
+
+def _square(plane: "ReflectionPlane", points: Any) -> Any:
+    """The corners of a square in the plane around the points, (4, 3)."""
+    u = np.cross(plane.normal, np.eye(3)[np.abs(plane.normal).argmin()])
+    u /= np.linalg.norm(u)
+    v = np.cross(plane.normal, u)
+    center = np.nanmean(points, axis=0)
+    center = center - plane.distance(center) * plane.normal
+    half = 0.6 * _diagonal(points) / np.sqrt(2)
+    return np.array([center + half * (a * u + b * v) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+
+
+def plot_planes(found: "Planes", points: Any, axes: Any) -> Any:
+    points = np.asarray(points, dtype=float)
+    axes = _axes_for(points, axes, f"{len(found)} planes, {len(found.axes)} axes")
+    for plane, color in zip(found, COLORS):
+        axes.plot_trisurf(*_square(plane, points).T, triangles=[(0, 1, 2), (0, 2, 3)], color=color, alpha=0.25)
+    for axis in found.axes:
+        reach = np.array([[-1], [1]]) * _diagonal(points) / 2
+        axes.plot(*(axis.point + reach * axis.direction).T, color=COLORS[4], linewidth=2)
+    return axes
+
+
+def plot_frame(frame: "Frame", points: Any, axes: Any) -> Any:
+    points = np.asarray(points, dtype=float)
+    axes = _axes_for(points, axes, "center of symmetry and principal symmetry axes")
+    for k in range(3):
+        reach = np.array([[-1], [1]]) * _diagonal(points) / 2 * frame.scores[k]
+        axes.plot(*(frame.center + reach * frame.axes[:, k]).T, color=COLORS[k], linewidth=2)
+    return axes
+
+
+def plot_map(found: "Map", axes: Any) -> Any:
+    if axes is None:
+        axes = plt.subplots(figsize=(6, 4), dpi=100)[1]
+    shown = axes.imshow(found.values.max(axis=2), aspect="auto", cmap="cividis", extent=(0, 360, 90, 0))
+    axes.set(xlabel="phi, degrees", ylabel="theta, degrees", title="greatest symmetry of each direction of normals")
+    axes.figure.colorbar(shown)
+    return axes

@@ -1,0 +1,599 @@
+"""What the functions of pcl_symmetry return: frozen data classes that hold numbers, texts and arrays of NumPy.
+
+Each compares with ==, pickles, and has to_dict() and to_json(). Lengths are in input units, points and directions in the
+input frame, angles in radians.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Optional, Tuple, TypeVar, Union, overload
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Doubles = NDArray[np.float64]
+
+Self = TypeVar("Self", bound="Result")
+
+
+def _plain(value: Any) -> Any:
+    """Lists, dicts, numbers and texts in place of arrays and results."""
+    if isinstance(value, Result):
+        return value.to_dict()
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    if hasattr(value, "dtype") and value.dtype.names:
+        return [dict(zip(value.dtype.names, map(_plain, row))) for row in value]
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _same(a: Any, b: Any) -> bool:
+    import numpy as np
+
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        if isinstance(a, np.ndarray) and isinstance(b, np.ndarray) and a.dtype == b.dtype and a.dtype.names:
+            return a.tobytes() == b.tobytes()
+        return np.array_equal(a, b, equal_nan=True) if a is not None and b is not None else False
+    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(map(_same, a, b))
+    return bool(a == b)
+
+
+def _text(value: Any) -> str:
+    value = _plain(value)
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_text, value)) + "]"
+    return f"{value:.4g}" if isinstance(value, float) else repr(value)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result:
+    """What all results can do."""
+
+    def to_dict(self) -> Dict[str, Any]:
+        """Names and values; arrays become lists."""
+        fields = dataclasses.fields(self)
+        return {f.name: _plain(getattr(self, f.name)) for f in fields if not f.name.startswith("_")}
+
+    def to_json(self, **options: Any) -> str:
+        """The text of to_dict(); options are those of json.dumps()."""
+        return json.dumps(self.to_dict(), **options)
+
+    def __eq__(self, other: object) -> bool:
+        if type(self) is not type(other):
+            return NotImplemented
+        names = [f.name for f in dataclasses.fields(self)]
+        return all(_same(getattr(self, name), getattr(other, name)) for name in names)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        shown = [f.name for f in dataclasses.fields(self) if f.metadata.get("shown", False)]
+        return f"{type(self).__name__}({', '.join(f'{name}={_text(getattr(self, name))}' for name in shown)})"
+
+    def _moved(self: Self, shift: "Doubles") -> Self:
+        """The result in a frame whose origin lies at -shift."""
+        changes: Dict[str, Any] = {}
+        for f in dataclasses.fields(self):
+            value = getattr(self, f.name)
+            if isinstance(value, Result):
+                changes[f.name] = value._moved(shift)
+            elif isinstance(value, list) and value and isinstance(value[0], Result):
+                changes[f.name] = [each._moved(shift) for each in value]
+            elif f.name in ("point", "center", "viewpoint") and value is not None:
+                changes[f.name] = value + shift
+        return dataclasses.replace(self, **changes)
+
+
+def _shown() -> Any:
+    return dataclasses.field(metadata={"shown": True})
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class ReflectionPlane(Result):
+    """A plane of reflection: normal . x = offset."""
+
+    normal: "Doubles" = _shown()
+    """(3,) unit."""
+    offset: float = _shown()
+    """normal . x of points x in the plane, input units."""
+
+    def __init__(self, normal: "ArrayLike", offset: float) -> None:
+        """normal: (3,), finite, not zero; it is normalized, and the offset divided by its length."""
+        import numpy as np
+
+        n = np.array(normal, dtype=float)
+        if n.shape != (3,) or not np.isfinite(n).all() or not n.any():
+            raise ValueError(f"normal = {_text(n)}, must be (3,), finite and not zero")
+        length = float(np.linalg.norm(n))
+        if abs(length - 1.0) > 1e-12:
+            n, offset = n / length, offset / length
+        object.__setattr__(self, "normal", n)
+        object.__setattr__(self, "offset", float(offset))
+
+    @property
+    def coefficients(self) -> "Doubles":
+        """(4,) a, b, c, d of a x + b y + c z + d = 0."""
+        import numpy as np
+
+        return np.append(self.normal, -self.offset)
+
+    @property
+    def reflection(self) -> "Doubles":
+        """(4, 4) the reflection, x -> R x."""
+        import numpy as np
+
+        result = np.eye(4)
+        result[:3, :3] -= 2.0 * np.outer(self.normal, self.normal)
+        result[:3, 3] = 2.0 * self.offset * self.normal
+        return result
+
+    def distance(self, x: "ArrayLike") -> Any:
+        """Signed distance of one point, (3,), or of each row, (N, 3); input units."""
+        import numpy as np
+
+        result = np.asarray(x, dtype=float) @ self.normal - self.offset
+        return float(result) if result.ndim == 0 else result
+
+    def angle_to(self, other: "ReflectionPlane") -> float:
+        """Angle between two planes, in [0, pi/2] radians."""
+        import numpy as np
+
+        cross = float(np.linalg.norm(np.cross(self.normal, other.normal)))
+        return float(np.arctan2(cross, abs(float(self.normal @ other.normal))))
+
+    def reflect(self, points: "ArrayLike") -> "NDArray[Any]":
+        """The reflections of points, (3,) or (N, 3); floating-point types are kept."""
+        import numpy as np
+
+        x = np.asarray(points)
+        x = x if x.dtype.kind == "f" else x.astype(float)
+        exact = x.astype(float)
+        return (exact - 2.0 * (exact @ self.normal - self.offset)[..., None] * self.normal).astype(x.dtype)
+
+    def pairs(self, points: Any, *, max_distance: float = 0.0) -> Tuple["NDArray[np.int64]", "Doubles"]:
+        """The counterpart of each point of a cloud: the point closest to its reflection.
+
+        points: (N, 3), or an object of Open3D or trimesh. max_distance: between a reflection and its counterpart, input
+        units; 0: 1 % of the diagonal of the bounding box.
+        Returns (index, distance), each (N,): the row of the counterpart and its distance from the reflection; -1 and
+        infinity where there is none, as on the unseen side of a scan.
+        """
+        import numpy as np
+
+        from . import _pcl_symmetry as core
+        from .functions import prepare
+
+        array, shift = prepare("points", points)
+        plane = self if shift is None else self._moved(-shift)
+        used = np.isfinite(array).all(axis=1)
+        if max_distance < 0 or not np.isfinite(max_distance):
+            raise ValueError(f"max_distance = {max_distance}, must be >= 0")
+        index, distance = np.full(len(array), -1), np.full(len(array), np.inf)
+        if not used.any():
+            return index, distance
+        kept = np.ascontiguousarray(array[used], dtype=np.float32)
+        limit = max_distance or 0.01 * float(np.linalg.norm(np.ptp(kept.astype(float), axis=0)))
+        closest, length = core.closest(kept, plane.reflect(kept))
+        near = length <= limit
+        rows = np.flatnonzero(used)
+        index[rows[near]], distance[rows[near]] = rows[closest[near]], length[near]
+        return index, distance
+
+    def _moved(self: Self, shift: "Doubles") -> Self:
+        return dataclasses.replace(super()._moved(shift), offset=self.offset + float(self.normal @ shift))  # type: ignore
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Plane(ReflectionPlane):
+    """A local maximum of the transform, refined and judged."""
+
+    normal: "Doubles" = dataclasses.field(metadata={"shown": True})
+    offset: float = dataclasses.field(metadata={"shown": True})
+    kind: str = _shown()
+    """symmetry, possible, approximate or local."""
+    confidence: float = _shown()
+    """Probability that it is a symmetry, in [0, 1]."""
+    share: float = _shown()
+    """Estimated share of the surface that is mapped to within the tolerance, in [0, 1]."""
+    share_interval: Tuple[float, float]
+    """Limits of that share for the whole object, 95 of 100 cases."""
+    score: float
+    """D of equation 2, in [0, 1]."""
+    support: float
+    """Share of the surface seen that is mapped onto it, in [0, 1]."""
+    deviation: float
+    """97 % of the reflected points stay within this distance of the surface, input units."""
+    seen: float
+    """Share of the points whose reflection the cloud could show."""
+    residual: float
+    """Root mean square distance of reflected points, input units."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Axis(Result):
+    """All planes through a line are symmetries: a body of revolution."""
+
+    point: "Doubles" = _shown()
+    """(3,) of the axis."""
+    direction: "Doubles" = _shown()
+    """(3,) unit."""
+    confidence: float = _shown()
+    """As that of Plane."""
+    score: float
+    """As that of Plane."""
+    support: float
+    """As that of Plane."""
+
+    def rotate(self, points: "ArrayLike", angle: float) -> "NDArray[Any]":
+        """Points, (3,) or (N, 3), rotated about the axis by an angle in radians; floating-point types are kept."""
+        import numpy as np
+
+        x = np.asarray(points)
+        x = x if x.dtype.kind == "f" else x.astype(float)
+        k, y = self.direction, x.astype(float) - self.point
+        along = (y @ k)[..., None] * k
+        return (self.point + along + np.cos(angle) * (y - along) + np.sin(angle) * np.cross(k, y)).astype(x.dtype)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Turn(Result):
+    """Rotations about a line map what a scanner saw onto itself or to unseen places."""
+
+    point: "Doubles" = _shown()
+    """(3,) of the axis."""
+    direction: "Doubles" = _shown()
+    """(3,) unit."""
+    fold: int = _shown()
+    """Order of the rotations; 0: by any angle."""
+    confidence: float = _shown()
+    """Probability that these rotations are symmetries of the whole object."""
+    support: float
+    """Share of the points that the best rotation maps onto the surface."""
+    off: float
+    """Share that the worst rotation maps to where the scanner saw nothing."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Center(Result):
+    """All planes through a point are symmetries: a sphere."""
+
+    point: "Doubles" = _shown()
+    """(3,)"""
+    confidence: float = _shown()
+    """As that of Plane."""
+    score: float
+    """As that of Plane."""
+    support: float
+    """As that of Plane."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class View(Result):
+    """A direction to look at an object from."""
+
+    direction: "Doubles" = _shown()
+    """(3,) unit, from the object to the camera."""
+    score: float = _shown()
+    """S of Section 5.4, >= 0."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Planes(Result):
+    """What planes() found; behaves as the list of its planes."""
+
+    planes: List[Plane]
+    """Symmetries, possible, approximate, local; each best first."""
+    axes: List[Axis]
+    """Best first."""
+    centers: List[Center]
+    turns: List[Turn]
+    """Of scans from one side, most confident first."""
+    best: Optional[Plane]
+    """Where there is no symmetry and no possible one: the plane that comes closest; else None."""
+    flat: Optional["Doubles"]
+    """(4,) plane that all points of a sheet or a disc lie near; None: the cloud is not flat."""
+    tolerance: float
+    """That was decided at, input units."""
+    reason: str
+    """Why there is no answer; empty where the search ran."""
+    viewpoint: Optional["Doubles"]
+    """(3,) where the scanner stood; None: seen from all sides."""
+    evidence: Optional["NDArray[Any]"]
+    """With planes(evidence=True), what the decisions were taken from: one row a candidate."""
+    turn_evidence: Optional["NDArray[Any]"]
+    """The same for the rotations of scans."""
+    _support: List["NDArray[np.float32]"]
+    _rows: "NDArray[np.int64]"
+    _num_rows: int
+
+    def point_support(self, index: int) -> "NDArray[np.float32]":
+        """(N,) support for a plane at each row of the input, in [0, 1]; NaN for rows that were not used."""
+        import numpy as np
+
+        if not -len(self.planes) <= index < len(self.planes):
+            raise IndexError(f"index = {index}, must be that of one of {len(self.planes)} planes")
+        values = self._support[index]
+        result = np.full(self._num_rows, np.nan, np.float32)
+        if len(self._rows):
+            result[self._rows[: len(values)]] = values
+        else:
+            result[: len(values)] = values
+        return result
+
+    def plot(self, points: "ArrayLike", axes: Any = None) -> Any:
+        """Draws points, planes and axes with matplotlib into axes of projection 3d, by default new ones; returns them."""
+        from .plots import plot_planes
+
+        return plot_planes(self, points, axes)
+
+    def __len__(self) -> int:
+        return len(self.planes)
+
+    def __iter__(self) -> Iterator[Plane]:
+        return iter(self.planes)
+
+    @overload
+    def __getitem__(self, index: int) -> Plane: ...
+    @overload
+    def __getitem__(self, index: slice) -> List[Plane]: ...
+    def __getitem__(self, index: Union[int, slice]) -> Union[Plane, List[Plane]]:
+        return self.planes[index]
+
+    def __repr__(self) -> str:
+        return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n])" if self.planes else "])")
+
+    def _moved(self, shift: "Doubles") -> "Planes":
+        changes: Dict[str, Any] = {}
+        if self.flat is not None:
+            changes["flat"] = self.flat.copy()
+            changes["flat"][3] -= self.flat[:3] @ shift
+        for name in ("evidence", "turn_evidence"):
+            rows = getattr(self, name)
+            if rows is not None:
+                rows = changes[name] = rows.copy()
+                if "coefficients" in rows.dtype.names:
+                    rows["coefficients"][:, 3] -= rows["coefficients"][:, :3] @ shift
+                if "point" in rows.dtype.names:
+                    rows["point"] += shift
+        return dataclasses.replace(super()._moved(shift), **changes)
+
+
+def _conjugated(motions: "Doubles", shift: "Doubles") -> "Doubles":
+    """Motions (..., 4, 4) of a frame whose origin lies at -shift."""
+    moved = motions.copy()
+    moved[..., :3, 3] += shift - motions[..., :3, :3] @ shift
+    return moved
+
+
+def _from_moved(transforms: "Doubles", shift: "Doubles") -> "Doubles":
+    """Transforms (..., 4, 4) of points x in place of x - shift."""
+    moved = transforms.copy()
+    moved[..., :3, 3] -= transforms[..., :3, :3] @ shift
+    return moved
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ProbableFrame(Result):
+    """A frame that may be the shape's own."""
+
+    center: "Doubles" = _shown()
+    """(3,) center of symmetry."""
+    axes: "Doubles" = _shown()
+    """(3, 3) axes in columns, orthonormal, right-handed."""
+    probability: float = _shown()
+    """That the axes are the shape's own, in any order and sign, at any angle about an axis of revolution."""
+    revolution_axis: int
+    """As of Frame."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Frame(Result):
+    """Canonical frame of a shape (Section 5.1): center and principal symmetry axes."""
+
+    center: "Doubles" = _shown()
+    """(3,) center of symmetry."""
+    axes: "Doubles" = _shown()
+    """(3, 3) axes in columns, orthonormal, right-handed, best first."""
+    revolution_axis: int = _shown()
+    """Column that is an axis of revolution; -1: none, 3: every line through the center."""
+    scores: "Doubles"
+    """(3,) score of the plane across each axis, in [0, 1]."""
+    transform: "Doubles"
+    """(4, 4) from the input to the canonical frame."""
+    equivalent: "Doubles"
+    """(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first."""
+    turns: List[Turn]
+    """Of scans from one side, most confident first."""
+    probable: List[ProbableFrame]
+    """This frame, then others by falling probability."""
+    evidence: Optional["NDArray[Any]"]
+    """With frame(evidence=True), what the probabilities were taken from: one row for each of `probable`."""
+
+    def plot(self, points: "ArrayLike", axes: Any = None) -> Any:
+        """Draws points and axes with matplotlib into axes of projection 3d, by default new ones; returns them."""
+        from .plots import plot_frame
+
+        return plot_frame(self, points, axes)
+
+    def _moved(self, shift: "Doubles") -> "Frame":
+        transforms = {name: _from_moved(getattr(self, name), shift) for name in ("transform", "equivalent")}
+        return dataclasses.replace(super()._moved(shift), **transforms)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rotations(Result):
+    """The rotations that map a shape onto itself."""
+
+    name: str = _shown()
+    """After Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3."""
+    center: "Doubles" = _shown()
+    """(3,) point that all axes pass through."""
+    support: float = _shown()
+    """Share of the surface that is mapped onto the surface."""
+    confidence: float = _shown()
+    """Probability that the whole surface, not its points alone, keeps to the limits."""
+    fold: int
+    """Order of the main axis; 0 where it is one of revolution."""
+    discrete: "Doubles"
+    """(K, 4, 4) motions of the input frame, without the identity."""
+    continuous: List[Tuple["Doubles", "Doubles"]]
+    """(point, direction) of axes of revolution."""
+    tolerance: float
+    """That was decided at, input units."""
+
+    def equivalents(self, pose: "ArrayLike", step: float = 0.5) -> "Doubles":
+        """(K, 4, 4) the poses that look like one, it first.
+
+        pose: (4, 4) from the input frame to any other, as that of a camera. step: radians between rotations about an axis
+        of revolution.
+        """
+        result: "Doubles" = self._group().equivalents(pose, step)
+        return result
+
+    def canonical(self, pose: "ArrayLike") -> "Doubles":
+        """(4, 4) one pose for all that look the same: the one that is rotated least."""
+        result: "Doubles" = self._group().canonical(pose)
+        return result
+
+    def closest_to(self, pose: "ArrayLike", previous: "ArrayLike") -> "Doubles":
+        """(4, 4) the pose that looks like the first and is rotated least from the second: what continues a track."""
+        result: "Doubles" = self._group().closest_to(pose, previous)
+        return result
+
+    def mssd(self, estimate: "ArrayLike", truth: "ArrayLike", points: "ArrayLike") -> float:
+        """Maximum surface distance of two poses under the symmetries (MSSD of the BOP benchmark), input units.
+
+        points: (N, 3), such as the vertices of the model.
+        """
+        return float(self._group().mssd(estimate, truth, points))
+
+    def _group(self) -> Any:
+        from . import _pcl_symmetry as core
+
+        return core.rotations_of(self.discrete, self.continuous)
+
+    def _moved(self, shift: "Doubles") -> "Rotations":
+        continuous = [(point + shift, direction) for point, direction in self.continuous]
+        changes: Dict[str, Any] = dict(discrete=_conjugated(self.discrete, shift), continuous=continuous)
+        return dataclasses.replace(super()._moved(shift), **changes)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Map(Result):
+    """The transform D(f, gamma) of equation 2 on a grid of planes."""
+
+    sigma: float = _shown()
+    """Width of the Gaussian, input units."""
+    center: "Doubles" = _shown()
+    """(3,) that r is measured from."""
+    radius: float = _shown()
+    """Greatest |r|, input units."""
+    values: "NDArray[np.float32]"
+    """(theta, phi, r) values of D, 1 for a perfect symmetry."""
+
+    def plane(self, theta: int, phi: int, r: int) -> "Doubles":
+        """(4,) coefficients a, b, c, d of the plane at the center of a bin."""
+        import numpy as np
+
+        shape = self.values.shape
+        if not all(0 <= i < n for i, n in zip((theta, phi, r), shape)):
+            raise IndexError(f"bin = {(theta, phi, r)}, must lie in a map of {shape}")
+        t, p = (theta + 0.5) * np.pi / 2 / shape[0], (phi + 0.5) * 2 * np.pi / shape[1]
+        normal = np.array([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)])
+        offset = (r + 0.5) * 2 * self.radius / shape[2] - self.radius
+        return np.append(normal, -(offset + normal @ self.center))
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the greatest value of each direction of normals with matplotlib, by default into new axes; returns them."""
+        from .plots import plot_map
+
+        return plot_map(self, axes)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PoseScore(Result):
+    """What two clouds say about a pose."""
+
+    support: float = _shown()
+    """Share of the source that lies on the target, in [0, 1]."""
+    conflict: float = _shown()
+    """Share of either that lies in space seen to be empty, in [0, 2]."""
+    merit: float = _shown()
+    """support - conflict / 2; a perfect pose has 1."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Registration(Result):
+    """The pose of one cloud relative to another."""
+
+    transform: "Doubles" = _shown()
+    """(4, 4) from the frame of the source to that of the target."""
+    score: PoseScore = _shown()
+    """Of the transform."""
+    converged: bool = _shown()
+    """Whether a pose was found that the clouds bear out."""
+    poses: List[Tuple["Doubles", PoseScore]]
+    """(transform, score), best first: poses that symmetry makes equal have like merits."""
+    covariance: Optional["Doubles"]
+    """(6, 6) of the small rotation, radians, and translation, input units, by which noise and sampling put the pose off,
+    frame of the target; None where no pose was found."""
+
+    @property
+    def merit(self) -> float:
+        """That of the score."""
+        return self.score.merit
+
+    def _moved_between(self, source: "Doubles", target: "Doubles") -> "Registration":
+        import numpy as np
+
+        def moved(transform: "Doubles") -> "Doubles":
+            result = _from_moved(transform, source)
+            result[:3, 3] += target
+            return result
+
+        covariance = self.covariance
+        if covariance is not None:
+            x, y, z = target
+            step = np.eye(6)
+            step[3:, :3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
+            covariance = step @ covariance @ step.T
+        poses = [(moved(pose), score) for pose, score in self.poses]
+        return dataclasses.replace(self, transform=moved(self.transform), poses=poses, covariance=covariance)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Match(Result):
+    """A model that is like a shape."""
+
+    name: str = _shown()
+    distance: float = _shown()
+    """1 between shapes as far apart as from what is most like them."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Recognized(Result):
+    """A model that a scan shows."""
+
+    name: str = _shown()
+    confidence: float = _shown()
+    """Probability that the scan shows this model."""
+    transform: "Doubles" = _shown()
+    """(4, 4) from the frame of the scan to that of the model."""
+    score: PoseScore
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BuildReport(Result):
+    """What Database.build() did."""
+
+    num_added: int = _shown()
+    """Models that were stored."""
+    failures: List[Tuple[str, str]] = _shown()
+    """(name, reason), in the order of the models."""
+    cancelled: bool = _shown()
+    """The progress function returned False."""
