@@ -39,6 +39,8 @@ struct DatabaseOptions {
   /// for milliseconds at a time; half and twice are as good.
   double lock_timeout = 30.0;
   std::string unit;  ///< of the coordinates of all models, such as "m"; stored when the database is made
+  /// build() fits no compact forms: for a part of a database, as merge() fits those of the whole.
+  bool is_part = false;
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -183,15 +185,19 @@ public:
   /// \throws pcl::BadArgumentException where there is no such model.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void remove(const std::string& name);
-  /// Stores many models, each as soon as it is described, and fits the compact forms as save() does. Models that cannot
-  /// be used are reported, and the others stored. An interrupted build goes on where it stopped: a model of the same
-  /// name and the same source checksum is kept.
+  /// Stores many models, each as soon as it is described, and fits the compact forms as save() does, unless
+  /// DatabaseOptions::is_part. Models that cannot be used are reported, and the others stored. An interrupted build
+  /// goes on where it stopped: a model of the same name and the same source checksum is kept.
   /// \throws pcl::IOException naming file and reason; what was stored before stays stored.
   BuildReport build(const std::vector<ModelInput>& models, const BuildProgress& progress = {});
-  /// Adds the models of another database, or those of a folder that version 0.1 of this library wrote; models of the
-  /// same name are replaced. The folder's clouds are described again.
-  /// \throws pcl::IOException naming file and reason; what was stored before stays stored.
-  BuildReport importFrom(const std::string& path, const BuildProgress& progress = {});
+  /// Adds the models of other databases, such as parts that several machines built, and fits the compact forms as
+  /// save() does. Models are copied, not described again, in one change: all of them or none. The result answers like a
+  /// database built of all models at once. A database that has no file yet takes the unit of the others.
+  /// \param progress where it returns false, nothing is changed.
+  /// \return the number of models that were added.
+  /// \throws pcl::IOException naming file and reason: missing, damaged, of another version or unit, or with a model whose
+  /// name is that of another one; this database is unchanged then.
+  std::size_t merge(const std::vector<std::string>& files, const BuildProgress& progress = {});
   /// Fits the compact forms anew if they have less than half of the references that DatabaseOptions::num_references
   /// asks for, and stores those that are missing. Without it, each program that asks has to do so for itself.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.

@@ -1,14 +1,13 @@
 #include <atomic>
-#include <filesystem>
 #include <map>
+#include <mutex>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "core/base/parallel.h"
 #include "pcl_symmetry/symmetry_database.h"
 #include "recognition/database_parts.h"
-#include "recognition/io_error.h"
-#include "recognition/old_folder.h"
 
 namespace pcl_symmetry {
 
@@ -98,44 +97,21 @@ private:
   std::atomic<std::size_t> num_done_{0};
 };
 
-/// Copies the models of another database as they are stored there.
-BuildReport importStore(DatabaseParts& parts, const std::string& path, const BuildProgress& progress) {
-  detail::ModelStore other(path, parts.options.lock_timeout, "");
-  BuildReport report;
-  const std::vector<detail::StoredModel>& models = other.models();
-  for (std::size_t i = 0; i < models.size() && !report.cancelled; ++i) {
-    const detail::StoredModel& model = models[i];
-    try {
-      const ModelInfo info = other.find(model.name).value().second;
-      detail::PackedModel packed{other.part(detail::ModelPart::Cloud, model),
-                                 other.part(detail::ModelPart::Signatures, model),
-                                 other.part(detail::ModelPart::Views, model), info.num_points};
-      const Eigen::MatrixXf signatures = detail::unpackedSignatures(packed.signatures);
-      parts.add(info, packed, signatures);
-      ++report.num_added;
-    } catch (const pcl::IOException& error) {
-      if (std::string(error.what()).rfind(path + ": ", 0) != 0) throw;  // the database that is written
-      report.failures.emplace_back(model.name, error.what());
-    }
-    report.cancelled = progress && !progress(static_cast<double>(i + 1) / static_cast<double>(models.size()));
-  }
-  return report;
-}
-
 }  // namespace
 
 BuildReport SymmetryDatabase::build(const std::vector<ModelInput>& models, const BuildProgress& progress) {
   BuildReport report = DatabaseBuild(*parts_, models, progress).run();
-  if (!report.cancelled) save();
+  if (!report.cancelled && !parts_->options.is_part) save();
   return report;
 }
 
-BuildReport SymmetryDatabase::importFrom(const std::string& path, const BuildProgress& progress) {
-  if (!std::filesystem::exists(path)) detail::failIO(path, "there is no such file or folder");
-  if (std::filesystem::is_directory(path)) return build(detail::modelsOfOldFolder(path), progress);
-  BuildReport report = detail::withBadArguments([&] { return importStore(*parts_, path, progress); });
-  if (!report.cancelled) save();
-  return report;
+std::size_t SymmetryDatabase::merge(const std::vector<std::string>& files, const BuildProgress& progress) {
+  const std::optional<std::size_t> num_added = detail::withBadArguments([&] {
+    const std::lock_guard<std::mutex> lock(parts_->mutex);
+    return parts_->store.merge(files, progress);
+  });
+  if (num_added) save();
+  return num_added.value_or(0);
 }
 
 }  // namespace pcl_symmetry

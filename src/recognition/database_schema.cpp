@@ -94,8 +94,7 @@ void createSchema(const SQLiteConnection& connection, const std::string& unit) {
 
 void refuseForeignFile(const std::string& file) {
   std::error_code error;
-  if (fs::is_directory(file, error))
-    failIO(file, "is a folder, must be a file; pcl_symmetry_database import reads databases that were folders");
+  if (fs::is_directory(file, error)) failIO(file, "is a folder, must be a file");
   if (!fs::is_regular_file(file, error)) failIO(file, "must be a file");
   std::ifstream stream(file, std::ios::binary);
   std::array<unsigned char, kHeaderSize> header{};

@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 #include "recognition/database_schema.h"
@@ -43,13 +45,38 @@ const char* tableOf(ModelPart part) {
   return part == ModelPart::Cloud ? "clouds" : part == ModelPart::Signatures ? "signatures" : "views";
 }
 
+/// \return the id of the new model.
+std::int64_t insertModel(const SQLiteConnection& connection, const ModelInfo& info, const PackedModel& model) {
+  // The id is known before the row is there, as the checksum holds it.
+  const std::int64_t id = connection.integer("SELECT seq FROM sqlite_sequence WHERE name = 'models'") + 1;
+  connection.prepare("INSERT INTO models VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+      .bind(1, id)
+      .bind(2, info.name)
+      .bind(3, info.time)
+      .bind(4, info.source.path)
+      .bind(5, info.source.checksum)
+      .bind(6, joinedTags(info.source.tags))
+      .bind(7, static_cast<std::int64_t>(info.num_points))
+      .bind(8, checksumOf(id, info))
+      .run();
+  for (const auto& [kind, data] :
+       {std::pair(ModelPart::Cloud, &model.cloud), std::pair(ModelPart::Signatures, &model.signatures),
+        std::pair(ModelPart::Views, &model.views)})
+    connection.prepare(std::string("INSERT INTO ") + tableOf(kind) + " VALUES (?, ?, ?)")
+        .bind(1, id)
+        .bindBlob(2, *data)
+        .bind(3, checksumOf(tableOf(kind), id, *data))
+        .run();
+  return id;
+}
+
 }  // namespace
 
 ModelStore::ModelStore(const std::string& file, double lock_timeout, const std::string& unit)
     : file_(file), unit_(unit), lock_timeout_(lock_timeout) {
   if (file_ == kNoFile) {
     connection_.emplace(file_, SQLiteAccess::Memory, lock_timeout_);
-    makeTables(*connection_);
+    makeTables(*connection_, {});
   } else {
     open();
   }
@@ -67,7 +94,7 @@ void ModelStore::open() {
 
 /// Makes an empty database under another name and then gives it its own: a file of that name is whole from the start,
 /// and one that another program made in the meantime is kept.
-void ModelStore::create() {
+void ModelStore::create(const Fill& fill) {
   std::error_code error;
   const fs::path folder = fs::absolute(file_).parent_path();
   if (!fs::is_directory(folder, error)) failIO(file_, "cannot be made: there is no folder " + folder.string());
@@ -79,26 +106,34 @@ void ModelStore::create() {
   std::string made = file_ + ".new-" + std::to_string(::getpid());
   while (fs::exists(made, error)) made += "_";
   try {
-    makeTables(SQLiteConnection(made, SQLiteAccess::Create, lock_timeout_));
+    makeTables(SQLiteConnection(made, SQLiteAccess::Create, lock_timeout_), fill);
     fs::create_hard_link(made, file_, error);
-    if (error && !fs::exists(file_, error)) fs::rename(made, file_);  // file systems without links
+    if (error && !fs::exists(file_, error))
+      fs::rename(made, file_);  // file systems without links
+    else if (error && fill)
+      failIO(made, "another program has made this file, try again");
   } catch (const fs::filesystem_error& reason) {
     fs::remove(made, error);
     failIO(file_, reason.code().message());
   } catch (const std::exception& reason) {
     for (const char* ending : {"", "-wal", "-shm", "-journal"}) fs::remove(made + ending, error);
     const std::string text = reason.what();
-    failIO(file_, text.rfind(made + ": ", 0) == 0 ? text.substr(made.size() + 2) : text);
+    if (text.rfind(made + ": ", 0) != 0) throw;
+    failIO(file_, text.substr(made.size() + 2));
   }
   fs::remove(made, error);
   open();
 }
 
-void ModelStore::makeTables(const SQLiteConnection& connection) const {
+/// The log comes last: without it each page of the contents is written once.
+void ModelStore::makeTables(const SQLiteConnection& connection, const Fill& fill) const {
+  {
+    SQLiteTransaction transaction(connection);
+    createSchema(connection, unit_);
+    if (fill) fill(connection);
+    transaction.commit();
+  }
   connection.run("PRAGMA journal_mode = WAL");
-  SQLiteTransaction transaction(connection);
-  createSchema(connection, unit_);
-  transaction.commit();
 }
 
 /// \return false where there is nothing to read.
@@ -239,35 +274,69 @@ void ModelStore::change(const Body& body) {
 
 std::int64_t ModelStore::add(const ModelInfo& info, const PackedModel& model, std::int64_t projection,
                              PackedForms forms) {
-  std::int64_t id = 0;
   change([&] {
     connection_->prepare("DELETE FROM models WHERE name = ?").bind(1, info.name).run();
-    // The id is known before the row is there, as the checksum holds it.
-    id = connection_->integer("SELECT seq FROM sqlite_sequence WHERE name = 'models'") + 1;
-    connection_->prepare("INSERT INTO models VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
-        .bind(1, id)
-        .bind(2, info.name)
-        .bind(3, info.time)
-        .bind(4, info.source.path)
-        .bind(5, info.source.checksum)
-        .bind(6, joinedTags(info.source.tags))
-        .bind(7, static_cast<std::int64_t>(info.num_points))
-        .bind(8, checksumOf(id, info))
-        .run();
-    for (const ModelPart kind : {ModelPart::Cloud, ModelPart::Signatures, ModelPart::Views}) {
-      const std::string& data = kind == ModelPart::Cloud        ? model.cloud
-                                : kind == ModelPart::Signatures ? model.signatures
-                                                                : model.views;
-      connection_->prepare(std::string("INSERT INTO ") + tableOf(kind) + " VALUES (?, ?, ?)")
-          .bind(1, id)
-          .bindBlob(2, data)
-          .bind(3, checksumOf(tableOf(kind), id, data))
-          .run();
-    }
-    forms.model = id;
+    forms.model = insertModel(*connection_, info, model);
     if (projection != 0) insertForms(projection, {forms});
   });
-  return id;
+  return forms.model;
+}
+
+/// \return the number of models.
+/// \throws where they cannot be put together, before anything is written.
+std::size_t ModelStore::checkBeforeMerge(const std::vector<std::string>& files) {
+  std::error_code error;
+  std::map<std::string, std::string> file_of_model;
+  refresh();
+  for (const StoredModel& model : models()) file_of_model[model.name] = file_;
+  const std::size_t num_before = file_of_model.size();
+  std::string unit = fact("unit");
+  std::string file_of_unit = exists() || !unit.empty() ? file_ : "";
+  for (const std::string& file : files) {
+    if (!fs::exists(file, error)) failIO(file, "there is no such file");
+    if (fs::equivalent(file, file_, error)) failIO(file, "is the database that others are merged into");
+    ModelStore other(file, lock_timeout_, "");
+    if (file_of_unit.empty()) {
+      file_of_unit = file;
+      unit = other.fact("unit");
+    }
+    if (other.fact("unit") != unit)
+      failIO(file, "unit = '" + other.fact("unit") + "', must be '" + unit + "' as in " + file_of_unit);
+    for (const StoredModel& model : other.models()) {
+      const auto [known, is_new] = file_of_model.emplace(model.name, file);
+      if (!is_new) failIO(file, "model '" + model.name + "' is also in " + known->second + ", names must differ");
+    }
+  }
+  unit_ = unit;
+  return file_of_model.size() - num_before;
+}
+
+std::optional<std::size_t> ModelStore::merge(const std::vector<std::string>& files, const BuildProgress& progress) {
+  struct Stopped : std::exception {};
+  const std::size_t num_models = checkBeforeMerge(files);
+  if (num_models == 0) return 0;
+  std::size_t num_done = 0;
+  const auto copy = [&](const SQLiteConnection& connection) {
+    for (const std::string& file : files) {
+      ModelStore other(file, lock_timeout_, "");
+      for (const StoredModel& model : other.models()) {
+        const ModelInfo info = other.find(model.name).value().second;
+        insertModel(connection, info,
+                    {other.part(ModelPart::Cloud, model), other.part(ModelPart::Signatures, model),
+                     other.part(ModelPart::Views, model), info.num_points});
+        if (progress && !progress(static_cast<double>(++num_done) / static_cast<double>(num_models))) throw Stopped();
+      }
+    }
+  };
+  try {
+    if (exists())
+      change([&] { copy(*connection_); });
+    else
+      create(copy);
+  } catch (const Stopped&) {
+    return std::nullopt;
+  }
+  return num_models;
 }
 
 bool ModelStore::remove(const std::string& name) {

@@ -88,6 +88,10 @@ public:
   bool remove(const std::string& name);
   /// Replaces the projection and all that was made with it. Models that are gone are passed over.
   void setProjection(const PackedProjection& projection, const std::vector<PackedForms>& forms);
+  /// Adds all models of other databases in one change, as they are stored there; forms and projections are not taken
+  /// over. Where there is no file yet, the new one takes their unit.
+  /// \return the number of models; none where the progress function says that it is enough, and then nothing is changed.
+  std::optional<std::size_t> merge(const std::vector<std::string>& files, const BuildProgress& progress);
   /// Adds forms that are missing. Nothing happens where the projection is no longer the stored one.
   void addForms(std::int64_t projection, const std::vector<PackedForms>& forms);
 
@@ -98,11 +102,14 @@ private:
   bool startReading();
   void endReading();
   void open();
-  void create();
-  void makeTables(const SQLiteConnection& connection) const;
+  using Fill = std::function<void(const SQLiteConnection&)>;
+
+  void create(const Fill& fill = {});
+  void makeTables(const SQLiteConnection& connection, const Fill& fill) const;
   void checkSchema() const;
   template <typename Body>
   void change(const Body& body);
+  std::size_t checkBeforeMerge(const std::vector<std::string>& files);
   void each(const std::string& table, const std::string& what, std::int64_t projection, const EachBytes& take);
   void insertForms(std::int64_t projection, const std::vector<PackedForms>& forms);
 

@@ -14,6 +14,7 @@
 #include "pcl/error_message.h"
 #include "pcl/kinds.h"
 #include "recognition/model_store.h"
+#include "recognition/sqlite_connection.h"
 
 namespace pcl_symmetry {
 
@@ -374,29 +375,42 @@ TEST_F(SymmetryDatabaseTest, BuildsReportFailuresAndGoOnWhereTheyStopped) {
   EXPECT_EQ(database.names(), (std::vector<std::string>{"beam", "cube", "plate", "post"}));
 }
 
-TEST_F(SymmetryDatabaseTest, TakesOverOtherDatabases) {
+TEST_F(SymmetryDatabaseTest, MergesOtherDatabasesWholeOrNotAtAll) {
   fillQuickly();
-  SymmetryDatabase database(":memory:", quick());
-  database.add("post", rodOnBox(kKinds[3].half, kKinds[3].rod, kHere, 1));
-  EXPECT_EQ(database.importFrom(file_).num_added, 2u);
+  const Cloud rod = rodOnBox(kKinds[3].half, kKinds[3].rod, kHere, 1);
+  const std::string damaged = folder_ + "/damaged.db", same = folder_ + "/same.db";
+  {
+    SymmetryDatabase part(damaged, quick());
+    part.add("first", cube());
+    part.add("second", rod);
+    SymmetryDatabase(same, quick()).add("post", cube());
+  }
+  detail::SQLiteConnection(damaged, detail::SQLiteAccess::Change, 1.0)
+      .run("UPDATE views SET data = zeroblob(100) WHERE model = 2");
+  SymmetryDatabase database(folder_ + "/merged.db", quick());
+  EXPECT_EQ(ioMessageOf([&] {
+              database.merge({file_, damaged});
+            }),
+            damaged + ": the views of model 'second' are damaged");
+  EXPECT_FALSE(fs::exists(folder_ + "/merged.db")) << "no file is left of a merge that failed";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 3) << "nor another one";
+  EXPECT_EQ(database.merge({file_}, [](double) { return false; }), 0u);
+  EXPECT_EQ(database.size(), 0u);
+  database.add("post", rod);
+  EXPECT_EQ(ioMessageOf([&] {
+              database.merge({file_, damaged});
+            }),
+            damaged + ": the views of model 'second' are damaged");
+  EXPECT_EQ(ioMessageOf([&] {
+              database.merge({file_, same});
+            }),
+            same + ": model 'post' is also in " + folder_ + "/merged.db, names must differ");
+  EXPECT_EQ(ioMessageOf([&] { database.merge({folder_ + "/merged.db"}); }),
+            folder_ + "/merged.db: is the database that others are merged into");
+  EXPECT_EQ(database.names(), std::vector<std::string>{"post"}) << "all or nothing";
+  EXPECT_EQ(database.merge({file_}), 2u);
   EXPECT_EQ(database.match(cube(), 5).size(), 3u);
-  // A folder of version 0.1.
-  const std::string folder = folder_ + "/old";
-  fs::create_directories(folder);
-  std::ofstream(folder + "/manifest.txt") << "pcl_symmetry database 2\n4 2 3_all 2\nold 1_old\ngone 2_gone\n";
-  const Cloud rod = rodOnBox({0.1, 0.1, 2.0}, 0.5, kHere, 3);
-  std::ofstream cloud(folder + "/1_old.pcd", std::ios::binary);
-  cloud << "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << rod.size()
-        << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << rod.size() << "\nDATA binary\n";
-  for (const auto& point : rod) cloud.write(reinterpret_cast<const char*>(point.data), 3 * sizeof(float));
-  cloud.close();
-  const BuildReport report = database.importFrom(folder);
-  EXPECT_EQ(report.num_added, 1u);
-  ASSERT_EQ(report.failures.size(), 1u);
-  EXPECT_EQ(report.failures[0].first, "gone");
-  EXPECT_EQ(database.match(rod, 1).at(0).name, "old");
-  EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase{folder}; }),
-            folder + ": is a folder, must be a file; pcl_symmetry_database import reads databases that were folders");
+  EXPECT_TRUE(SymmetryDatabase::check(folder_ + "/merged.db").empty());
 }
 
 TEST_F(SymmetryDatabaseTest, TakesAllPointTypes) {
@@ -486,7 +500,7 @@ TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
   EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "min_confidence = 1.5, must be in [0, 1]");
   EXPECT_EQ(test::messageOf([&] { database.match(cube(), -1); }), "num_nearest = -1, must be >= 0");
   EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase::check(file_); }), file_ + ": there is no such file");
-  EXPECT_EQ(ioMessageOf([&] { database.importFrom(folder_ + "/x"); }), folder_ + "/x: there is no such file or folder");
+  EXPECT_EQ(ioMessageOf([&] { database.merge({folder_ + "/x"}); }), folder_ + "/x: there is no such file");
 }
 
 }  // namespace

@@ -357,6 +357,33 @@ class WithPCL(unittest.TestCase):
         for size in (4, 20, 50):
             self.assertFalse(pcl_symmetry.register(target[:: len(target) // size][:size], target).converged, size)
 
+    def test_parts_become_one_database(self):
+        models = {"box": box(), "lamp": lamp(), "plate": box((1.0, 0.9, 0.1))}
+        with tempfile.TemporaryDirectory() as folder:
+            parts = [Path(folder) / f"{name}.db" for name in models]
+            for part, (name, points) in zip(parts, models.items()):
+                pcl_symmetry.Database(part, create=True, unit="m").add(name, points)
+            merged, whole = pcl_symmetry.Database(Path(folder) / "merged.db", create=True), pcl_symmetry.Database(":memory:", unit="m")
+            self.assertEqual(merged.merge(parts), 3)
+            whole.build(models)
+            for points in models.values():
+                found = [[(m.name, m.distance) for m in each.match(points, viewpoint=None)] for each in (merged, whole)]
+                self.assertEqual(*found)
+            with self.assertRaisesRegex(OSError, "box.db: model 'box' is also in .*merged.db, names must differ"):
+                merged.merge(parts[:1])
+            with self.assertRaisesRegex(OSError, "unit = 'm', must be 'mm' as in"):
+                pcl_symmetry.Database(":memory:", unit="mm").merge(parts)
+            self.assertEqual(len(merged), 3)
+
+    def test_members_have_stubs_and_words(self):
+        stub = Path(pcl_symmetry.__file__).with_suffix(".pyi").read_text()
+        for name in ("BuildReport", "Database", "Match", "PoseScore", "Recognized", "Registration", "register"):
+            self.assertRegex(stub, rf"(class|def) {name}\b")
+            self.assertTrue(getattr(pcl_symmetry, name).__doc__)
+        with self.assertRaises(AttributeError):
+            pcl_symmetry.nothing
+
+
 
 class OtherObjects(unittest.TestCase):
     def test_lists_and_objects_like_arrays_pass(self):
