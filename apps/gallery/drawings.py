@@ -246,7 +246,7 @@ def failure_name(out):
     """Seen from the side without a handle, a mug is a cup."""
     sheet = Sheet(1, 2, (-1, 0.7, 0.8))
     with tempfile.TemporaryDirectory() as folder:
-        database = pcl_symmetry.Database(f"{folder}/models.db")
+        database = pcl_symmetry.Database(f"{folder}/models.db", create=True)
         database.add("mug", sampled(mug()))
         database.add("cup", sampled(mug(0.01, 0.01)))
         for side in (1, -1):

@@ -9,16 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "command_line/input_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
 #include "io/json_values.h"
-#include "common/processes/shared_work.h"
 #include "io/shape_output.h"
 #include "tools/database_listing.h"
 #include "tools/model_files.h"
-#include "tools/shared_build.h"
 
 namespace {
 
@@ -30,6 +29,7 @@ struct DatabaseToolOptions {
   std::string command, file, names = "file";
   std::vector<std::string> arguments;
   std::optional<std::string> csv, tag, unit;
+  bool is_part = false;
   CommonOptions common;
 
   DatabaseToolOptions() { common.mesh_points = kDatabaseMeshPoints; }
@@ -41,14 +41,15 @@ CommandLine commandLine(DatabaseToolOptions& options) {
       "Keeps models in a file to be found by their symmetry. Commands: build or add (files, folders, patterns, @LISTS; "
       "goes on where it was interrupted: files that are stored and unchanged are kept), remove (names), list, info "
       "(names, or none), check (is anything damaged?), export (a folder, and names or none: clouds as PCD files), "
-      "import (other databases, or folders of version 0.1), rebuild (after many changes).",
+      "merge (other databases, or @LISTS of them; names of models must differ), rebuild (after many changes).",
       "pcl_symmetry_database build models.db meshes/*.off");
-  line.positional("command", options.command, "build, add, remove, list, info, check, export, import or rebuild")
+  line.positional("command", options.command, "build, add, remove, list, info, check, export, merge or rebuild")
       .positionals("database", options.arguments, "the database, and what the command takes behind it")
       .choice("names", options.names, {"file", "path"},
               "models of folders are named by the file without its ending, or by its path in the folder")
       .text("tag", "WORD", options.tag, "stored with the models of build and add, such as their class")
       .text("unit", "WORD", options.unit, "unit of the coordinates, such as m; stored with a new database")
+      .flag("part", options.is_part, "build and add: fit nothing to the models, as merge fits the whole")
       .text("csv", "FILE", options.csv, "list and info: a row for each model")
       .common(options.common, kMeshPoints | kJson | kThreads | kQuiet);
   return line;
@@ -56,8 +57,7 @@ CommandLine commandLine(DatabaseToolOptions& options) {
 
 class DatabaseTool {
 public:
-  DatabaseTool(const DatabaseToolOptions& options, SharedWork& processes)
-      : options_(options), processes_(processes), console_(options.common.quiet || !processes.isFirst()) {}
+  explicit DatabaseTool(const DatabaseToolOptions& options) : options_(options), console_(options.common.quiet) {}
 
   /// \return the exit code.
   int run() {
@@ -65,11 +65,12 @@ public:
     DatabaseOptions database_options;
     database_options.num_threads = options_.common.threads;
     database_options.unit = options_.unit.value_or("");
-    const bool makes_file = isBuild() || options_.command == "import";
+    database_options.is_part = options_.is_part;
+    const bool makes_file = isBuild() || options_.command == "merge";
     if (!makes_file && !fs::exists(options_.file)) throw InputError(options_.file + ": there is no such file");
-    if (isBuild()) return build(database_options);
     SymmetryDatabase database(options_.file, database_options);
-    if (options_.command == "import") return import(database);
+    if (isBuild()) return build(database);
+    if (options_.command == "merge") return merge(database);
     if (options_.command == "export") return exportClouds(database);
     if (options_.command == "list" || options_.command == "info") return show(database);
     change(database);
@@ -86,34 +87,28 @@ private:
                                          : name + ": " + reason));
   }
 
-  int build(const DatabaseOptions& database_options) const {
+  int build(SymmetryDatabase& database) const {
     const std::vector<ModelFile> files = modelFiles(options_.arguments, options_.names == "path");
     std::vector<std::string> tags;
     if (options_.tag) tags.push_back(*options_.tag);
     Step step(console_, "Describing " + std::to_string(files.size()) + " models");
     const std::vector<ModelInput> inputs =
         modelInputs(files, options_.common.mesh_points, options_.common.librarySeed(), tags);
-    const auto progress = [&](double share) { return step.progress(share), true; };
-    const BuildReport report =
-        processes_.isShared()
-            ? buildShared(processes_, options_.file, database_options, inputs, StoreOrder::AsDescribed, progress)
-            : SymmetryDatabase(options_.file, database_options).build(inputs, progress);
-    if (!processes_.isFirst()) return 0;
+    const BuildReport report = database.build(inputs, [&](double share) { return step.progress(share), true; });
     step.done(std::to_string(report.num_added) + " models" +
               (report.num_kept > 0 ? ", " + std::to_string(report.num_kept) + " kept" : ""));
     return finish(report, {{"kept", report.num_kept}});
   }
 
-  int import(SymmetryDatabase& database) const {
-    BuildReport all;
-    for (const std::string& path : options_.arguments) {
-      Step step(console_, "Importing " + path);
-      const BuildReport report = database.importFrom(path, [&](double share) { return step.progress(share), true; });
-      step.done(std::to_string(report.num_added) + " models");
-      all.num_added += report.num_added;
-      all.failures.insert(all.failures.end(), report.failures.begin(), report.failures.end());
-    }
-    return finish(all, nlohmann::json::object());
+  int merge(SymmetryDatabase& database) const {
+    const InputFiles inputs = inputFiles(options_.arguments);
+    std::vector<std::string> files;
+    for (std::size_t i = 0; i < inputs.size(); ++i) files.push_back(inputs.path(i));
+    Step step(console_, "Merging " + std::to_string(files.size()) + " databases");
+    BuildReport report;
+    report.num_added = database.merge(files, [&](double share) { return step.progress(share), true; });
+    step.done(std::to_string(report.num_added) + " models");
+    return finish(report, nlohmann::json::object());
   }
 
   int finish(const BuildReport& report, nlohmann::json json) const {
@@ -199,36 +194,32 @@ private:
   }
 
   const DatabaseToolOptions& options_;
-  SharedWork& processes_;
   const Console console_;
 };
 
-int run(int argc, char** argv, SharedWork& processes) {
+int run(int argc, char** argv) {
   DatabaseToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   options.file = options.arguments.front();
   options.arguments.erase(options.arguments.begin());
   enum Takes { Nothing, Something, Anything };
-  const std::map<std::string, Takes> commands{{"build", Something},  {"add", Something},    {"remove", Something},
-                                              {"export", Something}, {"import", Something}, {"rebuild", Nothing},
-                                              {"check", Nothing},    {"list", Nothing},     {"info", Anything}};
+  const std::map<std::string, Takes> commands{{"build", Something},  {"add", Something},   {"remove", Something},
+                                              {"export", Something}, {"merge", Something}, {"rebuild", Nothing},
+                                              {"check", Nothing},    {"list", Nothing},    {"info", Anything}};
   const auto command = commands.find(options.command);
   if (command == commands.end())
     throw UsageError("command = " + options.command +
-                     ", must be build, add, remove, list, info, check, export, import or rebuild");
+                     ", must be build, add, remove, list, info, check, export, merge or rebuild");
   if (command->second == Something && options.arguments.empty())
     throw UsageError("missing argument behind the database");
   if (command->second == Nothing && !options.arguments.empty())
     throw UsageError("too many arguments behind the database");
-  if (processes.isShared() && options.command != "build" && options.command != "add")
-    throw UsageError("command = " + options.command + ", must be build or add where several processes share it");
-  return DatabaseTool(options, processes).run();
+  return DatabaseTool(options).run();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  SharedWork processes;
-  return processes.end(runTool(argc, argv, [&](int count, char** words) { return run(count, words, processes); }));
+  return runTool(argc, argv, run);
 }

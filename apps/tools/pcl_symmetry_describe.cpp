@@ -2,11 +2,13 @@
 #include <pcl/conversions.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/filesystem.hpp>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,10 +22,10 @@
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
 #include "io/file_text.h"
-#include "common/processes/shared_work.h"
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
+#include "core/base/parallel.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "core/matching/shape_description.h"
 #include "pcl_symmetry/point_types.h"
@@ -180,28 +182,26 @@ std::string describeFile(const std::string& input, const std::string& output, co
   return "";
 }
 
-int run(int argc, char** argv, SharedWork& processes) {
+int run(int argc, char** argv) {
   DescribeOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  const Console console(options.common.quiet || !processes.isFirst());
+  const Console console(options.common.quiet);
   std::vector<std::string> paths;
   const InputFiles inputs = inputFiles(options.inputs);
   for (std::size_t i = 0; i < inputs.size(); ++i) paths.push_back(inputs.path(i));
   options.inputs = std::move(paths);
   const std::vector<std::string> outputs = outputPaths(options);
   std::vector<std::string> failures(options.inputs.size());
-  std::size_t num_done = 0;
+  std::atomic<std::size_t> num_done{0};
+  std::mutex mutex;
   Step step(console, "Describing " + std::to_string(options.inputs.size()) + " shapes");
-  const WorkFunctions functions{
-      [&](std::size_t i) { return describeFile(options.inputs[i], outputs[i], options); },
-      [&](std::size_t i, const std::string& failure) {
-        failures[i] = failure;
-        step.progress(static_cast<double>(++num_done) / static_cast<double>(options.inputs.size()));
-      },
-      [&](std::size_t i) { return options.inputs[i] + ": the processes that described it died"; }};
-  processes.run(options.inputs.size(), functions, options.common.threads);
-  if (!processes.isFirst()) return 0;
+  parallelBlocks(options.inputs.size(), options.common.threads, [&](std::size_t i) {
+    failures[i] = describeFile(options.inputs[i], outputs[i], options);
+    const double share = static_cast<double>(++num_done) / static_cast<double>(options.inputs.size());
+    const std::lock_guard<std::mutex> lock(mutex);
+    step.progress(share);
+  });
   if (options.csv_path) writeTable(options, outputs, failures);
   failures.erase(std::remove(failures.begin(), failures.end(), ""), failures.end());
   step.done(std::to_string(options.inputs.size() - failures.size()) + " descriptors");
@@ -212,6 +212,5 @@ int run(int argc, char** argv, SharedWork& processes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  SharedWork processes;
-  return processes.end(runTool(argc, argv, [&](int count, char** words) { return run(count, words, processes); }));
+  return runTool(argc, argv, run);
 }

@@ -179,7 +179,7 @@ TEST_F(DatabaseTools, GoOnTakeFoldersAndTellWhatTheyHold) {
   ASSERT_EQ(pcl::io::loadPCDFile(folder_ / "clouds/more_b.pcd", cloud), 0);
   EXPECT_EQ(cloud.size(), 2000u);
   EXPECT_EQ(database("export " + models_ + " " + (folder_ / "clouds") + " a"), 1) << "files that are there stay";
-  ASSERT_EQ(database("import " + (folder_ / "other.db") + " " + models_), 0) << error_;
+  ASSERT_EQ(database("merge " + (folder_ / "other.db") + " " + models_), 0) << error_;
   ASSERT_EQ(database("check " + (folder_ / "other.db")), 0) << error_ << output_;
   ASSERT_EQ(database("build " + (folder_ / "third.db") + " @" + (folder_ / "list.txt") + " -points 2000"), 0) << error_;
   ASSERT_EQ(database("list " + (folder_ / "third.db")), 0) << error_;
@@ -201,33 +201,36 @@ std::map<std::string, std::vector<std::string>> contentsOf(const std::string& fi
   return contents;
 }
 
-TEST_F(DatabaseTools, ProcessesShareABuild) {
-#ifndef MPI_RUN
-  GTEST_SKIP() << "the tools are built without MPI";
-#else
-  const std::string processes = MPI_RUN " -n 2 --allow-run-as-root --oversubscribe --bind-to none ";
-  const std::string files = " " + (folder_ / "vase.off") + " " + (folder_ / "box.off") + " " +
-                            (folder_ / "nothing.off") + " " + (folder_ / "tetrahedron.off") + " -points 2000";
-  const std::string shared = folder_ / "shared.db", one = folder_ / "one.db";
-  ASSERT_EQ(database("build " + one + files), 1);
-  const std::string said = error_;
-  const auto build = [&](const std::string& more) {
-    return run(processes + "./pcl_symmetry_database build " + shared + files + more);
+TEST_F(DatabaseTools, MergesParts) {
+  const std::string vase = folder_ / "vase.off", box = folder_ / "box.off", other = folder_ / "tetrahedron.off";
+  const std::string one = folder_ / "one.db", merged = folder_ / "merged.db", flags = " -points 2000 -quiet";
+  const std::string first = folder_ / "first.db", second = folder_ / "second.db";
+  ASSERT_EQ(database("build " + one + " " + vase + " " + box + " " + other + flags), 0) << error_;
+  ASSERT_EQ(database("build " + first + " " + vase + " " + other + flags + " -part"), 0) << error_;
+  ASSERT_EQ(database("build " + second + " " + box + flags + " -part"), 0) << error_;
+  EXPECT_EQ(contentsOf(first)["projection"].front(), "0") << "parts are not fitted";
+  ASSERT_EQ(database("merge " + merged + " " + first + " " + second + " -json " + (folder_ / "merged.json")), 0)
+      << error_;
+  EXPECT_EQ(json::parse(contentOf(folder_ / "merged.json"))["added"], 3);
+  EXPECT_EQ(contentsOf(merged), contentsOf(one));
+  const auto answer = [&](const std::string& file) {
+    EXPECT_EQ(match(file + " " + box + " -points 2000 -json " + (folder_ / "answer.json")), 0) << error_;
+    return json::parse(contentOf(folder_ / "answer.json"))["matches"];
   };
-  EXPECT_NE(build(" -quiet"), 0) << "a file is missing";
-  EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
-  EXPECT_EQ(contentsOf(shared), contentsOf(one));
-  EXPECT_NE(build(" -json " + (folder_ / "again.json")), 0);
-  EXPECT_EQ(json::parse(contentOf(folder_ / "again.json"))["kept"], 3) << "it goes on where it was";
-  const std::string out = folder_ / "out", alone = folder_ / "alone";
-  const std::string inputs = " " + (folder_ / "vase.off") + " " + (folder_ / "box.off") + " -points 2000";
-  ASSERT_EQ(run(processes + "./pcl_symmetry_describe " + out + inputs), 0) << error_;
-  ASSERT_EQ(run("./pcl_symmetry_describe " + alone + inputs), 0) << error_;
-  for (const char* name : {"/vase.pcd", "/box.pcd"}) EXPECT_EQ(contentOf(out + name), contentOf(alone + name));
-  // Where the first process cannot go on, none waits.
-  EXPECT_NE(run(processes + "./pcl_symmetry_database build " + (folder_ / "no/folder.db") + files), 0);
-  EXPECT_NE(error_.find("there is no folder"), std::string::npos) << error_;
-#endif
+  EXPECT_EQ(answer(merged), answer(one));
+  // What cannot be merged changes nothing.
+  const std::string inches = folder_ / "inches.db", before = contentOf(merged);
+  ASSERT_EQ(database("build " + inches + " " + box + flags + " -unit inch -part"), 0) << error_;
+  EXPECT_EQ(database("merge " + merged + " " + second), 1);
+  EXPECT_NE(error_.find(second + ": model 'box' is also in " + merged + ", names must differ"), std::string::npos)
+      << error_;
+  EXPECT_EQ(database("merge " + merged + " " + inches), 1);
+  EXPECT_NE(error_.find(inches + ": unit = 'inch', must be '' as in " + merged), std::string::npos) << error_;
+  EXPECT_EQ(database("merge " + merged + " " + (folder_ / "none.db")), 1);
+  EXPECT_NE(error_.find("none.db: there is no such file"), std::string::npos) << error_;
+  EXPECT_EQ(contentOf(merged), before);
+  EXPECT_EQ(database("merge " + (folder_ / "new.db") + " " + first + " " + inches), 1);
+  EXPECT_FALSE(boost::filesystem::exists(folder_ / "new.db"));
 }
 
 }  // namespace

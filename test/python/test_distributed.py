@@ -1,0 +1,130 @@
+"""The example 13_distributed.py, whose workers and jobs die. TOOLS is the folder of the tools."""
+import itertools
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+try:
+    import dask.distributed  # noqa: F401
+    import psutil
+except ImportError:
+    print("skipped: there is no dask.distributed (python3-distributed)")
+    sys.exit(77)
+
+TOOLS = os.environ["TOOLS"]
+EXAMPLE = str(Path(__file__).parents[2] / "apps/examples/13_distributed.py")
+FACES = "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n"
+
+
+def tool(command, *arguments):
+    run = subprocess.run([f"{TOOLS}/pcl_symmetry_{command}", *map(str, arguments)], stdout=subprocess.PIPE, check=True)
+    return run.stdout.decode()
+
+
+def wait_for(condition, seconds=60):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    return condition()
+
+
+class Distributed(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.folder = Path(place.name)
+        self.models, self.database = self.folder / "models", self.folder / "models.db"
+        self.models.mkdir()
+        for i in range(24):  # boxes with a notch, no two of one shape
+            x, y, z = 1.0, 1.1 + 0.1 * (i % 6), 1.2 + 0.3 * (i // 6)
+            corners = "".join(f"{a * x} {b * y} {c * z}\n" for c, (a, b) in itertools.product((-1, 1), ((-1, -1), (1, -1), (1, 1), (-1, 1))))
+            (self.models / f"box_{i:02}.off").write_text(f"OFF\n8 6 0\n{corners}{FACES}")
+
+    def start(self, *arguments):
+        environment = dict(os.environ, PATH=f"{TOOLS}:{self.folder}:{os.environ['PATH']}")
+        return subprocess.Popen(
+            [sys.executable, "-B", EXAMPLE, str(self.models), str(self.database), "--workers", "2", "--models-per-part", "2", *arguments],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, start_new_session=True)
+
+    def parts(self):
+        return sorted(Path(f"{self.database}.parts").glob("*.db"))
+
+    def check_answers(self):
+        """The file is whole, and answers like one that was built in one go."""
+        alone = self.folder / "alone.db"
+        tool("database", "build", alone, self.models, "-quiet")
+        self.assertIn("no damage", subprocess.run([f"{TOOLS}/pcl_symmetry_database", "check", self.database],
+                                                  stderr=subprocess.STDOUT, stdout=subprocess.PIPE, text=True).stdout)
+        self.assertEqual(tool("database", "list", self.database), tool("database", "list", alone))
+        queries = [self.models / "box_03.off", self.models / "box_17.off"]
+        answers = [[tool("match", file, query, "-quiet", "-max", "30") for query in queries] for file in (self.database, alone)]
+        self.assertEqual(*answers)
+        self.assertFalse(Path(f"{self.database}.parts").exists())
+
+    def test_a_killed_worker_costs_nothing(self):
+        run = self.start()
+
+        def workers():
+            found = psutil.Process(run.pid).children()
+            return [each for each in found if each.children()]  # those that run the tool
+
+        self.assertTrue(wait_for(lambda: len(self.parts()) > 1 and workers() or run.poll() is not None))
+        self.assertIsNone(run.poll(), "it ended before a worker could be killed")
+        workers()[0].send_signal(signal.SIGKILL)
+        output, _ = run.communicate(timeout=100)
+        self.assertEqual(run.returncode, 0, output)
+        self.check_answers()
+
+    def test_an_interrupted_run_goes_on(self):
+        run = self.start()
+        self.assertTrue(wait_for(lambda: len(self.parts()) > 2 or run.poll() is not None))
+        self.assertIsNone(run.poll(), "it ended before it could be interrupted")
+        os.killpg(run.pid, signal.SIGKILL)
+        run.communicate()
+        num_parts = len(self.parts())
+        self.assertGreater(num_parts, 2)
+        (self.models / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n")
+        run = self.start()
+        output, _ = run.communicate(timeout=100)
+        self.assertIn(f"of {13 - num_parts} parts", output)
+        self.assertEqual(run.returncode, 1)
+        self.assertRegex(output, r"left out: .*broken.off: ")
+        (self.models / "broken.off").unlink()
+        self.check_answers()
+
+    def test_jobs_of_slurm(self):
+        sbatch = self.folder / "sbatch"  # starts the job here
+        sbatch.write_text("""#!/bin/bash\necho "$@" >>"$(dirname "$0")/jobs"\nfor word; do [[ $word != --wrap=* ]] || ${word#--wrap=} &>/dev/null & done\n""")
+        sbatch.chmod(0o755)
+        run = self.start("--slurm=--partition=cpu --mem=1G")
+        output, _ = run.communicate(timeout=100)
+        self.assertEqual(run.returncode, 0, output)
+        jobs = (self.folder / "jobs").read_text().splitlines()
+        self.assertEqual(len(jobs), 2)
+        self.assertRegex(jobs[0], "--cpus-per-task=1 --partition=cpu --mem=1G --wrap=dask worker tcp://")
+        self.check_answers()
+
+    def test_says_what_is_wrong(self):
+        self.database.write_text("mine")
+        run = self.start()
+        self.assertIn("models.db: exists, must be a new file", run.communicate()[0])
+        self.database.unlink()
+        (self.models / "other").mkdir()
+        (self.models / "other/box_01.off").write_text("")
+        run = self.start()
+        self.assertIn("names must differ", run.communicate()[0])
+        (self.models / "other/box_01.off").unlink()
+        run = self.start("--tool", "no_such_tool")
+        output, _ = run.communicate(timeout=100)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("no_such_tool", output)
+        self.assertNotIn("Traceback", output)
+
+
+if __name__ == "__main__":
+    unittest.main()
