@@ -11,7 +11,7 @@
 import importlib.util
 from typing import TYPE_CHECKING, Any, List
 
-from ._pcl_symmetry import __version__
+from ._pcl_symmetry import __version__ as __version__
 from .functions import complete, describe, frame, planes, rotations, sample_mesh, segment, transform, viewpoints
 from .results import (
     Axis,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Optional, Tuple, TypeVar, Union, overload
+from typing import TYPE_CHECKING, Any, ClassVar, Dict, Iterator, List, Optional, Tuple, TypeVar, Union, overload
 
 if TYPE_CHECKING:
     import numpy as np
@@ -54,6 +54,8 @@ def _text(value: Any) -> str:
 class Result:
     """What all results can do."""
 
+    _in_repr: ClassVar[Tuple[str, ...]] = ()
+
     def to_dict(self) -> Dict[str, Any]:
         """Names and values; arrays become lists."""
         fields = dataclasses.fields(self)
@@ -72,8 +74,7 @@ class Result:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        shown = [f.name for f in dataclasses.fields(self) if f.metadata.get("shown", False)]
-        return f"{type(self).__name__}({', '.join(f'{name}={_text(getattr(self, name))}' for name in shown)})"
+        return f"{type(self).__name__}({', '.join(f'{name}={_text(getattr(self, name))}' for name in self._in_repr)})"
 
     def _moved(self: Self, shift: "Doubles") -> Self:
         """The result in a frame whose origin lies at -shift."""
@@ -89,17 +90,14 @@ class Result:
         return dataclasses.replace(self, **changes)
 
 
-def _shown() -> Any:
-    return dataclasses.field(metadata={"shown": True})
-
-
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class ReflectionPlane(Result):
     """A plane of reflection: normal . x = offset."""
 
-    normal: "Doubles" = _shown()
+    _in_repr: ClassVar[Tuple[str, ...]] = ("normal", "offset")
+    normal: "Doubles"
     """(3,) unit."""
-    offset: float = _shown()
+    offset: float
     """normal . x of points x in the plane, input units."""
 
     def __init__(self, normal: "ArrayLike", offset: float) -> None:
@@ -153,7 +151,8 @@ class ReflectionPlane(Result):
         x = np.asarray(points)
         x = x if x.dtype.kind == "f" else x.astype(float)
         exact = x.astype(float)
-        return (exact - 2.0 * (exact @ self.normal - self.offset)[..., None] * self.normal).astype(x.dtype)
+        result: "NDArray[Any]" = exact - 2.0 * (exact @ self.normal - self.offset)[..., None] * self.normal
+        return result.astype(x.dtype)
 
     def pairs(self, points: Any, *, max_distance: float = 0.0) -> Tuple["NDArray[np.int64]", "Doubles"]:
         """The counterpart of each point of a cloud: the point closest to its reflection.
@@ -192,13 +191,12 @@ class ReflectionPlane(Result):
 class Plane(ReflectionPlane):
     """A local maximum of the transform, refined and judged."""
 
-    normal: "Doubles" = dataclasses.field(metadata={"shown": True})
-    offset: float = dataclasses.field(metadata={"shown": True})
-    kind: str = _shown()
+    _in_repr = ("kind", "normal", "offset", "confidence", "share")
+    kind: str
     """symmetry, possible, approximate or local."""
-    confidence: float = _shown()
+    confidence: float
     """Probability that it is a symmetry, in [0, 1]."""
-    share: float = _shown()
+    share: float
     """Estimated share of the surface that is mapped to within the tolerance, in [0, 1]."""
     share_interval: Tuple[float, float]
     """Limits of that share for the whole object, 95 of 100 cases."""
@@ -218,11 +216,12 @@ class Plane(ReflectionPlane):
 class Axis(Result):
     """All planes through a line are symmetries: a body of revolution."""
 
-    point: "Doubles" = _shown()
+    _in_repr = ("point", "direction", "confidence")
+    point: "Doubles"
     """(3,) of the axis."""
-    direction: "Doubles" = _shown()
+    direction: "Doubles"
     """(3,) unit."""
-    confidence: float = _shown()
+    confidence: float
     """As that of Plane."""
     score: float
     """As that of Plane."""
@@ -237,20 +236,22 @@ class Axis(Result):
         x = x if x.dtype.kind == "f" else x.astype(float)
         k, y = self.direction, x.astype(float) - self.point
         along = (y @ k)[..., None] * k
-        return (self.point + along + np.cos(angle) * (y - along) + np.sin(angle) * np.cross(k, y)).astype(x.dtype)
+        result: "NDArray[Any]" = self.point + along + np.cos(angle) * (y - along) + np.sin(angle) * np.cross(k, y)
+        return result.astype(x.dtype)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Turn(Result):
     """Rotations about a line map what a scanner saw onto itself or to unseen places."""
 
-    point: "Doubles" = _shown()
+    _in_repr = ("point", "direction", "fold", "confidence")
+    point: "Doubles"
     """(3,) of the axis."""
-    direction: "Doubles" = _shown()
+    direction: "Doubles"
     """(3,) unit."""
-    fold: int = _shown()
+    fold: int
     """Order of the rotations; 0: by any angle."""
-    confidence: float = _shown()
+    confidence: float
     """Probability that these rotations are symmetries of the whole object."""
     support: float
     """Share of the points that the best rotation maps onto the surface."""
@@ -262,9 +263,10 @@ class Turn(Result):
 class Center(Result):
     """All planes through a point are symmetries: a sphere."""
 
-    point: "Doubles" = _shown()
+    _in_repr = ("point", "confidence")
+    point: "Doubles"
     """(3,)"""
-    confidence: float = _shown()
+    confidence: float
     """As that of Plane."""
     score: float
     """As that of Plane."""
@@ -276,9 +278,10 @@ class Center(Result):
 class View(Result):
     """A direction to look at an object from."""
 
-    direction: "Doubles" = _shown()
+    _in_repr = ("direction", "score")
+    direction: "Doubles"
     """(3,) unit, from the object to the camera."""
-    score: float = _shown()
+    score: float
     """S of Section 5.4, >= 0."""
 
 
@@ -381,11 +384,12 @@ def _from_moved(transforms: "Doubles", shift: "Doubles") -> "Doubles":
 class ProbableFrame(Result):
     """A frame that may be the shape's own."""
 
-    center: "Doubles" = _shown()
+    _in_repr = ("center", "axes", "probability")
+    center: "Doubles"
     """(3,) center of symmetry."""
-    axes: "Doubles" = _shown()
+    axes: "Doubles"
     """(3, 3) axes in columns, orthonormal, right-handed."""
-    probability: float = _shown()
+    probability: float
     """That the axes are the shape's own, in any order and sign, at any angle about an axis of revolution."""
     revolution_axis: int
     """As of Frame."""
@@ -395,11 +399,12 @@ class ProbableFrame(Result):
 class Frame(Result):
     """Canonical frame of a shape (Section 5.1): center and principal symmetry axes."""
 
-    center: "Doubles" = _shown()
+    _in_repr = ("center", "axes", "revolution_axis")
+    center: "Doubles"
     """(3,) center of symmetry."""
-    axes: "Doubles" = _shown()
+    axes: "Doubles"
     """(3, 3) axes in columns, orthonormal, right-handed, best first."""
-    revolution_axis: int = _shown()
+    revolution_axis: int
     """Column that is an axis of revolution; -1: none, 3: every line through the center."""
     scores: "Doubles"
     """(3,) score of the plane across each axis, in [0, 1]."""
@@ -429,13 +434,14 @@ class Frame(Result):
 class Rotations(Result):
     """The rotations that map a shape onto itself."""
 
-    name: str = _shown()
+    _in_repr = ("name", "center", "support", "confidence")
+    name: str
     """After Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3."""
-    center: "Doubles" = _shown()
+    center: "Doubles"
     """(3,) point that all axes pass through."""
-    support: float = _shown()
+    support: float
     """Share of the surface that is mapped onto the surface."""
-    confidence: float = _shown()
+    confidence: float
     """Probability that the whole surface, not its points alone, keeps to the limits."""
     fold: int
     """Order of the main axis; 0 where it is one of revolution."""
@@ -487,11 +493,12 @@ class Rotations(Result):
 class Map(Result):
     """The transform D(f, gamma) of equation 2 on a grid of planes."""
 
-    sigma: float = _shown()
+    _in_repr = ("sigma", "center", "radius")
+    sigma: float
     """Width of the Gaussian, input units."""
-    center: "Doubles" = _shown()
+    center: "Doubles"
     """(3,) that r is measured from."""
-    radius: float = _shown()
+    radius: float
     """Greatest |r|, input units."""
     values: "NDArray[np.float32]"
     """(theta, phi, r) values of D, 1 for a perfect symmetry."""
@@ -519,11 +526,12 @@ class Map(Result):
 class PoseScore(Result):
     """What two clouds say about a pose."""
 
-    support: float = _shown()
+    _in_repr = ("support", "conflict", "merit")
+    support: float
     """Share of the source that lies on the target, in [0, 1]."""
-    conflict: float = _shown()
+    conflict: float
     """Share of either that lies in space seen to be empty, in [0, 2]."""
-    merit: float = _shown()
+    merit: float
     """support - conflict / 2; a perfect pose has 1."""
 
 
@@ -531,11 +539,12 @@ class PoseScore(Result):
 class Registration(Result):
     """The pose of one cloud relative to another."""
 
-    transform: "Doubles" = _shown()
+    _in_repr = ("transform", "score", "converged")
+    transform: "Doubles"
     """(4, 4) from the frame of the source to that of the target."""
-    score: PoseScore = _shown()
+    score: PoseScore
     """Of the transform."""
-    converged: bool = _shown()
+    converged: bool
     """Whether a pose was found that the clouds bear out."""
     poses: List[Tuple["Doubles", PoseScore]]
     """(transform, score), best first: poses that symmetry makes equal have like merits."""
@@ -570,8 +579,9 @@ class Registration(Result):
 class Match(Result):
     """A model that is like a shape."""
 
-    name: str = _shown()
-    distance: float = _shown()
+    _in_repr = ("name", "distance")
+    name: str
+    distance: float
     """1 between shapes as far apart as from what is most like them."""
 
 
@@ -579,10 +589,11 @@ class Match(Result):
 class Recognized(Result):
     """A model that a scan shows."""
 
-    name: str = _shown()
-    confidence: float = _shown()
+    _in_repr = ("name", "confidence", "transform")
+    name: str
+    confidence: float
     """Probability that the scan shows this model."""
-    transform: "Doubles" = _shown()
+    transform: "Doubles"
     """(4, 4) from the frame of the scan to that of the model."""
     score: PoseScore
 
@@ -591,9 +602,4 @@ class Recognized(Result):
 class BuildReport(Result):
     """What Database.build() did."""
 
-    num_added: int = _shown()
-    """Models that were stored."""
-    failures: List[Tuple[str, str]] = _shown()
-    """(name, reason), in the order of the models."""
-    cancelled: bool = _shown()
-    """The progress function returned False."""
+    _in_repr = ("num_added", "failures", "cancelled")
