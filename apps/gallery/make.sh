@@ -44,7 +44,8 @@ if $estimators; then
   cmake --preset benchmark --log-level=WARNING >/dev/null
   cmake --build build-benchmark --parallel "$(nproc)" --target benchmark_accuracy
 fi
-export PATH=$PWD/build/apps:$PWD/build-benchmark/test/benchmark:$PATH PYTHONPATH=$PWD/build/src/python
+repository=$PWD
+export PATH=$PWD/build/apps:$PATH PYTHONPATH=$PWD/build/src/python
 python=/usr/bin/python3
 
 models=$PWD/build/pictures_models
@@ -189,7 +190,9 @@ draw_figure_16
 draw_axes
 draw_failures_of_all
 if $estimators; then
-  draw error_against_time benchmark_accuracy -data "$models" -png "$pictures/error_against_time.png"
+  export PCL_SYMMETRY_MODELS=$models
+  draw error_against_time /usr/bin/python3 "$repository/test/benchmark/error_against_time.py" \
+    "$repository/build-benchmark/test/benchmark/benchmark_accuracy" "$pictures/error_against_time.png"
 fi
 rm -f "$models/last.txt"
 echo "Pictures: $gallery $pictures"

@@ -1,4 +1,4 @@
-/// The five models that the benchmarks run on.
+/// Shapes that the benchmarks run on.
 #pragma once
 
 #include <string>
@@ -8,12 +8,6 @@
 
 namespace pcl_symmetry::benchmarks {
 
-/// What a scanner sees of a surface.
-struct Scan {
-  Points points;
-  Eigen::Vector3d viewpoint;
-};
-
 /// A surface that points can be sampled from.
 struct Model {
   std::string name;
@@ -21,17 +15,13 @@ struct Model {
   std::vector<Eigen::Vector3i> triangles;
 
   Points sample(int num_points) const;
-
-  /// What is seen of that many samples from four radii away: the nearest one in each pixel.
-  Scan scan(int num_points) const;
+  /// What is seen of that many samples from the viewpoint: the nearest one in each pixel.
+  Points scan(int num_points, const Eigen::Vector3d& viewpoint) const;
 };
 
-/// Reads an OFF file of polygons, which are cut into triangles.
-/// \throws std::runtime_error naming the file and what is wrong with it.
-Model readOff(const std::string& file);
-
-/// bull, cow, elephant, hand and camel of CGAL's demo data in \p folder; five synthetic shapes where \p folder is
-/// empty.
-std::vector<Model> fiveModels(const std::string& folder);
+/// bull, cow, elephant, hand and camel .off of CGAL's demo data in the folder PCL_SYMMETRY_MODELS of the environment,
+/// or five synthetic shapes. The second one has one plane.
+/// \throws std::runtime_error naming the file that cannot be read.
+const std::vector<Model>& models();
 
 }  // namespace pcl_symmetry::benchmarks

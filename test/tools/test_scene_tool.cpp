@@ -38,14 +38,14 @@ protected:
 };
 
 TEST_F(SceneTool, WritesWhatItFinds) {
-  const std::string json = folder_ / "objects.json", completed = folder_ / "completed.pcd",
+  const std::string report_file = folder_ / "objects.json", completed = folder_ / "completed.pcd",
                     png = folder_ / "objects.png";
-  ASSERT_EQ(run(scene_ + " " + completed + " -max_points 1000 -json " + json + " -png " + png + " -html " +
+  ASSERT_EQ(run(scene_ + " " + completed + " -max_points 1000 -json " + report_file + " -png " + png + " -html " +
                 (folder_ / "page.html")),
             0)
       << error_;
   EXPECT_EQ(output_.substr(0, output_.find('\n')), "1 supporting plane, 2 objects");
-  const nlohmann::json report = nlohmann::json::parse(contentOf(json));
+  const nlohmann::json report = nlohmann::json::parse(contentOf(report_file));
   ASSERT_EQ(report["objects"].size(), 2u);
   EXPECT_EQ(report["viewpoint"]["from"], "rays");
   ASSERT_EQ(report["supports"].size(), 1u);

@@ -1,0 +1,347 @@
+/// Time of each stage and each task. A counter "needs_STEP" is the number of steps, of the kinds that
+/// benchmark_machine.cpp measures, that the result needs at least whatever the algorithm: roofline.py makes a table of
+/// both.
+#include <benchmark/benchmark.h>
+#include <sys/resource.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/base/random.h"
+#include "core/geometry/axis_rotations.h"
+#include "core/matching/compact_index.h"
+#include "core/matching/shape_description.h"
+#include "core/registration/ranked_poses.h"
+#include "core/matching/view_code_index.h"
+#include "models.h"
+#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
+#include "pcl_symmetry/core/planar_transform.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::benchmarks;
+
+constexpr int kManyPoints = 10'000;  // what the tools spread over a mesh
+constexpr int kCells = 64;           // along each side: the default
+
+const Points& cloud(std::size_t model, int num_points) {
+  static std::map<std::pair<std::size_t, int>, Points> clouds;
+  Points& points = clouds[{model, num_points}];
+  if (points.cols() == 0) points = models()[model].sample(num_points);
+  return points;
+}
+const Points& cow() {
+  return cloud(1, kManyPoints);
+}
+
+struct Scan {
+  Eigen::Vector3d viewpoint;
+  Points points;
+};
+const Scan& cowScan() {
+  static const Scan scan = [] {
+    const BoundingBall ball = boundingBall(cow());
+    const Eigen::Vector3d from = ball.center + 4.0 * ball.radius * Eigen::Vector3d(0.6, 0.5, 0.62).normalized();
+    return Scan{from, models()[1].scan(4 * kManyPoints, from)};
+  }();
+  return scan;
+}
+
+void needs(benchmark::State& state, const std::string& step, double count) {
+  state.counters["needs_" + step] += count;
+}
+
+GaussianEdtOptions edtOptions(int num_threads, int num_cells = kCells) {
+  GaussianEdtOptions options;
+  options.num_cells = num_cells;
+  options.num_threads = num_threads;
+  return options;
+}
+
+DetectionOptions detectionOptions(int num_threads) {
+  DetectionOptions options;
+  options.edt = edtOptions(num_threads);
+  options.num_threads = num_threads;
+  return options;
+}
+
+/// f at the cells near the points; the whole table is written, sharpened and written again.
+void needsTransform(benchmark::State& state, const GaussianEdt& edt) {
+  const auto num_near = std::count_if(edt.values().begin(), edt.values().end(), [](float f) { return f > 0.0f; });
+  needs(state, "exponential", static_cast<double>(num_near));
+  needs(state, "byte_near", 3.0 * 4.0 * static_cast<double>(edt.values().size()));
+}
+
+/// The look-ups of one-point sampling: a sample counts where its image lies in the ball of cells.
+void needsMap(benchmark::State& state, const Points& points, const GaussianEdt& edt, const PlaneGrid& grid,
+              int num_samples) {
+  double count = 0.0;
+  for (std::size_t d = 0; d < grid.numDirections(); ++d) {
+    for (int i = 0; i < num_samples; ++i) {
+      const Eigen::Vector3d x = points.col(i * points.cols() / num_samples).cast<double>() - edt.center();
+      const double along = grid.normal(d).dot(x);
+      const double sq_half_chord = edt.radius() * edt.radius() - x.squaredNorm() + along * along;
+      // Images lie at 2 r - along on the line through x.
+      count += std::min<double>(grid.numRadius(), std::sqrt(std::max(0.0, sq_half_chord)) / grid.radiusStep());
+    }
+  }
+  needs(state, "look_up", count);
+}
+
+/// The map of the default grid, normals, and for each plane the counterpart of each point and D.
+void needsDetection(benchmark::State& state, const Points& points, std::size_t num_planes, int num_maps = 1) {
+  const DetectionOptions options;
+  const GaussianEdt edt(points, edtOptions(1));
+  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
+  needsTransform(state, edt);
+  for (int i = 0; i < num_maps; ++i) needsMap(state, points, edt, grid, options.num_samples);
+  needs(state, "nine_nearest", static_cast<double>(points.cols()));
+  needs(state, "nearest", static_cast<double>(num_planes) * static_cast<double>(points.cols()));
+  needs(state, "trilinear", static_cast<double>(num_planes) * state.counters["needs_exponential"]);
+}
+
+/// Arguments: points, cells, threads.
+void Edt(benchmark::State& state) {
+  const Points& points = cloud(1, static_cast<int>(state.range(0)));
+  const auto options = edtOptions(static_cast<int>(state.range(2)), static_cast<int>(state.range(1)));
+  for (auto _ : state) benchmark::DoNotOptimize(GaussianEdt(points, options).sum());
+  needsTransform(state, GaussianEdt(points, options));
+}
+
+/// Arguments: bins of theta, phi and r, samples, threads.
+void Sampled(benchmark::State& state) {
+  const GaussianEdt edt(cow(), edtOptions(0));
+  const PlaneGrid grid(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 64, edt.center(),
+                       edt.radius());
+  SampledTransformOptions options;
+  options.num_samples = static_cast<int>(state.range(2));
+  options.num_threads = static_cast<int>(state.range(3));
+  for (auto _ : state) benchmark::DoNotOptimize(sampledTransform(edt, grid, options).values.data());
+  needsMap(state, cow(), edt, grid, options.num_samples);
+}
+
+/// Argument: threads. 64^3 planes.
+void Convolution(benchmark::State& state) {
+  const GaussianEdt edt(cow(), edtOptions(0));
+  const PlaneGrid grid(kCells, kCells, kCells, edt.center(), edt.radius());
+  ConvolutionTransformOptions options;
+  options.num_threads = static_cast<int>(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(convolutionTransform(edt, grid, options).values.data());
+}
+
+/// The least time of each stage, and what a process takes at most, stand in counters.
+void detect(benchmark::State& state, const Points& points, const DetectionOptions& options,
+            const Visibility* seen = nullptr) {
+  std::map<std::string, double> stages;
+  std::size_t num_planes = 0;
+  for (auto _ : state) {
+    const Detection detection = detectPlanes(points, options, nullptr, seen);
+    for (const auto& [stage, milliseconds] : detection.timing_ms)
+      stages[stage] = std::min(stages.emplace(stage, milliseconds).first->second, milliseconds);
+    num_planes = detection.planes.size();
+  }
+  for (const auto& [stage, milliseconds] : stages) state.counters["ms_" + stage] = milliseconds;
+  state.counters["planes"] = static_cast<double>(num_planes);
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  needsDetection(state, points, num_planes, seen ? 2 : 1);
+}
+
+/// Arguments: points, threads.
+void Planes(benchmark::State& state) {
+  detect(state, cloud(1, static_cast<int>(state.range(0))), detectionOptions(static_cast<int>(state.range(1))));
+}
+/// Arguments: model, threads.
+void PlanesOfModel(benchmark::State& state) {
+  const auto model = static_cast<std::size_t>(state.range(0));
+  state.SetLabel(models()[model].name);
+  detect(state, cloud(model, kManyPoints), detectionOptions(static_cast<int>(state.range(1))));
+}
+/// Arguments: turns about axes are looked for, threads.
+void PlanesOfScan(benchmark::State& state) {
+  const std::optional<Visibility> seen = Visibility::fromPoints(cowScan().points, cowScan().viewpoint);
+  DetectionOptions options = detectionOptions(static_cast<int>(state.range(1)));
+  options.turns = state.range(0) != 0;
+  detect(state, cowScan().points, options, &*seen);
+}
+/// Nine planes, the most that a convex body of flat faces usually has. Argument: threads.
+void PlanesOfCube(benchmark::State& state) {
+  Points points(3, kManyPoints);
+  RandomStream random(1);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) points(axis, i) = static_cast<float>(2.0 * random.uniform() - 1.0);
+    float& across = points(static_cast<Eigen::Index>(random.below(3)), i);
+    across = across < 0.0f ? -1.0f : 1.0f;
+  }
+  detect(state, points, detectionOptions(static_cast<int>(state.range(0))));
+}
+
+/// Argument: threads.
+void Rotations(benchmark::State& state) {
+  ObjectSymmetryOptions options;
+  options.num_threads = static_cast<int>(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(objectSymmetries(cow(), options));
+  needsTransform(state, GaussianEdt(cow(), edtOptions(1)));
+  // Four prime orders about each direction at 48 points; one rotation is judged on all points.
+  needs(state, "trilinear", 4.0 * 48.0 * options.num_directions);
+  needs(state, "nine_nearest", static_cast<double>(cow().cols()));
+  needs(state, "nearest", static_cast<double>(cow().cols()));
+}
+
+/// Argument: threads.
+void Description(benchmark::State& state) {
+  DescriptionOptions options;
+  options.num_threads = static_cast<int>(state.range(0));
+  const Points &points = cloud(1, options.max_points), &frame_points = cloud(1, options.max_frame_points);
+  for (auto _ : state) benchmark::DoNotOptimize(describeShape(points, options));
+  const GaussianEdt edt(frame_points, edtOptions(1));
+  const FrameOptions frame;
+  needsTransform(state, edt);
+  needsMap(state, frame_points, edt,
+           PlaneGrid(frame.num_theta, frame.num_phi, frame.num_radius, edt.center(), edt.radius()), frame.num_samples);
+  // Each point counts in eight cells of two signatures, with six numbers.
+  needs(state, "byte_near", 2.0 * 8.0 * 6.0 * 4.0 * static_cast<double>(points.cols()));
+}
+
+/// A mesh of 57 600 triangles. Argument: threads.
+void Segmentation(benchmark::State& state) {
+  std::vector<std::vector<int>> faces;
+  for (const Eigen::Vector3i& triangle : models()[1].triangles)
+    faces.push_back({triangle.x(), triangle.y(), triangle.z()});
+  const SurfaceGraph graph = meshGraph(models()[1].vertices, faces);
+  SegmentationOptions options;
+  options.num_threads = static_cast<int>(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(segmentSurface(graph, options));
+  state.counters["faces"] = static_cast<double>(faces.size());
+  needsDetection(state, graph.centers, 1);
+}
+
+/// The pose of a whole cloud. Argument: threads.
+void Registration(benchmark::State& state) {
+  const BoundingBall ball = boundingBall(cow());
+  const Points points = normalizePoints(cow(), ball.center, ball.radius);
+  const Points turned = Eigen::AngleAxisf(1.0f, Eigen::Vector3f(1.0f, 2.0f, 3.0f).normalized()) * points;
+  PoseSearchOptions options;
+  options.num_threads = static_cast<int>(state.range(0));
+  for (auto _ : state) {
+    const PosedSurface scan(turned, std::nullopt, 1, options.num_threads);
+    const PosedSurface target(points, std::nullopt, 1, options.num_threads);
+    benchmark::DoNotOptimize(searchPoses(scan, target, {}, options));
+  }
+  needs(state, "nine_nearest", 2.0 * kManyPoints);
+  needs(state, "nearest", kManyPoints);
+}
+
+/// The nearest views of 815 models. Argument: threads.
+void NearestViews(benchmark::State& state) {
+  constexpr int kNumModels = 815, kNumViews = 80;
+  RandomStream random(4);
+  const auto randomCode = [&] {
+    ViewCode code;
+    for (auto& value : code.values) value = static_cast<std::int8_t>(static_cast<int>(random.below(255)) - 127);
+    code.size = static_cast<std::int16_t>(random.below(1000));
+    return code;
+  };
+  ViewCodeIndex index;
+  for (int model = 0; model < kNumModels; ++model) {
+    std::vector<ViewCode> codes(kNumViews);
+    for (ViewCode& code : codes) code = randomCode();
+    index.add(packedViewCodes(codes));
+  }
+  const ViewCode query = randomCode();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(index.nearest(query, 0.25, 50, static_cast<int>(state.range(0))).data());
+  needs(state, "byte_near", static_cast<double>(kNumModels) * kNumViews * (kViewCodeSize + 2));
+}
+
+/// The nearest of many compact signatures, and the share of queries whose true nearest is found. Argument: shapes.
+void NearestShapes(benchmark::State& state) {
+  constexpr int kDimensions = 256, kNumQueries = 50;
+  const auto num_shapes = static_cast<int>(state.range(0));
+  // Unit vectors whose components fall as those of compact signatures do.
+  const auto forms = [](int count, std::uint64_t seed) {
+    RandomStream random(seed);
+    Eigen::MatrixXf made = Eigen::MatrixXf::NullaryExpr(kDimensions, count, [&] {
+      return static_cast<float>(random.uniform() + random.uniform() + random.uniform() - 1.5);
+    });
+    for (int d = 0; d < kDimensions; ++d) made.row(d) *= static_cast<float>(std::pow(1.0 + d, -0.5));
+    made.colwise().normalize();
+    return made;
+  };
+  const Eigen::MatrixXf stored = forms(num_shapes, 1), noise = forms(kNumQueries, 2);
+  const CompactIndex index(stored, 1);
+  std::vector<Eigen::MatrixXf> queries(kNumQueries, forms(kNumAxisRotations, 3));
+  double num_found = 0.0;
+  for (int i = 0; i < kNumQueries; ++i) {
+    const Eigen::Index shape = static_cast<Eigen::Index>(i) * num_shapes / kNumQueries;
+    queries[i].col(i % kNumAxisRotations) = (stored.col(shape) + 0.6f * noise.col(i)).normalized();
+    Eigen::Index nearest;
+    (queries[i].transpose() * stored).colwise().maxCoeff().maxCoeff(&nearest);
+    num_found += index.nearest(queries[i], 10).front().first == nearest ? 1.0 : 0.0;
+  }
+  int i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(index.nearest(queries[i++ % kNumQueries], 10).data());
+  state.counters["found"] = num_found / kNumQueries;
+}
+
+/// The pose nearest to another one among those that the symmetry makes equal. Argument: 0 C2, 1 D6, 2 I, 3 Cinf.
+void ClosestPose(benchmark::State& state) {
+  const auto turn = [](const Eigen::Vector3d& axis, double angle) {
+    return Eigen::Isometry3d(Eigen::AngleAxisd(angle, axis));
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ(), origin = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Isometry3d> icosahedral;
+  for (const Eigen::Matrix3d& R : RotationGroup{RotationGroupKind::Icosahedral, 5}.generators())
+    icosahedral.emplace_back(Eigen::AngleAxisd(R));
+  const ObjectSymmetries groups[] = {
+      ObjectSymmetries::from({turn(z, kPi)}, {}), ObjectSymmetries::from({turn(z, kPi / 3.0), turn(x, kPi)}, {}),
+      ObjectSymmetries::from(icosahedral, {}), ObjectSymmetries::from({}, {{z, origin}})};
+  const char* const names[] = {"C2", "D6", "I", "Cinf"};
+  state.SetLabel(names[state.range(0)]);
+  RandomStream random(1);
+  std::vector<Eigen::Isometry3d> poses(256);
+  for (Eigen::Isometry3d& T : poses) {
+    const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
+    T = Eigen::Translation3d(number(), number(), number()) *
+        Eigen::Quaterniond(number(), number(), number(), number()).normalized();
+  }
+  std::size_t k = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(groups[state.range(0)].closestTo(poses[k % 256], poses[(k + 1) % 256]).matrix().sum());
+    ++k;
+  }
+}
+
+// "Time" is that of the clock, "CPU" the processor time of all threads.
+#define STAGE(name) BENCHMARK(name)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()
+STAGE(Edt)->ArgNames({"points", "cells", "threads"})->ArgsProduct({{10'000, 1'000'000}, {kCells}, {1, 2}});
+STAGE(Sampled)->ArgNames({"theta", "phi", "samples", "threads"})->ArgsProduct({{64}, {64}, {64, 512, 2048}, {1, 2}});
+STAGE(Sampled)->ArgNames({"theta", "phi", "samples", "threads"})->Args({32, 128, 64, 1});
+STAGE(Convolution)->ArgName("threads")->Arg(1)->Arg(2);
+STAGE(Planes)->ArgNames({"points", "threads"})->ArgsProduct({{1'000, 10'000, 100'000, 1'000'000, 10'000'000}, {1, 2}});
+STAGE(PlanesOfModel)->ArgNames({"model", "threads"})->ArgsProduct({{0, 1, 2, 3, 4}, {1}});
+STAGE(PlanesOfScan)->ArgNames({"turns", "threads"})->ArgsProduct({{0, 1}, {1, 2}});
+STAGE(PlanesOfCube)->ArgName("threads")->Arg(1)->Arg(2);
+STAGE(Rotations)->ArgName("threads")->Arg(1)->Arg(2);
+STAGE(Description)->ArgName("threads")->Arg(1)->Arg(2);
+STAGE(Segmentation)->ArgName("threads")->Arg(1)->Arg(2);
+STAGE(Registration)->ArgName("threads")->Arg(1)->Arg(2);
+STAGE(NearestViews)->ArgName("threads")->Arg(1);
+STAGE(NearestShapes)->ArgName("shapes")->Arg(904)->Arg(100'000);
+BENCHMARK(ClosestPose)->ArgName("group")->DenseRange(0, 3);
+
+}  // namespace
+
+BENCHMARK_MAIN();
