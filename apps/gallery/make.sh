@@ -39,7 +39,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_planes \
   pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint \
-  draw_alignment draw_failures draw_medial_axis draw_scan_centers make_shapes
+  pcl_symmetry_python pcl_symmetry_python_recognition
 if $estimators; then
   cmake --preset benchmark --log-level=WARNING >/dev/null
   cmake --build build-benchmark --parallel "$(nproc)" --target benchmark_accuracy

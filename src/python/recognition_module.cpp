@@ -89,6 +89,12 @@ BuildReport build(SymmetryDatabase& database, const py::object& models, const py
   return database.build(inputs, told);
 }
 
+std::size_t merge(SymmetryDatabase& database, const std::vector<std::filesystem::path>& files) {
+  const std::vector<std::string> names(files.begin(), files.end());
+  const py::gil_scoped_release release;
+  return database.merge(names);
+}
+
 py::array_t<float> rowsOf(const Cloud& cloud) {
   py::array_t<float> rows({static_cast<py::ssize_t>(cloud.size()), py::ssize_t{3}});
   Eigen::Map<Points> columns(rows.mutable_data(), 3, static_cast<Eigen::Index>(cloud.size()));
@@ -191,17 +197,10 @@ void addDatabase(py::module_& module) {
            "models: dict of name to (N, 3) points, or pairs of both. progress: called with the share done, in [0, 1];\n"
            "where it returns False the rest is left. Returns BuildReport; a model that cannot be used does not stop\n"
            "the others.")
-      .def(
-          "merge",
-          [](SymmetryDatabase& database, const std::vector<std::filesystem::path>& files) {
-            const std::vector<std::string> names(files.begin(), files.end());
-            const py::gil_scoped_release release;
-            return database.merge(names);
-          },
-          py::arg("files"),
-          "Adds all models of other databases, such as parts that several machines built; all of them or none.\n\n"
-          "Returns their number. Raises OSError, naming file and reason, where one is missing, damaged or of another\n"
-          "version or unit, or two have a model of the same name; nothing is changed then.")
+      .def("merge", &merge, py::arg("files"),
+           "Adds all models of other databases, such as parts that several machines built; all of them or none.\n\n"
+           "Returns their number. Raises OSError, naming file and reason, where one is missing, damaged or of another\n"
+           "version or unit, or two have a model of the same name; nothing is changed then.")
       .def("remove", &SymmetryDatabase::remove, py::arg("name"))
       .def(
           "cloud",
