@@ -12,7 +12,6 @@
 #include "command_line/csv.h"
 #include "command_line/input_files.h"
 #include "command_line/result_files.h"
-#include "command_line/tool_memory.h"
 #include "command_line/file_errors.h"
 #include "io/json_values.h"
 #include "io/shape_output.h"
@@ -60,7 +59,6 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
              const std::vector<std::string>& columns, const std::function<void(FileJob&)>& analyse) {
   const bool text_wanted = numToStandardOutput(batch, common) == 0;
   if (batch.resume) throw UsageError("-resume needs several inputs: a folder, a pattern, a list or more arguments");
-  takeLargePages();
   const Console console(common.quiet);
   FileJob job(path, console, common.threads);
   const auto write = [&] {
@@ -212,7 +210,6 @@ int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std
   const InputFiles files = inputFiles(batch.inputs);
   numToStandardOutput(batch, common);
   checkOutputs(batch, files);
-  giveMemoryBack();
   return Batch(files, batch, common, columns).run(analyse);
 }
 

@@ -411,6 +411,7 @@ TEST_F(SymmetryDatabaseTest, MergesOtherDatabasesWholeOrNotAtAll) {
   EXPECT_EQ(database.merge({file_}), 2u);
   EXPECT_EQ(database.match(cube(), 5).size(), 3u);
   EXPECT_TRUE(SymmetryDatabase::check(folder_ + "/merged.db").empty());
+  EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase{folder_}; }), folder_ + ": is a folder, must be a file");
 }
 
 TEST_F(SymmetryDatabaseTest, TakesAllPointTypes) {
