@@ -4,7 +4,6 @@
 #include <boost/filesystem.hpp>
 #include <cstdint>
 #include <cstdio>
-#include <mutex>
 
 #include "bop/rejections.h"
 #include "command_line/file_errors.h"
@@ -20,13 +19,6 @@ namespace {
 // Points spread over a mesh to measure distances. chosen: half blurs edges by half a per cent of the diameter, twice
 // takes twice the time.
 constexpr int kEvidencePoints = 20'000;
-
-/// PCL's readers are told to be silent by a switch for the whole program.
-Shape loadOneAtATime(const std::string& path) {
-  static std::mutex mutex;
-  const std::lock_guard<std::mutex> lock(mutex);
-  return loadShape(path);
-}
 
 void shiftBack(ObjectSymmetries& symmetries, const Eigen::Vector3d& shift) {
   if (shift.isZero(0.0)) return;
@@ -84,7 +76,7 @@ void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const 
 
 ModelInfo analyseModel(const std::string& path, const ModelOptions& options,
                        const std::optional<ListedSymmetries>& given) {
-  const Shape shape = loadOneAtATime(path);
+  const Shape shape = loadShape(path);
   const Points vertices = finitePoints(*shape.points);
   if (vertices.cols() == 0) throw InputError(path + ": has no finite points");
   ModelInfo info;

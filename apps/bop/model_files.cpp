@@ -20,7 +20,7 @@ std::vector<std::string> shapesIn(const std::string& folder) {
     all.push_back(entry.path().string());
     if (boost::algorithm::starts_with(entry.path().filename().string(), "obj_")) numbered.push_back(all.back());
   }
-  if (all.empty()) throw InputError(folder + ": holds no " + kShapeFiles + " file");
+  if (all.empty()) throw InputError(folder + ": holds no " + kShapeFilesOfFolders + " file");
   std::vector<std::string>& chosen = numbered.empty() ? all : numbered;
   std::sort(chosen.begin(), chosen.end());
   return chosen;

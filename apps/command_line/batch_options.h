@@ -11,11 +11,13 @@ namespace pcl_symmetry::apps {
 
 /// For the help of tools whose inputs are all their arguments without a flag.
 inline const char* const kManyInputs =
-    "files (.pcd, .ply, .obj, .stl, .off, .xyz or .glb), folders, patterns in quotes, lists @FILE, or - for standard "
+    "files (.pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts, .asc, .txt or .csv), folders, patterns in quotes, lists "
+    "@FILE, or - for standard "
     "input";
 /// For the help of tools that take an output after their input.
 inline const char* const kOneOrManyInputs =
-    "file (.pcd, .ply, .obj, .stl, .off, .xyz or .glb), - for standard input, or many: a folder, a pattern in quotes, "
+    "file (.pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts, .asc, .txt or .csv), - for standard input, or many: a "
+    "folder, a pattern in quotes, "
     "a "
     "list @FILE";
 

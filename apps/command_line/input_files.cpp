@@ -39,7 +39,7 @@ void addFolder(const std::string& folder, InputFiles& files) {
   } catch (const fs::filesystem_error& error) {
     throw InputError(folder + ": " + error.code().message());
   }
-  if (found.empty()) throw InputError(folder + ": holds no file of type " + kShapeFiles);
+  if (found.empty()) throw InputError(folder + ": holds no file of type " + kShapeFilesOfFolders);
   std::sort(found.begin(), found.end());
   for (const std::string& path : found) files.add(path, folder);
 }
@@ -99,7 +99,7 @@ std::string InputFiles::path(std::size_t i) const {
 bool hasShapeExtension(const std::string& path) {
   const std::string ending = boost::algorithm::to_lower_copy(fs::path(path).extension().string());
   if (ending.empty()) return false;
-  const std::string known = boost::algorithm::replace_all_copy(std::string(" ") + kShapeFiles + " ", ",", " ");
+  const std::string known = boost::algorithm::replace_all_copy(std::string(" ") + kShapeFilesOfFolders + " ", ",", " ");
   return known.find(" " + ending + " ") != std::string::npos;
 }
 

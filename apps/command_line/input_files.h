@@ -41,7 +41,7 @@ private:
 /// to be reported with those that cannot be used.
 InputFiles inputFiles(const std::vector<std::string>& arguments);
 
-/// \return whether the name ends in one of kShapeFiles, in capitals or not
+/// \return whether the name ends in one of kShapeFilesOfFolders, in capitals or not
 bool hasShapeExtension(const std::string& path);
 
 /// \return whether one argument may stand for several files: a folder, a pattern or a list

@@ -1,157 +1,96 @@
 #include "io/assimp_reader.h"
 
-#include <assimp/config.h>
 #include <assimp/scene.h>
-#include <pcl/conversions.h>
 
 #include <assimp/Importer.hpp>
 #include <boost/algorithm/string.hpp>
 #include <cstring>
-#include <string_view>
-#include <unordered_map>
 
 #include "command_line/tool_errors.h"
-#include "io/file_text.h"
-#include "io/exact_coordinates.h"
+#include "io/vertex_welder.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Joins vertices of exactly equal coordinates: STL repeats them for each face, OBJ for each group.
-class VertexWelder {
+/// Assimp's numbers are float; products of poses are taken in double, so that a large translation keeps the shape.
+Eigen::Affine3d poseOf(const aiMatrix4x4& matrix) {
+  Eigen::Affine3d pose;
+  for (unsigned row = 0; row < 4; ++row)
+    for (unsigned column = 0; column < 4; ++column) pose(row, column) = matrix[row][column];
+  return pose;
+}
+
+class SceneReader {
 public:
-  pcl::index_t add(const aiVector3D& position) {
-    const Key key{{position.x + 0.0f, position.y + 0.0f, position.z + 0.0f}};
-    const auto [entry, is_new] = index_of_.emplace(key, static_cast<pcl::index_t>(vertices_.size()));
-    if (is_new) vertices_.emplace_back(position.x, position.y, position.z);
-    return entry->second;
+  explicit SceneReader(const aiScene& scene) : scene_(scene) { read(*scene.mRootNode, Eigen::Affine3d::Identity()); }
+
+  ExactShape shape() {
+    if (shape_.polygons.empty())
+      for (const Eigen::Vector3d& point : points_) welder_.add(point);
+    return std::move(shape_);
   }
-  const pcl::PointCloud<pcl::PointXYZ>& vertices() const { return vertices_; }
 
 private:
-  struct Key {
-    float xyz[3];
-    bool operator==(const Key& other) const { return std::memcmp(xyz, other.xyz, sizeof(xyz)) == 0; }
-  };
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      return std::hash<std::string_view>()({reinterpret_cast<const char*>(key.xyz), sizeof(key.xyz)});
+  void read(const aiNode& node, const Eigen::Affine3d& T_scene_parent) {
+    const Eigen::Affine3d T_scene_node = T_scene_parent * poseOf(node.mTransformation);
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+      const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[m]];
+      const auto corner = [&](unsigned i) {
+        const aiVector3D& v = mesh.mVertices[i];
+        return Eigen::Vector3d(T_scene_node * Eigen::Vector3d(v.x, v.y, v.z));
+      };
+      for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+        const aiFace& face = mesh.mFaces[f];
+        if (face.mNumIndices >= 3) shape_.polygons.emplace_back();
+        for (unsigned k = 0; k < face.mNumIndices; ++k)
+          if (face.mNumIndices >= 3)
+            shape_.polygons.back().vertices.push_back(welder_.add(corner(face.mIndices[k])));
+          else
+            points_.push_back(corner(face.mIndices[k]));
+      }
     }
-  };
-  std::unordered_map<Key, pcl::index_t, Hash> index_of_;
-  pcl::PointCloud<pcl::PointXYZ> vertices_;
+    for (unsigned c = 0; c < node.mNumChildren; ++c) read(*node.mChildren[c], T_scene_node);
+  }
+
+  const aiScene& scene_;
+  ExactShape shape_;
+  VertexWelder welder_{shape_};
+  std::vector<Eigen::Vector3d> points_;  // of points and lines
 };
 
-void collectMeshes(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_scene_parent, VertexWelder& welder,
-                   pcl::PolygonMesh& mesh) {
-  const aiMatrix4x4 T_scene_node = T_scene_parent * node.mTransformation;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
-    for (unsigned f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      if (face.mNumIndices < 3) continue;
-      pcl::Vertices polygon;
-      for (unsigned k = 0; k < face.mNumIndices; ++k) {
-        polygon.vertices.push_back(welder.add(T_scene_node * part.mVertices[face.mIndices[k]]));
-      }
-      mesh.polygons.push_back(std::move(polygon));
-    }
+/// Binary files may have bytes behind the last triangle, text may be in capitals and begin with blanks or comments.
+void prepareSTL(std::string& text) {
+  std::uint32_t num_triangles = 0;
+  if (text.size() >= 84) std::memcpy(&num_triangles, &text[80], sizeof(num_triangles));
+  const std::uint64_t size = 84 + 50 * std::uint64_t{num_triangles};
+  if (num_triangles > 0 && size <= text.size()) {
+    text.resize(size);
+    return;
   }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) {
-    collectMeshes(scene, *node.mChildren[c], T_scene_node, welder, mesh);
-  }
-}
-
-pcl::PolygonMesh meshOf(Assimp::Importer& importer, const aiScene* scene, const std::string& path) {
-  if (!scene || !scene->mRootNode) {
-    std::string reason = importer.GetErrorString();
-    boost::algorithm::trim(reason);
-    throw InputError(path + ": cannot be read as a mesh" + (reason.empty() ? "" : ", " + reason));
-  }
-  pcl::PolygonMesh mesh;
-  VertexWelder welder;
-  collectMeshes(*scene, *scene->mRootNode, aiMatrix4x4(), welder, mesh);
-  pcl::toPCLPointCloud2(welder.vertices(), mesh.cloud);
-  if (mesh.polygons.empty()) throw InputError(path + ": has no faces of three or more corners");
-  return mesh;
-}
-
-/// The lines of a .obj file, each with its first word.
-template <typename Function>
-void forEachLine(std::string_view text, const Function& function) {
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    const std::size_t word = std::min(line.find_first_not_of(" \t"), line.size());
-    function(line, line.substr(word, line.find_first_of(" \t\r", word) - word));
-    begin = end + 1;
-  }
-}
-
-/// \throws InputError where a vertex does not begin with three numbers
-std::vector<Eigen::Vector3d> verticesOf(std::string_view text, const std::string& path) {
-  std::vector<Eigen::Vector3d> vertices;
-  forEachLine(text, [&](std::string_view line, std::string_view word) {
-    if (word != "v") return;
-    TokenReader reader(line.substr(static_cast<std::size_t>(word.data() - line.data()) + 1), path);
-    const auto i = static_cast<std::uint64_t>(vertices.size());
-    const double x = reader.number("x of vertex", i), y = reader.number("y of vertex", i),
-                 z = reader.number("z of vertex", i);
-    vertices.emplace_back(x, y, z);
-  });
-  return vertices;
-}
-
-/// The text with other vertices, which Assimp reads as float.
-std::string withVertices(std::string_view text, const pcl::PointCloud<pcl::PointXYZ>& vertices) {
-  std::string result;
-  std::size_t i = 0;
-  forEachLine(text, [&](std::string_view line, std::string_view word) {
-    if (word == "v") {
-      char vertex[96];
-      const pcl::PointXYZ& p = vertices[i++];
-      std::snprintf(vertex, sizeof(vertex), "v %.9g %.9g %.9g", p.x, p.y, p.z);
-      result += vertex;
-    } else {
-      result += line;
-    }
-    result += '\n';
-  });
-  return result;
+  boost::algorithm::to_lower(text);
+  const std::size_t line = text.find("\nsolid");
+  if (text.rfind("solid", 0) != 0 && line != std::string::npos) text.erase(0, line + 1);
 }
 
 }  // namespace
 
-pcl::PolygonMesh AssimpMeshFiles::readSTL(const std::string& path) const {
+ExactShape readMesh(const std::string& path, std::string text, const std::string& kind) {
+  if (kind == "stl") prepareSTL(text);
+  // Assimp 5.2 reads the bytes of these as if they were plain numbers.
+  for (const char* extension : {"KHR_mesh_quantization", "EXT_meshopt_compression"})
+    if (kind == "glb" && text.find(extension) != std::string::npos)
+      throw InputError(path + ": is compressed by " + extension + ", which is not supported");
   Assimp::Importer importer;
-  return meshOf(importer, importer.ReadFile(path, 0), path);
-}
-
-ShiftedMesh AssimpMeshFiles::readOBJ(const std::string& path) const {
-  const std::string text = readWholeFile(path);
-  bool has_vertices = false, has_faces = false;
-  forEachLine(text, [&](std::string_view, std::string_view word) {
-    has_vertices |= word == "v";
-    has_faces |= word == "f";
-  });
-  Assimp::Importer importer;
-  ShiftedMesh result;
-  if (!has_vertices) {
-    result.mesh = meshOf(importer, importer.ReadFile(path, 0), path);
-    return result;
+  const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, kind.c_str());
+  if (!scene || !scene->mRootNode) {
+    std::string reason = boost::algorithm::replace_all_copy(std::string(importer.GetErrorString()), "\n", " ");
+    boost::algorithm::trim(reason);
+    throw InputError(path + ": cannot be read as " + kind + (reason.empty() ? "" : ", " + reason));
   }
-  const std::vector<Eigen::Vector3d> vertices = verticesOf(text, path);
-  result.shift = shiftFor(vertices);
-  if (!has_faces) {
-    pcl::toPCLPointCloud2(shifted(vertices, result.shift), result.mesh.cloud);
-  } else if (result.shift.isZero(0.0)) {
-    result.mesh = meshOf(importer, importer.ReadFile(path, 0), path);
-  } else {
-    const std::string near = withVertices(text, shifted(vertices, result.shift));
-    result.mesh = meshOf(importer, importer.ReadFileFromMemory(near.data(), near.size(), 0, "obj"), path);
-  }
-  return result;
+  ExactShape shape = SceneReader(*scene).shape();
+  if (shape.vertices.empty()) throw InputError(path + ": has neither faces nor points");
+  return shape;
 }
 
 }  // namespace pcl_symmetry::apps

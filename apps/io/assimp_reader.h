@@ -1,16 +1,18 @@
-/// Reads .obj and .stl files with Assimp.
+/// Reads .stl and .glb files with Assimp.
 #pragma once
 
-#include "io/mesh_files.h"
+#include <string>
+
+#include "io/exact_coordinates.h"
 
 namespace pcl_symmetry::apps {
 
-class AssimpMeshFiles : public MeshFiles {
-public:
-  /// \throws InputError where Assimp cannot read the file, or it has no faces
-  pcl::PolygonMesh readSTL(const std::string& path) const override;
-  /// \throws InputError where Assimp cannot read the file, or it has neither faces nor points
-  ShiftedMesh readOBJ(const std::string& path) const override;
-};
+/// The triangles of the scene in its frame, or the vertices of a scene without triangles; those of equal coordinates
+/// are one.
+/// \param path in errors.
+/// \param text the whole file; moved and changed.
+/// \param kind "stl" or "glb".
+/// \throws InputError where Assimp cannot read the file, or it has neither faces nor points.
+ExactShape readMesh(const std::string& path, std::string text, const std::string& kind);
 
 }  // namespace pcl_symmetry::apps

@@ -18,10 +18,11 @@
 
 namespace pcl_symmetry::apps {
 
-/// Vertices and faces as a text file spells them.
+/// Vertices and faces of a file, in double.
 struct ExactShape {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<pcl::Vertices> polygons;
+  std::vector<std::string> left_out;  ///< what the file holds beyond that
 };
 
 /// \return what to subtract: zero where float is precise enough, else a point near the middle of the finite points,

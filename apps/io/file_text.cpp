@@ -1,8 +1,11 @@
 #include "io/file_text.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
@@ -11,25 +14,40 @@ namespace pcl_symmetry::apps {
 
 namespace fs = boost::filesystem;
 
-std::uint64_t checkReadableFile(const std::string& path) {
+void checkReadableFile(const std::string& path) {
   boost::system::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw InputError(path + ": no such file");
   if (fs::is_directory(status)) throw InputError(path + ": is a directory, must be a file");
-  if (!fs::is_regular_file(status)) throw InputError(path + ": is not a regular file");
   errno = 0;
-  if (!std::ifstream(path, std::ios::binary)) throw InputError(path + ": cannot be opened, " + std::strerror(errno));
-  const std::uint64_t size = fs::file_size(path, error);
-  if (error) throw InputError(path + ": " + error.message());
-  if (size == 0) throw InputError(path + ": is empty (0 bytes)");
-  return size;
+  // Who opens a pipe takes it from the next one.
+  if (fs::is_regular_file(status) && !std::ifstream(path, std::ios::binary))
+    throw InputError(path + ": cannot be opened, " + std::strerror(errno));
 }
 
 std::string readWholeFile(const std::string& path) {
-  std::string text(checkReadableFile(path), '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file) throw InputError(path + ": cannot be read");
+  checkReadableFile(path);
+  std::FILE* const file = std::fopen(path.c_str(), "rb");
+  if (!file) throw InputError(path + ": cannot be opened, " + std::strerror(errno));
+  std::string text = readAll(file, path);
+  std::fclose(file);
+  return text;
+}
+
+std::string readAll(std::FILE* file, const std::string& name) {
+  std::string text;
+  struct stat status {};
+  if (::fstat(::fileno(file), &status) == 0 && S_ISREG(status.st_mode))
+    text.reserve(static_cast<std::size_t>(status.st_size) + 1);
+  constexpr std::size_t kPiece = 1 << 16;
+  std::size_t size = 0;
+  do {
+    text.resize(size + kPiece);
+    size += std::fread(&text[size], 1, kPiece, file);
+  } while (size == text.size());
+  text.resize(size);
+  if (std::ferror(file)) throw InputError(name + ": cannot be read, " + std::strerror(errno));
+  if (text.empty()) throw InputError(name + ": is empty (0 bytes)");
   return text;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -11,13 +12,16 @@
 
 namespace pcl_symmetry::apps {
 
-/// \throws InputError unless `path` is a readable, non-empty regular file.
-/// \return its size in bytes.
-std::uint64_t checkReadableFile(const std::string& path);
+/// \throws InputError unless `path` is a file that can be opened.
+void checkReadableFile(const std::string& path);
 
-/// \return the whole file.
-/// \throws InputError if it cannot be read.
+/// \return the whole file; of a pipe all that comes.
+/// \throws InputError if it cannot be read or is empty.
 std::string readWholeFile(const std::string& path);
+
+/// \return what is left of an open file.
+/// \param name in errors.
+std::string readAll(std::FILE* file, const std::string& name);
 
 /// Walks through text token by token; a '#' opens a comment that ends with its line.
 class TokenReader {
@@ -40,9 +44,11 @@ public:
   void skipLine();
   bool atEnd();
 
+  /// \throws InputError "path: what index = token, rule"; what is missing where the token is empty.
+  [[noreturn]] void fail(const char* what, std::uint64_t index, std::string_view token, const std::string& rule) const;
+
 private:
   void skipSpace(bool across_lines);
-  [[noreturn]] void fail(const char* what, std::uint64_t index, std::string_view token, const std::string& rule) const;
 
   std::string_view text_;
   std::size_t position_ = 0;

@@ -22,10 +22,15 @@ InputShape loadInput(const std::string& path, int mesh_points, std::uint64_t see
   return input;
 }
 
+void warnOfLeftOut(const Console& console, const std::string& path, const Shape& shape) {
+  for (const std::string& what : shape.left_out) console.warn(path + ": " + what + " left out");
+}
+
 InputShape loadInput(const Console& console, const std::string& path, const CommonOptions& common) {
   Step loading(console, "Loading " + path);
   InputShape input = loadInput(path, common.mesh_points, common.librarySeed());
   input.loading_ms = loading.done(std::to_string(input.points->size()) + " points");
+  warnOfLeftOut(console, path, input.shape);
   return input;
 }
 

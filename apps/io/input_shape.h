@@ -30,4 +30,7 @@ InputShape loadInput(const std::string& path, int mesh_points, std::uint64_t see
 /// The same with the number of points and the seed of the flags, as a step of a tool.
 InputShape loadInput(const Console& console, const std::string& path, const CommonOptions& common);
 
+/// Warns of what the file holds and the shape does not.
+void warnOfLeftOut(const Console& console, const std::string& path, const Shape& shape);
+
 }  // namespace pcl_symmetry::apps

@@ -29,8 +29,7 @@ std::uint64_t readKeywordAndVertexCount(TokenReader& reader, const std::string& 
 
 }  // namespace
 
-ExactShape readOFF(const std::string& path) {
-  const std::string text = readWholeFile(path);
+ExactShape readOFF(const std::string& path, std::string_view text) {
   TokenReader reader(text, path);
   const std::uint64_t num_vertices = readKeywordAndVertexCount(reader, path);
   const std::uint64_t num_faces = reader.count("number of faces, header value", 2, text.size());

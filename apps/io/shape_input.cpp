@@ -1,41 +1,27 @@
 #include "io/shape_input.h"
 
-#include <pcl/console/print.h>
 #include <pcl/conversions.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <boost/filesystem/path.hpp>
+#include <boost/filesystem.hpp>
 #include <cstring>
 #include <new>
 #include <utility>
 #include <vector>
 
 #include "io/file_text.h"
-#include "io/glb_reader.h"
 #include "io/pcd_reader.h"
-#include "io/ply_check.h"
-#include "io/cloud_files.h"
-#include "io/mesh_files.h"
+#include "io/ply_reader.h"
+#include "io/assimp_reader.h"
+#include "io/column_reader.h"
+#include "io/obj_reader.h"
 #include "io/off_reader.h"
-#include "io/xyz_reader.h"
 #include "io/standard_streams.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
-
-/// PCL's readers print what their return value says already.
-class SilentPCL {
-public:
-  SilentPCL() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
-  ~SilentPCL() { pcl::console::setVerbosityLevel(level_); }
-  SilentPCL(const SilentPCL&) = delete;
-  SilentPCL& operator=(const SilentPCL&) = delete;
-
-private:
-  pcl::console::VERBOSITY_LEVEL level_ = pcl::console::getVerbosityLevel();
-};
 
 template <typename Value>
 Value valueAt(const pcl::PCLPointCloud2& cloud, std::size_t offset) {
@@ -112,24 +98,17 @@ void checkPolygons(const std::string& path, pcl::PolygonMesh& mesh) {
                       mesh.polygons.end());
 }
 
-Shape loadPCD(const std::string& path) {
-  PCDCloud file = readPCD(path);
+Shape fromCloudFile(CloudFile file) {
   Shape shape;
   shape.cloud = std::move(file.cloud);
+  if (!file.polygons.empty()) {
+    shape.mesh.emplace();
+    shape.mesh->cloud = std::move(shape.cloud);
+    shape.mesh->polygons = std::move(file.polygons);
+  }
   shape.sensor_origin = file.sensor_origin;
   shape.sensor_orientation = file.sensor_orientation;
-  return shape;
-}
-
-Shape loadPLY(const std::string& path) {
-  const PLYSummary summary = checkPLY(path);
-  Shape shape;
-  if (summary.has_faces) shape.mesh.emplace();
-  if (!(shape.mesh ? cloudFiles().readPLY(path, *shape.mesh) : cloudFiles().readPLY(path, shape.cloud)))
-    throw InputError(path + ": PCL cannot read it as PLY, its data is damaged");
-  if (shape.mesh) shape.cloud = shape.mesh->cloud;
-  shape.sensor_origin = summary.sensor_origin;
-  shape.sensor_orientation = summary.sensor_orientation;
+  shape.left_out = std::move(file.left_out);
   return shape;
 }
 
@@ -161,52 +140,36 @@ Shape fromMesh(const std::string& path, pcl::PolygonMesh mesh) {
   return completed(path, std::move(shape));
 }
 
-Shape fromMesh(const std::string& path, ShiftedMesh mesh) {
-  Shape shape = fromMesh(path, std::move(mesh.mesh));
-  shape.shift = mesh.shift;
-  if (!shape.shift.isZero(0.0)) shape.cloud = toFields(*shape.points, shape.shift);
+Shape fromExact(const std::string& path, ExactShape exact) {
+  pcl::PolygonMesh mesh;
+  const Eigen::Vector3d shift = shiftFor(exact.vertices);
+  mesh.polygons = std::move(exact.polygons);
+  pcl::toPCLPointCloud2(shifted(exact.vertices, shift), mesh.cloud);
+  Shape shape = fromMesh(path, std::move(mesh));
+  shape.shift = shift;
+  if (!shift.isZero(0.0)) shape.cloud = toFields(*shape.points, shift);
+  shape.left_out = std::move(exact.left_out);
   return shape;
 }
 
-Shape fromExact(const std::string& path, ExactShape exact) {
-  ShiftedMesh mesh;
-  mesh.shift = shiftFor(exact.vertices);
-  mesh.mesh.polygons = std::move(exact.polygons);
-  pcl::toPCLPointCloud2(shifted(exact.vertices, mesh.shift), mesh.mesh.cloud);
-  return fromMesh(path, std::move(mesh));
-}
-
-ExactShape exactOf(GLBShape glb) {
-  ExactShape exact;
-  exact.vertices = std::move(glb.vertices);
-  for (const auto& triangle : glb.triangles) {
-    exact.polygons.emplace_back();
-    for (const std::uint32_t corner : triangle)
-      exact.polygons.back().vertices.push_back(static_cast<pcl::index_t>(corner));
-  }
-  return exact;
-}
-
-Shape loadFile(const std::string& path) {
-  checkReadableFile(path);
-  const std::string extension = boost::algorithm::to_lower_copy(boost::filesystem::path(path).extension().string());
-  const SilentPCL silence;
+/// \param name of the file in errors.
+Shape shapeOf(const std::string& name, std::string text, const std::string& extension) {
   try {
-    if (extension == ".pcd") return completed(path, loadPCD(path));
-    if (extension == ".ply") return completed(path, loadPLY(path));
-    if (extension == ".off") return fromExact(path, readOFF(path));
-    if (extension == ".xyz") return fromExact(path, readXYZ(path));
-    if (extension == ".obj") return fromMesh(path, meshFiles().readOBJ(path));
-    if (extension == ".stl") return fromMesh(path, meshFiles().readSTL(path));
-    if (extension == ".glb") return fromExact(path, exactOf(readGLB(path)));
+    if (extension == ".pcd") return completed(name, fromCloudFile(readPCD(name, text)));
+    if (extension == ".ply") return completed(name, fromCloudFile(readPLY(name, text)));
+    if (extension == ".off") return fromExact(name, readOFF(name, text));
+    if (extension == ".obj") return fromExact(name, readOBJ(name, text));
+    if (isColumnFile(extension)) return fromExact(name, readColumns(name, text));
+    if (extension == ".stl" || extension == ".glb")
+      return fromExact(name, readMesh(name, std::move(text), extension.substr(1)));
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw InputError(path + ": is too large for the memory of this machine");
+    throw InputError(name + ": is too large for the memory of this machine");
   } catch (const std::exception& error) {
-    throw InputError(path + ": cannot be read, " + error.what());
+    throw InputError(name + ": cannot be read, " + error.what());
   }
-  throw InputError(path + ": unknown extension '" + extension + "', must be " + kShapeFiles);
+  throw InputError(name + ": unknown extension '" + extension + "', must be " + kShapeFiles);
 }
 
 }  // namespace
@@ -216,13 +179,15 @@ Shape shapeFromMesh(const pcl::PolygonMesh& mesh) {
 }
 
 Shape loadShape(const std::string& path) {
-  if (!isStandardStream(path)) return loadFile(path);
-  const StandardInput input;
-  try {
-    return loadFile(input.path());
-  } catch (const InputError& error) {
-    throw InputError(input.named(error.what()));
+  const bool is_stdin = isStandardStream(path);
+  const std::string name = is_stdin ? "standard input" : path;
+  std::string text = is_stdin ? readStandardInput() : readWholeFile(path);
+  std::string extension = boost::algorithm::to_lower_copy(boost::filesystem::path(path).extension().string());
+  if (is_stdin || (extension.empty() && !boost::filesystem::is_regular_file(path))) {  // such as <(...) of a shell
+    extension = extensionOfContent(text);
+    if (extension.empty()) throw InputError(name + ": is of no known kind, must be " + kShapeFiles);
   }
+  return shapeOf(name, std::move(text), extension);
 }
 
 Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "command_line/tool_errors.h"
 #include "io/shape_file_kinds.h"
@@ -25,9 +26,11 @@ struct Shape {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();  ///< input frame
   Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
+  std::vector<std::string> left_out;  ///< what the file holds beyond that, such as lists of vertices
 };
 
-/// \param path a file of kShapeFiles, in capitals or not; "-" for standard input, whose kind is known by its content
+/// \param path a file of kShapeFiles, in capitals or not; "-" for standard input, whose kind is known by its content, as
+/// is that of a pipe without extension
 /// \throws InputError naming the file, what is wrong and the rule
 Shape loadShape(const std::string& path);
 

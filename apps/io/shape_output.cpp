@@ -11,7 +11,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "io/ply_check.h"
+#include "common/files/ply_check.h"
 #include "io/standard_streams.h"
 #include "io/temporary_file.h"
 

@@ -78,10 +78,4 @@ std::string makeUniqueFile(const std::string& model) {
   return name;
 }
 
-std::string temporaryModel(const std::string& extension) {
-  boost::system::error_code error;
-  const fs::path folder = fs::temp_directory_path(error);
-  return ((error ? fs::path("/tmp") : folder) / ("pcl_symmetry_%%%%%%%%%%%%" + extension)).string();
-}
-
 }  // namespace pcl_symmetry::apps

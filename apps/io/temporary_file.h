@@ -25,7 +25,4 @@ private:
 /// \return its name; empty where it cannot be made, errno then says why.
 std::string makeUniqueFile(const std::string& model);
 
-/// \return a model for makeUniqueFile() in the folder of temporary files.
-std::string temporaryModel(const std::string& extension);
-
 }  // namespace pcl_symmetry::apps

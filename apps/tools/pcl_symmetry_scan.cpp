@@ -12,7 +12,7 @@
 #include "io/json_values.h"
 #include "scanner/virtual_scanner.h"
 #include "io/exact_coordinates.h"
-#include "io/shape_input.h"
+#include "io/input_shape.h"
 #include "io/shape_output.h"
 #include "core/base/constants.h"
 
@@ -137,6 +137,7 @@ int run(int argc, char** argv) {
   const Shape shape = loadShape(options.input);
   if (!shape.mesh) throw InputError(options.input + ": has no faces, the scanner needs a mesh");
   const double loading_ms = loading.done(std::to_string(shape.mesh->polygons.size()) + " faces");
+  warnOfLeftOut(console, options.input, shape);
 
   const std::vector<View> views = viewsOf(options);
   double scanning_ms = 0.0;

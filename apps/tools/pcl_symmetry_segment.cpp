@@ -16,7 +16,7 @@
 #include "pictures/scene_page.h"
 #include "pictures/picture.h"
 #include "io/exact_coordinates.h"
-#include "io/shape_input.h"
+#include "io/input_shape.h"
 #include "io/face_labels.h"
 #include "io/labelled_shape.h"
 #include "io/shape_output.h"
@@ -131,6 +131,7 @@ Shape load(const FileJob& job, const SegmentOptions& o) {
     throw InputError(job.path() + ": has no faces, must have for " + *o.output);
   loading.done(shape.mesh ? std::to_string(shape.mesh->polygons.size()) + " faces"
                           : std::to_string(shape.points->size()) + " points");
+  warnOfLeftOut(job.console(), job.path(), shape);
   return shape;
 }
 

@@ -7,24 +7,11 @@
 #include <map>
 
 #include "command_line/tool_errors.h"
-#include "io/assimp_reader.h"
-#include "io/cloud_files.h"
 #include "io/shape_input.h"
 #include "io/face_labels.h"
 #include "bop/isaac_axes.h"
 #include "bop/models_info.h"
 #include "fuzz/byte_source.h"
-
-extern "C" const void* pclSymmetryModule(const char* version);
-
-// The modules of readers are linked, not loaded.
-const pcl_symmetry::apps::CloudFiles& pcl_symmetry::apps::cloudFiles() {
-  return *static_cast<const CloudFiles*>(pclSymmetryModule(PCL_SYMMETRY_VERSION));
-}
-const pcl_symmetry::apps::MeshFiles& pcl_symmetry::apps::meshFiles() {
-  static const AssimpMeshFiles files;
-  return files;
-}
 
 namespace {
 

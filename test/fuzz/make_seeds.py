@@ -100,6 +100,7 @@ def shape_files():
     yield "ply", [ply(k, c, s) for k in kinds for c, s in ((False, "float"), (True, "float"), (False, "double"))]
     off = text_of(CORNERS) + text_of((4, *face) for face in FACES)
     yield "off", [b"OFF\n8 6 0\n" + off, b"OFF8 6 12\n" + off, b"8 6 0\n# corners\n" + off, b"OFF BINARY\n"]
+    yield "csv", [b"x;y;z;t\n" + text_of(CORNERS).replace(b" ", b";"), b"3\n1,2,3,a\n4,5,6,b\n7,8,9,c\n"]
     yield "xyz", [text_of(CORNERS), b"# points\n" + text_of((*row, 255) for row in CORNERS)]
     yield "obj", list(obj())
     yield "stl", [stl(), stl_text()]

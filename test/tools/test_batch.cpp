@@ -179,6 +179,8 @@ TEST(StandardInput, KnowsKindsByTheirContent) {
   EXPECT_EQ(extensionOfContent(std::string(80, 'x') + std::string("\1\0\0\0", 4) + std::string(50, '\0')), ".stl");
   EXPECT_EQ(extensionOfContent("glTF...."), ".glb");
   EXPECT_EQ(extensionOfContent("\n# x y z\n-1.5 2 3\n"), ".xyz");
+  EXPECT_EQ(extensionOfContent("//X Y Z\n1 2 3\n"), ".xyz");
+  EXPECT_EQ(extensionOfContent("SOLID cube\n"), ".stl");
   EXPECT_EQ(extensionOfContent("hello"), "");
   EXPECT_EQ(extensionOfContent(""), "");
 }

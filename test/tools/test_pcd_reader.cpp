@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tools/temporary_folder.h"
+#include "command_line/tool_errors.h"
 #include "io/pcd_reader.h"
 
 namespace {
@@ -54,7 +55,7 @@ void expectAsPCL(const std::string& path) {
   Eigen::Quaternionf orientation;
   int version = 0;
   ASSERT_EQ(pcl::PCDReader().read(path, expected, origin, orientation, version), 0);
-  const PCDCloud read = readPCD(path);
+  const CloudFile read = readPCD(path, contentOf(path));
   EXPECT_EQ(read.sensor_origin.head<3>(), origin.head<3>());
   EXPECT_EQ(read.sensor_orientation.coeffs(), orientation.coeffs());
   ASSERT_EQ(read.cloud.width, expected.width);
@@ -85,7 +86,7 @@ TEST(ReadPCD, ReadsWhatPCLReads) {
                "VERSION 0.7\nFIELDS x _ y z\nSIZE 4 1 4 4\nTYPE F U F F\nCOUNT 1 3 1 1\nWIDTH 1\nHEIGHT "
                "1\nPOINTS 1\nDATA binary\n" +
                    std::string("\0\0\200?...\0\0\0@\0\0@@", 15));
-  const PCDCloud padded = readPCD(folder / "padded.pcd");
+  const CloudFile padded = readPCD("padded.pcd", contentOf(folder / "padded.pcd"));
   EXPECT_EQ(padded.cloud.point_step, 12u);
   float xyz[3];
   std::memcpy(xyz, padded.cloud.data.data(), sizeof(xyz));
@@ -98,7 +99,7 @@ TEST(ReadPCD, ReadsIntegersOfEverySizeAndSeveralValues) {
       "a.pcd",
       "VERSION 0.7\nFIELDS x y z i u big pair\nSIZE 4 4 4 1 2 8 4\nTYPE F F F I U U U\nCOUNT 1 1 1 1 1 1 2\nWIDTH 1\n"
       "HEIGHT 1\nPOINTS 1\nDATA ascii\n+1 2.5e0 nan -128 65535 18446744073709551615 7 4294967295\n");
-  const pcl::PCLPointCloud2 cloud = readPCD(path).cloud;
+  const pcl::PCLPointCloud2 cloud = readPCD(path, contentOf(path)).cloud;
   EXPECT_FALSE(cloud.is_dense);
   const auto at = [&](const char* name) { return cloud.data.data() + fieldOf(cloud, name)->offset; };
   EXPECT_EQ(*reinterpret_cast<const std::int8_t*>(at("i")), -128);
@@ -117,7 +118,7 @@ TEST(ReadPCD, ReadsIntegersOfEverySizeAndSeveralValues) {
 TEST(ReadPCD, KeepsFeaturesWithoutCoordinatesOut) {
   const TemporaryFolder folder;
   pcl::io::savePCDFileBinary(folder / "features.pcd", signatures());
-  EXPECT_THROW(readPCD(folder / "features.pcd"), InputError);
+  EXPECT_THROW(readPCD("features.pcd", contentOf(folder / "features.pcd")), InputError);
 }
 
 /// Three bytes of a back reference stand for at most 264: a short file cannot ask for gigabytes.
@@ -129,7 +130,7 @@ TEST(ReadPCD, RefusesSizesThatTheBytesCannotHold) {
                    "300000000\nDATA binary_compressed\n" +
                        std::string("\x04\0\0\0\0\xa4\x93\xd6....", 12));
   try {
-    readPCD(path);
+    readPCD(path, contentOf(path));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("damaged, too few bytes"), std::string::npos) << error.what();
@@ -156,7 +157,7 @@ TEST(ReadPCD, RefusesSizesBeyondAllNumbers) {
           data == "binary_compressed" ? std::string("\x08\0\0\0\0\0\0\xc0........", 16) : std::string(1000, ' ');
       const std::string path =
           folder.write("a.pcd", header + "\nWIDTH 268435456\nHEIGHT 1\nPOINTS 268435456\nDATA " + data + "\n" + body);
-      EXPECT_THROW(readPCD(path), InputError) << data;
+      EXPECT_THROW(readPCD(path, contentOf(path)), InputError) << data;
     }
   }
 }

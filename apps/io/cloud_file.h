@@ -1,0 +1,51 @@
+/// A cloud as PCD and PLY files hold it, and the numbers that fill it.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/Vertices.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_symmetry::apps {
+
+struct CloudFile {
+  pcl::PCLPointCloud2 cloud;            ///< fields without padding, one after the other
+  std::vector<pcl::Vertices> polygons;  ///< indices checked
+  std::vector<std::string> left_out;    ///< what the file holds beyond that
+  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
+  Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
+};
+
+/// Values of each point in a file, and the field of the cloud that takes them. Types are those of pcl::PCLPointField.
+struct Column {
+  std::string name;
+  std::uint8_t type = 0;    ///< in the file
+  std::uint64_t count = 1;  ///< values of a point
+  std::uint64_t size = 0;   ///< bytes of a value in the file
+  std::uint8_t stored_type = 0;
+  std::ptrdiff_t offset = -1;  ///< in a point of the cloud; negative: the values are left out
+};
+
+/// Adds a field of the column's name, type and count to the cloud; x, y and z of whole numbers become float or double.
+void addField(Column& column, pcl::PCLPointCloud2& cloud);
+
+/// Gives the cloud room for the points and sets its sizes; all values are zero.
+void makeRoom(std::uint64_t width, std::uint64_t height, pcl::PCLPointCloud2& cloud);
+
+/// \return a value of the type at any address, as double.
+double numberAt(const void* source, std::uint8_t type);
+
+/// Stores what the token spells; whole numbers are rounded towards zero and kept within the range of the type.
+/// \return whether the token is a number.
+bool storeNumber(std::string_view token, std::uint8_t type, void* target);
+
+/// Copies the values of the column from a point of a file to a point of the cloud.
+void storeValues(const Column& column, const void* source, std::uint8_t* point);
+
+/// \return whether all values of all float and double fields are finite.
+bool isDense(const pcl::PCLPointCloud2& cloud);
+
+}  // namespace pcl_symmetry::apps
