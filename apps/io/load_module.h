@@ -1,15 +1,20 @@
-/// Libraries that a tool loads when it needs them.
+/// Functions of libraries that take longer to load than a tool takes to find planes: VTK, which draws, and PCL's
+/// library of files, which brings 60 others. They are in modules that are loaded at the first call.
 #pragma once
 
 #include <string>
 
 namespace pcl_symmetry::apps {
 
-/// Loads NAME.so from where the executable's runtime path says: its own folder in the build tree, the library folder of
-/// the installation otherwise. LD_LIBRARY_PATH comes before that.
-/// \param purpose what it is for, in the error
-/// \return what its function pclSymmetryModule() returns, given the version of this program
-/// \throws InputError where it cannot be loaded or is that of another version
-const void* loadModule(const std::string& name, const std::string& purpose);
+/// Loads MODULE.so from where the executable's runtime path says: its own folder in the build tree, the library folder
+/// of the installation otherwise.
+/// \return the address of a function with C linkage.
+/// \throws InputError where there is no such module or function.
+void* addressInModule(const std::string& module, const char* function);
+
+template <typename Function>
+Function* functionOf(const std::string& module, const char* name) {
+  return reinterpret_cast<Function*>(addressInModule(module, name));
+}
 
 }  // namespace pcl_symmetry::apps

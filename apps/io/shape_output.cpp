@@ -1,7 +1,9 @@
 #include "io/shape_output.h"
 
 #include <pcl/common/io.h>
-#include <sys/stat.h>
+#include <pcl/exceptions.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
@@ -10,8 +12,10 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iostream>
+#include <optional>
 
-#include "common/files/ply_check.h"
+#include "io/load_module.h"
 #include "io/standard_streams.h"
 #include "io/temporary_file.h"
 
@@ -56,31 +60,46 @@ pcl::PCLPointCloud2 packed(const pcl::PCLPointCloud2& cloud) {
   return result;
 }
 
-/// Calls the writer with a temporary name and copies what it wrote to standard output.
-void writeThrough(const std::function<void(const std::string&)>& writer) {
-  const std::string temporary = makeUniqueFile(temporaryModel(""));
-  if (temporary.empty()) failToWrite("standard output", std::strerror(errno));
-  const TemporaryFile guard(temporary);
-  writer(temporary);
-  copyToStandardOutput(temporary);
-}
-
-/// Lines of points in a PCD file of text.
-std::size_t numLinesOfPoints(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line) && line.rfind("DATA", 0) != 0;) {
+/// A file that lies in memory. PCL's and VTK's writers do not look whether the disk takes what they write, and one of
+/// them ends the program where it does not.
+class MemoryFile {
+public:
+  MemoryFile() : descriptor_(::memfd_create("pcl_symmetry", MFD_CLOEXEC)) {}
+  ~MemoryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
   }
-  std::size_t lines = 0;
-  std::vector<char> block(1 << 16);
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-    lines += static_cast<std::size_t>(std::count(block.begin(), block.begin() + file.gcount(), '\n'));
-  return lines;
-}
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
 
-/// PCL's writers of text and of PLY do not look whether the disk took what they wrote.
-bool isWhole(const std::string& path, const std::string& extension, PCDEncoding encoding, std::size_t num_points) {
-  if (extension == ".ply") return isWholePLY(path);
-  return encoding != PCDEncoding::Ascii || numLinesOfPoints(path) == num_points;
+  std::string name() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+  /// \return whether all of it was copied.
+  bool copyTo(std::ostream& out) const {
+    const ::off_t size = ::lseek(descriptor_, 0, SEEK_END);
+    // One byte more shows that no limit cut it off.
+    if (size <= 0 || ::pwrite(descriptor_, "", 1, size) != 1) return false;
+    std::vector<char> piece(1 << 20);
+    for (::off_t at = 0; at < size;) {
+      const std::size_t wanted = std::min(piece.size(), static_cast<std::size_t>(size - at));
+      const ::ssize_t got = ::pread(descriptor_, piece.data(), wanted, at);
+      if (got <= 0 || !out.write(piece.data(), got)) return false;
+      at += got;
+    }
+    return true;
+  }
+
+private:
+  int descriptor_;
+};
+
+/// \throws InputError where no file can be made.
+void checkTarget(const std::string& path) {
+  if (isStandardStream(path)) return;
+  if (path.empty()) throw InputError("output name is empty");
+  boost::system::error_code ignored;
+  if (fs::is_directory(path, ignored)) failToWrite(path, "it is a directory");
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored)) failToWrite(path, "there is no directory " + folder.string());
 }
 
 /// Of a cloud to be written; standard output takes PCD.
@@ -91,44 +110,52 @@ std::string lowerExtension(const std::string& path) {
 
 }  // namespace
 
-void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& writer) {
-  if (isStandardStream(path)) return writeThrough(writer);
+void writeStream(const std::string& path, const std::function<void(std::ostream&)>& writer) {
+  const auto write = [&](std::ostream& stream) {
+    errno = 0;
+    writer(stream);
+    if (!stream.flush()) failToWrite(isStandardStream(path) ? "standard output" : path, std::strerror(errno));
+  };
+  if (isStandardStream(path)) return write(std::cout);
+  checkTarget(path);
   const fs::path target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   boost::system::error_code ignored;
-  if (path.empty()) throw InputError("output name is empty");
-  if (fs::is_directory(target, ignored)) failToWrite(path, "it is a directory");
-  if (!fs::is_directory(folder, ignored)) failToWrite(path, "there is no directory " + folder.string());
-
-  const bool special = fs::exists(target, ignored) && !fs::is_regular_file(target, ignored);
-  if (special) failToWrite(path, "it is not a regular file");
+  const bool is_special = fs::exists(target, ignored) && !fs::is_regular_file(target, ignored);  // a pipe or a device
   const fs::path final_name = fs::is_symlink(target, ignored) ? fs::canonical(target, ignored) : target;
-
-  const std::string temporary = makeUniqueFile(
-      (final_name.parent_path() / ("." + target.stem().string() + ".%%%%%%%%" + target.extension().string())).string());
+  const std::string temporary =
+      is_special ? path
+                 : makeUniqueFile((final_name.parent_path() /
+                                   ("." + target.stem().string() + ".%%%%%%%%" + target.extension().string()))
+                                      .string());
   if (temporary.empty()) failToWrite(path, std::strerror(errno));
-  const TemporaryFile guard(temporary);
+  std::optional<TemporaryFile> guard;
+  if (!is_special) guard.emplace(temporary);
+  {
+    std::ofstream stream(temporary, std::ios::binary);
+    write(stream);
+    stream.close();
+    if (!stream) failToWrite(path, std::strerror(errno));
+  }
+  if (!is_special && std::rename(temporary.c_str(), final_name.c_str()) != 0) failToWrite(path, std::strerror(errno));
+}
 
-  writer(temporary);
-  struct stat status {};
-  if (stat(temporary.c_str(), &status) != 0 || status.st_size == 0) failToWrite(path, "nothing was written");
-  if (std::rename(temporary.c_str(), final_name.c_str()) != 0) failToWrite(path, std::strerror(errno));
+void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& writer) {
+  checkTarget(path);  // before the work
+  const MemoryFile memory;
+  writer(memory.name());
+  writeStream(path, [&](std::ostream& stream) {
+    if (!memory.copyTo(stream) && stream) failToWrite(path, "there is not enough memory");
+  });
+}
+
+void writeText(const std::string& path, const std::string& text) {
+  writeStream(path, [&](std::ostream& stream) { stream << text; });
 }
 
 void makeFolder(const std::string& path) {
   boost::system::error_code error;  // Boost 1.74 has one for ".", which is there
   fs::create_directories(path, error);
   if (!fs::is_directory(path)) throw InputError(path + ": cannot be made, must be a folder");
-}
-
-void writeText(const std::string& path, const std::string& text) {
-  if (isStandardStream(path)) return writeStandardOutput(text);
-  writeAtomically(path, [&](const std::string& temporary) {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) failToWrite(path, std::strerror(errno));
-  });
 }
 
 void checkCloudExtension(const std::string& path) {
@@ -145,19 +172,14 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
     throw InputError(path + ": not written, the cloud holds fewer points than width * height");
   }
   const pcl::PCLPointCloud2 fields = packed(cloud);
-  writeAtomically(path, [&](const std::string& temporary) {
-    bool written = false;
+  writeAtomically(path, [&](const std::string& name) {
     try {
-      written = extension == ".ply"
-                    ? cloudFiles().writePLY(temporary, fields, sensor_origin, sensor_orientation)
-                    : cloudFiles().writePCD(temporary, fields, sensor_origin, sensor_orientation, encoding);
-    } catch (const InputError&) {
-      throw;
-    } catch (const std::exception& error) {
-      failToWrite(path, error.what());
+      auto* const write = functionOf<decltype(writeCloudFile)>("pcl_symmetry_cloud_files", "writeCloudFile");
+      if (!write(name, extension, fields, sensor_origin, sensor_orientation, encoding))
+        failToWrite(path, "there is not enough memory");
+    } catch (const pcl::PCLException&) {
+      failToWrite(path, "there is not enough memory");
     }
-    const std::size_t num_points = std::size_t{fields.width} * fields.height;
-    if (!written || !isWhole(temporary, extension, encoding, num_points)) failToWrite(path, "the disk may be full");
   });
 }
 

@@ -5,18 +5,24 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <iosfwd>
 #include <string>
 
+#include "io/cloud_writer.h"
 #include "command_line/tool_errors.h"
-#include "io/cloud_files.h"
 
 namespace pcl_symmetry::apps {
 
-/// Calls the writer with a temporary name beside `path` (same extension) and renames what it wrote. The temporary file
-/// is removed if the writer throws and if the program is interrupted or terminated by a signal. With the path "-" the
-/// bytes go to standard output.
-/// \throws InputError if the folder is missing or not writable, or the writer made no file; whatever the writer throws.
-void writeAtomically(const std::string& path, const std::function<void(const std::string& temporary_path)>& writer);
+/// Everything that tools write goes this way: into a temporary file beside `path`, which is renamed when it is whole.
+/// It
+/// is removed if the disk is full, if the writer throws and if a signal ends the program. With the path "-" the bytes go
+/// to standard output; pipes and devices are written as they are.
+/// \throws InputError if the folder is missing or not writable or the disk is full; whatever the writer throws.
+void writeStream(const std::string& path, const std::function<void(std::ostream&)>& writer);
+
+/// The same for writers of libraries, which want the name of a file: they get that of a file in memory.
+/// \throws InputError also if the writer made no file.
+void writeAtomically(const std::string& path, const std::function<void(const std::string& file_in_memory)>& writer);
 
 /// Makes a folder for outputs and those that hold it, unless they are there.
 /// \throws InputError if it cannot be made.

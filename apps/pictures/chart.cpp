@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/drawing.h"
+#include "common/modules/drawing.h"
 #include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {

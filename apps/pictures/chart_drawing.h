@@ -1,7 +1,7 @@
 /// Charts drawn by VTK into PNG files.
 #pragma once
 
-#include "io/drawing.h"
+#include "common/modules/drawing.h"
 
 namespace pcl_symmetry::apps {
 

@@ -5,7 +5,7 @@
 #include "pictures/chart_drawing.h"
 #include "pictures/image_files.h"
 #include "pictures/scene_drawing.h"
-#include "io/drawing.h"
+#include "common/modules/drawing.h"
 
 namespace {
 

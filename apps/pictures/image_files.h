@@ -1,7 +1,7 @@
 /// Pictures and volumes read and written by VTK.
 #pragma once
 
-#include "io/drawing.h"
+#include "common/modules/drawing.h"
 
 namespace pcl_symmetry::apps {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "io/drawing.h"
+#include "common/modules/drawing.h"
 #include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {

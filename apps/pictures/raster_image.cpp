@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "io/file_text.h"
-#include "io/drawing.h"
+#include "common/modules/drawing.h"
 #include "pictures/volume_image.h"
 #include "io/shape_output.h"
 
