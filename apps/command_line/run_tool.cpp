@@ -2,13 +2,16 @@
 
 #include <pcl/console/print.h>
 #include <pcl/exceptions.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem/path.hpp>
+#include <cstdlib>
 #include <iostream>
 #include <new>
 #include <sstream>
+#include <vector>
 
 #include "command_line/file_errors.h"
 
@@ -21,6 +24,19 @@ std::string oneLine(std::string text) {
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   boost::algorithm::trim(text);
   return text;
+}
+
+/// VTK draws through an X server. Where there is none, a tool that is to write a picture starts again within xvfb-run,
+/// which starts one; without xvfb-run it goes on, and what draws says what is missing.
+void findDisplay(int argc, char** argv) {
+  const auto isPicture = [](const char* argument) { return boost::algorithm::iends_with(argument, ".png"); };
+  if (std::getenv("DISPLAY") || std::none_of(argv + 1, argv + argc, isPicture)) return;
+  std::vector<char*> command;
+  static char program[] = "xvfb-run", any_number[] = "-a";
+  command.insert(command.end(), {program, any_number});
+  command.insert(command.end(), argv, argv + argc);
+  command.push_back(nullptr);
+  ::execvp(program, command.data());
 }
 
 }  // namespace
@@ -39,6 +55,7 @@ std::string plainMessage(const pcl::PCLException& error) {
 }
 
 int runTool(int argc, char** argv, const std::function<int(int, char**)>& body) {
+  if (argc > 1) findDisplay(argc, argv);
   const std::string tool = argc > 0 ? boost::filesystem::path(argv[0]).filename().string() : "pcl_symmetry";
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   const auto fail = [&tool](const std::string& message, int code) {

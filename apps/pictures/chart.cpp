@@ -7,7 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/modules/drawing.h"
+#include "pictures/drawing.h"
+#include "io/load_module.h"
 #include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {
@@ -81,7 +82,7 @@ void writeChart(const Chart& chart, const std::string& path, int width, int heig
       throw std::invalid_argument("chart: series '" + series.name + "' has a band of other length");
   }
   writeAtomically(path, [&](const std::string& temporary) {
-    drawing().drawChart(readyToDraw(chart), {path, temporary, width, height});
+    functionOf<decltype(drawChart)>(kDrawingModule, "drawChart")(readyToDraw(chart), {path, temporary, width, height});
   });
 }
 

@@ -35,7 +35,7 @@ struct Chart {
 /// For several charts under one name: NAME.png and "_what" to NAME_what.png.
 std::string chartBeside(const std::string& path, const std::string& what);
 
-/// Draws off screen and writes a PNG whole. Uses the display if there is one, or else a private Xvfb.
+/// Draws off screen and writes a PNG whole. Needs a display; tools start one with xvfb-run, see runTool().
 /// \throws std::invalid_argument where no series holds a value that can be drawn, InputError if nothing can draw or the
 /// file cannot be written.
 void writeChart(const Chart& chart, const std::string& path, int width = 1200, int height = 900);

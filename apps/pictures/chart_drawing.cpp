@@ -1,5 +1,3 @@
-#include "pictures/chart_drawing.h"
-
 #include <vtkAxis.h>
 #include <vtkChartLegend.h>
 #include <vtkChartXY.h>
@@ -19,7 +17,7 @@
 #include <vtkWindowToImageFilter.h>
 
 #include "pictures/colors.h"
-#include "pictures/private_display.h"
+#include "pictures/drawing.h"
 
 namespace pcl_symmetry::apps {
 
@@ -95,7 +93,8 @@ void setUp(vtkAxis& drawn, const ChartAxis& axis) {
 }  // namespace
 
 void drawChart(const Chart& chart, const PictureTarget& target) {
-  const PrivateDisplay display;
+  const std::lock_guard<std::mutex> lock(drawing_mutex);
+  requireDisplay(target.name);
   vtkNew<vtkContextView> view;
   view->GetRenderWindow()->SetOffScreenRendering(1);
   view->GetRenderWindow()->SetSize(target.width, target.height);

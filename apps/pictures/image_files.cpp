@@ -1,5 +1,3 @@
-#include "pictures/image_files.h"
-
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkImageReader2.h>
@@ -14,9 +12,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "pictures/drawing.h"
+
 namespace pcl_symmetry::apps {
 
-RasterImage decodeImage(const std::string& path, bool png) {
+void decodeImage(const std::string& path, bool png, RasterImage& image) {
+  const std::lock_guard<std::mutex> lock(drawing_mutex);
   vtkSmartPointer<vtkImageReader2> reader;
   if (png) {
     reader = vtkSmartPointer<vtkPNGReader>::New();
@@ -35,7 +36,7 @@ RasterImage decodeImage(const std::string& path, bool png) {
   const bool wide = data->GetScalarType() == VTK_UNSIGNED_SHORT;
   if (size[0] < 1 || size[1] < 1 || channels < 1 || (!wide && data->GetScalarType() != VTK_UNSIGNED_CHAR))
     throw InputError(path + ": cannot be read, must be a picture of 8 or 16 bits");
-  RasterImage image(size[0], size[1]);
+  image = RasterImage(size[0], size[1]);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const auto value = [&](int channel) {
@@ -48,10 +49,10 @@ RasterImage decodeImage(const std::string& path, bool png) {
       image.set(x, y, color);
     }
   }
-  return image;
 }
 
 void encodeImage(const RasterImage& image, const std::string& path, const std::string& file) {
+  const std::lock_guard<std::mutex> lock(drawing_mutex);
   vtkNew<vtkImageData> data;
   data->SetDimensions(image.width, image.height, 1);
   data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
@@ -65,6 +66,7 @@ void encodeImage(const RasterImage& image, const std::string& path, const std::s
 }
 
 void encodeVolume(const VolumeImage& volume, const std::string& path, const std::string& file) {
+  const std::lock_guard<std::mutex> lock(drawing_mutex);
   vtkNew<vtkFloatArray> array;
   array->SetName(volume.name.c_str());
   array->SetNumberOfTuples(static_cast<vtkIdType>(volume.values.size()));

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "common/modules/drawing.h"
+#include "pictures/drawing.h"
+#include "io/load_module.h"
 #include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {
@@ -67,7 +68,8 @@ void renderPicture(const std::vector<PictureScene>& scenes, const std::string& p
   for (const PictureScene& scene : scenes) checkScene(scene);
   checkSize(width, height);
   writeAtomically(path, [&](const std::string& temporary) {
-    drawing().drawScenes(scenes, {path, temporary, width, height}, num_columns);
+    functionOf<decltype(drawScenes)>(kDrawingModule, "drawScenes")(scenes, {path, temporary, width, height},
+                                                                   num_columns);
   });
 }
 

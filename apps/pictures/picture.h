@@ -61,7 +61,7 @@ void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 /// \throws std::invalid_argument for a scene that does not fit together.
 void checkScene(const PictureScene& scene);
 
-/// Renders off screen and writes a PNG whole. Uses the display if there is one, or else a private Xvfb.
+/// Renders off screen and writes a PNG whole. Needs a display; tools start one with xvfb-run, see runTool().
 /// \param width, height of the whole picture in pixels, 16 to 16384.
 /// \throws std::invalid_argument for a scene that does not fit together, InputError if nothing can draw or the file
 /// cannot be written.

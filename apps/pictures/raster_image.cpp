@@ -5,8 +5,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "pictures/drawing.h"
 #include "io/file_text.h"
-#include "common/modules/drawing.h"
+#include "io/load_module.h"
 #include "pictures/volume_image.h"
 #include "io/shape_output.h"
 
@@ -48,15 +49,21 @@ RasterImage readImage(const std::string& path) {
   const bool png = boost::algorithm::iends_with(path, ".png");
   if (!boost::algorithm::starts_with(content, png ? "\x89PNG" : "P5"))
     throw InputError(path + ": is no picture, must be a PNG or binary PGM file");
-  return drawing().decodeImage(path, png);
+  RasterImage image;
+  functionOf<decltype(decodeImage)>(kDrawingModule, "decodeImage")(path, png, image);
+  return image;
 }
 
 void writeImage(const RasterImage& image, const std::string& path) {
-  writeAtomically(path, [&](const std::string& temporary) { drawing().encodeImage(image, path, temporary); });
+  writeAtomically(path, [&](const std::string& temporary) {
+    functionOf<decltype(encodeImage)>(kDrawingModule, "encodeImage")(image, path, temporary);
+  });
 }
 
 void writeVolume(const VolumeImage& volume, const std::string& path) {
-  writeAtomically(path, [&](const std::string& temporary) { drawing().encodeVolume(volume, path, temporary); });
+  writeAtomically(path, [&](const std::string& temporary) {
+    functionOf<decltype(encodeVolume)>(kDrawingModule, "encodeVolume")(volume, path, temporary);
+  });
 }
 
 }  // namespace pcl_symmetry::apps

@@ -1,5 +1,3 @@
-#include "pictures/scene_drawing.h"
-
 #include <vtkActor.h>
 #include <vtkActorCollection.h>
 #include <vtkCamera.h>
@@ -21,8 +19,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pictures/drawing.h"
 #include "pictures/picture_actors.h"
-#include "pictures/private_display.h"
 #include "core/base/constants.h"
 
 namespace pcl_symmetry::apps {
@@ -164,9 +162,10 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGr
 }  // namespace
 
 void drawScenes(const std::vector<PictureScene>& scenes, const PictureTarget& target, int num_columns) {
+  const std::lock_guard<std::mutex> lock(drawing_mutex);
   int num_panels = 0;
   for (const PictureScene& scene : scenes) num_panels += static_cast<int>(scene.panels.size());
-  const PrivateDisplay display;
+  requireDisplay(target.name);
   const CollectedMessages messages;
   const int factor = std::max(target.width, target.height) <= kMaxSuperSampled ? 2 : 1;
   vtkNew<vtkRenderWindow> window;

@@ -8,7 +8,8 @@
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
-#include "pictures/private_display.h"
+#include "pictures/drawing.h"
+#include "io/input_shape.h"
 #include "io/exact_coordinates.h"
 #include "io/shape_input.h"
 #include "viewer/viewer_window.h"
@@ -65,6 +66,7 @@ int run(int argc, char** argv) {
   Step loading(console, "Loading " + options.input);
   const Shape shape = loadShape(options.input);
   loading.done(std::to_string(shape.points->size()) + " points");
+  warnOfLeftOut(console, options.input, shape);
 
   DetectionOptions& detection = options.model.detection;
   detection.approximate = !options.symmetries_only;
@@ -83,7 +85,7 @@ int run(int argc, char** argv) {
     return 0;
   }
   Step drawing(console, "Drawing " + *options.screenshot_path);
-  const PrivateDisplay display;
+  requireDisplay(*options.screenshot_path);
   ViewerWindow window(model, name, true, options.width, options.height);
   for (const std::string& key : keys) window.press(key);
   window.save(*options.screenshot_path);

@@ -9,7 +9,7 @@
 
 namespace pcl_symmetry::apps {
 
-/// Needs a display (private_display.h).
+/// Needs a display (drawing.h).
 class ViewerWindow {
 public:
   /// \param name of the shape, in the title and in the names of saved pictures.

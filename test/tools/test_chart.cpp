@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "tools/display.h"
 #include "tools/temporary_folder.h"
 #include "pictures/chart.h"
 
@@ -19,7 +20,12 @@ Chart twoSeries() {
   return chart;
 }
 
-TEST(Chart, IsAWholePNG) {
+class Charts : public testing::Test {
+protected:
+  static void SetUpTestSuite() { findDisplayForTest(); }
+};
+
+TEST_F(Charts, IsAWholePNG) {
   const TemporaryFolder folder;
   writeChart(twoSeries(), folder / "a.png", 400, 300);
   const std::string png = contentOf(folder / "a.png");
@@ -29,7 +35,7 @@ TEST(Chart, IsAWholePNG) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
-TEST(Chart, DrawsWhatItsSeriesHold) {
+TEST_F(Charts, DrawsWhatItsSeriesHold) {
   const TemporaryFolder folder;
   Chart chart = twoSeries();
   writeChart(chart, folder / "a.png", 400, 300);
@@ -47,7 +53,7 @@ TEST(Chart, DrawsWhatItsSeriesHold) {
   EXPECT_THROW(writeChart(chart, folder / "d.png"), std::invalid_argument);
 }
 
-TEST(Chart, RefusesWhatItCannotDraw) {
+TEST_F(Charts, RefusesWhatItCannotDraw) {
   const TemporaryFolder folder;
   Chart uneven = twoSeries();
   uneven.series[0].y.pop_back();

@@ -3,8 +3,8 @@
 #include <cstdlib>
 
 #include "tools/box_mesh.h"
+#include "tools/display.h"
 #include "tools/temporary_folder.h"
-#include "pictures/private_display.h"
 #include "pictures/picture.h"
 #include "scanner/virtual_scanner.h"
 
@@ -27,7 +27,12 @@ PictureScene boxScene() {
   return scene;
 }
 
-TEST(Picture, IsAWholePNGOfTheWantedSize) {
+class Picture : public testing::Test {
+protected:
+  static void SetUpTestSuite() { findDisplayForTest(); }
+};
+
+TEST_F(Picture, IsAWholePNGOfTheWantedSize) {
   const TemporaryFolder folder;
   renderPicture(boxScene(), folder / "box.png", 300, 200);
   const std::string png = contentOf(folder / "box.png");
@@ -44,7 +49,7 @@ TEST(Picture, IsAWholePNGOfTheWantedSize) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
-TEST(Picture, HoldsSeveralScenes) {
+TEST_F(Picture, HoldsSeveralScenes) {
   const TemporaryFolder folder;
   PictureScene other = boxScene();
   other.panels.resize(1);
@@ -56,7 +61,7 @@ TEST(Picture, HoldsSeveralScenes) {
   EXPECT_THROW(renderPicture(std::vector<PictureScene>{}, folder / "none.png", 300, 200), std::invalid_argument);
 }
 
-TEST(Picture, FailsWithOneErrorWhereNothingCanDraw) {
+TEST_F(Picture, FailsWithOneErrorWhereNothingCanDraw) {
   const TemporaryFolder folder;
   const char* display = std::getenv("DISPLAY");
   const std::string old_display = display ? display : "", old_path = std::getenv("PATH");
@@ -68,15 +73,7 @@ TEST(Picture, FailsWithOneErrorWhereNothingCanDraw) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-TEST(Picture, PutsTheEnvironmentBack) {
-  const char* display = std::getenv("DISPLAY");
-  const std::string before = display ? display : "(none)";
-  { const PrivateDisplay own; }
-  const char* after = std::getenv("DISPLAY");
-  EXPECT_EQ(after ? after : "(none)", before);
-}
-
-TEST(Picture, RefusesScenesThatDoNotFitTogether) {
+TEST_F(Picture, RefusesScenesThatDoNotFitTogether) {
   const TemporaryFolder folder;
   const auto refused = [&](auto change) {
     PictureScene scene = boxScene();

@@ -55,7 +55,7 @@ TEST_F(ViewpointTool, ComputesWithoutADisplayAndSaysWhyAPictureIsMissing) {
             0);
   const std::string output = contentOf(folder_ / "out");
   EXPECT_NE(output.find("best"), std::string::npos) << "what was computed is printed all the same";
-  EXPECT_NE(output.find("there is no display, and Xvfb is missing"), std::string::npos);
+  EXPECT_NE(output.find("there is no display, and xvfb-run is missing"), std::string::npos);
 }
 
 TEST_F(ViewpointTool, RefusesWhatMakesNoSense) {

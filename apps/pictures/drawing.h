@@ -1,0 +1,46 @@
+/// What draws: VTK, in the module pcl_symmetry_drawing. The functions of common/pictures are what tools call; they
+/// check, and come here through functionOf(). One thread at a time draws.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "pictures/chart.h"
+#include "pictures/picture.h"
+#include "pictures/raster_image.h"
+#include "pictures/volume_image.h"
+
+namespace pcl_symmetry::apps {
+
+inline constexpr const char* kDrawingModule = "pcl_symmetry_drawing";
+
+/// Where a picture goes.
+struct PictureTarget {
+  std::string name;   ///< in error messages
+  std::string file;   ///< that is written
+  int width, height;  ///< pixels
+};
+
+/// VTK has global state.
+inline std::mutex drawing_mutex;
+
+/// \return whether DISPLAY names an X server that draws with OpenGL.
+bool hasDisplay();
+
+/// \throws InputError unless there is a display; tools look for one when they start, see runTool().
+/// \param name of the picture.
+void requireDisplay(const std::string& name);
+
+/// All throw InputError naming the file where they fail.
+extern "C" {
+/// \param scenes checked.
+void drawScenes(const std::vector<PictureScene>& scenes, const PictureTarget& target, int num_columns);
+/// \param chart both of its ranges are set.
+void drawChart(const Chart& chart, const PictureTarget& target);
+void decodeImage(const std::string& path, bool png, RasterImage& image);
+void encodeImage(const RasterImage& image, const std::string& path, const std::string& file);
+void encodeVolume(const VolumeImage& volume, const std::string& path, const std::string& file);
+}
+
+}  // namespace pcl_symmetry::apps
