@@ -1,0 +1,688 @@
+"""What the programs of this folder share: models, clouds, virtual scanners, rates, tables, and runs over many items."""
+import argparse
+import concurrent.futures
+import dataclasses
+import functools
+import hashlib
+import json
+import math
+import multiprocessing
+import os
+import pathlib
+import sys
+import time
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # items are spread over processes, each works on its own with one thread
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+MESH_FORMATS = (".off", ".ply", ".obj", ".stl")
+
+
+class BadInput(Exception):
+    """Input that cannot be used; the message is one sentence for the user."""
+
+
+# Meshes and lists of models
+
+
+@dataclasses.dataclass
+class Mesh:
+    vertices: np.ndarray  # (V, 3) float64, input units
+    triangles: np.ndarray  # (T, 3) int32
+    polygons: np.ndarray = None  # (T,) polygon of the file that each triangle is part of
+
+    @functools.cached_property
+    def corners(self):
+        """(T, 3, 3) corners of the triangles."""
+        return self.vertices[self.triangles]
+
+    @functools.cached_property
+    def areas(self):
+        a, b, c = self.corners.swapaxes(0, 1)
+        return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+    @functools.cached_property
+    def center(self):
+        """(3,) middle of the bounding box of the triangles."""
+        return 0.5 * (self.corners.min((0, 1)) + self.corners.max((0, 1)))
+
+    @functools.cached_property
+    def diagonal(self):
+        return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
+
+    @functools.cached_property
+    def diameter(self):
+        """Greatest distance between two points."""
+        return diameter(self.corners.reshape(-1, 3))
+
+    @functools.cached_property
+    def scene(self):
+        """Open3D's ray casting scene of the mesh, centered and divided by its diagonal."""
+        import open3d
+
+        unit = ((self.vertices - self.center) / self.diagonal).astype(np.float32)
+        scene = open3d.t.geometry.RaycastingScene()
+        scene.add_triangles(open3d.core.Tensor(unit), open3d.core.Tensor(self.triangles.astype(np.uint32)))
+        return scene
+
+    def distances(self, points):
+        """(N,) distances of points in the frame of `scene` from the mesh, in diagonals."""
+        return self.scene.compute_distance(_tensor(points), nthreads=1).numpy()
+
+
+def _tensor(rows):
+    import open3d
+
+    return open3d.core.Tensor(np.ascontiguousarray(rows, dtype=np.float32))
+
+
+def diameter(points):
+    """Greatest distance between two of (N, 3) points."""
+    points = np.unique(points, axis=0)
+    try:
+        points = points[ConvexHull(points).vertices]
+    except (QhullError, ValueError):  # flat or too few
+        pass
+    if len(points) > 3000:  # round shapes: the ends of 3000 directions hold the diameter to 1 in 1000
+        directions = random_directions(np.random.default_rng(0), 3000)
+        points = points[np.unique(np.argmax(points @ directions.T, axis=0))]
+    return max(float(np.sqrt(((points - p) ** 2).sum(1).max())) for p in points)
+
+
+def make_mesh(vertices, polygons):
+    """Cuts polygons into fans and leaves out triangles without area. Raises BadInput where none is left."""
+    fans = [(p[0], p[k - 1], p[k], i) for i, p in enumerate(polygons) for k in range(2, len(p))]
+    fans = np.array(fans, np.int32).reshape(-1, 4)
+    vertices = np.asarray(vertices, float).reshape(-1, 3)
+    if len(fans) and not (0 <= fans[:, :3].min() and fans[:, :3].max() < len(vertices)):
+        raise BadInput("a face has a vertex that is not there")
+    mesh = Mesh(vertices, fans[:, :3], fans[:, 3])
+    keep = np.isfinite(mesh.areas) & (mesh.areas > 0)
+    if not keep.any():
+        raise BadInput("has no face with an area")
+    return Mesh(vertices, fans[keep, :3], fans[keep, 3])
+
+
+def read_mesh(path):
+    """Reads an OFF, PLY, OBJ or STL file. Raises BadInput that names the file."""
+    try:
+        if str(path).lower().endswith(".off"):
+            return make_mesh(*_read_off(path))
+        import open3d
+
+        open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
+        mesh = open3d.io.read_triangle_mesh(str(path))
+        return make_mesh(np.asarray(mesh.vertices), np.asarray(mesh.triangles))
+    except (OSError, ValueError, IndexError, BadInput) as error:
+        raise BadInput(f"{path}: is no mesh that can be read, {getattr(error, 'strerror', None) or error}") from None
+
+
+def _read_off(path):
+    lines = [words for words in (line.split("#")[0].split() for line in open(path, errors="replace")) if words]
+    if not lines or not lines[0][0].endswith("OFF"):
+        raise BadInput("it must begin with OFF")
+    lines[0] = lines[0][1:]
+    lines = lines if lines[0] else lines[1:]
+    num_vertices, num_faces = int(lines[0][0]), int(lines[0][1])
+    vertices = np.array([words[:3] for words in lines[1 : 1 + num_vertices]], float)
+    faces = [[int(word) for word in words[1 : 1 + int(words[0])]] for words in lines[1 + num_vertices :][:num_faces]]
+    if len(vertices) < num_vertices or len(faces) < num_faces:
+        raise BadInput("it ends too early")
+    return vertices, faces
+
+
+@dataclasses.dataclass
+class LeafClass:
+    name: str  # behind its parents, "aircraft/airplane/biplane"
+    number: int  # among the classes that have models, in the order of the file
+
+
+def read_classes(path):
+    """Class file of the Princeton Shape Benchmark: {model name: LeafClass}."""
+    try:
+        words = iter(open(path).read().split())
+        if (next(words), next(words)) != ("PSB", "1"):
+            raise BadInput(f"{path}: must begin with PSB 1")
+        num_classes, num_models = int(next(words)), int(next(words))
+        full_names, classes, number = {}, {}, 0
+        for _ in range(num_classes):
+            name, parent, size = next(words), next(words), int(next(words))
+            full_names[name] = f"{full_names[parent]}/{name}" if parent in full_names else name
+            for _ in range(size):
+                classes[f"m{int(next(words))}"] = LeafClass(full_names[name], number)
+            number += size > 0
+    except (StopIteration, ValueError, OSError) as error:
+        raise BadInput(f"{path}: is no class file, {getattr(error, 'strerror', None) or 'a number or name is missing'}") from None
+    if len(classes) != num_models:
+        raise BadInput(f"{path}: names {len(classes)} models, must be {num_models}")
+    return classes
+
+
+@dataclasses.dataclass
+class Model:
+    name: str  # unique among the models of a run
+    path: str
+    key: str  # "folder/file.off", the same wherever the folder lies
+
+
+def list_models(arguments):
+    """Meshes of the folders of the command line, by name, as --classes, --fold, --every, --first and --max select."""
+    classes = read_classes(arguments.classes) if arguments.classes else None
+    if arguments.fold is not None and classes is None:
+        raise BadInput("--fold needs --classes")
+    models = []
+    for folder in map(pathlib.Path, arguments.models):
+        if not folder.is_dir():
+            raise BadInput(f"{folder}: must be a folder")
+        paths = sorted(p for p in folder.iterdir() if p.suffix.lower() in MESH_FORMATS)
+        if classes is not None:
+            folds = range(arguments.folds) if arguments.fold is None else [arguments.fold]
+            paths = [p for p in paths if p.stem in classes and classes[p.stem].number % arguments.folds in folds]
+        paths = paths[arguments.first :: arguments.every][: arguments.max]
+        models += [Model(p.stem, str(p), f"{folder.resolve().name}/{p.name}") for p in paths]
+    if not models:
+        raise BadInput(f"{' '.join(arguments.models) or 'the command line'}: no mesh ({', '.join(MESH_FORMATS)}) is selected")
+    names = [model.name for model in models]
+    for model in models:
+        if names.count(model.name) > 1:
+            model.name = model.key.replace("/", "_").replace(".", "_")
+    return models
+
+
+# Random numbers, poses and clouds
+
+
+def generator(seed, *names):
+    """Random numbers that depend on the seed and on names alone, whatever else is drawn."""
+    digest = hashlib.sha256(repr((seed, *map(str, names))).encode()).digest()
+    return np.random.default_rng(np.frombuffer(digest, np.uint32))
+
+
+def random_directions(random, count):
+    """(count, 3) unit vectors, uniform on the sphere."""
+    v = random.normal(size=(count, 3))
+    return v / np.linalg.norm(v, axis=1, keepdims=True)
+
+
+def random_rotation(random):
+    """(3, 3) uniform among all rotations."""
+    q = random.normal(size=4)
+    w, x, y, z = q / np.linalg.norm(q)
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])  # fmt: skip
+
+
+def random_pose(random, mesh):
+    """T_cloud_model, (4, 4): rotates about the center of the mesh, and moves it by up to a diagonal along each axis."""
+    pose = np.eye(4)
+    pose[:3, :3] = random_rotation(random)
+    pose[:3, 3] = mesh.diagonal * random.uniform(-1, 1, 3) - pose[:3, :3] @ mesh.center
+    return pose
+
+
+def moved(pose, points):
+    return points @ pose[:3, :3].T + pose[:3, 3]
+
+
+def sample(mesh, count, random, even=True, with_triangles=False):
+    """(count, 3) points of the surface, by area; even: one in each of `count` equal shares of the area."""
+    shares = np.arange(count) if even else count * np.sort(random.uniform(size=count))
+    up_to = np.cumsum(mesh.areas)
+    at = (shares + (random.uniform(size=count) if even else 0)) * up_to[-1] / count
+    index = np.minimum(np.searchsorted(up_to, at, side="right"), len(up_to) - 1)
+    root, along = np.sqrt(random.uniform(size=(count, 1))), random.uniform(size=(count, 1))
+    a, b, c = mesh.corners[index].swapaxes(0, 1)
+    points = (1 - root) * a + root * (1 - along) * b + root * along * c
+    return (points, index) if with_triangles else points
+
+
+def depth_picture(corners, size, half_width):
+    """(size, size) depth z of the nearest of (T, 3, 3) triangles at each pixel, infinite where there is none.
+
+    Frame of the sensor: x right, y down, z forward; the picture is 2 half_width wide at depth one. Exact at the middle
+    of each pixel. (Rays of Open3D miss everything where Embree has ray masks, as in Debian 12.)
+    """
+    depth = np.full(size * size, np.inf)
+    z = corners[..., 2]
+    corners, z = corners[(z > 0).any(1)], z[(z > 0).any(1)]
+    pixels = (corners[..., :2] / np.maximum(z, 1e-9)[..., None] / half_width + 1) * size / 2 - 0.5
+    pixels[(z <= 0).any(1), 0], pixels[(z <= 0).any(1), 1] = -1, size  # reaches behind the sensor: all pixels are tried
+    low = np.clip(np.ceil(pixels.min(1)), 0, size).astype(int)
+    high = np.clip(np.floor(pixels.max(1)), -1, size - 1).astype(int)
+    counts = np.prod(np.maximum(high - low + 1, 0), axis=1)
+    order = np.flatnonzero(counts)
+    blocks = np.cumsum(counts[order]) // 1_000_000
+    for block in np.split(order, np.flatnonzero(np.diff(blocks)) + 1):
+        if len(block) == 0:
+            continue
+        index = np.repeat(block, counts[block])
+        within = np.arange(len(index)) - np.repeat(np.cumsum(counts[block]) - counts[block], counts[block])
+        width = (high - low + 1)[index, 0]
+        column, row = low[index, 0] + within % width, low[index, 1] + within // width
+        x, y = ((2 * (v + 0.5) / size - 1) * half_width for v in (column, row))
+        a, b, c = corners[block].swapaxes(0, 1)
+        edges = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], 1)  # a ray hits where all signs agree
+        volume = np.einsum("ij,ij->i", a, edges[:, 0])
+        position = np.repeat(np.arange(len(block)), counts[block])
+        sides = edges[position, :, 0] * x[:, None] + edges[position, :, 1] * y[:, None] + edges[position, :, 2]
+        total = sides.sum(1)
+        sides *= np.sign(total)[:, None]
+        hit = (sides >= -1e-12 * np.abs(total)[:, None]).all(1) & (total != 0)
+        at = volume[position[hit]] / total[hit]
+        pixel = (row * size + column)[hit]
+        np.minimum.at(depth, pixel[at > 0], at[at > 0])
+    return depth.reshape(size, size)
+
+
+def look_along(forward):
+    """(3, 3) axes of a sensor in columns, right, down and forward; up in the picture is z, or y for a vertical view."""
+    forward = np.asarray(forward, float) / np.linalg.norm(forward)
+    right = np.cross(forward, [0, 0, 1] if abs(forward[2]) < 0.999 else [0, 1, 0])
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(forward, right), forward], 1)
+
+
+@dataclasses.dataclass
+class Scan:
+    points: np.ndarray  # (H, W, 3) row by row, NaN where the ray misses, in the frame of the cloud
+    T_cloud_model: np.ndarray
+    T_cloud_sensor: np.ndarray  # x right, y down, z forward
+    half_width: float  # of the square picture at depth one
+
+    @property
+    def rows(self):
+        """(N, 3) points that were hit."""
+        return self.points[np.isfinite(self.points[..., 0])]
+
+    @property
+    def viewpoint(self):
+        return self.T_cloud_sensor[:3, 3]
+
+
+def scan(mesh, direction, random, num_points=10_000, noise=0.0, pose=None, distance=2.0, field_of_view=0.4, resolution=None):
+    """What a depth camera sees from `direction` (model frame, towards the camera), about `num_points` of it.
+
+    noise: standard deviation along the ray, in diagonals. pose: T_cloud_model. distance: of the camera from the center,
+    in diagonals. resolution: edge of the picture; None: found by the number of points, up to 1024.
+    """
+    axes, half = look_along(-np.asarray(direction, float)), math.tan(field_of_view / 2)
+    origin = mesh.center - distance * mesh.diagonal * axes[:, 2]
+    corners = (mesh.corners - origin) @ axes
+    sizes, size = {}, resolution or 128
+    error = lambda depth: abs(np.isfinite(depth).sum() / num_points - 1)
+    while size not in sizes:
+        sizes[size] = depth = depth_picture(corners, size, half)
+        if resolution or error(depth) < 0.01 or len(sizes) > 8:
+            break
+        num_hits = np.isfinite(depth).sum()
+        size = round(size * math.sqrt(num_points / num_hits)) if num_hits else 4 * size
+        size = min(max(size, 1), 1024)
+    size, depth = min(sizes.items(), key=lambda picture: error(picture[1]))
+    hit = np.isfinite(depth)
+    if not hit.any():
+        raise BadInput("no ray hits the model")
+    x, y = np.meshgrid(*2 * [(2 * (np.arange(size) + 0.5) / size - 1) * half])
+    rays = np.stack([x, y, np.ones_like(x)], -1)
+    length = np.linalg.norm(rays, axis=-1)
+    depth = np.where(hit, depth + noise * mesh.diagonal / length * random.normal(size=depth.shape), np.nan)
+    pose = np.eye(4) if pose is None else pose
+    sensor = np.eye(4)
+    sensor[:3, :3], sensor[:3, 3] = pose[:3, :3] @ axes, moved(pose, origin)
+    return Scan(moved(sensor, depth[..., None] * rays), pose, sensor, half)
+
+
+CUBE_CORNERS = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) / math.sqrt(3)
+PATTERNS = ("random", "voxel", "scanners", "rings")
+
+
+def sample_pattern(mesh, pattern, count, random):
+    """(about count, 3) points in the frame of the mesh: uniformly random ones; means of the cells of a voxel grid;
+    what scanners at the corners of a cube see; every eighth row of their pictures, as a spinning LiDAR has them."""
+    if pattern == "random":
+        return sample(mesh, count, random, even=False)
+    if pattern == "voxel":
+        dense, low, high = sample(mesh, 20 * count, random), 0.0, mesh.diagonal
+        for _ in range(20):
+            cell = np.floor((dense - dense.min(0)) / (0.5 * (low + high))).astype(np.int64)
+            keys = (cell[:, 0] << 42) + (cell[:, 1] << 21) + cell[:, 2]
+            cells, index, sizes = np.unique(keys, return_inverse=True, return_counts=True)
+            if abs(len(cells) / count - 1) < 0.02:
+                break
+            low, high = (0.5 * (low + high), high) if len(cells) > count else (low, 0.5 * (low + high))
+        return np.stack([np.bincount(index, dense[:, k]) for k in range(3)], 1) / sizes[:, None]
+    step = {"scanners": 1, "rings": 8}[pattern]
+    rotation, parts = random_rotation(random), []
+    for corner in CUBE_CORNERS:  # twice the points, so that enough are left where pictures overlap
+        seen = scan(mesh, rotation @ corner, random, 2 * step * count // 8).points[::step].reshape(-1, 3)
+        parts.append(seen[np.isfinite(seen[:, 0])])
+    points = np.concatenate(parts)
+    return points[np.sort(random.permutation(len(points))[:count])]
+
+
+# Files of clouds and of answers
+
+
+def write_cloud(path, points, T_cloud_sensor=None):
+    """Binary PCD of (N, 3) or organized (H, W, 3) points, with the pose of the sensor where it is known."""
+    height, width = points.shape[:2] if points.ndim == 3 else (1, len(points))
+    viewpoint = [0, 0, 0, 1, 0, 0, 0]
+    if T_cloud_sensor is not None:
+        from scipy.spatial.transform import Rotation
+
+        x, y, z, w = Rotation.from_matrix(T_cloud_sensor[:3, :3]).as_quat()
+        viewpoint = [*T_cloud_sensor[:3, 3], w, x, y, z]
+    header = (f"VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {width}\nHEIGHT {height}\n"
+              f"VIEWPOINT {' '.join(f'{v:.9g}' for v in viewpoint)}\nPOINTS {width * height}\nDATA binary\n")  # fmt: skip
+    pathlib.Path(path).write_bytes(header.encode() + np.ascontiguousarray(points, "<f4").tobytes())
+
+
+def answers_of(found, milliseconds=None):
+    """Answers of pcl_symmetry.planes() in the shape that `pcl_symmetry_planes -json` writes."""
+    numbers = lambda v: [float(x) for x in v]
+    plane = lambda p: {"coefficients": numbers(p.coefficients), "kind": p.kind, "confidence": p.confidence}
+    axis = lambda a: {"point": numbers(a.point), "direction": numbers(a.direction), "confidence": a.confidence}
+    return {"planes": [plane(p) for p in found], "axes": [axis(a) for a in found.axes],
+            "centers": [{"point": numbers(c.point), "confidence": c.confidence} for c in found.centers],
+            "best": plane(found.best) if found.best else None, "failed": bool(found.reason),
+            "milliseconds": milliseconds}  # fmt: skip
+
+
+def detect(points, viewpoint="auto", seed=1, **options):
+    """Answers of this library for (N, 3) or (H, W, 3) points; bad clouds are failures with no answer."""
+    import pcl_symmetry
+
+    viewpoint = viewpoint if viewpoint is None or isinstance(viewpoint, str) else tuple(viewpoint)
+    start = time.perf_counter()
+    try:
+        rows = np.ascontiguousarray(points.reshape(-1, 3), np.float32)
+        found = pcl_symmetry.planes(rows, viewpoint=viewpoint, seed=seed, threads=1, **options)
+    except ValueError:
+        return {"planes": [], "axes": [], "centers": [], "best": None, "failed": True, "milliseconds": None}
+    return answers_of(found, 1000 * (time.perf_counter() - start))
+
+
+def read_answers(folder, name):
+    """Answers of another program: NAME.json as `pcl_symmetry_planes -json` writes it, or NAME.txt with rows
+    `a b c d [confidence]`, best first. No file is a failure."""
+    base = pathlib.Path(folder) / name
+    answers = {"planes": [], "axes": [], "centers": [], "best": None, "failed": False, "milliseconds": None}
+    try:
+        if base.with_name(name + ".json").exists():
+            content = json.loads(base.with_name(name + ".json").read_text())
+            time_ms = content.get("timing_ms", {}).get("total")
+            return {**answers, **{k: content[k] for k in answers if k in content}, "milliseconds": time_ms}
+        if not base.with_name(name + ".txt").exists():
+            return {**answers, "failed": True}
+        for line in base.with_name(name + ".txt").read_text().splitlines():
+            row = [float(word) for word in line.split()]
+            if row:
+                extra = {"confidence": row[4]} if len(row) > 4 else {}
+                answers["planes"].append({"coefficients": [row[0], row[1], row[2], row[3]], "kind": "symmetry", **extra})
+        return answers
+    except (ValueError, IndexError, AttributeError, OSError):
+        raise BadInput(f"{base}: is no list of planes") from None
+
+
+# Rates, calibration and tables
+
+
+def wilson(count, total):
+    """95 % interval of a rate (Wilson 1927), in [0, 1]; it treats the cases as independent."""
+    if total == 0:
+        return 0.0, 1.0
+    z, p = 1.959963984540054, count / total
+    middle = (p + z * z / (2 * total)) / (1 + z * z / total)
+    half = z / (1 + z * z / total) * math.sqrt(p * (1 - p) / total + z * z / (4 * total * total))
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+class Rate:
+    """Counts yes among cases: add(), then text or json."""
+
+    def __init__(self, cases=()):
+        self.count = self.total = 0
+        for case in cases:
+            self.add(case)
+
+    def add(self, yes):
+        self.count += bool(yes)
+        self.total += 1
+
+    @property
+    def text(self):
+        if self.total == 0:
+            return "-"
+        low, high = wilson(self.count, self.total)
+        return f"{100 * self.count / self.total:.1f} % of {self.total} ({100 * low:.1f} to {100 * high:.1f})"
+
+    @property
+    def json(self):
+        low, high = wilson(self.count, self.total)
+        return {"count": self.count, "total": self.total, "rate": self.count / max(self.total, 1), "low": low, "high": high}
+
+
+def calibration(confidences, right):
+    """Expected calibration error in ten bins, its mean by chance if all confidences were true, and Brier score."""
+    p, y = np.clip(np.asarray(confidences, float), 0, 1), np.asarray(right, float)
+    if len(p) == 0:
+        return {"answers": 0, "error": math.nan, "by_chance": math.nan, "brier": math.nan, "bins": []}
+    bins = np.minimum((10 * p).astype(int), 9)
+    error = lambda outcome: np.abs(np.bincount(bins, p - outcome, 10)).sum() / len(p)
+    random = np.random.default_rng(1)
+    by_chance = np.mean([error(random.uniform(size=len(p)) < p) for _ in range(200)])
+    rows = [{"low": k / 10, "right": Rate(y[bins == k]).json} for k in range(10)]
+    return {"answers": len(p), "error": error(y), "by_chance": by_chance, "brier": float(np.mean((p - y) ** 2)), "bins": rows}
+
+
+def median(values, digits=2):
+    values = [v for v in values if v is not None]
+    return f"{np.median(values):.{digits}f}" if values else "-"
+
+
+def print_table(title, header, rows):
+    """Prints a table in Markdown, aligned."""
+    rows = [[str(cell) for cell in row] for row in [header, *rows]]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(header))]
+    lines = ["| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths)) + " |" for row in rows]
+    lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
+    print(f"{title}\n\n" + "\n".join(lines) + "\n", flush=True)
+
+
+def save_figure(path, draw):
+    """Draws on fresh axes of matplotlib, draw(axes), and writes the picture."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
+    draw(axes)
+    axes.grid(alpha=0.3)
+    figure.savefig(path, dpi=150)
+    pyplot.close(figure)
+
+
+# Programs and runs
+
+
+def make_parser(description):
+    """Parser of the flags that all programs share."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    add = parser.add_argument
+    natural = lambda text: int(text) if int(text) >= 1 else parser.error(f"{text}: must be >= 1")
+    add("models", nargs="*", help="folders of .off, .ply, .obj and .stl meshes")
+    add("--classes", metavar="FILE", help="class file (.cla): take only the models that it names")
+    add("--fold", type=int, help="with --classes: only models whose leaf class number modulo --folds is this one")
+    add("--folds", type=natural, default=3, help="number of folds")
+    add("--every", type=natural, default=1, help="take every N-th mesh of each folder")
+    add("--first", type=int, default=0, help="index of the first mesh that is taken")
+    add("--max", type=natural, help="greatest number of meshes of each folder")
+    add("--jobs", type=natural, default=os.cpu_count(), help="number of processes")
+    add("--scheduler", metavar="ADDRESS", help="Dask scheduler that spreads the work in place of --jobs")
+    add("--json", metavar="FILE", help="write the results; an interrupted run goes on from FILE.journal")
+    add("--figure", metavar="FILE", help="draw a figure")
+    add("--seed", type=int, default=0, help="of all random numbers")
+    add("--export", metavar="DIR", help="write each cloud as PCD, and truth.json")
+    add("--judge", metavar="DIR", help="judge what another program answered: a file NAME.json or NAME.txt a cloud")
+    return parser
+
+
+def main(program, arguments):
+    """Runs program(arguments); input that cannot be used costs one sentence and exit code 1."""
+    try:
+        program(arguments)
+    except BadInput as error:
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}")
+
+
+def write_json(arguments, content):
+    """Writes the results of --json, whole or not at all; then the journal is not needed any more."""
+    if arguments.json:
+        _write(arguments.json, json.dumps(content, indent=1) + "\n")
+        for path in pathlib.Path(arguments.json).parent.glob(pathlib.Path(arguments.json).name + "*.journal"):
+            path.unlink()
+
+
+def write_truth(arguments, truths):
+    """Writes truth.json of --export: {cloud name: what is true of it}."""
+    if arguments.export:
+        _write(pathlib.Path(arguments.export) / "truth.json", json.dumps(truths, indent=1) + "\n")
+
+
+def _write(path, text):
+    try:
+        part = pathlib.Path(f"{path}.part")
+        part.write_text(text)
+        part.replace(path)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be written, {error.strerror}") from None
+
+
+def run(items, function, arguments, stage=""):
+    """[function(item, arguments) for each item], spread over processes or a Dask scheduler.
+
+    Items have a `name`, or are their own name; results can be written as JSON. With --json, finished items are kept in
+    a journal, and a run with the same arguments goes on from it. An item that fails costs one sentence and itself only.
+    stage: tells several runs of one program apart. Returns (results in the order of the items, sentences of failures).
+    """
+    named = {getattr(item, "name", str(item)): item for item in items}
+    for folder in filter(None, [arguments.export]):
+        pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+    journal = _Journal(arguments, stage)
+    results = {name: result for name, result in journal.read().items() if name in named}
+    waiting = {name: item for name, item in named.items() if name not in results}
+    left_out, start, first = [], time.monotonic(), len(results)
+    for name, result, failure in _spread(waiting, function, arguments):
+        if failure:
+            left_out.append(failure)
+            print(f"\r{failure}", file=sys.stderr)
+        else:
+            results[name] = result
+            journal.append(name, result)
+        num_done = len(results) + len(left_out)
+        if sys.stderr.isatty():
+            rest = (time.monotonic() - start) * (len(named) - num_done) / max(1, num_done - first)
+            print(f"\r{stage} {num_done} of {len(named)}, {rest:.0f} s left   ", end="", file=sys.stderr)
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
+    if not results:
+        raise BadInput("nothing could be evaluated")
+    return [results[name] for name in named if name in results], left_out
+
+
+def _attempt(function, item, arguments, name):
+    """(result, sentence of the failure)"""
+    try:
+        return function(item, arguments), None
+    except BadInput as error:
+        return None, str(error) if name in str(error) else f"{name}: {error}"
+    except Exception as error:  # a fault of one model must not end the run
+        return None, f"{name}: {type(error).__name__}, {error}"
+
+
+def _spread(waiting, function, arguments):
+    """Yields (name, result, failure) as items end."""
+    if arguments.scheduler:
+        yield from _spread_by_dask(waiting, function, arguments)
+    elif arguments.jobs == 1:
+        for name, item in waiting.items():
+            yield (name, *_attempt(function, item, arguments, name))
+    else:
+        lost = {}  # where a process died: those items once more, each in a process of its own
+        yield from _spread_over_processes(waiting, function, arguments, arguments.jobs, lost)
+        for name, item in list(lost.items()):
+            died = {}
+            yield from _spread_over_processes({name: item}, function, arguments, 1, died)
+            for _ in died:
+                yield name, None, f"{name}: its process died"
+
+
+def _spread_over_processes(waiting, function, arguments, jobs, lost):
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(jobs, context) as pool:
+        futures = {pool.submit(_attempt, function, item, arguments, name): name for name, item in waiting.items()}
+        try:
+            for future in concurrent.futures.as_completed(futures):
+                try:
+                    yield (futures[future], *future.result())
+                except concurrent.futures.process.BrokenProcessPool:
+                    lost[futures[future]] = waiting[futures[future]]
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _spread_by_dask(waiting, function, arguments):
+    import distributed
+
+    try:
+        client = distributed.Client(arguments.scheduler)
+    except OSError as error:
+        raise BadInput(f"--scheduler {arguments.scheduler}: {error}") from None
+    with client:
+        here = pathlib.Path(__file__).parent
+        for module in list(sys.modules.values()):
+            path = getattr(module, "__file__", None)
+            if path and pathlib.Path(path).parent == here and module.__name__ != "__main__":
+                client.upload_file(path)
+        futures = {client.submit(_attempt, function, item, arguments, name, pure=False): name for name, item in waiting.items()}
+        for future in distributed.as_completed(futures):
+            if future.status == "error":
+                yield futures[future], None, f"{futures[future]}: {future.exception()}"
+            else:
+                yield (futures[future], *future.result())
+
+
+class _Journal:
+    """Finished items of a run, a line of JSON each, behind a line of what was asked for."""
+
+    def __init__(self, arguments, stage):
+        self.path = pathlib.Path(f"{arguments.json}{'.' * bool(stage)}{stage}.journal") if arguments.json else None
+        no_matter = ("jobs", "scheduler", "json", "figure")
+        self.asked = {k: v for k, v in vars(arguments).items() if k not in no_matter}
+        self.file = None
+
+    def read(self):
+        if not self.path:
+            return {}
+        results = {}
+        if self.path.exists():
+            lines = self.path.read_text().splitlines(keepends=True)
+            rows = [json.loads(line) for line in lines if line.endswith("\n")]  # the last one may be cut off
+            if rows and rows[0] == json.loads(json.dumps(self.asked)):
+                results = dict(rows[1:])
+        try:
+            self.file = open(self.path, "w")
+        except OSError as error:
+            raise BadInput(f"{self.path}: cannot be written, {error.strerror}") from None
+        print(json.dumps(self.asked), file=self.file, flush=True)
+        for name, result in results.items():
+            self.append(name, result)
+        return results
+
+    def append(self, name, result):
+        if self.file:
+            print(json.dumps([name, result]), file=self.file, flush=True)
