@@ -71,6 +71,13 @@ class Mesh:
         """(N,) distances of points in the frame of `scene` from the mesh, in diagonals."""
         return self.scene.compute_distance(_tensor(points), nthreads=1).numpy()
 
+    def closest(self, points):
+        """Closest points of the mesh, and the unit normals of their triangles, in the frame of `scene`."""
+        found = self.scene.compute_closest_points(_tensor(points), nthreads=1)
+        a, b, c = self.corners.swapaxes(0, 1)
+        normals = np.cross(b - a, c - a) / (2 * self.areas[:, None])
+        return found["points"].numpy(), normals[found["primitive_ids"].numpy()]
+
 
 def _tensor(rows):
     import open3d
@@ -541,7 +548,7 @@ def main(program, arguments):
 def write_json(arguments, content):
     """Writes the results of --json, whole or not at all; then the journal is not needed any more."""
     if arguments.json:
-        _write(arguments.json, json.dumps(content, indent=1) + "\n")
+        write_whole(arguments.json, json.dumps(content, indent=1) + "\n")
         for path in pathlib.Path(arguments.json).parent.glob(pathlib.Path(arguments.json).name + "*.journal"):
             path.unlink()
 
@@ -549,10 +556,11 @@ def write_json(arguments, content):
 def write_truth(arguments, truths):
     """Writes truth.json of --export: {cloud name: what is true of it}."""
     if arguments.export:
-        _write(pathlib.Path(arguments.export) / "truth.json", json.dumps(truths, indent=1) + "\n")
+        write_whole(pathlib.Path(arguments.export) / "truth.json", json.dumps(truths, indent=1) + "\n")
 
 
-def _write(path, text):
+def write_whole(path, text):
+    """Writes a file whole or not at all."""
     try:
         part = pathlib.Path(f"{path}.part")
         part.write_text(text)
