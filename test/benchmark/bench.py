@@ -9,7 +9,9 @@ import math
 import multiprocessing
 import os
 import pathlib
+import subprocess
 import sys
+import tempfile
 import time
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # items are spread over processes, each works on its own with one thread
@@ -397,32 +399,53 @@ def answers_of(found, milliseconds=None):
             "milliseconds": milliseconds}  # fmt: skip
 
 
-def detect(points, viewpoint="auto", seed=1, **options):
-    """Answers of this library for (N, 3) or (H, W, 3) points; bad clouds are failures with no answer."""
+NO_ANSWERS = {"planes": [], "axes": [], "centers": [], "best": None, "failed": True, "milliseconds": None}
+
+
+def detect(points, sensor=None, seed=1, tool=None, **options):
+    """Answers of this library for (N, 3) or (H, W, 3) points; bad clouds are failures with no answer.
+
+    sensor: T_cloud_sensor of a scan; None: the points decide where the scanner stood.
+    tool: path of pcl_symmetry_planes, which is asked in place of the Python module: it reads rows and columns of a scan,
+    too, and the pose of the sensor.
+    """
+    if tool:
+        return _detect_by_tool(points, sensor, seed, tool, options)
     import pcl_symmetry
 
-    viewpoint = viewpoint if viewpoint is None or isinstance(viewpoint, str) else tuple(viewpoint)
+    viewpoint = "auto" if sensor is None else tuple(sensor[:3, 3])
+    rows = points.reshape(-1, 3)
+    rows = np.ascontiguousarray(rows[np.isfinite(rows[:, 0])], np.float32)
     start = time.perf_counter()
     try:
-        rows = np.ascontiguousarray(points.reshape(-1, 3), np.float32)
         found = pcl_symmetry.planes(rows, viewpoint=viewpoint, seed=seed, threads=1, **options)
     except ValueError:
-        return {"planes": [], "axes": [], "centers": [], "best": None, "failed": True, "milliseconds": None}
+        return NO_ANSWERS
     return answers_of(found, 1000 * (time.perf_counter() - start))
+
+
+def _detect_by_tool(points, sensor, seed, tool, options):
+    with tempfile.TemporaryDirectory() as folder:
+        write_cloud(f"{folder}/cloud.pcd", points, sensor)
+        flags = [f for name, value in options.items() if value is not False for f in (f"-{name}", str(value))]
+        command = [tool, "cloud.pcd", "-json", "found.json", "-quiet", "-threads", "1", "-seed", str(seed), *flags]
+        if subprocess.run(command, cwd=folder, capture_output=True).returncode:
+            return NO_ANSWERS
+        return read_answers(folder, "found")
 
 
 def read_answers(folder, name):
     """Answers of another program: NAME.json as `pcl_symmetry_planes -json` writes it, or NAME.txt with rows
     `a b c d [confidence]`, best first. No file is a failure."""
     base = pathlib.Path(folder) / name
-    answers = {"planes": [], "axes": [], "centers": [], "best": None, "failed": False, "milliseconds": None}
+    answers = {**NO_ANSWERS, "planes": [], "failed": False}
     try:
         if base.with_name(name + ".json").exists():
             content = json.loads(base.with_name(name + ".json").read_text())
             time_ms = content.get("timing_ms", {}).get("total")
             return {**answers, **{k: content[k] for k in answers if k in content}, "milliseconds": time_ms}
         if not base.with_name(name + ".txt").exists():
-            return {**answers, "failed": True}
+            return NO_ANSWERS
         for line in base.with_name(name + ".txt").read_text().splitlines():
             row = [float(word) for word in line.split()]
             if row:
@@ -482,6 +505,15 @@ def calibration(confidences, right):
     by_chance = np.mean([error(random.uniform(size=len(p)) < p) for _ in range(200)])
     rows = [{"low": k / 10, "right": Rate(y[bins == k]).json} for k in range(10)]
     return {"answers": len(p), "error": error(y), "by_chance": by_chance, "brier": float(np.mean((p - y) ** 2)), "bins": rows}
+
+
+def plain(value):
+    """The same with rates as JSON has them."""
+    if isinstance(value, Rate):
+        return value.json
+    if isinstance(value, dict):
+        return {key: plain(v) for key, v in value.items()}
+    return [plain(v) for v in value] if isinstance(value, (list, tuple)) else value
 
 
 def median(values, digits=2):

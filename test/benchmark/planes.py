@@ -1,0 +1,304 @@
+#!/usr/bin/env python3
+"""How well planes of symmetry are found in clouds of models, and how well the detector refuses.
+
+planes.py PSB --classes train.cla --fold 2 --json planes.json --figure planes.png
+
+Each model gives whole clouds, scans from a random side, the same scans moved and without viewpoint, and clouds of which
+a random plane cuts off a part. An answer is right within 3 degrees and 2 % of the diagonal of a reference plane, or of
+an axis of revolution (references.py). Answers of kind symmetry with a confidence of at least 0.5 decide.
+"""
+import math
+
+import numpy as np
+
+import bench
+import references
+
+MAX_ANGLE, MAX_AXIS_ANGLE, MAX_OFFSET = math.radians(3), math.radians(1), 0.02  # offset in diagonals
+MIN_CONFIDENCE = 0.5
+ROWS = ("whole", "noise", "scan", "moved", "crop", "sampling", "counts")
+SHARES = (0, 0.8, 0.9, 0.92, 0.94, 0.95, 0.96, 0.97, 0.99, 1.01)
+
+
+# Clouds
+
+
+def clouds_of(mesh, key, arguments):
+    """Yields (row of the table, name, points, T_cloud_model, scan) of one model; scan is None for whole clouds."""
+
+    def whole(name, points, noise=0.0, cut=0.0):
+        random = bench.generator(arguments.seed, key, name)
+        pose = bench.random_pose(bench.generator(arguments.seed, key, "pose"), mesh)
+        points = bench.moved(pose, points) + noise * mesh.diagonal * random.normal(size=points.shape)
+        if cut:
+            along = points @ bench.random_directions(bench.generator(arguments.seed, key, "cut"), 1)[0]
+            points = points[np.sort(np.argsort(along, kind="stable")[: round((1 - cut) * len(points))])]
+        return name, name.replace(" ", "_").replace("%", "percent"), points, pose, None
+
+    even = bench.sample(mesh, arguments.points, bench.generator(arguments.seed, key, "sample"))
+    if "whole" in arguments.rows:
+        yield whole("whole", even)
+    for noise in arguments.noise if "noise" in arguments.rows else ():
+        yield whole(f"noise {100 * noise:g} %", even, noise=noise)
+    for view in range(arguments.views if {"scan", "moved"} & set(arguments.rows) else 0):
+        for noise in arguments.scan_noise:
+            random = bench.generator(arguments.seed, key, "view", view)
+            direction, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, mesh)
+            scan = bench.scan(mesh, direction, random, arguments.points, noise, pose)
+            after = f", noise {100 * noise:g} %" if noise else ""
+            name = f"{view}" + after.replace(", ", "_").replace(" ", "_").replace("%", "percent")
+            if "scan" in arguments.rows:
+                yield "scan" + after, "scan_" + name, scan.points, pose, scan
+            if "moved" in arguments.rows:
+                motion = bench.random_pose(random, mesh)
+                motion[:3, 3] = mesh.diagonal * random.uniform(-1, 1, 3) - motion[:3, :3] @ bench.moved(pose, mesh.center)
+                lost = bench.Scan(None, motion @ pose, motion @ scan.T_cloud_sensor, scan.half_width)
+                yield "moved scan" + after, "moved_" + name, bench.moved(motion, scan.rows), motion @ pose, lost
+    for cut in arguments.crops if "crop" in arguments.rows else ():
+        yield whole(f"cut off {100 * cut:g} %", even, cut=cut)
+    for pattern in bench.PATTERNS if "sampling" in arguments.rows else ():
+        points = bench.sample_pattern(mesh, pattern, arguments.points, bench.generator(arguments.seed, key, pattern))
+        yield whole(pattern, points)
+    for count in arguments.counts if "counts" in arguments.rows else ():
+        yield whole(f"{count} points", bench.sample(mesh, count, bench.generator(arguments.seed, key, count)))
+
+
+# Judging
+
+
+def judge(answers, truth):
+    """Judges the answers for a cloud by the references in its frame. Returns a dictionary of what tables count."""
+    center, diagonal = np.array(truth["center"]), truth["diagonal"]
+    refs = [("plane", r) for r in truth["planes"]] + [("axis", r) for r in truth["axes"]]
+    refs += [("center", r) for r in truth["centers"]]
+    near = [("plane", r) for r in truth["near_planes"]] + [("axis", r) for r in truth["near_axes"]]
+    found, family, rows, errors = set(), set(), [], []
+    for kind, answer, called in _in_order(answers):
+        matches = [(_error(kind, answer, r, center, diagonal), i) for i, r in enumerate(refs)]
+        matches = sorted((max(e[0] / e[2], e[1] / MAX_OFFSET), i, e) for e, i in matches if e and _within(e))[:1]
+        if kind == "axis" and not matches:  # a prism that is round but for its corners: eight planes and more
+            around = [(_error("plane", r, ("axis", answer), center, diagonal), i) for i, (k, r) in enumerate(refs) if k == "plane"]
+            around = [(0, i, e) for e, i in around if e[0] <= MAX_AXIS_ANGLE and e[1] <= MAX_OFFSET]
+            matches = around if len(around) >= 8 else []
+        new = {i for _, i, _ in matches} - found
+        is_near = not matches and any(e and _within(e) for e in (_error(kind, answer, r, center, diagonal) for r in near))
+        repeats = any(i in family for _, i, _ in matches)
+        verdict = "right" if new else "neutral" if repeats or is_near else "false"
+        found |= new
+        family |= {i for _, i, _ in matches if refs[i][0] != "plane" or len(matches) > 1}
+        if verdict == "right" and not errors:
+            errors = [math.degrees(max(e[0] for *_, e in matches)), 100 * max(e[1] for *_, e in matches)]
+        rows.append({"kind": kind, "verdict": verdict, "called": called, "confidence": answer.get("confidence"),
+                     "at_reference": bool(matches)})  # fmt: skip
+    decisive = [row["verdict"] for row in rows if row["verdict"] != "neutral"]
+    decided = [row["verdict"] for row in rows if row["verdict"] != "neutral" and row["called"]]
+    return {"answers": rows, "called": any(row["called"] for row in rows), "decided_right": decided[:1] == ["right"],
+            "first_right": decisive[:1] == ["right"], "false": decided.count("false"), "found": len(found),
+            "references": len(refs), "angle": errors[0] if errors else None, "offset": errors[1] if errors else None}  # fmt: skip
+
+
+def _in_order(answers):
+    """Centers, axes and planes, each best first: (kind, answer, whether it decides)."""
+    for kind in ("center", "axis", "plane"):
+        for answer in answers[{"center": "centers", "axis": "axes", "plane": "planes"}[kind]]:
+            called = answer.get("kind", "symmetry") == "symmetry" and answer.get("confidence", 1) >= MIN_CONFIDENCE
+            yield kind, answer, called
+
+
+def _within(error):
+    return error[0] <= error[2] and error[1] <= MAX_OFFSET
+
+
+def _plane(answer):
+    row = np.array(answer["coefficients"], float)
+    return np.r_[row[:3], -row[3]] / np.linalg.norm(row[:3])
+
+
+def _line(answer):
+    direction = np.array(answer["direction"], float)
+    return np.array(answer["point"], float), direction / np.linalg.norm(direction)
+
+
+def _error(kind, answer, reference, center, diagonal):
+    """(angle, offset in diagonals, limit of the angle) of an answer at a reference; None where it cannot be right."""
+    type_, truth = reference
+    point = np.array(truth["point"]) if type_ == "center" else None
+    if kind == "plane" and type_ == "plane":
+        angle, offset = (v[0] for v in references.offsets_and_angles(_plane(truth), _plane(answer), center))
+    elif kind == "plane" and type_ == "axis":
+        angle, offset = references.line_from_plane(_plane(answer), *_line(truth), center)
+    elif kind == "axis" and type_ == "axis":
+        angle, offset = references.line_from_line(*_line(truth), *_line(answer), center)
+        return angle, offset / diagonal, MAX_AXIS_ANGLE
+    elif kind == "plane" and type_ == "center":
+        angle, offset = 0.0, abs(_plane(answer)[:3] @ point - _plane(answer)[3])
+    elif kind == "axis" and type_ == "center":
+        angle, offset = 0.0, np.linalg.norm(np.cross(point - _line(answer)[0], _line(answer)[1]))
+    elif kind == "center" and type_ == "center":
+        angle, offset = 0.0, np.linalg.norm(np.array(answer["point"]) - point)
+    else:
+        return None
+    return angle, offset / diagonal, MAX_ANGLE
+
+
+def contradicted(surface, mesh, scan, kind, answer):
+    """Whether a scan rules an answer out: a plane (of an axis or a center one of 12) maps more than 3 % of the visible
+    surface to where the picture shows that nothing is, further than the tolerance from the mesh."""
+    if kind == "plane":
+        planes = _plane(answer)[None]
+    elif kind == "axis":
+        planes = references.planes_through_line(*_line(answer), 12)
+    else:
+        planes = references.planes_through_point(np.array(answer["point"]), 12)
+    to_sensor = np.linalg.inv(scan.T_cloud_sensor)
+    corners = bench.moved(to_sensor @ scan.T_cloud_model, mesh.corners.reshape(-1, 3)).reshape(-1, 3, 3)
+    size = 512
+    depth = np.pad(bench.depth_picture(corners, size, scan.half_width), 1, constant_values=-np.inf)
+
+    def in_front(points, slack):  # in the frame of the cloud: in the picture, and nothing lies before them
+        x = bench.moved(to_sensor, points)
+        pixel = ((x[:, :2] / x[:, 2:] / scan.half_width + 1) * size / 2 - 0.5).round().clip(-1, size).astype(int) + 1
+        return x[:, 2] <= depth[pixel[:, 1], pixel[:, 0]] + slack
+
+    samples = bench.moved(scan.T_cloud_model, mesh.center + mesh.diagonal * surface.samples[:2500])
+    visible = samples[in_front(samples, 0.005 * mesh.diagonal)]
+    if len(visible) == 0:
+        return False
+    to_model = np.linalg.inv(scan.T_cloud_model)
+    for reflected in references.reflect(planes, visible):
+        free = in_front(reflected, 0.0)
+        far = mesh.distances((bench.moved(to_model, reflected) - mesh.center) / mesh.diagonal) > surface.tolerance
+        if (free & far).mean() > 1 - references.MIN_SHARE:
+            return True
+    return False
+
+
+def evaluate(model, arguments):
+    """Rows of the clouds of one model."""
+    mesh = bench.read_mesh(model.path)
+    truth = references.references_of(model, mesh, arguments.references, arguments.tolerance)
+    rows, truths = [], {}
+    for group, suffix, points, pose, scan in clouds_of(mesh, model.key, arguments):
+        name = f"{model.name}_{suffix}"
+        here = references.moved(truth, pose)
+        sensor = None if scan is None or scan.points is None else scan.T_cloud_sensor
+        if arguments.export:
+            bench.write_cloud(f"{arguments.export}/{name}.pcd", points, sensor)
+            truths[name] = {**here, "model": model.name, "group": group}
+        if arguments.judge:
+            answers = bench.read_answers(arguments.judge, name)
+        else:
+            answers = bench.detect(points, sensor, arguments.seed + 1, arguments.tool, tolerance=arguments.tolerance)
+        row = judge(answers, here)
+        row["contradicted"] = 0
+        if scan is not None and row["false"]:
+            surface = references.Surface(mesh, arguments.tolerance, 4000)
+            wrong = [a for a, r in zip(_in_order(answers), row["answers"]) if r["called"] and r["verdict"] == "false"]
+            row["contradicted"] = sum(contradicted(surface, mesh, scan, kind, answer) for kind, answer, _ in wrong)
+        row.update(model=model.name, cloud=name, group=group, kind=truth["kind"], best_share=truth["best_share"],
+                   scan=scan is not None, failed=answers["failed"], milliseconds=answers["milliseconds"])  # fmt: skip
+        rows.append(row)
+    return {"rows": rows, "truths": truths}
+
+
+# Tables
+
+
+def summarize(rows):
+    """What the tables say of the clouds of one row."""
+    of = lambda kind: [row for row in rows if row["kind"] == kind]
+    symmetric, asymmetric, nearly = of("symmetric"), of("asymmetric"), of("nearly symmetric")
+    stated = [a for row in rows for a in row["answers"] if a["confidence"] is not None]
+    return {
+        "decided_right": bench.Rate(row["decided_right"] for row in symmetric),
+        "first_right": bench.Rate(row["first_right"] for row in symmetric),
+        "asymmetric_called": bench.Rate(row["called"] for row in asymmetric),
+        "asymmetric_contradicted": bench.Rate(row["contradicted"] > 0 for row in asymmetric if row["scan"]),
+        "nearly_called": bench.Rate(row["called"] for row in nearly),
+        "false_per_cloud": sum(row["false"] for row in symmetric) / max(1, len(symmetric)),
+        "recall": sum(row["found"] for row in symmetric) / max(1, sum(row["references"] for row in symmetric)),
+        "calibration": bench.calibration([a["confidence"] for a in stated], [a["at_reference"] for a in stated]),
+        "called_by_share": [(low, high, bench.Rate(row["called"] for row in rows if low <= row["best_share"] < high))
+                            for low, high in zip(SHARES, SHARES[1:])],
+    }  # fmt: skip
+
+
+def same_decisions(rows, arguments):
+    """Models whose clouds of all sizes are decided alike."""
+    called = {}
+    for row in rows:
+        if row["group"].endswith(" points"):
+            called.setdefault(row["model"], []).append(row["called"])
+    return bench.Rate(len(set(c)) == 1 for c in called.values() if len(c) == len(arguments.counts))
+
+
+def report(rows, arguments):
+    groups = list(dict.fromkeys(row["group"] for row in rows))
+    sums = {group: summarize([row for row in rows if row["group"] == group]) for group in groups}
+    models = {row["model"]: row["kind"] for row in rows}
+    kinds = [f"{list(models.values()).count(kind)} {kind}" for kind in ("symmetric", "nearly symmetric", "asymmetric")]
+    print(", ".join(kinds), "models\n")
+    bench.print_table(
+        "Decisions at one operating point: kind symmetry, confidence >= 0.5; 95 % Wilson intervals",
+        ["clouds", "decided and right, of symmetric", "called, of asymmetric", "against a visible point", "called, of nearly symmetric",
+         "false a cloud"],
+        [[g, s["decided_right"].text, s["asymmetric_called"].text, s["asymmetric_contradicted"].text,
+          s["nearly_called"].text, f"{s['false_per_cloud']:.2f}"] for g, s in sums.items()])  # fmt: skip
+    of_group = lambda group, field: [row[field] for row in rows if row["group"] == group]
+    number = lambda value: f"{value:.3f}"
+    bench.print_table(
+        "Rankings, errors of the first right answer, calibration, and time of one thread",
+        ["clouds", "first answer right", "recall", "angle, deg", "offset, %", "answers", "ECE", "by chance", "Brier", "ms"],
+        [[g, s["first_right"].text, f"{100 * s['recall']:.1f} %", bench.median(of_group(g, "angle")),
+          bench.median(of_group(g, "offset")), s["calibration"]["answers"], number(s["calibration"]["error"]),
+          number(s["calibration"]["by_chance"]), number(s["calibration"]["brier"]),
+          bench.median(of_group(g, "milliseconds"), 0)] for g, s in sums.items()])  # fmt: skip
+    bench.print_table("Clouds called symmetric, by the share of the surface that the best plane of the model maps",
+                      ["clouds", *(f"{100 * low:.0f} to {min(100, 100 * high):.0f} %" for low, high in zip(SHARES, SHARES[1:]))],
+                      [[g, *(f"{r.count} of {r.total}" for *_, r in s["called_by_share"])] for g, s in sums.items()])  # fmt: skip
+    if "counts" in arguments.rows:
+        sums["same decision at all numbers of points"] = {"rate": same_decisions(rows, arguments)}
+        print("Same decision at", *arguments.counts, "points:", same_decisions(rows, arguments).text)
+    return sums
+
+
+def draw(axes, sums):
+    """Reliability of each row: how often answers are at a reference, by their confidence."""
+    axes.plot([0, 1], [0, 1], color="0.7")
+    for group, sum_ in sums.items():
+        bins = [b for b in sum_.get("calibration", {}).get("bins", []) if b["right"]["total"] >= 5]
+        axes.plot([b["low"] + 0.05 for b in bins], [b["right"]["rate"] for b in bins], marker="o", ms=3, label=group)
+    axes.set(xlabel="confidence", ylabel="answers at a reference", title="Reliability of planes")
+    axes.legend(fontsize="small")
+
+
+def program(arguments):
+    results, left_out = bench.run(bench.list_models(arguments), evaluate, arguments)
+    rows = [row for result in results for row in result["rows"]]
+    bench.write_truth(arguments, {name: truth for result in results for name, truth in result["truths"].items()})
+    sums = report(rows, arguments)
+    if arguments.figure:
+        bench.save_figure(arguments.figure, lambda axes: draw(axes, sums))
+    bench.write_json(arguments, {"groups": bench.plain(sums), "left_out": left_out, "clouds": rows})
+
+
+def numbers(kind):
+    return lambda text: [kind(part) for part in text.split(",")]
+
+
+if __name__ == "__main__":
+    parser = bench.make_parser(__doc__)
+    parser.add_argument("--rows", type=numbers(str), default="whole,noise,scan,moved,crop", help="of " + ",".join(ROWS))
+    parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
+    parser.add_argument("--noise", type=numbers(float), default="0.02", help="standard deviations, diagonals")
+    parser.add_argument("--scan_noise", type=numbers(float), default="0", help="of scans along the ray, diagonals")
+    parser.add_argument("--crops", type=numbers(float), default="0.05,0.2,0.5", help="shares of the points cut off")
+    parser.add_argument("--counts", type=numbers(int), default="5000,20000,100000", help="numbers of points")
+    parser.add_argument("--views", type=int, default=1, help="scans of each model, from random directions")
+    parser.add_argument("--tolerance", type=float, default=0.01, help="of a symmetry, in diameters")
+    parser.add_argument("--references", metavar="DIR", help="keeps the references of models here")
+    parser.add_argument("--tool", metavar="FILE", help="pcl_symmetry_planes: asked in place of the Python module")
+    arguments = parser.parse_args()
+    if set(arguments.rows) - set(ROWS):
+        parser.error(f"--rows {','.join(arguments.rows)}: must be of {','.join(ROWS)}")
+    bench.main(program, arguments)
