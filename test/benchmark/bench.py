@@ -427,7 +427,9 @@ def detect(points, sensor=None, seed=1, tool=None, **options):
 def _detect_by_tool(points, sensor, seed, tool, options):
     with tempfile.TemporaryDirectory() as folder:
         write_cloud(f"{folder}/cloud.pcd", points, sensor)
-        flags = [f for name, value in options.items() if value is not False for f in (f"-{name}", str(value))]
+        if sensor is not None and points.ndim == 2:
+            options = {"viewpoint": ",".join(str(v) for v in sensor[:3, 3]), **options}
+        flags = [f for name, value in options.items() for f in (f"-{name}", str(value))]
         command = [tool, "cloud.pcd", "-json", "found.json", "-quiet", "-threads", "1", "-seed", str(seed), *flags]
         if subprocess.run(command, cwd=folder, capture_output=True).returncode:
             return NO_ANSWERS
@@ -547,19 +549,25 @@ def save_figure(path, draw):
 # Programs and runs
 
 
-def make_parser(description):
-    """Parser of the flags that all programs share."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+def make_parser(description, models=True):
+    """Parser of the flags that all programs share; models: with those that choose meshes."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
-    natural = lambda text: int(text) if int(text) >= 1 else parser.error(f"{text}: must be >= 1")
-    add("models", nargs="*", help="folders of .off, .ply, .obj and .stl meshes")
-    add("--classes", metavar="FILE", help="class file (.cla): take only the models that it names")
-    add("--fold", type=int, help="with --classes: only models whose leaf class number modulo --folds is this one")
-    add("--folds", type=natural, default=3, help="number of folds")
-    add("--every", type=natural, default=1, help="take every N-th mesh of each folder")
-    add("--first", type=int, default=0, help="index of the first mesh that is taken")
-    add("--max", type=natural, help="greatest number of meshes of each folder")
-    add("--jobs", type=natural, default=os.cpu_count(), help="number of processes")
+
+    def natural(text):
+        if not text.isdigit() or int(text) < 1:
+            raise argparse.ArgumentTypeError(f"{text}, must be >= 1")
+        return int(text)
+
+    if models:
+        add("models", nargs="*", help="folders of .off, .ply, .obj and .stl meshes")
+        add("--classes", metavar="FILE", help="class file (.cla): take only the models that it names")
+        add("--fold", type=int, help="with --classes: only models whose leaf class number modulo --folds is this one")
+        add("--folds", type=natural, default=3, help="number of folds")
+        add("--every", type=natural, default=1, help="take every N-th mesh of each folder")
+        add("--first", type=int, default=0, help="index of the first mesh that is taken")
+        add("--max", type=natural, help="greatest number of meshes of each folder")
+    add("--jobs", type=natural, default=os.cpu_count(), help="number of processes, all cores by default")
     add("--scheduler", metavar="ADDRESS", help="Dask scheduler that spreads the work in place of --jobs")
     add("--json", metavar="FILE", help="write the results; an interrupted run goes on from FILE.journal")
     add("--figure", metavar="FILE", help="draw a figure")

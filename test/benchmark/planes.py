@@ -109,12 +109,12 @@ def _within(error):
     return error[0] <= error[2] and error[1] <= MAX_OFFSET
 
 
-def _plane(answer):
+def plane_row(answer):
     row = np.array(answer["coefficients"], float)
     return np.r_[row[:3], -row[3]] / np.linalg.norm(row[:3])
 
 
-def _line(answer):
+def line_of(answer):
     direction = np.array(answer["direction"], float)
     return np.array(answer["point"], float), direction / np.linalg.norm(direction)
 
@@ -124,16 +124,16 @@ def _error(kind, answer, reference, center, diagonal):
     type_, truth = reference
     point = np.array(truth["point"]) if type_ == "center" else None
     if kind == "plane" and type_ == "plane":
-        angle, offset = (v[0] for v in references.offsets_and_angles(_plane(truth), _plane(answer), center))
+        angle, offset = (v[0] for v in references.offsets_and_angles(plane_row(truth), plane_row(answer), center))
     elif kind == "plane" and type_ == "axis":
-        angle, offset = references.line_from_plane(_plane(answer), *_line(truth), center)
+        angle, offset = references.line_from_plane(plane_row(answer), *line_of(truth), center)
     elif kind == "axis" and type_ == "axis":
-        angle, offset = references.line_from_line(*_line(truth), *_line(answer), center)
+        angle, offset = references.line_from_line(*line_of(truth), *line_of(answer), center)
         return angle, offset / diagonal, MAX_AXIS_ANGLE
     elif kind == "plane" and type_ == "center":
-        angle, offset = 0.0, abs(_plane(answer)[:3] @ point - _plane(answer)[3])
+        angle, offset = 0.0, abs(plane_row(answer)[:3] @ point - plane_row(answer)[3])
     elif kind == "axis" and type_ == "center":
-        angle, offset = 0.0, np.linalg.norm(np.cross(point - _line(answer)[0], _line(answer)[1]))
+        angle, offset = 0.0, np.linalg.norm(np.cross(point - line_of(answer)[0], line_of(answer)[1]))
     elif kind == "center" and type_ == "center":
         angle, offset = 0.0, np.linalg.norm(np.array(answer["point"]) - point)
     else:
@@ -145,9 +145,9 @@ def contradicted(surface, mesh, scan, kind, answer):
     """Whether a scan rules an answer out: a plane (of an axis or a center one of 12) maps more than 3 % of the visible
     surface to where the picture shows that nothing is, further than the tolerance from the mesh."""
     if kind == "plane":
-        planes = _plane(answer)[None]
+        planes = plane_row(answer)[None]
     elif kind == "axis":
-        planes = references.planes_through_line(*_line(answer), 12)
+        planes = references.planes_through_line(*line_of(answer), 12)
     else:
         planes = references.planes_through_point(np.array(answer["point"]), 12)
     to_sensor = np.linalg.inv(scan.T_cloud_sensor)
