@@ -581,8 +581,9 @@ def main(program, arguments):
     """Runs program(arguments); input that cannot be used costs one sentence and exit code 1."""
     try:
         program(arguments)
-    except BadInput as error:
-        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}")
+    except (BadInput, ImportError) as error:
+        hint = ", set PYTHONPATH=build/src/python" if "pcl_symmetry" in str(error) and isinstance(error, ImportError) else ""
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}{hint}")
 
 
 def write_json(arguments, content):
@@ -647,6 +648,8 @@ def _attempt(function, item, arguments, name):
         return function(item, arguments), None
     except BadInput as error:
         return None, str(error) if name in str(error) else f"{name}: {error}"
+    except ImportError:  # of all items
+        raise
     except Exception as error:  # a fault of one model must not end the run
         return None, f"{name}: {type(error).__name__}, {error}"
 

@@ -1,0 +1,395 @@
+#!/usr/bin/env python3
+"""Decisions on shapes made by code, whose symmetries are known.
+
+shapes.py folds --half report       prisms, tubes, rims and cones of 2 to 24 folds, and round bodies, with noise
+shapes.py views --half report       round bodies, balls and prisms, seen from one side
+shapes.py random --half report      clouds without symmetry
+shapes.py composites --half report  two symmetric solids, or models of folders, stuck together
+
+The two halves have different curves, profiles and random numbers: constants are chosen on one, figures given of the other.
+"""
+import dataclasses
+import math
+
+import numpy as np
+
+import bench
+import planes
+import references
+
+FOLDED_BODIES = {  # radius and height of the profile of a body of height h
+    "prism": lambda h: [(0, 0), (1, 0), (1, h), (0, h)],
+    "tube": lambda h: [(1, 0), (1, h)],
+    "rim": lambda h: [(1, 0), (1, h), (0.75, h), (0.75, 0), (1, 0)],
+    "cone": lambda h: [(0, 0), (1, 0), (0, h)],
+    "open cone": lambda h: [(1, 0), (0, h)],
+}
+BALL = {"ball": lambda h, r, s: [(math.sin(t), -math.cos(t)) for t in np.linspace(0, math.pi, 49)]}
+ROUND_BODIES = {
+    "tuning": {
+        "bottle": lambda h, r, s: [(0, 0), (1, 0), (1, s * h), (r, 0.85 * h), (r, h), (0, h)],
+        "vase": lambda h, r, s: [(0, 0), (s, 0), (1, 0.3 * h), (0.9, 0.5 * h), (r, 0.8 * h), (s, h), (s - 0.06, h), (r - 0.06, 0.8 * h),
+                                 (0.84, 0.5 * h), (0.94, 0.3 * h), (s, 0.06), (0, 0.06)],
+        "cup": lambda h, r, s: [(0, 0), (s, 0), (1, 0.6 * h), (0.94, 0.6 * h), (s - 0.05, 0.08), (0, 0.08)],
+        "pin": lambda h, r, s: [(0, 0), (s, 0), (1, 0.35 * h), (s, 0.6 * h), (r, 0.75 * h), (r + 0.12, 0.88 * h), (r, 0.97 * h), (0, h)],
+    },
+    "report": {
+        "jar": lambda h, r, s: [(0, 0), (0.9, 0), (1, 0.1 * h), (1, 0.6 * h), (s, 0.75 * h), (s, 0.8 * h), (0, 0.8 * h)],
+        "goblet": lambda h, r, s: [(0, 0), (s, 0), (0.1, 0.1 * h), (0.1, 0.4 * h), (0.8, 0.6 * h), (1, 0.9 * h), (0.95, 0.9 * h),
+                                   (0.75, 0.62 * h), (0, 0.45 * h)],
+        "bowl": lambda h, r, s: [(0, 0), (r, 0), (0.8, 0.15 * h), (1, 0.35 * h), (0.95, 0.35 * h), (0.75, 0.17 * h), (r, 0.04), (0, 0.04)],
+        "can": lambda h, r, s: [(0, 0), (1, 0), (1, s * h), (0.9, s * h + 0.1), (0, s * h + 0.1)],
+    },
+}  # fmt: skip
+
+
+@dataclasses.dataclass
+class Shape:
+    """About the z axis. Planes are all its symmetries but those of a round one through the axis."""
+
+    body: str
+    mesh: bench.Mesh
+    folds: int  # 0: round
+    planes: np.ndarray  # rows (n, r)
+    between: float = 1.0  # share of the surface that a plane halfway between two folds maps
+
+    @property
+    def is_round(self):
+        return self.between >= references.MIN_SHARE
+
+    @property
+    def is_nearly_round(self):
+        return self.between >= references.NEAR_SHARE
+
+    def truth(self, pose):
+        """Planes, point and direction of the axis, and center, after a motion."""
+        normals = self.planes[:, :3] @ pose[:3, :3].T
+        return np.c_[normals, self.planes[:, 3] + normals @ pose[:3, 3]], pose[:3, 3], pose[:3, 2], bench.moved(pose, self.mesh.center)
+
+
+def sweep(curve, profile):
+    """Mesh of a closed curve (K, 2), scaled and lifted by each row (radius, height) of the profile."""
+    rings = np.array([np.c_[radius * curve, np.full(len(curve), height)] for radius, height in profile])
+    k, faces = len(curve), []
+    for i in range(len(profile) - 1):
+        for j in range(k):
+            a, b = i * k + j, i * k + (j + 1) % k
+            faces += [(a, b, b + k), (a, b + k, a + k)]
+    return bench.make_mesh(rings.reshape(-1, 3), faces)
+
+
+def along(angle):
+    return [-math.sin(angle), math.cos(angle), 0.0, 0.0]
+
+
+def folded_curve(folds, half, random):
+    """A polygon, or a flower (tuning), or a star or a gear (report); (K, 2), radius at most 1, one fold at angle 0."""
+    if random.uniform() < 0.4:
+        if folds == 2:
+            aspect = random.uniform(0.5, 0.8)
+            return np.array([(1, aspect), (-1, aspect), (-1, -aspect), (1, -aspect)]) / math.hypot(1, aspect)
+        radius, at = np.ones(1), np.zeros(1)
+    elif half == "tuning":
+        at = np.arange(max(8, 192 // folds)) / max(8, 192 // folds)
+        radius = 1 - 0.5 * random.uniform(0.1, 0.35) * (1 - np.cos(2 * math.pi * at))
+    else:
+        inner = 1 - random.uniform(0.1, 0.35)
+        if random.uniform() < 0.5:
+            radius, at = np.array([1, 0.6 if folds == 2 else inner]), np.array([0, 0.5])
+        else:  # teeth as wide as the gaps, with flanks
+            steps = np.linspace(-0.2, 0.2, max(2, 192 // (4 * folds)))
+            radius, at = np.repeat([1, inner], len(steps)), np.r_[steps, steps + 0.5]
+    angle = (2 * math.pi * (np.arange(folds)[:, None] + at) / folds).ravel()
+    return np.tile(radius, folds)[:, None] * np.c_[np.cos(angle), np.sin(angle)]
+
+
+def folded_shape(body, folds, half, random):
+    curve = folded_curve(folds, half, random)
+    is_like = lambda length, height: abs(height / length - 1) < 0.15  # cubes and tetrahedra have more symmetries
+    while True:
+        height = random.uniform(0.5, 2.5)
+        if "cone" in body and not (folds == 3 and is_like(math.sqrt(2), height)):
+            break
+        sides = (2 * abs(curve[0][0]), 2 * abs(curve[0][1]) or 1e9, math.sqrt(2)) if folds in (2, 4) else ()
+        if "cone" not in body and not any(is_like(length, height) for length in sides):
+            break
+    mesh = sweep(curve, FOLDED_BODIES[body](height))
+    rows = [along(math.pi * k / folds) for k in range(folds)]
+    rows += [] if "cone" in body else [[0, 0, 1, 0.5 * height]]
+    return Shape(body, mesh, folds, np.array(rows), share(mesh, along(0.5 * math.pi / folds)))
+
+
+def round_shape(body, profiles, random):
+    sizes = random.uniform(1.6, 3.2), random.uniform(0.25, 0.45), random.uniform(0.5, 0.8)
+    circle = 2 * math.pi * np.arange(192) / 192
+    mesh = sweep(np.c_[np.cos(circle), np.sin(circle)], profiles[body](*sizes))
+    across = [0, 0, 1, mesh.center[2]]
+    return Shape(body, mesh, 0, np.array([across] if share(mesh, across) >= references.MIN_SHARE else []).reshape(-1, 4))
+
+
+def share(mesh, plane):
+    surface = references.Surface(mesh, references.TOLERANCE, 4000)
+    plane = np.array(plane, float)
+    plane[3] = (plane[3] - plane[:3] @ mesh.center) / mesh.diagonal
+    return float(surface.share(plane, 4000)[0])
+
+
+def is_near(errors, angle, offset, diagonal):
+    return errors[0] <= math.radians(angle) and errors[1] <= offset * diagonal
+
+
+def symmetries(answers):
+    return [planes.plane_row(p) for p in answers["planes"] if p["kind"] == "symmetry"]
+
+
+def calls(answers):
+    return bool(symmetries(answers) or answers["axes"] or answers["centers"])
+
+
+# Kinds: each gives [(row of the table, column, yes or no)] of cloud number i
+
+
+def folds(i, arguments, random):
+    bodies = [*FOLDED_BODIES, "round"]
+    body, noise, thinned = bodies[i % 6], i // 6 % 3, i // 18 % 2 == 1
+    num_folds = random.integers(2, 25)
+    if body == "round":
+        shape = round_shape(random.choice(list(ROUND_BODIES[arguments.half])), ROUND_BODIES[arguments.half], random)
+    else:
+        shape = folded_shape(body, num_folds, arguments.half, random)
+    points, mesh = bench.sample(shape.mesh, arguments.points, random), shape.mesh
+    if thinned:  # to a quarter of the density along a direction
+        side = (points - mesh.center) @ bench.random_directions(random, 1)[0] / (0.5 * mesh.diagonal)
+        points = points[random.uniform(size=len(points)) < 0.25 + 0.75 * np.clip(0.5 * (1 + side), 0, 1)]
+    pose = bench.random_pose(random, mesh)
+    points = bench.moved(pose, points)
+    points += noise * math.sqrt(mesh.areas.sum() / arguments.points) * random.normal(size=points.shape)
+    answers = ask(f"folds_{i}", points, None, arguments, max_planes=64)
+    size = "round" if shape.folds == 0 else next(f"{a} to {b} folds" for a, b in ((2, 6), (7, 12), (13, 24)) if shape.folds <= b)
+    rows = ["all", f"noise of {noise} spacings", size, *["thinned"] * thinned]
+    cases = [case for angle in (1, 5) for case in judge_folds(shape, pose, answers, angle)]
+    return [(row, *case) for row in rows for case in cases]
+
+
+def judge_folds(shape, pose, answers, angle):
+    """Recall and precision of planes and axes; where planes between folds are nearly symmetries, an axis finds the folds
+    and is neither right nor wrong."""
+    true, point, direction, center = shape.truth(pose)
+    near = lambda errors: is_near(errors, angle, 0.01, shape.mesh.diagonal)
+    lines = [planes.line_of(axis) for axis in answers["axes"]]
+    is_axis = [near(references.line_from_line(point, direction, *line, center)) for line in lines]
+    found, recall, precision = symmetries(answers), f"recall, {angle} deg", f"precision, {angle} deg"
+    cases = [(precision, right and shape.is_round) for right in is_axis
+             if not right or shape.is_round or not shape.is_nearly_round]  # fmt: skip
+    cases += [(precision, False) for _ in answers["centers"]]
+    same = lambda a, b: near([v[0] for v in references.offsets_and_angles(a, b, center)])
+    for plane in found:
+        through = near(references.line_from_plane(plane, point, direction, center))
+        right = any(same(t, plane) for t in true) or (through and shape.is_round)
+        if right or not through or not shape.is_nearly_round:
+            cases.append((precision, right))
+    has_axis = any(is_axis) and shape.is_nearly_round
+    cases += [(recall, has_axis)] if shape.folds == 0 else []
+    cases += [(recall, any(same(t, p) for p in found) or (has_axis and abs(t[:3] @ direction) < 0.5)) for t in true]
+    if angle == 5 and not shape.is_nearly_round:
+        cases.append(("axis in place of folds", any(is_axis)))
+    return cases
+
+
+def views(i, arguments, random):
+    profiles = ROUND_BODIES[arguments.half] | BALL
+    bodies = [*profiles, "prism"]
+    body = bodies[i % len(bodies)]
+    shape = folded_shape(body, random.integers(2, 7), arguments.half, random) if body == "prism" else round_shape(body, profiles, random)
+    view, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, shape.mesh)
+    scan = bench.scan(shape.mesh, view, random, arguments.points, pose=pose)
+    answers = ask(f"views_{i}", scan.points, scan.T_cloud_sensor, arguments, max_planes=64)
+    family = bool(answers["axes"] or answers["centers"])
+    if body == "prism":
+        return [("prism", "family of a prism, which has none", family and not shape.is_nearly_round)]
+    _, point, direction, center = shape.truth(pose)
+    lines = [planes.line_of(axis) for axis in answers["axes"]]
+    if body == "ball":
+        errors = [(0, np.linalg.norm(np.array(c["point"]) - center)) for c in answers["centers"]]
+        errors += [(0, np.linalg.norm(np.cross(center - p, d))) for p, d in lines]
+    else:
+        errors = [references.line_from_line(point, direction, *line, center) for line in lines]
+    slant = math.degrees(math.acos(abs(view[2])))
+    side = "any side" if body == "ball" else "along the axis" if slant < 30 else "oblique" if slant < 60 else "across the axis"
+    return [(row, *case) for row in ("all", body, side) for case in (
+        ("axis or center within 1 deg, 1 %", any(is_near(e, 1, 0.01, shape.mesh.diagonal) for e in errors)),
+        ("within 5 deg, 5 %", any(is_near(e, 5, 0.05, shape.mesh.diagonal) for e in errors)),
+        ("symmetries, but no family", not family and calls(answers)), ("no symmetry", not calls(answers)))]  # fmt: skip
+
+
+def filled(count, half, random):
+    x = random.uniform(-1, 1, (20 * count, 3))
+    x = x if half == "tuning" else x[np.linalg.norm(x, axis=1) < 1]
+    return x[:count] * random.uniform(0.2, 1, 3)
+
+
+def blobs(count, half, random):
+    num = 1 if half == "tuning" else 3
+    which, widths = random.integers(num, size=count), random.uniform(0.2, 1, (num, 3))
+    centers = random.uniform(-2, 2, (num, 3)) * (num > 1)
+    return centers[which] + widths[which] * random.normal(size=(count, 3))
+
+
+def walk(count, half, random):
+    """A random walk, which (report) may begin anew at an earlier position."""
+    x = np.zeros((count, 3))
+    for i in range(1, count):
+        start = random.integers(i) if half == "report" and random.uniform() < 0.02 else i - 1
+        x[i] = x[start] + random.normal(size=3)
+    return x
+
+
+def sheet(count, half, random, noise=None):
+    """Of a random outline; of the report half wavy."""
+    k = np.arange(1, 6)
+    heights, phases, wave = 0.25 * random.normal(size=5) / k, random.uniform(0, 2 * math.pi, 5), random.uniform(-3, 3, 3)
+    x = random.uniform(-2, 2, (40 * count + 400, 2))
+    radius = 1 + (heights * np.cos(np.arctan2(x[:, 1], x[:, 0])[:, None] * k + phases)).sum(1)
+    x = x[np.hypot(*x.T) < np.maximum(0.2, radius)][:count]
+    height = (0.05 if half == "report" and noise is None else 0) * np.sin(x @ wave[:2] + wave[2])
+    return np.c_[x, height + (0.01 * random.uniform() if noise is None else noise) * random.normal(size=len(x))]
+
+
+def line(count, half, random):
+    """Straight, or (report) bent."""
+    t, k = random.uniform(size=(count, 1)), np.arange(1, 4)
+    waves = random.normal(size=(3, 3)) * (0.3 / k)[:, None] * (half == "report")
+    x = np.c_[t, np.zeros((count, 2))] + np.sin(math.pi * k * t + k - 1) @ waves
+    return x + 0.01 * random.uniform() * random.normal(size=x.shape)
+
+
+def wire(count, half, random):
+    """A cubic curve between random positions, or (report) a spiral that opens and climbs."""
+    t, p = random.uniform(size=(count, 1)), random.normal(size=(4, 3))
+    x = (1 - t) ** 3 * p[0] + 3 * (1 - t) ** 2 * t * p[1] + 3 * (1 - t) * t * t * p[2] + t**3 * p[3]
+    if half == "report":
+        angle, radius = 2 * math.pi * random.uniform(0.75, 1.75) * t, 0.2 + random.uniform(0.3, 1.3) * t * t
+        x = np.c_[radius * np.cos(angle), radius * np.sin(angle), random.uniform(0.3, 1.3) * t]
+    return x + 0.01 * random.uniform() * random.normal(size=x.shape)
+
+
+def table(count, half, random):
+    """A flat table of a random outline, and on a part of it boxes or (report) balls."""
+    noise, num = 0.004 * random.uniform(), random.integers(3, 6)
+    place, size, which = random.uniform(-0.6, 0.6, (num, 2)), random.uniform(0.1, 0.3, (num, 3)), random.integers(num, size=round(0.3 * count))
+    x = random.uniform(-1, 1, (len(which), 3))
+    if half == "report":
+        x, size = x / np.linalg.norm(x, axis=1, keepdims=True), np.repeat(size[:, :1], 3, axis=1)
+    else:
+        face = random.integers(3, size=len(x))
+        x[np.arange(len(x)), face] = np.where(face == 2, 1, np.sign(x[np.arange(len(x)), face]))
+    things = np.c_[place, size[:, 2]][which] + x * size[which] + noise * random.normal(size=x.shape)
+    return np.concatenate([sheet(count - len(which), half, random, noise), things])
+
+
+RANDOM_KINDS = {"fewer than 20 points": (filled, 5, 19), "filled": (filled, 5, 500), "blobs": (blobs, 5, 500), "walk": (walk, 5, 500),
+                "sheet": (sheet, 5, 500), "line": (line, 5, 500), "table with objects": (table, 500, 10_000), "wire": (wire, 5, 500)}  # fmt: skip
+
+
+def random_clouds(i, arguments, random):
+    kind = list(RANDOM_KINDS)[i % len(RANDOM_KINDS)]
+    make, low, high = RANDOM_KINDS[kind]
+    points = make(round(low * (high / low) ** random.uniform()), arguments.half, random)
+    rotation = bench.random_rotation(random)
+    answers = ask(f"random_{i}", points @ rotation.T + random.uniform(-1, 1, 3), None, arguments)
+    axes, found = [planes.line_of(axis)[1] for axis in answers["axes"]], symmetries(answers)
+    straight = kind == "line" and arguments.half == "tuning"  # its axis is true
+    is_line = straight and axes and not found and not answers["centers"] and all(abs(a @ rotation[:, 0]) > math.cos(math.radians(3)) for a in axes)
+    return [(row, *case) for row in ("all", kind) for case in (
+        ("called symmetric", calls(answers) and not is_line), ("a plane", bool(found)), ("an axis", bool(axes)),
+        ("a center", bool(answers["centers"])), ("a possible plane", len(answers["planes"]) > len(found)))]  # fmt: skip
+
+
+def composites(i, arguments, random):
+    parts = [model_part(2 * i + k, arguments, random) if arguments.models else solid_part(arguments, random) for k in (0, 1)]
+    if None in parts:
+        return []
+    rotations, size = [bench.random_rotation(random) for _ in parts], random.uniform(0.6, 1)
+    side, scales = bench.random_directions(random, 1)[0], (1.0, size)
+    reach = [scale * ((x @ r.T) @ (sign * side)).max() for (x, _), r, scale, sign in zip(parts, rotations, scales, (1, -1))]
+    places = (np.zeros(3), (sum(reach) - 0.1) * side)
+    clouds, true = [], []
+    for (x, rows), rotation, scale, place in zip(parts, rotations, scales, places):
+        x = x[random.uniform(size=len(x)) < scale * scale]  # as dense as the other part
+        clouds.append(scale * x @ rotation.T + place)
+        normals = rows[:, :3] @ rotation.T
+        true.append(np.c_[normals, scale * rows[:, 3] + normals @ place])
+    points = np.concatenate(clouds)
+    center, diagonal = 0.5 * (points.min(0) + points.max(0)), np.linalg.norm(np.ptp(points, axis=0))
+    answers = ask(f"composites_{i}", points, None, arguments, approximate=True, max_planes=64)
+    same = lambda a, b: is_near([v[0] for v in references.offsets_and_angles(a, b, center)], 3, 0.02, diagonal)
+    found = [planes.plane_row(p) for p in answers["planes"]]
+    local = [planes.plane_row(p) for p in answers["planes"] if p["kind"] not in ("approximate", "possible")]
+    has = [[any(same(t, p) for p in found) for t in rows] for rows in true]
+    wrong = [not any(same(t, p) for rows in true for t in rows) for p in local]
+    return ([("all", "planes of parts found", yes) for yes in sum(has, [])] + [("all", "right, of local planes", not no) for no in wrong]
+            + [("all", "with a plane of each part", all(map(any, has))), ("all", "called symmetric", calls(answers)),
+               ("all", "without a wrong plane", not any(wrong))])  # fmt: skip
+
+
+def solid_part(arguments, random):
+    """(points, planes) of a prism or a cone of 2 to 4 folds, centered and of unit diagonal."""
+    shape = folded_shape("prism" if random.uniform() < 0.6 else "cone", random.integers(2, 5), arguments.half, random)
+    return unit_part(shape.mesh, shape.planes, arguments, random)
+
+
+def model_part(i, arguments, random):
+    """That of a model that has planes and no axis; None for others."""
+    models = bench.list_models(arguments)
+    mesh = bench.read_mesh(models[i % len(models)].path)
+    found = references.find_references(mesh)
+    if not found["planes"] or found["axes"] or found["centers"]:
+        return None
+    return unit_part(mesh, np.array([planes.plane_row(p) for p in found["planes"]]), arguments, random)
+
+
+def unit_part(mesh, rows, arguments, random):
+    points = (bench.sample(mesh, arguments.points // 2, random) - mesh.center) / mesh.diagonal
+    return points, np.c_[rows[:, :3], (rows[:, 3] - rows[:, :3] @ mesh.center) / mesh.diagonal]
+
+
+def ask(name, points, sensor, arguments, **options):
+    if arguments.export:
+        bench.write_cloud(f"{arguments.export}/{name}.pcd", points, sensor)
+    if arguments.judge:
+        return bench.read_answers(arguments.judge, name)
+    return bench.detect(points, sensor, arguments.seed + 1, arguments.tool, **options)
+
+
+KINDS = {"folds": (folds, 144), "views": (views, 180), "random": (random_clouds, 700), "composites": (composites, 40)}
+
+
+def evaluate(i, arguments):
+    cases = KINDS[arguments.kind][0](i, arguments, bench.generator(arguments.seed, arguments.half, arguments.kind, i))
+    return [(row, column, bool(yes)) for row, column, yes in cases]
+
+
+def program(arguments):
+    count = arguments.num or KINDS[arguments.kind][1]
+    results, left_out = bench.run(range(count), evaluate, arguments)
+    rates = {}
+    for row, column, yes in sum(results, []):
+        rates.setdefault(row, {}).setdefault(column, bench.Rate()).add(yes)
+    columns = list(dict.fromkeys(column for row in rates.values() for column in row))
+    order = sorted(rates, key=lambda row: (row != "all", row))
+    bench.print_table(f"{arguments.kind}, {arguments.half} half, {len(results)} clouds; 95 % Wilson intervals",
+                      ["", *columns], [[row, *(rates[row].get(c, bench.Rate()).text for c in columns)] for row in order])  # fmt: skip
+    bench.write_json(arguments, {"rates": bench.plain(rates), "left_out": left_out})
+
+
+if __name__ == "__main__":
+    parser = bench.make_parser(__doc__)
+    parser.add_argument("--half", choices=["tuning", "report"], default="tuning", help="half of the shapes")
+    parser.add_argument("--num", type=int, help="number of clouds; about two minutes by default")
+    parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
+    parser.add_argument("--tool", metavar="FILE", help="pcl_symmetry_planes: asked in place of the Python module")
+    arguments = parser.parse_args()
+    if not arguments.models or arguments.models[0] not in KINDS:
+        parser.error(f"the first argument must be one of {', '.join(KINDS)}")
+    arguments.kind, *arguments.models = arguments.models
+    bench.main(program, arguments)
