@@ -8,9 +8,10 @@ packages=(
   libsqlite3-dev zlib1g-dev                                               # its database of models
   libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev # the tools: options, files, reports,
   libassimp-dev libembree-dev                                             # meshes, the virtual scanner,
-  libvtk9-dev libx11-dev xvfb xauth libgl1-mesa-dri                             # pictures, also without a screen
-  pybind11-dev python3-dev python3-numpy                                  # the Python module,
-  python3-dask python3-distributed                                        # work that several machines share
+  libvtk9-dev python3-vtk9 libx11-dev xvfb xauth libgl1-mesa-dri          # pictures, also without a screen
+  pybind11-dev python3-dev python3-numpy mypy                             # the Python module and its types,
+  python3-dask python3-distributed                                        # work that several machines share,
+  python3-scipy python3-sklearn python3-matplotlib python3-open3d         # what measures: fits, figures, distances to meshes
   help2man file doxygen                                                   # manual pages, Debian packages, the reference of the classes
   libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema           # tests and benchmarks
 )

@@ -624,17 +624,18 @@ def run(items, function, arguments, stage=""):
     results = {name: result for name, result in journal.read().items() if name in named}
     waiting = {name: item for name, item in named.items() if name not in results}
     left_out, start, first = [], time.monotonic(), len(results)
-    for name, result, failure in _spread(waiting, function, arguments):
-        if failure:
-            left_out.append(failure)
-            print(f"\r{failure}", file=sys.stderr)
-        else:
-            results[name] = result
-            journal.append(name, result)
-        num_done = len(results) + len(left_out)
-        if sys.stderr.isatty():
-            rest = (time.monotonic() - start) * (len(named) - num_done) / max(1, num_done - first)
-            print(f"\r{stage} {num_done} of {len(named)}, {rest:.0f} s left   ", end="", file=sys.stderr)
+    with journal:
+        for name, result, failure in _spread(waiting, function, arguments):
+            if failure:
+                left_out.append(failure)
+                print(f"{chr(13) * sys.stderr.isatty()}{failure}", file=sys.stderr)
+            else:
+                results[name] = result
+                journal.append(name, result)
+            num_done = len(results) + len(left_out)
+            if sys.stderr.isatty():
+                rest = (time.monotonic() - start) * (len(named) - num_done) / max(1, num_done - first)
+                print(f"\r{stage} {num_done} of {len(named)}, {rest:.0f} s left   ", end="", file=sys.stderr)
     if sys.stderr.isatty():
         print(file=sys.stderr)
     if not results:
@@ -733,6 +734,13 @@ class _Journal:
         for name, result in results.items():
             self.append(name, result)
         return results
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.file:
+            self.file.close()
 
     def append(self, name, result):
         if self.file:

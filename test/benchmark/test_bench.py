@@ -1,0 +1,193 @@
+"""Tests of what the programs of this folder share, of the search for references, and of how planes are judged."""
+import contextlib
+import io
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import open3d  # noqa: F401
+    import scipy  # noqa: F401
+    import pcl_symmetry  # noqa: F401
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+import numpy as np
+
+import bench
+import planes
+import real_frames
+import references
+import shapes
+
+BOX = "OFF\n8 6 0\n" + "".join(f"{x} {y} {z}\n" for x in (0, 3) for y in (0, 2) for z in (0, 1))
+BOX += "4 0 1 3 2\n4 4 6 7 5\n4 0 4 5 1\n4 2 3 7 6\n4 0 2 6 4\n4 1 5 7 3\n"
+
+
+def box():
+    return bench.make_mesh([[x, y, z] for x in (0, 3) for y in (0, 2) for z in (0, 1)],
+                           [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])  # fmt: skip
+
+
+def beast(side_leg):
+    """A body with a head and four legs; with a fifth leg on one side, asymmetric."""
+    parts = [((0, 0, 0), (4, 1.5, 1.5)), ((3.6, 0.35, 1), (1.6, 0.8, 1.2))]
+    parts += [((x, y, -1.5), (0.5, 0.4, 1.6)) for x in (0.2, 3.2) for y in (0, 1.1)]
+    parts += [((0.5, 1.4, 0.4), (1.2, 2.5, 0.8))] * side_leg
+    vertices, polygons = [], []
+    for low, size in parts:
+        polygons += [[len(vertices) + i for i in p] for p in ([0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3])]
+        vertices += [np.add(low, np.multiply(size, (x, y, z))) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    return bench.make_mesh(vertices, polygons)
+
+
+def run_program(*words):
+    """Exit code and standard error of a program of this folder."""
+    path = pathlib.Path(__file__).parent / words[0]
+    done = subprocess.run([sys.executable, path, *map(str, words[1:])], capture_output=True, text=True)
+    return done.returncode, done.stderr.strip()
+
+
+class Rates(unittest.TestCase):
+    def test_wilson_intervals(self):
+        # Newcombe (1998), Table I, method 3.
+        for (count, total), expected in {(81, 263): (0.2553, 0.3662), (15, 148): (0.0624, 0.1605), (0, 20): (0, 0.1611)}.items():
+            np.testing.assert_allclose(bench.wilson(count, total), expected, atol=5e-5)
+        self.assertEqual(bench.wilson(0, 0), (0, 1))
+
+    def test_calibration(self):
+        self.assertAlmostEqual(bench.calibration([0.85] * 4, [1, 1, 1, 0])["error"], 0.1)
+        self.assertAlmostEqual(bench.calibration([1, 0], [1, 0])["brier"], 0)
+
+
+class Clouds(unittest.TestCase):
+    def test_samples_lie_on_the_mesh_by_area(self):
+        mesh = box()
+        for even in (True, False):
+            points = bench.sample(mesh, 22_000, np.random.default_rng(0), even)
+            self.assertLess(mesh.distances((points - mesh.center) / mesh.diagonal).max(), 1e-5)
+            self.assertAlmostEqual((points[:, 2] == 1).mean(), 6 / 22, delta=0.01)
+        np.testing.assert_array_equal(bench.sample(mesh, 5, np.random.default_rng(1)), bench.sample(mesh, 5, np.random.default_rng(1)))
+
+    def test_scans_see_the_near_side(self):
+        mesh = box()
+        scan = bench.scan(mesh, [0, 0, 1], np.random.default_rng(0), 2000)
+        np.testing.assert_allclose(scan.rows[:, 2], 1, atol=1e-9)
+        self.assertAlmostEqual(len(scan.rows) / 2000, 1, delta=0.05)
+        np.testing.assert_allclose(scan.viewpoint, mesh.center + [0, 0, 2 * mesh.diagonal])
+        pose = bench.random_pose(np.random.default_rng(1), mesh)
+        turned = bench.scan(mesh, [0, 0, 1], np.random.default_rng(0), 2000, pose=pose)
+        np.testing.assert_allclose(turned.rows, bench.moved(pose, scan.rows), atol=1e-9)
+
+    def test_patterns_have_the_count(self):
+        for pattern in bench.PATTERNS:
+            points = bench.sample_pattern(box(), pattern, 1000, np.random.default_rng(0))
+            self.assertAlmostEqual(len(points) / 1000, 1, delta=0.1, msg=pattern)
+
+
+class References(unittest.TestCase):
+    def test_a_box_has_its_three_planes(self):
+        found = references.find_references(box())
+        self.assertEqual(found["kind"], "symmetric")
+        normals = np.array([p["coefficients"][:3] for p in found["planes"]])
+        np.testing.assert_allclose(np.sort(np.abs(normals).argmax(1)), [0, 1, 2])
+        np.testing.assert_allclose([planes.plane_row(p)[:3] @ found["center"] + p["coefficients"][3] for p in found["planes"]], 0, atol=0.01)
+
+    def test_a_beast_has_one_plane_and_with_a_leg_on_one_side_none(self):
+        found = references.find_references(beast(False))
+        self.assertEqual((found["kind"], len(found["planes"])), ("symmetric", 1))
+        self.assertGreater(abs(found["planes"][0]["coefficients"][1]), 0.999)
+        self.assertEqual(references.find_references(beast(True))["kind"], "asymmetric")
+
+    def test_a_bottle_has_an_axis(self):
+        shape = shapes.round_shape("bottle", shapes.ROUND_BODIES["tuning"], np.random.default_rng(0))
+        found = references.find_references(shape.mesh)
+        self.assertEqual((len(found["axes"]), len(found["planes"])), (1, 0))
+        self.assertGreater(abs(found["axes"][0]["direction"][2]), 0.999)
+
+
+class Judging(unittest.TestCase):
+    def setUp(self):
+        self.pose = bench.random_pose(np.random.default_rng(3), box())
+        self.truth = references.moved(references.find_references(box()), self.pose)
+
+    def judged(self, *rows):
+        keys = ("coefficients", "kind", "confidence")
+        return planes.judge({**bench.NO_ANSWERS, "planes": [dict(zip(keys, row)) for row in rows]}, self.truth)
+
+    def test_known_answers(self):
+        first, second = (p["coefficients"] for p in self.truth["planes"][:2])
+        moved = [*first[:3], first[3] + 0.03 * self.truth["diagonal"]]
+        right = self.judged((first, "symmetry", 0.9), ((-np.array(second)).tolist(), "symmetry", 0.8))
+        self.assertTrue(right["decided_right"] and right["called"])
+        self.assertEqual((right["found"], right["references"], right["false"]), (2, 3, 0))
+        self.assertEqual(self.judged((first, "symmetry", 0.9), (first, "symmetry", 0.8))["false"], 1)  # twice the same
+        self.assertFalse(self.judged((moved, "symmetry", 0.9), (first, "symmetry", 0.8))["decided_right"])
+        self.assertTrue(self.judged((moved, "possible", 0.4), (first, "symmetry", 0.8))["decided_right"])
+        self.assertFalse(self.judged((first, "possible", 0.4))["called"])
+
+    def test_answers_of_other_programs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "a.txt").write_text("1 0 0 -2 0.7\n0 1 0 0\n")
+            found = bench.read_answers(folder, "a")["planes"]
+            self.assertEqual([p["coefficients"] for p in found], [[1, 0, 0, -2], [0, 1, 0, 0]])
+            self.assertTrue(bench.read_answers(folder, "b")["failed"])
+            pathlib.Path(folder, "c.txt").write_text("1 0 zero\n")
+            self.assertRaises(bench.BadInput, bench.read_answers, folder, "c")
+
+    def test_boxes_and_cylinders_of_frames(self):
+        truth = {"shape": "cylinder", "axis": {"point": [1, 0, 5], "direction": [0, 0, 1]}, "center": [0, 0, 0], "extent": 2}
+        through = {"planes": [{"coefficients": [0, 1, 0, 0], "kind": "symmetry"}]}
+        beside = {"planes": [{"coefficients": [0, 1, 0, -0.1], "kind": "symmetry"}]}
+        self.assertTrue(real_frames.judge(through, truth)["decided"])
+        self.assertTrue(real_frames.judge(beside, truth)["wrong"])
+
+
+class Runs(unittest.TestCase):
+    def test_an_interrupted_run_goes_on(self):
+        with tempfile.TemporaryDirectory() as folder:
+            arguments = bench.make_parser("").parse_args(["--json", f"{folder}/out.json", "--jobs", "1"])
+            asked = []
+
+            def square(x, _):
+                asked.append(x)
+                if x == 3 and len(asked) == 4:
+                    raise KeyboardInterrupt
+                return x * x
+
+            self.assertRaises(KeyboardInterrupt, bench.run, range(5), square, arguments)
+            journal = pathlib.Path(folder, "out.json.journal")
+            journal.write_text(journal.read_text() + '["4", 1')  # cut off while it was written
+            self.assertEqual(bench.run(range(5), square, arguments), ([0, 1, 4, 9, 16], []))
+            self.assertEqual(asked, [0, 1, 2, 3, 3, 4])
+            bench.write_json(arguments, [1])
+            self.assertEqual(sorted(os.listdir(folder)), ["out.json"])
+
+    def test_a_failing_item_costs_itself(self):
+        def divide(x, _):
+            return 1 / x
+
+        with contextlib.redirect_stderr(io.StringIO()) as told:
+            results, left_out = bench.run([1, 0, 2], divide, bench.make_parser("").parse_args(["--jobs", "1"]))
+        self.assertEqual((results, len(left_out)), ([1, 0.5], 1))
+        self.assertIn("0: ZeroDivisionError", told.getvalue())
+
+    def test_bad_input_is_one_sentence(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(run_program("planes.py", f"{folder}/none"), (1, f"planes.py: {folder}/none: must be a folder"))
+            pathlib.Path(folder, "bad.cla").write_text("PSB 1\n1 1\n")
+            self.assertIn("bad.cla: is no class file", run_program("planes.py", folder, "--classes", f"{folder}/bad.cla")[1])
+            pathlib.Path(folder, "bad.off").write_text("OFF\n8 6 0\n0 0 0\n")
+            pathlib.Path(folder, "box.off").write_text(BOX)
+            rc, told = run_program("planes.py", folder, "--rows", "whole", "--points", "2000", "--json", f"{folder}/out.json")
+            self.assertEqual((rc, told), (0, f"{folder}/bad.off: is no mesh that can be read, it ends too early"))
+            result = json.loads(pathlib.Path(folder, "out.json").read_text())
+            self.assertEqual(result["groups"]["whole"]["decided_right"]["count"], 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
