@@ -163,7 +163,8 @@ def read_classes(path):
                 classes[f"m{int(next(words))}"] = LeafClass(full_names[name], number)
             number += size > 0
     except (StopIteration, ValueError, OSError) as error:
-        raise BadInput(f"{path}: is no class file, {getattr(error, 'strerror', None) or 'a number or name is missing'}") from None
+        reason = getattr(error, "strerror", None) or "a number or name is missing"
+        raise BadInput(f"{path}: is no class file, {reason}") from None
     if len(classes) != num_models:
         raise BadInput(f"{path}: names {len(classes)} models, must be {num_models}")
     return classes

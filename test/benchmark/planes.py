@@ -51,7 +51,8 @@ def clouds_of(mesh, key, arguments):
                 yield "scan" + after, "scan_" + name, scan.points, pose, scan
             if "moved" in arguments.rows:
                 motion = bench.random_pose(random, mesh)
-                motion[:3, 3] = mesh.diagonal * random.uniform(-1, 1, 3) - motion[:3, :3] @ bench.moved(pose, mesh.center)
+                to = mesh.diagonal * random.uniform(-1, 1, 3)
+                motion[:3, 3] = to - motion[:3, :3] @ bench.moved(pose, mesh.center)
                 lost = bench.Scan(None, motion @ pose, motion @ scan.T_cloud_sensor, scan.half_width)
                 yield "moved scan" + after, "moved_" + name, bench.moved(motion, scan.rows), motion @ pose, lost
     for cut in arguments.crops if "crop" in arguments.rows else ():
@@ -77,11 +78,13 @@ def judge(answers, truth):
         matches = [(_error(kind, answer, r, center, diagonal), i) for i, r in enumerate(refs)]
         matches = sorted((max(e[0] / e[2], e[1] / MAX_OFFSET), i, e) for e, i in matches if e and _within(e))[:1]
         if kind == "axis" and not matches:  # a prism that is round but for its corners: eight planes and more
-            around = [(_error("plane", r, ("axis", answer), center, diagonal), i) for i, (k, r) in enumerate(refs) if k == "plane"]
-            around = [(0, i, e) for e, i in around if e[0] <= MAX_AXIS_ANGLE and e[1] <= MAX_OFFSET]
+            planes_of_refs = [(i, r) for i, (type_, r) in enumerate(refs) if type_ == "plane"]
+            around = [(0, i, _error("plane", r, ("axis", answer), center, diagonal)) for i, r in planes_of_refs]
+            around = [(0, i, e) for _, i, e in around if e[0] <= MAX_AXIS_ANGLE and e[1] <= MAX_OFFSET]
             matches = around if len(around) >= 8 else []
         new = {i for _, i, _ in matches} - found
-        is_near = not matches and any(e and _within(e) for e in (_error(kind, answer, r, center, diagonal) for r in near))
+        near_errors = [_error(kind, answer, r, center, diagonal) for r in near]
+        is_near = not matches and any(e and _within(e) for e in near_errors)
         repeats = any(i in family for _, i, _ in matches)
         verdict = "right" if new else "neutral" if repeats or is_near else "false"
         found |= new
@@ -94,7 +97,8 @@ def judge(answers, truth):
     decided = [row["verdict"] for row in rows if row["verdict"] != "neutral" and row["called"]]
     return {"answers": rows, "called": any(row["called"] for row in rows), "decided_right": decided[:1] == ["right"],
             "first_right": decisive[:1] == ["right"], "false": decided.count("false"), "found": len(found),
-            "references": len(refs), "angle": errors[0] if errors else None, "offset": errors[1] if errors else None}  # fmt: skip
+            "references": len(refs), "angle": errors[0] if errors else None,
+            "offset": errors[1] if errors else None}  # fmt: skip
 
 
 def _in_order(answers):
@@ -240,8 +244,8 @@ def report(rows, arguments):
     print(", ".join(kinds), "models\n")
     bench.print_table(
         "Decisions at one operating point: kind symmetry, confidence >= 0.5; 95 % Wilson intervals",
-        ["clouds", "decided and right, of symmetric", "called, of asymmetric", "against a visible point", "called, of nearly symmetric",
-         "false a cloud"],
+        ["clouds", "decided and right, of symmetric", "called, of asymmetric", "against a visible point",
+         "called, of nearly symmetric", "false a cloud"],
         [[g, s["decided_right"].text, s["asymmetric_called"].text, s["asymmetric_contradicted"].text,
           s["nearly_called"].text, f"{s['false_per_cloud']:.2f}"] for g, s in sums.items()])  # fmt: skip
     of_group = lambda group, field: [row[field] for row in rows if row["group"] == group]
@@ -253,9 +257,10 @@ def report(rows, arguments):
           bench.median(of_group(g, "offset")), s["calibration"]["answers"], number(s["calibration"]["error"]),
           number(s["calibration"]["by_chance"]), number(s["calibration"]["brier"]),
           bench.median(of_group(g, "milliseconds"), 0)] for g, s in sums.items()])  # fmt: skip
-    bench.print_table("Clouds called symmetric, by the share of the surface that the best plane of the model maps",
-                      ["clouds", *(f"{100 * low:.0f} to {min(100, 100 * high):.0f} %" for low, high in zip(SHARES, SHARES[1:]))],
-                      [[g, *(f"{r.count} of {r.total}" for *_, r in s["called_by_share"])] for g, s in sums.items()])  # fmt: skip
+    ranges = [f"{100 * low:.0f} to {min(100, 100 * high):.0f} %" for low, high in zip(SHARES, SHARES[1:])]
+    counts = [[g, *(f"{r.count} of {r.total}" for *_, r in s["called_by_share"])] for g, s in sums.items()]
+    title = "Clouds called symmetric, by the share of the surface that the best plane of the model maps"
+    bench.print_table(title, ["clouds", *ranges], counts)
     if "counts" in arguments.rows:
         sums["same decision at all numbers of points"] = {"rate": same_decisions(rows, arguments)}
         print("Same decision at", *arguments.counts, "points:", same_decisions(rows, arguments).text)

@@ -98,7 +98,11 @@ def visible_faces(points, normals, random):
     """Up to three flat faces of a box, greatest first: (normal, positions of its points)."""
     left, found = np.arange(len(points)), []
     while len(left) > 0.06 * len(points) and len(found) < 3:
-        on_face = lambda i: (np.abs((points[left] - points[i]) @ normals[i]) < 0.006) & (np.abs(normals[left] @ normals[i]) > 0.9)
+
+        def on_face(i):
+            alike = np.abs(normals[left] @ normals[i]) > 0.9
+            return (np.abs((points[left] - points[i]) @ normals[i]) < 0.006) & alike
+
         count, _, seed = ransac(random, 120, lambda: random.choice(left), lambda i: on_face(i).sum())
         if count < 0.06 * len(points):
             break
@@ -188,7 +192,8 @@ def is_right(kind, answer, truth, max_offset):
     center = np.array(truth["center"])
     limit = (MAX_ANGLE, max_offset * truth["extent"])
     if kind == "plane" and truth["shape"] == "cylinder":
-        return np.less(references.line_from_plane(planes.plane_row(answer), *planes.line_of(truth["axis"]), center), limit).all()
+        errors = references.line_from_plane(planes.plane_row(answer), *planes.line_of(truth["axis"]), center)
+        return np.less(errors, limit).all()
     if kind == "plane":
         rows = np.array([planes.plane_row(plane) for plane in truth["planes"]])
         angles, offsets = references.offsets_and_angles(rows, planes.plane_row(answer), center)
@@ -241,7 +246,8 @@ def objects_found(name, points, arguments):
     with tempfile.TemporaryDirectory() as folder:
         bench.write_cloud(f"{folder}/frame.pcd", points)
         command = [str(pathlib.Path(arguments.tools).resolve() / "pcl_symmetry_scene"), "frame.pcd", "out.pcd"]
-        done = subprocess.run([*command, "-quiet", "-json", "found.json", "-threads", "1", "-seed", str(arguments.seed)], cwd=folder, capture_output=True, text=True)
+        command += ["-quiet", "-json", "found.json", "-threads", "1", "-seed", str(arguments.seed)]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         if done.returncode:
             raise bench.BadInput(f"{name}: {done.stderr.strip()}")
         objects = json.loads(pathlib.Path(folder, "found.json").read_text())["objects"]
@@ -306,8 +312,9 @@ def report(rows):
     groups = list(dict.fromkeys((row["way"], row["shape"]) for row in rows if row["shape"]))
     of = lambda group, field: bench.Rate(row[field] for row in rows if (row["way"], row["shape"]) == group)
     fields = ("decided", "listed", "wrong", "none")
-    bench.print_table("Answers for real things; 95 % Wilson intervals", ["way", "shape", "decided right", "listed", "wrong", "none"],
-                      [[*group, *(of(group, field).text for field in fields)] for group in groups])  # fmt: skip
+    table_rows = [[*group, *(of(group, field).text for field in fields)] for group in groups]
+    header = ["way", "shape", "decided right", "listed", "wrong", "none"]
+    bench.print_table("Answers for real things; 95 % Wilson intervals", header, table_rows)
     found = bench.Rate(row["found"] for row in rows if "found" in row)
     if found.total:
         print("Objects of frames found with an overlap of half and more:", found.text)

@@ -161,14 +161,10 @@ def scan_all_planes(surface, num_normals=5955, num_offsets=101, reach=0.04, num_
     grid[near] = np.maximum(0, 1 - (surface.mesh.distances(middles(size)[near]) / reach) ** 2) ** 2
     grid = np.pad(grid, 1).ravel()
 
-    def closeness(normals, offsets, x):
-        """(B, K) for normals (B, 3), the same offsets (K,), and points (N, 3)."""
-        scale = np.float32(size / (2 * half))
-        base = (x[None] - 2 * (normals @ x.T)[..., None] * normals[:, None] + half) * scale + 1
-        cells = base[:, None] + (2 * scale * offsets[:, None, None]) * normals[:, None, None]
-        cells = np.clip(cells, 0, size + 1).astype(np.int32)
-        index = (cells[..., 0] * (size + 2) + cells[..., 1]) * (size + 2) + cells[..., 2]
-        return grid[index].mean(-1)
+    def closeness(x):
+        """Means over points (..., N, 3)."""
+        cells = np.clip((x + np.float32(half)) * np.float32(size / (2 * half)) + 1, 0, size + 1).astype(np.int32)
+        return grid[(cells[..., 0] * (size + 2) + cells[..., 1]) * (size + 2) + cells[..., 2]].mean(-1)
 
     normals = planes_through_point(np.zeros(3), num_normals)[:, :3].astype(np.float32)
     offsets = np.linspace(-0.5, 0.5, num_offsets, dtype=np.float32)
@@ -179,24 +175,21 @@ def scan_all_planes(surface, num_normals=5955, num_offsets=101, reach=0.04, num_
     values = np.full((num_normals, num_offsets), -1.0, np.float32)
     for first in range(0, num_normals, 16):
         rows = slice(first, first + 16)
-        columns = np.flatnonzero(tried[rows].any(0))
-        if len(columns):
-            rough = closeness(normals[rows], offsets[columns], x[:64])
-            values[rows, columns] = np.where(tried[rows, columns], rough, -1)
+        columns, n = np.flatnonzero(tried[rows].any(0)), normals[rows, None]
+        on_origin = x[None, :64] - 2 * (normals[rows] @ x[:64].T)[..., None] * n
+        rough = closeness(on_origin[:, None] + 2 * offsets[columns, None, None] * n[:, None])
+        values[rows, columns] = np.where(tried[rows, columns], rough, -1)
     promising = np.argwhere(values >= 0.35)
     for part in np.array_split(promising, len(promising) // 4000 + 1):
         planes = np.c_[normals[part[:, 0]], offsets[part[:, 1]]]
-        cells = np.clip((reflect(planes, x) + half) * (size / (2 * half)) + 1, 0, size + 1).astype(np.int32)
-        index = (cells[..., 0] * (size + 2) + cells[..., 1]) * (size + 2) + cells[..., 2]
-        values[part[:, 0], part[:, 1]] = grid[index].mean(-1)
+        values[part[:, 0], part[:, 1]] = closeness(reflect(planes, x))
     values += 1e-6 * np.random.default_rng(1).uniform(size=values.shape).astype(np.float32)  # no ties
     widest = maximum_filter1d(values, 5, axis=1)  # half a diagonal times two degrees
     neighbours = cKDTree(np.vstack([normals, -normals])).query_ball_point(normals, 2 * math.sin(math.radians(1.5)))
     both = np.vstack([widest, widest[:, ::-1]])
     highest = np.stack([both[rows].max(0) for rows in neighbours])
     maxima = np.argwhere((values >= highest) & (values > 0))
-    order = np.argsort(-values[maxima[:, 0], maxima[:, 1]])
-    maxima = maxima[order]
+    maxima = maxima[np.argsort(-values[maxima[:, 0], maxima[:, 1]])]
     return np.c_[normals[maxima[:, 0]], offsets[maxima[:, 1]]].astype(float), values[maxima[:, 0], maxima[:, 1]]
 
 

@@ -28,16 +28,18 @@ BALL = {"ball": lambda h, r, s: [(math.sin(t), -math.cos(t)) for t in np.linspac
 ROUND_BODIES = {
     "tuning": {
         "bottle": lambda h, r, s: [(0, 0), (1, 0), (1, s * h), (r, 0.85 * h), (r, h), (0, h)],
-        "vase": lambda h, r, s: [(0, 0), (s, 0), (1, 0.3 * h), (0.9, 0.5 * h), (r, 0.8 * h), (s, h), (s - 0.06, h), (r - 0.06, 0.8 * h),
-                                 (0.84, 0.5 * h), (0.94, 0.3 * h), (s, 0.06), (0, 0.06)],
+        "vase": lambda h, r, s: [(0, 0), (s, 0), (1, 0.3 * h), (0.9, 0.5 * h), (r, 0.8 * h), (s, h), (s - 0.06, h),
+                                 (r - 0.06, 0.8 * h), (0.84, 0.5 * h), (0.94, 0.3 * h), (s, 0.06), (0, 0.06)],
         "cup": lambda h, r, s: [(0, 0), (s, 0), (1, 0.6 * h), (0.94, 0.6 * h), (s - 0.05, 0.08), (0, 0.08)],
-        "pin": lambda h, r, s: [(0, 0), (s, 0), (1, 0.35 * h), (s, 0.6 * h), (r, 0.75 * h), (r + 0.12, 0.88 * h), (r, 0.97 * h), (0, h)],
+        "pin": lambda h, r, s: [(0, 0), (s, 0), (1, 0.35 * h), (s, 0.6 * h), (r, 0.75 * h), (r + 0.12, 0.88 * h),
+                                (r, 0.97 * h), (0, h)],
     },
     "report": {
         "jar": lambda h, r, s: [(0, 0), (0.9, 0), (1, 0.1 * h), (1, 0.6 * h), (s, 0.75 * h), (s, 0.8 * h), (0, 0.8 * h)],
-        "goblet": lambda h, r, s: [(0, 0), (s, 0), (0.1, 0.1 * h), (0.1, 0.4 * h), (0.8, 0.6 * h), (1, 0.9 * h), (0.95, 0.9 * h),
-                                   (0.75, 0.62 * h), (0, 0.45 * h)],
-        "bowl": lambda h, r, s: [(0, 0), (r, 0), (0.8, 0.15 * h), (1, 0.35 * h), (0.95, 0.35 * h), (0.75, 0.17 * h), (r, 0.04), (0, 0.04)],
+        "goblet": lambda h, r, s: [(0, 0), (s, 0), (0.1, 0.1 * h), (0.1, 0.4 * h), (0.8, 0.6 * h), (1, 0.9 * h),
+                                   (0.95, 0.9 * h), (0.75, 0.62 * h), (0, 0.45 * h)],
+        "bowl": lambda h, r, s: [(0, 0), (r, 0), (0.8, 0.15 * h), (1, 0.35 * h), (0.95, 0.35 * h), (0.75, 0.17 * h),
+                                 (r, 0.04), (0, 0.04)],
         "can": lambda h, r, s: [(0, 0), (1, 0), (1, s * h), (0.9, s * h + 0.1), (0, s * h + 0.1)],
     },
 }  # fmt: skip
@@ -64,7 +66,8 @@ class Shape:
     def truth(self, pose):
         """Planes, point and direction of the axis, and center, after a motion."""
         normals = self.planes[:, :3] @ pose[:3, :3].T
-        return np.c_[normals, self.planes[:, 3] + normals @ pose[:3, 3]], pose[:3, 3], pose[:3, 2], bench.moved(pose, self.mesh.center)
+        rows = np.c_[normals, self.planes[:, 3] + normals @ pose[:3, 3]]
+        return rows, pose[:3, 3], pose[:3, 2], bench.moved(pose, self.mesh.center)
 
 
 def sweep(curve, profile):
@@ -146,6 +149,9 @@ def calls(answers):
     return bool(symmetries(answers) or answers["axes"] or answers["centers"])
 
 
+FOLD_RANGES = {0: "round", 6: "2 to 6 folds", 12: "7 to 12 folds", 24: "13 to 24 folds"}
+
+
 # Kinds: each gives [(row of the table, column, yes or no)] of cloud number i
 
 
@@ -165,7 +171,7 @@ def folds(i, arguments, random):
     points = bench.moved(pose, points)
     points += noise * math.sqrt(mesh.areas.sum() / arguments.points) * random.normal(size=points.shape)
     answers = ask(f"folds_{i}", points, None, arguments, max_planes=64)
-    size = "round" if shape.folds == 0 else next(f"{a} to {b} folds" for a, b in ((2, 6), (7, 12), (13, 24)) if shape.folds <= b)
+    size = next(name for most, name in FOLD_RANGES.items() if shape.folds <= most)
     rows = ["all", f"noise of {noise} spacings", size, *["thinned"] * thinned]
     cases = [case for angle in (1, 5) for case in judge_folds(shape, pose, answers, angle)]
     return [(row, *case) for row in rows for case in cases]
@@ -200,7 +206,10 @@ def views(i, arguments, random):
     profiles = ROUND_BODIES[arguments.half] | BALL
     bodies = [*profiles, "prism"]
     body = bodies[i % len(bodies)]
-    shape = folded_shape(body, random.integers(2, 7), arguments.half, random) if body == "prism" else round_shape(body, profiles, random)
+    if body == "prism":
+        shape = folded_shape(body, random.integers(2, 7), arguments.half, random)
+    else:
+        shape = round_shape(body, profiles, random)
     view, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, shape.mesh)
     scan = bench.scan(shape.mesh, view, random, arguments.points, pose=pose)
     answers = ask(f"views_{i}", scan.points, scan.T_cloud_sensor, arguments, max_planes=64)
@@ -247,7 +256,8 @@ def walk(count, half, random):
 def sheet(count, half, random, noise=None):
     """Of a random outline; of the report half wavy."""
     k = np.arange(1, 6)
-    heights, phases, wave = 0.25 * random.normal(size=5) / k, random.uniform(0, 2 * math.pi, 5), random.uniform(-3, 3, 3)
+    heights, phases = 0.25 * random.normal(size=5) / k, random.uniform(0, 2 * math.pi, 5)
+    wave = random.uniform(-3, 3, 3)
     x = random.uniform(-2, 2, (40 * count + 400, 2))
     radius = 1 + (heights * np.cos(np.arctan2(x[:, 1], x[:, 0])[:, None] * k + phases)).sum(1)
     x = x[np.hypot(*x.T) < np.maximum(0.2, radius)][:count]
@@ -276,7 +286,8 @@ def wire(count, half, random):
 def table(count, half, random):
     """A flat table of a random outline, and on a part of it boxes or (report) balls."""
     noise, num = 0.004 * random.uniform(), random.integers(3, 6)
-    place, size, which = random.uniform(-0.6, 0.6, (num, 2)), random.uniform(0.1, 0.3, (num, 3)), random.integers(num, size=round(0.3 * count))
+    place, size = random.uniform(-0.6, 0.6, (num, 2)), random.uniform(0.1, 0.3, (num, 3))
+    which = random.integers(num, size=round(0.3 * count))
     x = random.uniform(-1, 1, (len(which), 3))
     if half == "report":
         x, size = x / np.linalg.norm(x, axis=1, keepdims=True), np.repeat(size[:, :1], 3, axis=1)
@@ -287,8 +298,10 @@ def table(count, half, random):
     return np.concatenate([sheet(count - len(which), half, random, noise), things])
 
 
-RANDOM_KINDS = {"fewer than 20 points": (filled, 5, 19), "filled": (filled, 5, 500), "blobs": (blobs, 5, 500), "walk": (walk, 5, 500),
-                "sheet": (sheet, 5, 500), "line": (line, 5, 500), "table with objects": (table, 500, 10_000), "wire": (wire, 5, 500)}  # fmt: skip
+RANDOM_KINDS = {  # with the least and the greatest number of points
+    "fewer than 20 points": (filled, 5, 19), "filled": (filled, 5, 500), "blobs": (blobs, 5, 500), "walk": (walk, 5, 500),
+    "sheet": (sheet, 5, 500), "line": (line, 5, 500), "table with objects": (table, 500, 10_000), "wire": (wire, 5, 500),
+}  # fmt: skip
 
 
 def random_clouds(i, arguments, random):
@@ -298,20 +311,21 @@ def random_clouds(i, arguments, random):
     rotation = bench.random_rotation(random)
     answers = ask(f"random_{i}", points @ rotation.T + random.uniform(-1, 1, 3), None, arguments)
     axes, found = [planes.line_of(axis)[1] for axis in answers["axes"]], symmetries(answers)
-    straight = kind == "line" and arguments.half == "tuning"  # its axis is true
-    is_line = straight and axes and not found and not answers["centers"] and all(abs(a @ rotation[:, 0]) > math.cos(math.radians(3)) for a in axes)
+    is_line = kind == "line" and arguments.half == "tuning" and axes and not found and not answers["centers"]
+    is_line = is_line and all(abs(a @ rotation[:, 0]) > math.cos(math.radians(3)) for a in axes)  # its axis is true
     return [(row, *case) for row in ("all", kind) for case in (
         ("called symmetric", calls(answers) and not is_line), ("a plane", bool(found)), ("an axis", bool(axes)),
         ("a center", bool(answers["centers"])), ("a possible plane", len(answers["planes"]) > len(found)))]  # fmt: skip
 
 
 def composites(i, arguments, random):
-    parts = [model_part(2 * i + k, arguments, random) if arguments.models else solid_part(arguments, random) for k in (0, 1)]
+    part = model_part if arguments.models else solid_part
+    parts = [part(2 * i + k, arguments, random) for k in (0, 1)]
     if None in parts:
         return []
     rotations, size = [bench.random_rotation(random) for _ in parts], random.uniform(0.6, 1)
     side, scales = bench.random_directions(random, 1)[0], (1.0, size)
-    reach = [scale * ((x @ r.T) @ (sign * side)).max() for (x, _), r, scale, sign in zip(parts, rotations, scales, (1, -1))]
+    reach = [s * (x @ r.T @ (sign * side)).max() for (x, _), r, s, sign in zip(parts, rotations, scales, (1, -1))]
     places = (np.zeros(3), (sum(reach) - 0.1) * side)
     clouds, true = [], []
     for (x, rows), rotation, scale, place in zip(parts, rotations, scales, places):
@@ -327,14 +341,16 @@ def composites(i, arguments, random):
     local = [planes.plane_row(p) for p in answers["planes"] if p["kind"] not in ("approximate", "possible")]
     has = [[any(same(t, p) for p in found) for t in rows] for rows in true]
     wrong = [not any(same(t, p) for rows in true for t in rows) for p in local]
-    return ([("all", "planes of parts found", yes) for yes in sum(has, [])] + [("all", "right, of local planes", not no) for no in wrong]
-            + [("all", "with a plane of each part", all(map(any, has))), ("all", "called symmetric", calls(answers)),
-               ("all", "without a wrong plane", not any(wrong))])  # fmt: skip
+    cases = [("planes of parts found", yes) for yes in sum(has, [])]
+    cases += [("right, of local planes", not no) for no in wrong]
+    cases += [("with a plane of each part", all(map(any, has))), ("called symmetric", calls(answers))]
+    return [("all", *case) for case in [*cases, ("without a wrong plane", not any(wrong))]]
 
 
-def solid_part(arguments, random):
+def solid_part(_, arguments, random):
     """(points, planes) of a prism or a cone of 2 to 4 folds, centered and of unit diagonal."""
-    shape = folded_shape("prism" if random.uniform() < 0.6 else "cone", random.integers(2, 5), arguments.half, random)
+    body = "prism" if random.uniform() < 0.6 else "cone"
+    shape = folded_shape(body, random.integers(2, 5), arguments.half, random)
     return unit_part(shape.mesh, shape.planes, arguments, random)
 
 
@@ -377,8 +393,9 @@ def program(arguments):
         rates.setdefault(row, {}).setdefault(column, bench.Rate()).add(yes)
     columns = list(dict.fromkeys(column for row in rates.values() for column in row))
     order = sorted(rates, key=lambda row: (row != "all", row))
-    bench.print_table(f"{arguments.kind}, {arguments.half} half, {len(results)} clouds; 95 % Wilson intervals",
-                      ["", *columns], [[row, *(rates[row].get(c, bench.Rate()).text for c in columns)] for row in order])  # fmt: skip
+    table_rows = [[row, *(rates[row].get(column, bench.Rate()).text for column in columns)] for row in order]
+    title = f"{arguments.kind}, {arguments.half} half, {len(results)} clouds; 95 % Wilson intervals"
+    bench.print_table(title, ["", *columns], table_rows)
     bench.write_json(arguments, {"rates": bench.plain(rates), "left_out": left_out})
 
 

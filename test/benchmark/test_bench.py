@@ -24,13 +24,13 @@ import real_frames
 import references
 import shapes
 
+FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 BOX = "OFF\n8 6 0\n" + "".join(f"{x} {y} {z}\n" for x in (0, 3) for y in (0, 2) for z in (0, 1))
-BOX += "4 0 1 3 2\n4 4 6 7 5\n4 0 4 5 1\n4 2 3 7 6\n4 0 2 6 4\n4 1 5 7 3\n"
+BOX += "".join(f"4 {a} {b} {c} {d}\n" for a, b, c, d in FACES)
 
 
 def box():
-    return bench.make_mesh([[x, y, z] for x in (0, 3) for y in (0, 2) for z in (0, 1)],
-                           [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])  # fmt: skip
+    return bench.make_mesh([[x, y, z] for x in (0, 3) for y in (0, 2) for z in (0, 1)], FACES)
 
 
 def beast(side_leg):
@@ -40,7 +40,7 @@ def beast(side_leg):
     parts += [((0.5, 1.4, 0.4), (1.2, 2.5, 0.8))] * side_leg
     vertices, polygons = [], []
     for low, size in parts:
-        polygons += [[len(vertices) + i for i in p] for p in ([0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3])]
+        polygons += [[len(vertices) + i for i in face] for face in FACES]
         vertices += [np.add(low, np.multiply(size, (x, y, z))) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
     return bench.make_mesh(vertices, polygons)
 
@@ -55,7 +55,8 @@ def run_program(*words):
 class Rates(unittest.TestCase):
     def test_wilson_intervals(self):
         # Newcombe (1998), Table I, method 3.
-        for (count, total), expected in {(81, 263): (0.2553, 0.3662), (15, 148): (0.0624, 0.1605), (0, 20): (0, 0.1611)}.items():
+        published = {(81, 263): (0.2553, 0.3662), (15, 148): (0.0624, 0.1605), (0, 20): (0, 0.1611)}
+        for (count, total), expected in published.items():
             np.testing.assert_allclose(bench.wilson(count, total), expected, atol=5e-5)
         self.assertEqual(bench.wilson(0, 0), (0, 1))
 
@@ -71,7 +72,8 @@ class Clouds(unittest.TestCase):
             points = bench.sample(mesh, 22_000, np.random.default_rng(0), even)
             self.assertLess(mesh.distances((points - mesh.center) / mesh.diagonal).max(), 1e-5)
             self.assertAlmostEqual((points[:, 2] == 1).mean(), 6 / 22, delta=0.01)
-        np.testing.assert_array_equal(bench.sample(mesh, 5, np.random.default_rng(1)), bench.sample(mesh, 5, np.random.default_rng(1)))
+        twice = [bench.sample(mesh, 5, np.random.default_rng(1)) for _ in range(2)]
+        np.testing.assert_array_equal(*twice)
 
     def test_scans_see_the_near_side(self):
         mesh = box()
@@ -95,7 +97,8 @@ class References(unittest.TestCase):
         self.assertEqual(found["kind"], "symmetric")
         normals = np.array([p["coefficients"][:3] for p in found["planes"]])
         np.testing.assert_allclose(np.sort(np.abs(normals).argmax(1)), [0, 1, 2])
-        np.testing.assert_allclose([planes.plane_row(p)[:3] @ found["center"] + p["coefficients"][3] for p in found["planes"]], 0, atol=0.01)
+        at_center = [planes.plane_row(p)[:3] @ found["center"] + p["coefficients"][3] for p in found["planes"]]
+        np.testing.assert_allclose(at_center, 0, atol=0.01)
 
     def test_a_beast_has_one_plane_and_with_a_leg_on_one_side_none(self):
         found = references.find_references(beast(False))
