@@ -295,6 +295,15 @@ def look_along(forward):
     return np.stack([right, np.cross(forward, right), forward], 1)
 
 
+def without_patches(points, share, random, num_patches=10):
+    """The points that are left where patches of neighbors are missing, as occlusion and drop-outs leave them."""
+    size = int(share * len(points) / num_patches)
+    for _ in range(num_patches if size else 0):
+        order = np.argsort(((points - points[random.integers(len(points))]) ** 2).sum(1))
+        points = points[np.sort(order[size:])]
+    return points
+
+
 @dataclasses.dataclass
 class Scan:
     points: np.ndarray  # (H, W, 3) row by row, NaN where the ray misses, in the frame of the cloud
