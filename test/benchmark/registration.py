@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+"""Registration of scans to whole models, or to other scans, from any pose, and of tracks around a guess (Section 5.1).
+
+Right is within 5 degrees and 2 % of the diagonal, up to the rotations that map the model onto itself. With --impostors
+each scan is also brought to the model before its own in the list, where nothing should fit.
+
+registration.py PSB --classes train.cla --fold 1 --every 2 --views 1 --impostors
+"""
+
+import functools
+import itertools
+import time
+
+import numpy as np
+import pcl_symmetry
+from scipy.spatial.transform import Rotation
+
+import bench
+import references
+
+RIGHT_ANGLE, RIGHT_DISTANCE = 5.0, 0.02  # degrees, diagonals
+ACROSS = np.cos(np.radians(3.0))  # a plane that lies across an axis, within the angle at which planes count as found
+MIN_MERIT = 0.4  # a pose of at least this has converged, as in SymmetryRegistration
+SEARCHED = 1.5  # tracks are searched half as far again as the guess is off: the search has to find where to stop
+VOXEL = 0.015  # of ICP and features, diagonals of the target
+
+
+# How far a pose is from the truth, up to symmetry
+
+
+def reflection(plane):
+    """(4, 4) of coefficients a, b, c, d."""
+    normal, matrix = np.array(plane[:3]), np.eye(4)
+    matrix[:3, :3] -= 2 * np.outer(normal, normal)
+    matrix[:3, 3] = -2 * plane[3] * normal
+    return matrix
+
+
+def pose_error(T_model_scan, T_model_scan_true, symmetries):
+    """(degrees, diagonals at the center of the model) of the error that comes closest to being right.
+
+    Two planes of symmetry make a rotation about their common line, and every rotation that a finite set of planes
+    generates is made by two of them. About an axis of revolution any angle is right, and a half turn of it where a plane
+    lies across; about the center of a sphere any rotation is.
+    """
+    error, center = T_model_scan @ np.linalg.inv(T_model_scan_true), np.array(symmetries["center"])
+    reflections = [reflection(plane["coefficients"]) for plane in symmetries["planes"]]
+    found = []  # (degrees, distance)
+    for symmetry in [np.eye(4)] + [a @ b for a, b in itertools.permutations(reflections, 2)]:
+        difference = Rotation.from_matrix(error[:3, :3] @ symmetry[:3, :3].T)
+        found.append((np.degrees(difference.magnitude()), bench.moved(error, center) - bench.moved(symmetry, center)))
+    for axis in symmetries["axes"]:
+        start, direction = np.array(axis["point"]), np.array(axis["direction"])
+        point = start + direction @ (center - start) * direction
+        moved, turned = bench.moved(error, point), error[:3, :3] @ direction
+        found.append((angle_between(turned, direction), moved - point))
+        for plane, mirror in zip(symmetries["planes"], reflections):
+            if abs(direction @ plane["coefficients"][:3]) > ACROSS:
+                found.append((angle_between(turned, -direction), moved - bench.moved(mirror, point)))
+    for sphere in symmetries["centers"]:
+        found.append((0.0, bench.moved(error, np.array(sphere["point"])) - sphere["point"]))
+    errors = [(angle, np.linalg.norm(way) / symmetries["diagonal"]) for angle, way in found]
+    return min(errors, key=lambda e: max(e[0] / RIGHT_ANGLE, e[1] / RIGHT_DISTANCE))
+
+
+def angle_between(a, b):
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b))
+
+
+# Methods: functions of (source, its viewpoint), (target, its viewpoint) and a guess, None or (pose, (angle, distance)),
+# that return T_target_source and whether they say that it fits
+
+
+def by_symmetry(source, target, guess):
+    more = {} if guess is None else {"guess": guess[0], "around": guess[1]}
+    seen = [None if viewpoint is None else tuple(viewpoint) for _, viewpoint in (source, target)]
+    found = pcl_symmetry.register(
+        source[0], target[0], source_viewpoint=seen[0], target_viewpoint=seen[1], threads=1, **more
+    )
+    return found.transform, found.score.merit >= MIN_MERIT
+
+
+def open3d_cloud(points, normals_from=None, voxel=None):
+    import open3d
+
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points.astype(float)))
+    if voxel:
+        cloud = cloud.voxel_down_sample(voxel)
+        cloud.estimate_normals(open3d.geometry.KDTreeSearchParamHybrid(2.5 * voxel, 30))
+        if normals_from is None:  # outwards
+            cloud.orient_normals_towards_camera_location(cloud.get_center())
+            cloud.normals = open3d.utility.Vector3dVector(-np.asarray(cloud.normals))
+        else:
+            cloud.orient_normals_towards_camera_location(normals_from)
+    return cloud
+
+
+def icp(source, target, pose, reach):
+    import open3d
+
+    registration = open3d.pipelines.registration
+    criteria = registration.ICPConvergenceCriteria(max_iteration=50)
+    found = registration.registration_icp(source, target, reach, pose, criteria=criteria)
+    return found.transformation, found.fitness, found.inlier_rmse
+
+
+def by_principal_axes(source, target, guess):
+    """Open3D's ICP on voxels from the principal axes in their four orders of signs, the best on all points."""
+    voxel = VOXEL * np.linalg.norm(np.ptp(target[0], axis=0))
+    coarse = [open3d_cloud(*cloud, voxel) for cloud in (source, target)]
+    frames = []
+    for points, _ in (source, target):
+        axes = np.linalg.eigh(np.cov(points.T.astype(float)))[1]
+        frames.append((points.mean(axis=0, dtype=float), axes * np.sign(np.linalg.det(axes))))
+    tried = []
+    for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
+        pose = np.eye(4)
+        pose[:3, :3] = frames[1][1] * signs @ frames[0][1].T
+        pose[:3, 3] = frames[1][0] - pose[:3, :3] @ frames[0][0]
+        tried.append(icp(*coarse, pose, 10 * voxel))
+    pose = max(tried, key=lambda t: (round(t[1], 2), -t[2]))[0]
+    pose, fitness, _ = icp(open3d_cloud(source[0]), open3d_cloud(target[0]), pose, 5 * voxel)
+    return pose, fitness > 0
+
+
+def by_features(source, target, guess):
+    """Open3D's FPFH and RANSAC on voxels, then ICP on all points."""
+    import open3d
+
+    registration = open3d.pipelines.registration
+    voxel = VOXEL * np.linalg.norm(np.ptp(target[0], axis=0))
+    open3d.utility.random.seed(1)
+    coarse = [open3d_cloud(*cloud, voxel) for cloud in (source, target)]
+    near = open3d.geometry.KDTreeSearchParamHybrid(6 * voxel, 100)
+    features = [registration.compute_fpfh_feature(cloud, near) for cloud in coarse]
+    checks = [
+        registration.CorrespondenceCheckerBasedOnEdgeLength(0.9),
+        registration.CorrespondenceCheckerBasedOnDistance(2.5 * voxel),
+    ]
+    found = registration.registration_ransac_based_on_feature_matching(
+        *coarse, *features, True, 2.5 * voxel, registration.TransformationEstimationPointToPoint(False), 3, checks,
+        registration.RANSACConvergenceCriteria(100_000, 0.999),
+    )  # fmt: skip
+    if found.fitness < 0.25:
+        return found.transformation, False
+    return icp(open3d_cloud(source[0]), open3d_cloud(target[0]), found.transformation, 5 * voxel)[0], True
+
+
+METHODS = {"symmetry": by_symmetry, "principal axes": by_principal_axes, "features": by_features}
+
+
+# Evaluation
+
+
+@functools.lru_cache(maxsize=2)
+def mesh_of(path):
+    return bench.read_mesh(path)
+
+
+def whole_of(path, key, arguments):
+    random = bench.generator(arguments.seed, key, "whole")
+    return bench.sample(mesh_of(path), arguments.points, random).astype("f"), None
+
+
+def scan_of(model, view, arguments):
+    """((points, viewpoint), T_cloud_model)"""
+    random, mesh = bench.generator(arguments.seed, model.key, view), mesh_of(model.path)
+    pose = bench.random_pose(random, mesh)
+    scan = bench.scan(mesh, bench.CUBE_CORNERS[view], random, arguments.points, arguments.noise, pose)
+    return (bench.without_patches(scan.rows, arguments.missing, random).astype("f"), scan.viewpoint), pose
+
+
+def target_of(model, view, arguments):
+    """What a scan is brought to, and the pose of the model in it: the model, or the scan from the next corner."""
+    if arguments.target == "model":
+        return whole_of(model.path, model.key, arguments), np.eye(4)
+    return scan_of(model, view ^ 1, arguments)  # views that differ in one bit are from corners of one edge
+
+
+def guess_for(T_target_source, target, diagonal, random, arguments):
+    """The true pose, turned about the middle of the target and moved, and how far a search around it goes."""
+    angle, distance = np.radians(arguments.around), arguments.around_distance * diagonal
+    middle, (axis, way) = target.mean(axis=0), bench.random_directions(random, 2)
+    off = np.eye(4)
+    off[:3, :3] = Rotation.from_rotvec(angle * axis).as_matrix()
+    off[:3, 3] = middle - off[:3, :3] @ middle + distance * way
+    # The center of a scan is at most a diagonal from the middle that the guess is turned about.
+    reach = SEARCHED * distance + 2 * np.sin(SEARCHED * angle / 2) * diagonal
+    return off @ T_target_source, (SEARCHED * angle, reach)
+
+
+def evaluate(item, arguments):
+    mesh = mesh_of(item.path)
+    symmetries = references.references_of(item, mesh, arguments.references)
+    rows = []
+    for view in range(arguments.views):
+        source, T_source_model = scan_of(item, view, arguments)
+        own = target_of(item, view, arguments)
+        tried = [(own, None)]
+        if arguments.impostors and item.before is not None:
+            tried.append((target_of(item.before, view, arguments), item.before.name))
+        for (target, T_target_model), impostor in tried:
+            true = T_target_model @ np.linalg.inv(T_source_model)
+            guess = None
+            if arguments.around and impostor is None:
+                random = bench.generator(arguments.seed, item.key, view, "guess")
+                guess = guess_for(true, target[0], mesh.diagonal, random, arguments)
+            for method in arguments.methods:
+                start = time.process_time()
+                pose, fits = METHODS[method](source, target, guess)
+                row = {"scan": f"{item.name}_{view}", "impostor": impostor, "method": method, "fits": bool(fits)}
+                row["ms"] = 1000 * (time.process_time() - start)
+                if impostor is None:
+                    T_model_target = np.linalg.inv(T_target_model)
+                    angle, way = pose_error(T_model_target @ pose, np.linalg.inv(T_source_model), symmetries)
+                    right = angle <= RIGHT_ANGLE and way <= RIGHT_DISTANCE
+                    row.update(degrees=float(angle), distance=float(way), right=bool(right))
+                rows.append(row)
+    return rows
+
+
+def summarize(rows):
+    own, others = [r for r in rows if r["impostor"] is None], [r for r in rows if r["impostor"] is not None]
+    right = [row for row in own if row["right"]]
+    median = lambda rows, key: float(np.median([row[key] for row in rows])) if rows else None
+    return {
+        "right": bench.Rate(row["right"] for row in own),
+        "fits": bench.Rate(row["fits"] for row in own),
+        "right_of_those": bench.Rate(row["right"] for row in own if row["fits"]),
+        "impostors": bench.Rate(row["fits"] for row in others),
+        "degrees": median(right, "degrees"),
+        "distance": median(right, "distance"),
+        "median_ms": median(own, "ms"),
+    }
+
+
+def draw(rows, methods):
+    def curves(axes):
+        limits = np.linspace(0, 4, 401)  # of 5 degrees and 2 % alike
+        for method in methods:
+            own = [row for row in rows if row["method"] == method and row["impostor"] is None]
+            errors = np.array([max(row["degrees"] / RIGHT_ANGLE, row["distance"] / RIGHT_DISTANCE) for row in own])
+            counts = (errors[:, None] <= limits).sum(axis=0)
+            low, high = np.transpose([bench.wilson(int(count), len(own)) for count in counts])
+            line = axes.plot(RIGHT_ANGLE * limits, 100 * counts / len(own), label=method)[0]
+            axes.fill_between(RIGHT_ANGLE * limits, 100 * low, 100 * high, alpha=0.2, color=line.get_color(), linewidth=0)
+        axes.axvline(RIGHT_ANGLE, color="black", linewidth=0.8, linestyle=":")
+        axes.set(xlabel="limit, degrees (per cent of the diagonal: 0.4 times it)", ylabel="scans within the limit, %")
+        axes.set(xlim=(0, 20), ylim=(0, 100))
+        axes.legend(loc="lower right")
+
+    return curves
+
+
+def main(arguments):
+    models = bench.list_models(arguments)
+    for model, before in zip(models, [None] + models):
+        model.before = before
+    rows, left_out = bench.run(models, evaluate, arguments)
+    rows = [row for some in rows for row in some]
+    results = {m: summarize([row for row in rows if row["method"] == m]) for m in arguments.methods}
+    number = lambda value, digits: "-" if value is None else f"{value:.{digits}f}"
+    bench.print_table(
+        f"Scans brought to {'whole models' if arguments.target == 'model' else 'scans from the next corner'}",
+        ["", "right", "says that it fits", "right of those", "impostors that fit", "degrees", "diagonals", "ms"],
+        [[m, r["right"].text, r["fits"].text, r["right_of_those"].text, r["impostors"].text, number(r["degrees"], 2),
+          number(r["distance"], 4), number(r["median_ms"], 0)] for m, r in results.items()],
+    )  # fmt: skip
+    print("Degrees, diagonals: median errors of those that are right. ms: median processor time.")
+    json = {m: {k: getattr(v, "json", v) for k, v in r.items()} for m, r in results.items()}
+    bench.write_json(arguments, {"methods": json, "left_out": left_out, "rows": rows})
+    if arguments.figure:
+        bench.save_figure(arguments.figure, draw(rows, results))
+
+
+if __name__ == "__main__":
+    parser = bench.make_parser(__doc__)
+    parser.add_argument("--target", choices=["model", "scan"], default="model", help="what scans are brought to")
+    parser.add_argument("--views", type=int, choices=range(1, 9), default=8, help="scans of a model")
+    parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
+    parser.add_argument("--noise", type=float, default=0.0, help="standard deviation of the depth, in diagonals")
+    parser.add_argument("--missing", type=float, default=0.0, help="share of a scan that is taken away, in ten patches")
+    parser.add_argument("--around", type=float, help="tracks: degrees that a guess is off; symmetry alone uses it")
+    parser.add_argument("--around_distance", type=float, default=0.1, help="and how far, in diagonals")
+    parser.add_argument("--impostors", action="store_true", help="also bring each scan to the model before its own")
+    parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    bench.main(main, parser.parse_args())

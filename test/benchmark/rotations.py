@@ -1,0 +1,294 @@
+#!/usr/bin/env python3
+"""Groups of rotations of solids made by code, of meshes, and of single scans, and the poses that they make equal.
+
+Without a folder: solids of known groups, in random poses (solids.py), and distances of poses under the groups that are
+found. With a folder: groups of clouds of meshes, judged by exact distances on the mesh. With --views: the turns that are
+found in so many scans of each mesh, judged alike. A rotation is right where it maps at most 10 % of the area further off
+the surface than 1 % of the diameter, and at most 1.25 % further than ten times that.
+
+rotations.py --seeds 5 --figure rotations.png
+rotations.py PSB --classes train.cla --fold 1
+rotations.py PSB --classes train.cla --fold 1 --every 4 --views 2
+"""
+
+import dataclasses
+import time
+
+import numpy as np
+import pcl_symmetry
+from scipy.spatial.transform import Rotation
+
+import bench
+import solids
+
+TOLERANCE, MAX_OFF, MAX_FAR, FAR = 0.01, 0.10, 0.0125, 10  # diameters, shares of the area, shares, tolerances
+NUM_ANGLES = 16  # of an axis of revolution, of 1/17 of a turn: no fold divides it
+NUM_POSES = 20  # pairs that distances of poses are tried on
+MIN_CONFIDENCE = 0.5
+
+
+# Judging on the mesh
+
+
+def rotation_about(point, direction, angle):
+    """(4, 4)"""
+    motion = np.eye(4)
+    motion[:3, :3] = Rotation.from_rotvec(angle * np.asarray(direction)).as_matrix()
+    motion[:3, 3] = point - motion[:3, :3] @ point
+    return motion
+
+
+def by_any_angle(point, direction):
+    return [rotation_about(point, direction, 2 * np.pi * k / (NUM_ANGLES + 1)) for k in range(1, NUM_ANGLES + 1)]
+
+
+def motions_of(group):
+    """The rotations that pcl_symmetry.Rotations says the shape has."""
+    return list(group.discrete) + [motion for axis in group.continuous for motion in by_any_angle(*axis)]
+
+
+def excess(mesh, points, motions):
+    """By how much the worst motion fails: the greater of its shares over what is allowed of each; <= 1 is right.
+
+    points: of the mesh, spread by area. Both and the motions in the frame of the mesh.
+    """
+    worst = 0.0
+    for motion in motions:
+        images = (bench.moved(motion, points) - mesh.center) / mesh.diagonal
+        away = mesh.distances(images) * mesh.diagonal / (TOLERANCE * mesh.diameter)
+        worst = max(worst, (away > 1).mean() / MAX_OFF, (away > FAR).mean() / MAX_FAR)
+    return float(worst)
+
+
+def in_frame_of(pose, motion):
+    """A motion of the moved frame as one of the frame before."""
+    return np.linalg.inv(pose) @ motion @ pose
+
+
+# Poses that look alike
+
+
+def surface_distance(estimate, truth, points, symmetries):
+    """The maximum distance of the surface under the symmetries (MSSD), by its definition."""
+    where = bench.moved(estimate, points)
+    return min(np.linalg.norm(where - bench.moved(truth @ symmetry, points), axis=1).max() for symmetry in symmetries)
+
+
+def judge_poses(group, points, random):
+    """How the group's distances of poses agree with the definition, and whether tracks go on without a jump.
+
+    Returns the worst errors: of mssd and of an equivalent pose, in diameters; and the degrees by which the pose that
+    goes on with a track is farther from the last one than the object was turned.
+    """
+    size = bench.diameter(points)
+    symmetries = [np.eye(4), *group.discrete]
+    for point, direction in group.continuous[:1]:
+        around = [rotation_about(point, direction, angle) for angle in np.linspace(0, 2 * np.pi, 720, endpoint=False)]
+        symmetries = [a @ b for a in around for b in symmetries]
+    mssd_error = equal_error = jump = 0.0
+    for _ in range(NUM_POSES):
+        truth, motion = np.eye(4), np.eye(4)
+        truth[:3, :3] = bench.random_rotation(random)
+        truth[:3, 3] = random.normal(size=3)
+        angle = random.uniform(0, 0.4)
+        motion[:3, :3] = Rotation.from_rotvec(angle * bench.random_directions(random, 1)[0]).as_matrix()
+        symmetry = symmetries[random.integers(len(symmetries))]
+        estimate = truth @ motion @ symmetry  # turned a little, and then as the symmetry has it
+        if group.name != "SO3":
+            exact = surface_distance(estimate, truth, points, symmetries)
+            mssd_error = max(mssd_error, abs(group.mssd(estimate, truth, points) - exact) / size)
+        equal_error = max(equal_error, group.mssd(truth @ symmetry, truth, points) / size)
+        equal_error = max(equal_error, np.abs(group.canonical(truth @ symmetry) - group.canonical(truth)).max())
+        next_pose = group.closest_to(estimate, truth)
+        turned = Rotation.from_matrix(next_pose[:3, :3] @ truth[:3, :3].T).magnitude()
+        jump = max(jump, np.degrees(turned - angle))
+    return {"mssd": float(mssd_error), "equal": float(equal_error), "jump": float(jump)}
+
+
+# Solids
+
+
+@dataclasses.dataclass
+class Trial:
+    solid: solids.Solid
+    count: int
+    noise: float
+    seed: int
+
+    @property
+    def name(self):
+        return f"{self.solid.name}, {self.count} points, noise {self.noise:g}, seed {self.seed}"
+
+
+def find_group(trial, arguments):
+    solid = trial.solid
+    mesh = bench.make_mesh(solid.vertices, solid.faces)
+    random = bench.generator(arguments.seed, trial.name)
+    pose = np.eye(4)
+    pose[:3, :3] = bench.random_rotation(random)
+    points = bench.moved(pose, bench.sample(mesh, trial.count, random))
+    points = (points + trial.noise * mesh.diameter * random.normal(size=points.shape)).astype("f")
+    start = time.process_time()
+    group = pcl_symmetry.rotations(points, seed=trial.seed, threads=1)
+    milliseconds = 1000 * (time.process_time() - start)
+    on_mesh = bench.sample(mesh, 2000, random)
+    wrong = [excess(mesh, on_mesh, [in_frame_of(pose, motion)]) > 1 for motion in motions_of(group)]
+    row = {"solid": solid.name, "kind": solid.kind, "group": solid.group, "points": trial.count, "noise": trial.noise}
+    row.update(seed=trial.seed, found=group.name, confidence=group.confidence, ms=milliseconds)
+    row.update(rotations=len(wrong), false=int(sum(wrong)))
+    if trial.seed == 1 and trial.noise == 0 and trial.count == arguments.counts[0] and group.name == solid.group:
+        row["poses"] = judge_poses(group, points[:: max(1, len(points) // 200)], random)
+    return row
+
+
+def measure_solids(arguments):
+    trials = [
+        Trial(solid, count, noise, seed)
+        for solid in solids.solids(arguments.kind)
+        for count in arguments.counts
+        for noise in arguments.noise
+        for seed in range(1, arguments.seeds + 1)
+    ]
+    if not trials:
+        raise bench.BadInput(f"--kind {arguments.kind}: there is no such kind of solids")
+    rows, left_out = bench.run(trials, find_group, arguments)
+    cells = {}
+    for row in rows:
+        cells.setdefault((row["solid"], row["noise"], row["seed"]), set()).add(row["found"])
+    is_right = lambda row: row["found"] == row["group"]
+    rates = {"all": bench.Rate(map(is_right, rows))}
+    for count in arguments.counts:
+        for noise in arguments.noise:
+            some = [row for row in rows if (row["points"], row["noise"]) == (count, noise)]
+            rates[f"{count} points, noise of {100 * noise:g} %"] = bench.Rate(map(is_right, some))
+    rates["the same group for all numbers of points"] = bench.Rate(len(found) == 1 for found in cells.values())
+    num_rotations, num_false = sum(row["rotations"] for row in rows), sum(row["false"] for row in rows)
+    rates["false rotations, of all that are found"] = bench.Rate(k < num_false for k in range(num_rotations))
+    rates["spheres that are none"] = bench.Rate(row["found"] == "SO3" for row in rows if row["group"] != "SO3")
+    bench.print_table("Groups of solids made by code", ["", "rate"], [[k, rate.text] for k, rate in rates.items()])
+    wrong = [[r["solid"], r["group"], r["found"], r["points"], r["noise"], r["seed"]] for r in rows if not is_right(r)]
+    if wrong:
+        bench.print_table("Wrong answers", ["solid", "group", "found", "points", "noise", "seed"], wrong)
+    poses = {}
+    for row in rows:
+        if "poses" in row:
+            poses.setdefault(row["group"], []).append(row["poses"])
+    worst = {group: {key: max(p[key] for p in some) for key in some[0]} for group, some in sorted(poses.items())}
+    bench.print_table(
+        "Distances of poses: worst errors, diameters; degrees that a track turns farther than the object",
+        ["group", "surface distance", "poses that are equal", "track"],
+        [[group, *(f"{w[key]:.1e}" for key in ("mssd", "equal", "jump"))] for group, w in worst.items()],
+    )
+    json = {"rates": {k: rate.json for k, rate in rates.items()}, "poses": worst}
+    bench.write_json(arguments, {**json, "left_out": left_out, "rows": rows})
+    if arguments.figure:
+        bench.save_figure(arguments.figure, draw_solids(rows, arguments))
+
+
+def draw_solids(rows, arguments):
+    def bars(axes):
+        kinds = list(dict.fromkeys(row["kind"] for row in rows))
+        for k, noise in enumerate(arguments.noise):
+            rates = [bench.Rate(r["found"] == r["group"] for r in rows if (r["kind"], r["noise"]) == (kind, noise)) for kind in kinds]
+            middle = np.array([100 * rate.count / max(1, rate.total) for rate in rates])
+            ends = 100 * np.array([bench.wilson(rate.count, rate.total) for rate in rates]).T
+            places = np.arange(len(kinds)) + 0.15 * (k - 0.5 * (len(arguments.noise) - 1))
+            axes.errorbar(middle, places, xerr=np.abs(ends - middle), fmt="o", label=f"noise of {100 * noise:g} %")
+        axes.set_yticks(range(len(kinds)), kinds)
+        axes.set(xlabel="group is right, % (95 % intervals)", xlim=(0, 101))
+        axes.invert_yaxis()
+        axes.legend(loc="lower left")
+
+    return bars
+
+
+# Meshes
+
+
+def judge_mesh(model, arguments):
+    """Groups of clouds of the whole mesh."""
+    mesh = bench.read_mesh(model.path)
+    random = bench.generator(arguments.seed, model.key)
+    clouds = {count: bench.sample(mesh, count, random).astype("f") for count in arguments.counts}
+    found = {count: pcl_symmetry.rotations(points, threads=1) for count, points in clouds.items()}
+    group = found[10_000 if 10_000 in found else arguments.counts[0]]
+    row = {"mesh": model.name, "group": group.name, "confidence": group.confidence}
+    motions = motions_of(group)
+    row["excess"] = excess(mesh, bench.sample(mesh, 5000, random), motions) if motions else None
+    return {**row, "names": [g.name for g in found.values()]}
+
+
+def judge_scans(model, arguments):
+    """Turns that are found in scans from random sides."""
+    mesh = bench.read_mesh(model.path)
+    points = bench.sample(mesh, 5000, bench.generator(arguments.seed, model.key))
+    rows = []
+    for view in range(arguments.views):
+        random = bench.generator(arguments.seed, model.key, view)
+        pose = bench.random_pose(random, mesh)
+        scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=pose)
+        found = pcl_symmetry.planes(scan.rows.astype("f"), viewpoint=tuple(scan.viewpoint), threads=1)
+        turns = [(turn.point, turn.direction, turn.fold, turn.confidence) for turn in found.turns]
+        turns += [(axis.point, axis.direction, 0, axis.confidence) for axis in found.axes]
+        for point, direction, fold, confidence in turns:
+            angles = 2 * np.pi * np.arange(1, fold // 2 + 1) / max(fold, 1)
+            motions = [rotation_about(point, direction, a) for a in angles] or by_any_angle(point, direction)
+            worst = excess(mesh, points, [in_frame_of(pose, motion) for motion in motions])
+            rows.append({"mesh": model.name, "view": view, "fold": fold, "confidence": confidence, "excess": worst})
+    return rows
+
+
+def measure_meshes(arguments):
+    scans = arguments.views > 0
+    results, left_out = bench.run(bench.list_models(arguments), judge_scans if scans else judge_mesh, arguments)
+    rows = [row for some in results for row in some] if scans else results
+    judged = [row for row in rows if row["excess"] is not None]
+    confidence, right = [r["confidence"] for r in judged], [r["excess"] <= 1 for r in judged]
+    reliability = bench.calibration(confidence, right)
+    rates = {}
+    for low, high in ((0.9, 1.01), (0.5, 0.9), (0.0, 0.5)):
+        within = [r for c, r in zip(confidence, right) if low <= c < high]
+        rates[f"right, confidence of {low:g} to {min(1, high):g}"] = bench.Rate(within)
+    rates[f"right, confidence of {MIN_CONFIDENCE:g} and more"] = bench.Rate(
+        r for c, r in zip(confidence, right) if c >= MIN_CONFIDENCE
+    )
+    if not scans:
+        same = [len(set(row["names"])) == 1 for row in rows]
+        some = [s for s, row in zip(same, rows) if set(row["names"]) != {"C1"}]
+        rates["the same group for all numbers of points"] = bench.Rate(same)
+        rates["the same, of meshes with a rotation"] = bench.Rate(some)
+    what = "Turns of scans" if scans else "Groups of meshes"
+    bench.print_table(what, ["", "rate"], [[k, rate.text] for k, rate in rates.items()])
+    print("{answers} answers: calibration error {error:.3f} ({by_chance:.3f} by chance), Brier {brier:.3f}".format(**reliability))
+    json = {"rates": {k: rate.json for k, rate in rates.items()}, "reliability": reliability}
+    bench.write_json(arguments, {**json, "left_out": left_out, "rows": rows})
+    if arguments.figure:
+        bench.save_figure(arguments.figure, draw_reliability(reliability["bins"]))
+
+
+def draw_reliability(bins):
+    def points(axes):
+        bins_with = [b for b in bins if b["right"]["total"]]
+        middle = np.array([b["low"] + 0.05 for b in bins_with])
+        rate, low, high = (np.array([b["right"][key] for b in bins_with]) for key in ("rate", "low", "high"))
+        axes.plot([0, 1], [0, 1], color="black", linewidth=0.8, linestyle=":")
+        axes.errorbar(middle, rate, yerr=[rate - low, high - rate], fmt="o")
+        for x, b in zip(middle, bins_with):
+            axes.annotate(f"of {b['right']['total']}", (x, 0.02), ha="center", fontsize="small")
+        axes.set(xlabel="confidence", ylabel="right (95 % intervals)", xlim=(0, 1), ylim=(0, 1.02))
+
+    return points
+
+
+def main(arguments):
+    (measure_meshes if arguments.models else measure_solids)(arguments)
+
+
+if __name__ == "__main__":
+    parser = bench.make_parser(__doc__)
+    parser.add_argument("--counts", type=int, nargs="+", default=[2000, 10_000, 50_000], help="points of the clouds")
+    parser.add_argument("--noise", type=float, nargs="+", default=[0.0, 0.003], help="of solids, in diameters")
+    parser.add_argument("--seeds", type=int, default=1, help="samplings and poses of each solid")
+    parser.add_argument("--kind", help="solids of this kind alone")
+    parser.add_argument("--views", type=int, default=0, help="judge the turns that are found in so many scans of each mesh")
+    bench.main(main, parser.parse_args())
