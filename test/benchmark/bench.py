@@ -468,6 +468,16 @@ def read_answers(folder, name):
         raise BadInput(f"{base}: is no list of planes") from None
 
 
+def read_answer(folder, name, **shapes):
+    """Arrays of the given shapes in NAME.json of another program, by their fields; None where there is no such file."""
+    path = pathlib.Path(folder) / f"{name}.json"
+    try:
+        content = json.loads(path.read_text()) if path.exists() else None
+        return content and {field: np.array(content[field], float).reshape(shape) for field, shape in shapes.items()}
+    except (ValueError, KeyError, TypeError, OSError):
+        raise BadInput(f"{path}: must have {' and '.join(shapes)}") from None
+
+
 # Rates, calibration and tables
 
 
