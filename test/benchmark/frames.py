@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Canonical frames of scans against those of the whole models (Section 5.1 of the paper, Figure 12).
 
-A model is scanned from the corners of a cube. The frame of each scan is compared with that which the same method finds for
-the whole model, and with the axes that the model was made in. Right is within 5 degrees; centers are compared in diagonals.
+A model is scanned from the corners of a cube. The frame of each scan is compared with that which the same method finds
+for the whole model, and with the axes that the model was made in. Right is within 5 degrees.
 
 frames.py PSB --classes train.cla --fold 1 --every 8 --views 4 --figure misalignment.png
 """
@@ -47,13 +47,8 @@ class Frame:
     revolution: int = -1  # column that is an axis of revolution; -1: none, 3: all are
 
     def moved(self, motion):
-        rotation = motion[:3, :3]
-        return Frame(
-            bench.moved(motion, self.center),
-            rotation @ self.axes,
-            [rotation @ axes for axes in self.equivalent],
-            self.revolution,
-        )
+        axes, *equivalent = [motion[:3, :3] @ axes for axes in [self.axes, *self.equivalent]]
+        return Frame(bench.moved(motion, self.center), axes, equivalent, self.revolution)
 
 
 def angle_of_axes(axes, others, revolution=None):
@@ -65,7 +60,7 @@ def angle_of_frames(axes, whole):
     """Degrees between axes as they stand and those of a frame or one that is equally good."""
     if whole.revolution == 3:
         return 0.0
-    about = lambda other: None if whole.revolution < 0 else other[:, whole.revolution]
+    about = lambda other: other[:, whole.revolution] if whole.revolution >= 0 else None
     return min(least_angle(axes @ other.T, about(other)) for other in whole.equivalent)
 
 
@@ -73,13 +68,8 @@ def own_revolution(whole):
     """The axis of revolution of a frame where it is one of the axes that the model was made in, (3,)."""
     if whole.revolution not in (0, 1, 2):
         return None
-    own = np.eye(3)[np.abs(whole.axes[:, whole.revolution]).argmax()]
-    return own if least_angle(rotation_between(own, whole.axes[:, whole.revolution])) < RIGHT_ANGLE else None
-
-
-def rotation_between(a, b):
-    b = b if a @ b >= 0 else -b
-    return Rotation.align_vectors(b[None], a[None])[0].as_matrix()
+    cosines = np.abs(whole.axes[:, whole.revolution])
+    return np.eye(3)[cosines.argmax()] if cosines.max() > np.cos(np.radians(RIGHT_ANGLE)) else None
 
 
 class Ties:
@@ -119,25 +109,12 @@ def by_symmetry(points, viewpoint, seed):
     return Frame(found.center, found.axes, list(found.equivalent[:, :3, :3].swapaxes(1, 2)), found.revolution_axis)
 
 
-def without_free_space(points, viewpoint, seed):
-    """Takes scans for whole models."""
-    return by_symmetry(points, None, seed)
-
-
 def unsigned(center, axes):
     return Frame(center, axes, [axes @ signs for signs in HALF_TURNS])
 
 
-def first_maximum(points, viewpoint, seed):
-    return unsigned(*PublishedFrame(points, "sampled", seed).frame(refined=False))
-
-
-def exact_map(points, viewpoint, seed):
-    return unsigned(*PublishedFrame(points, seed=seed).frame(refined=False))
-
-
-def exact_map_refined(points, viewpoint, seed):
-    return unsigned(*PublishedFrame(points, seed=seed).frame())
+def as_published(points, seed, method, refined):
+    return unsigned(*PublishedFrame(points, method, seed).frame(refined))
 
 
 def by_mass(points, viewpoint, seed):
@@ -158,10 +135,10 @@ def by_pushed_mass(points, viewpoint, seed):
 
 METHODS = {
     "symmetry": by_symmetry,
-    "no free space": without_free_space,
-    "first maximum": first_maximum,
-    "exact map": exact_map,
-    "exact map, ISP": exact_map_refined,
+    "no free space": lambda points, viewpoint, seed: by_symmetry(points, None, seed),
+    "first maximum": lambda points, viewpoint, seed: as_published(points, seed, "sampled", False),
+    "exact map": lambda points, viewpoint, seed: as_published(points, seed, "convolution", False),
+    "exact map, ISP": lambda points, viewpoint, seed: as_published(points, seed, "convolution", True),
     "mass": by_mass,
     "pushed mass": by_pushed_mass,
 }
@@ -171,17 +148,17 @@ METHODS = {
 
 
 def clouds_of(mesh, model, arguments):
-    """(view, points, viewpoint, T_cloud_model) of the whole model, view -1, and of its scans, in random poses."""
+    """(view, points, scan or None, T_cloud_model) of the whole model, view -1, and of its scans, in random poses."""
     for view in range(-1, arguments.views):
         random = bench.generator(arguments.seed, model.key, view)
-        pose, viewpoint = bench.random_pose(random, mesh), None
+        pose, scan = bench.random_pose(random, mesh), None
         if view < 0:
             noise = arguments.noise * mesh.diagonal * random.normal(size=(arguments.points, 3))
             points = bench.moved(pose, bench.sample(mesh, arguments.points, random)) + noise
         else:
             scan = bench.scan(mesh, bench.CUBE_CORNERS[view], random, arguments.points, arguments.noise, pose)
-            points, viewpoint = scan.rows, scan.viewpoint
-        yield view, bench.without_patches(points, arguments.missing, random).astype("f"), viewpoint, pose
+            points = scan.rows
+        yield view, bench.without_patches(points, arguments.missing, random).astype("f"), scan, pose
 
 
 def judge(found, whole, diagonal, ties):
@@ -196,19 +173,34 @@ def judge(found, whole, diagonal, ties):
     }
 
 
+def judged_answer(folder, name):
+    """The frame that another program found: `center` and `axes`, as `pcl_symmetry_align -json` writes them."""
+    answer = bench.read_answer(folder, name, center=3, axes=(3, 3))
+    if answer is None:
+        raise bench.BadInput(f"{folder}/{name}.json: is missing")
+    return unsigned(answer["center"], answer["axes"].T)
+
+
 def evaluate(model, arguments):
     mesh = bench.read_mesh(model.path)
     ties = Ties(references.references_of(model, mesh, arguments.references))
-    rows, wholes = [], {}
-    for view, points, viewpoint, pose in clouds_of(mesh, model, arguments):
+    rows, wholes, truths = [], {}, {}
+    for view, points, scan, pose in clouds_of(mesh, model, arguments):
+        name = f"{model.name}_{'whole' if view < 0 else view}"
+        if arguments.export:
+            bench.write_cloud(f"{arguments.export}/{name}.pcd", points, scan and scan.T_cloud_sensor)
+            truths[name] = {"model": model.name, "T_cloud_model": pose.tolist(), "diagonal": mesh.diagonal}
         for method in arguments.methods:
             start = time.process_time()
-            found = METHODS[method](points, viewpoint, arguments.seed + 1).moved(np.linalg.inv(pose))
+            if method == "judged":
+                found = judged_answer(arguments.judge, name)
+            else:
+                found = METHODS[method](points, scan and scan.viewpoint, arguments.seed + 1)
             milliseconds = 1000 * (time.process_time() - start)
-            whole = wholes.setdefault(method, found)
-            errors = judge(found, whole, mesh.diagonal, ties)
+            found = found.moved(np.linalg.inv(pose))
+            errors = judge(found, wholes.setdefault(method, found), mesh.diagonal, ties)
             rows.append({"model": model.name, "view": view, "method": method, **errors, "ms": milliseconds})
-    return rows
+    return {"rows": rows, "truths": truths}
 
 
 def summarize(rows, method):
@@ -229,7 +221,6 @@ def summarize(rows, method):
         "own_scans": rate(scans, "own"),
         "own_wholes": rate(wholes, "own"),
         "own_wholes_turned": rate(wholes, "own_turned"),
-        "own_scans_turned": rate(scans, "own_turned"),
         "like_for_like": rate(scans, "tied"),
         "frames": rate(scans, "frame"),
         "median_ms": float(np.median([row["ms"] for row in scans])),
@@ -254,8 +245,9 @@ def draw(rows, methods, key, scale, bins, label):
 
 
 def main(arguments):
-    rows, left_out = bench.run(bench.list_models(arguments), evaluate, arguments)
-    rows = [row for some in rows for row in some]
+    found, left_out = bench.run(bench.list_models(arguments), evaluate, arguments)
+    rows = [row for each in found for row in each["rows"]]
+    bench.write_truth(arguments, {name: truth for each in found for name, truth in each["truths"].items()})
     results = {method: summarize(rows, method) for method in arguments.methods}
     num_models, num_scans = (len({r["model"] for r in rows}), sum(r["view"] >= 0 for r in rows) // len(results))
     texts = ("closer_models", "closer_scans", "ratio", "own_scans", "own_wholes", "own_wholes_turned", "like_for_like")
@@ -290,5 +282,5 @@ if __name__ == "__main__":
     parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS), help="mass is always among them")
     asked = parser.parse_args()
-    asked.methods = [method for method in METHODS if method in {*asked.methods, "mass"}]
+    asked.methods = [m for m in METHODS if m in {*asked.methods, "mass"}] if not asked.judge else ["judged", "mass"]
     bench.main(main, asked)

@@ -17,6 +17,7 @@ from scipy.spatial.transform import Rotation
 
 import bench
 import references
+from frames import by_mass
 
 RIGHT_ANGLE, RIGHT_DISTANCE = 5.0, 0.02  # degrees, diagonals
 ACROSS = np.cos(np.radians(3.0))  # a plane that lies across an axis, within the angle at which planes count as found
@@ -74,24 +75,21 @@ def angle_between(a, b):
 def by_symmetry(source, target, guess):
     more = {} if guess is None else {"guess": guess[0], "around": guess[1]}
     seen = [None if viewpoint is None else tuple(viewpoint) for _, viewpoint in (source, target)]
-    found = pcl_symmetry.register(
-        source[0], target[0], source_viewpoint=seen[0], target_viewpoint=seen[1], threads=1, **more
-    )
+    more.update(source_viewpoint=seen[0], target_viewpoint=seen[1], threads=1)
+    found = pcl_symmetry.register(source[0], target[0], **more)
     return found.transform, found.score.merit >= MIN_MERIT
 
 
-def open3d_cloud(points, normals_from=None, voxel=None):
+def open3d_cloud(points, viewpoint=None, voxel=None):
     import open3d
 
     cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points.astype(float)))
     if voxel:
         cloud = cloud.voxel_down_sample(voxel)
         cloud.estimate_normals(open3d.geometry.KDTreeSearchParamHybrid(2.5 * voxel, 30))
-        if normals_from is None:  # outwards
-            cloud.orient_normals_towards_camera_location(cloud.get_center())
+        cloud.orient_normals_towards_camera_location(cloud.get_center() if viewpoint is None else viewpoint)
+        if viewpoint is None:  # outwards
             cloud.normals = open3d.utility.Vector3dVector(-np.asarray(cloud.normals))
-        else:
-            cloud.orient_normals_towards_camera_location(normals_from)
     return cloud
 
 
@@ -108,15 +106,12 @@ def by_principal_axes(source, target, guess):
     """Open3D's ICP on voxels from the principal axes in their four orders of signs, the best on all points."""
     voxel = VOXEL * np.linalg.norm(np.ptp(target[0], axis=0))
     coarse = [open3d_cloud(*cloud, voxel) for cloud in (source, target)]
-    frames = []
-    for points, _ in (source, target):
-        axes = np.linalg.eigh(np.cov(points.T.astype(float)))[1]
-        frames.append((points.mean(axis=0, dtype=float), axes * np.sign(np.linalg.det(axes))))
+    frames = [by_mass(points, None, 0) for points, _ in (source, target)]
     tried = []
-    for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
+    for axes in frames[1].equivalent:
         pose = np.eye(4)
-        pose[:3, :3] = frames[1][1] * signs @ frames[0][1].T
-        pose[:3, 3] = frames[1][0] - pose[:3, :3] @ frames[0][0]
+        pose[:3, :3] = axes @ frames[0].axes.T
+        pose[:3, 3] = frames[1].center - pose[:3, :3] @ frames[0].center
         tried.append(icp(*coarse, pose, 10 * voxel))
     pose = max(tried, key=lambda t: (round(t[1], 2), -t[2]))[0]
     pose, fitness, _ = icp(open3d_cloud(source[0]), open3d_cloud(target[0]), pose, 5 * voxel)
@@ -133,14 +128,11 @@ def by_features(source, target, guess):
     coarse = [open3d_cloud(*cloud, voxel) for cloud in (source, target)]
     near = open3d.geometry.KDTreeSearchParamHybrid(6 * voxel, 100)
     features = [registration.compute_fpfh_feature(cloud, near) for cloud in coarse]
-    checks = [
-        registration.CorrespondenceCheckerBasedOnEdgeLength(0.9),
-        registration.CorrespondenceCheckerBasedOnDistance(2.5 * voxel),
-    ]
     found = registration.registration_ransac_based_on_feature_matching(
-        *coarse, *features, True, 2.5 * voxel, registration.TransformationEstimationPointToPoint(False), 3, checks,
-        registration.RANSACConvergenceCriteria(100_000, 0.999),
-    )  # fmt: skip
+        *coarse, *features, True, 2.5 * voxel, registration.TransformationEstimationPointToPoint(False), 3,
+        [registration.CorrespondenceCheckerBasedOnEdgeLength(0.9),
+         registration.CorrespondenceCheckerBasedOnDistance(2.5 * voxel)],
+        registration.RANSACConvergenceCriteria(100_000, 0.999))  # fmt: skip
     if found.fitness < 0.25:
         return found.transformation, False
     return icp(open3d_cloud(source[0]), open3d_cloud(target[0]), found.transformation, 5 * voxel)[0], True
@@ -157,11 +149,6 @@ def mesh_of(path):
     return bench.read_mesh(path)
 
 
-def whole_of(path, key, arguments):
-    random = bench.generator(arguments.seed, key, "whole")
-    return bench.sample(mesh_of(path), arguments.points, random).astype("f"), None
-
-
 def scan_of(model, view, arguments):
     """((points, viewpoint), T_cloud_model)"""
     random, mesh = bench.generator(arguments.seed, model.key, view), mesh_of(model.path)
@@ -173,7 +160,8 @@ def scan_of(model, view, arguments):
 def target_of(model, view, arguments):
     """What a scan is brought to, and the pose of the model in it: the model, or the scan from the next corner."""
     if arguments.target == "model":
-        return whole_of(model.path, model.key, arguments), np.eye(4)
+        random = bench.generator(arguments.seed, model.key, "whole")
+        return (bench.sample(mesh_of(model.path), arguments.points, random).astype("f"), None), np.eye(4)
     return scan_of(model, view ^ 1, arguments)  # views that differ in one bit are from corners of one edge
 
 
@@ -189,25 +177,40 @@ def guess_for(T_target_source, target, diagonal, random, arguments):
     return off @ T_target_source, (SEARCHED * angle, reach)
 
 
+def judged_answer(folder, name):
+    """What another program found, as `pcl_symmetry_align -json` writes it: `transform` and `converged`."""
+    answer = bench.read_answer(folder, name, transform=(4, 4), converged=())
+    return (answer["transform"], bool(answer["converged"])) if answer else (np.eye(4), False)
+
+
 def evaluate(item, arguments):
     mesh = mesh_of(item.path)
     symmetries = references.references_of(item, mesh, arguments.references)
-    rows = []
+    rows, truths = [], {}
     for view in range(arguments.views):
         source, T_source_model = scan_of(item, view, arguments)
-        own = target_of(item, view, arguments)
-        tried = [(own, None)]
+        tried = [(target_of(item, view, arguments), None)]
         if arguments.impostors and item.before is not None:
             tried.append((target_of(item.before, view, arguments), item.before.name))
         for (target, T_target_model), impostor in tried:
             true = T_target_model @ np.linalg.inv(T_source_model)
+            name = f"{item.name}_{view}" + f"_to_{impostor}" * (impostor is not None)
+            if arguments.export:
+                for cloud, end in ((source, "source"), (target, "target")):
+                    sensor = np.eye(4)
+                    sensor[:3, 3] = np.zeros(3) if cloud[1] is None else cloud[1]
+                    bench.write_cloud(f"{arguments.export}/{name}_{end}.pcd", cloud[0], sensor)
+                truths[name] = {"impostor": impostor, "T_target_source": None if impostor else true.tolist()}
             guess = None
             if arguments.around and impostor is None:
                 random = bench.generator(arguments.seed, item.key, view, "guess")
                 guess = guess_for(true, target[0], mesh.diagonal, random, arguments)
             for method in arguments.methods:
                 start = time.process_time()
-                pose, fits = METHODS[method](source, target, guess)
+                if method == "judged":
+                    pose, fits = judged_answer(arguments.judge, name)
+                else:
+                    pose, fits = METHODS[method](source, target, guess)
                 row = {"scan": f"{item.name}_{view}", "impostor": impostor, "method": method, "fits": bool(fits)}
                 row["ms"] = 1000 * (time.process_time() - start)
                 if impostor is None:
@@ -216,7 +219,7 @@ def evaluate(item, arguments):
                     right = angle <= RIGHT_ANGLE and way <= RIGHT_DISTANCE
                     row.update(degrees=float(angle), distance=float(way), right=bool(right))
                 rows.append(row)
-    return rows
+    return {"rows": rows, "truths": truths}
 
 
 def summarize(rows):
@@ -256,8 +259,9 @@ def main(arguments):
     models = bench.list_models(arguments)
     for model, before in zip(models, [None] + models):
         model.before = before
-    rows, left_out = bench.run(models, evaluate, arguments)
-    rows = [row for some in rows for row in some]
+    found, left_out = bench.run(models, evaluate, arguments)
+    rows = [row for each in found for row in each["rows"]]
+    bench.write_truth(arguments, {name: truth for each in found for name, truth in each["truths"].items()})
     results = {m: summarize([row for row in rows if row["method"] == m]) for m in arguments.methods}
     number = lambda value, digits: "-" if value is None else f"{value:.{digits}f}"
     bench.print_table(
@@ -285,4 +289,6 @@ if __name__ == "__main__":
     parser.add_argument("--impostors", action="store_true", help="also bring each scan to the model before its own")
     parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
-    bench.main(main, parser.parse_args())
+    asked = parser.parse_args()
+    asked.methods = ["judged"] if asked.judge else asked.methods
+    bench.main(main, asked)

@@ -228,13 +228,13 @@ def judge_scans(model, arguments):
         pose = bench.random_pose(random, mesh)
         scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=pose)
         found = pcl_symmetry.planes(scan.rows.astype("f"), viewpoint=tuple(scan.viewpoint), threads=1)
-        turns = [(turn.point, turn.direction, turn.fold, turn.confidence) for turn in found.turns]
-        turns += [(axis.point, axis.direction, 0, axis.confidence) for axis in found.axes]
-        for point, direction, fold, confidence in turns:
-            angles = 2 * np.pi * np.arange(1, fold // 2 + 1) / max(fold, 1)
-            motions = [rotation_about(point, direction, a) for a in angles] or by_any_angle(point, direction)
+        for turn in found.turns:
+            angles = 2 * np.pi * np.arange(1, turn.fold // 2 + 1) / max(turn.fold, 1)  # none: by any angle
+            motions = [rotation_about(turn.point, turn.direction, a) for a in angles]
+            motions = motions or by_any_angle(turn.point, turn.direction)
             worst = excess(mesh, points, [in_frame_of(pose, motion) for motion in motions])
-            rows.append({"mesh": model.name, "view": view, "fold": fold, "confidence": confidence, "excess": worst})
+            row = {"mesh": model.name, "view": view, "fold": turn.fold}
+            rows.append({**row, "confidence": turn.confidence, "excess": worst})
     return rows
 
 
