@@ -12,6 +12,7 @@ rotations.py PSB --classes train.cla --fold 1 --every 4 --views 2
 """
 
 import dataclasses
+import itertools
 import time
 
 import numpy as np
@@ -24,7 +25,17 @@ import solids
 TOLERANCE, MAX_OFF, MAX_FAR, FAR = 0.01, 0.10, 0.0125, 10  # diameters, shares of the area, shares, tolerances
 NUM_ANGLES = 16  # of an axis of revolution, of 1/17 of a turn: no fold divides it
 NUM_POSES = 20  # pairs that distances of poses are tried on
-MIN_CONFIDENCE = 0.5
+
+
+def draw_rates(axes, rates):
+    """Rates with their intervals, one below the other."""
+    rates = {name: rate for name, rate in rates.items() if rate.total}
+    middle = np.array([100 * rate.count / rate.total for rate in rates.values()])
+    ends = 100 * np.array([bench.wilson(rate.count, rate.total) for rate in rates.values()]).T
+    axes.errorbar(middle, range(len(rates)), xerr=np.abs(ends - middle), fmt="o")
+    axes.set_yticks(range(len(rates)), [f"{name} ({rate.total})" for name, rate in rates.items()])
+    axes.set(xlabel="right, % (95 % intervals)", xlim=(0, 101))
+    axes.invert_yaxis()
 
 
 # Judging on the mesh
@@ -142,13 +153,9 @@ def find_group(trial, arguments):
 
 
 def measure_solids(arguments):
-    trials = [
-        Trial(solid, count, noise, seed)
-        for solid in solids.solids(arguments.kind)
-        for count in arguments.counts
-        for noise in arguments.noise
-        for seed in range(1, arguments.seeds + 1)
-    ]
+    seeds = range(1, arguments.seeds + 1)
+    cases = itertools.product(solids.solids(arguments.kind), arguments.counts, arguments.noise, seeds)
+    trials = [Trial(*case) for case in cases]
     if not trials:
         raise bench.BadInput(f"--kind {arguments.kind}: there is no such kind of solids")
     rows, left_out = bench.run(trials, find_group, arguments)
@@ -157,10 +164,9 @@ def measure_solids(arguments):
         cells.setdefault((row["solid"], row["noise"], row["seed"]), set()).add(row["found"])
     is_right = lambda row: row["found"] == row["group"]
     rates = {"all": bench.Rate(map(is_right, rows))}
-    for count in arguments.counts:
-        for noise in arguments.noise:
-            some = [row for row in rows if (row["points"], row["noise"]) == (count, noise)]
-            rates[f"{count} points, noise of {100 * noise:g} %"] = bench.Rate(map(is_right, some))
+    for count, noise in itertools.product(arguments.counts, arguments.noise):
+        some = [row for row in rows if (row["points"], row["noise"]) == (count, noise)]
+        rates[f"{count} points, noise of {100 * noise:g} %"] = bench.Rate(map(is_right, some))
     rates["the same group for all numbers of points"] = bench.Rate(len(found) == 1 for found in cells.values())
     num_rotations, num_false = sum(row["rotations"] for row in rows), sum(row["false"] for row in rows)
     rates["false rotations, of all that are found"] = bench.Rate(k < num_false for k in range(num_rotations))
@@ -182,24 +188,9 @@ def measure_solids(arguments):
     json = {"rates": {k: rate.json for k, rate in rates.items()}, "poses": worst}
     bench.write_json(arguments, {**json, "left_out": left_out, "rows": rows})
     if arguments.figure:
-        bench.save_figure(arguments.figure, draw_solids(rows, arguments))
-
-
-def draw_solids(rows, arguments):
-    def bars(axes):
-        kinds = list(dict.fromkeys(row["kind"] for row in rows))
-        for k, noise in enumerate(arguments.noise):
-            rates = [bench.Rate(r["found"] == r["group"] for r in rows if (r["kind"], r["noise"]) == (kind, noise)) for kind in kinds]
-            middle = np.array([100 * rate.count / max(1, rate.total) for rate in rates])
-            ends = 100 * np.array([bench.wilson(rate.count, rate.total) for rate in rates]).T
-            places = np.arange(len(kinds)) + 0.15 * (k - 0.5 * (len(arguments.noise) - 1))
-            axes.errorbar(middle, places, xerr=np.abs(ends - middle), fmt="o", label=f"noise of {100 * noise:g} %")
-        axes.set_yticks(range(len(kinds)), kinds)
-        axes.set(xlabel="group is right, % (95 % intervals)", xlim=(0, 101))
-        axes.invert_yaxis()
-        axes.legend(loc="lower left")
-
-    return bars
+        kinds = dict.fromkeys(row["kind"] for row in rows)
+        by_kind = {kind: bench.Rate(is_right(row) for row in rows if row["kind"] == kind) for kind in kinds}
+        bench.save_figure(arguments.figure, lambda axes: draw_rates(axes, by_kind))
 
 
 # Meshes
@@ -246,38 +237,20 @@ def measure_meshes(arguments):
     confidence, right = [r["confidence"] for r in judged], [r["excess"] <= 1 for r in judged]
     reliability = bench.calibration(confidence, right)
     rates = {}
-    for low, high in ((0.9, 1.01), (0.5, 0.9), (0.0, 0.5)):
+    for low, high in ((0.9, 1.01), (0.5, 0.9), (0.5, 1.01), (0.0, 0.5)):
         within = [r for c, r in zip(confidence, right) if low <= c < high]
         rates[f"right, confidence of {low:g} to {min(1, high):g}"] = bench.Rate(within)
-    rates[f"right, confidence of {MIN_CONFIDENCE:g} and more"] = bench.Rate(
-        r for c, r in zip(confidence, right) if c >= MIN_CONFIDENCE
-    )
     if not scans:
-        same = [len(set(row["names"])) == 1 for row in rows]
-        some = [s for s, row in zip(same, rows) if set(row["names"]) != {"C1"}]
-        rates["the same group for all numbers of points"] = bench.Rate(same)
-        rates["the same, of meshes with a rotation"] = bench.Rate(some)
+        names = [set(row["names"]) for row in rows]
+        rates["the same group for all numbers of points"] = bench.Rate(len(n) == 1 for n in names)
+        rates["the same, of meshes with a rotation"] = bench.Rate(len(n) == 1 for n in names if n != {"C1"})
     what = "Turns of scans" if scans else "Groups of meshes"
     bench.print_table(what, ["", "rate"], [[k, rate.text] for k, rate in rates.items()])
     print("{answers} answers: calibration error {error:.3f} ({by_chance:.3f} by chance), Brier {brier:.3f}".format(**reliability))
     json = {"rates": {k: rate.json for k, rate in rates.items()}, "reliability": reliability}
     bench.write_json(arguments, {**json, "left_out": left_out, "rows": rows})
     if arguments.figure:
-        bench.save_figure(arguments.figure, draw_reliability(reliability["bins"]))
-
-
-def draw_reliability(bins):
-    def points(axes):
-        bins_with = [b for b in bins if b["right"]["total"]]
-        middle = np.array([b["low"] + 0.05 for b in bins_with])
-        rate, low, high = (np.array([b["right"][key] for b in bins_with]) for key in ("rate", "low", "high"))
-        axes.plot([0, 1], [0, 1], color="black", linewidth=0.8, linestyle=":")
-        axes.errorbar(middle, rate, yerr=[rate - low, high - rate], fmt="o")
-        for x, b in zip(middle, bins_with):
-            axes.annotate(f"of {b['right']['total']}", (x, 0.02), ha="center", fontsize="small")
-        axes.set(xlabel="confidence", ylabel="right (95 % intervals)", xlim=(0, 1), ylim=(0, 1.02))
-
-    return points
+        bench.save_figure(arguments.figure, lambda axes: draw_rates(axes, rates))
 
 
 def main(arguments):
