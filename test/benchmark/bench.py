@@ -597,6 +597,11 @@ def make_parser(description, models=True):
     return parser
 
 
+def numbers(kind):
+    """Type of a flag of several values: "0.05,0.2"."""
+    return lambda text: [kind(part) for part in text.split(",")]
+
+
 def main(program, arguments):
     """Runs program(arguments); input that cannot be used costs one sentence and exit code 1."""
     try:

@@ -287,18 +287,14 @@ def program(arguments):
     bench.write_json(arguments, {"groups": bench.plain(sums), "left_out": left_out, "clouds": rows})
 
 
-def numbers(kind):
-    return lambda text: [kind(part) for part in text.split(",")]
-
-
 if __name__ == "__main__":
     parser = bench.make_parser(__doc__)
-    parser.add_argument("--rows", type=numbers(str), default="whole,noise,scan,moved,crop", help="of " + ",".join(ROWS))
+    parser.add_argument("--rows", type=bench.numbers(str), default="whole,noise,scan,moved,crop", help="of " + ",".join(ROWS))
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
-    parser.add_argument("--noise", type=numbers(float), default="0.02", help="standard deviations, diagonals")
-    parser.add_argument("--scan_noise", type=numbers(float), default="0", help="of scans along the ray, diagonals")
-    parser.add_argument("--crops", type=numbers(float), default="0.05,0.2,0.5", help="shares of the points cut off")
-    parser.add_argument("--counts", type=numbers(int), default="5000,20000,100000", help="numbers of points")
+    parser.add_argument("--noise", type=bench.numbers(float), default="0.02", help="standard deviations, diagonals")
+    parser.add_argument("--scan_noise", type=bench.numbers(float), default="0", help="of scans along the ray, diagonals")
+    parser.add_argument("--crops", type=bench.numbers(float), default="0.05,0.2,0.5", help="shares of the points cut off")
+    parser.add_argument("--counts", type=bench.numbers(int), default="5000,20000,100000", help="numbers of points")
     parser.add_argument("--views", type=int, default=1, help="scans of each model, from random directions")
     parser.add_argument("--tolerance", type=float, default=0.01, help="of a symmetry, in diameters")
     parser.add_argument("--references", metavar="DIR", help="keeps the references of models here")
