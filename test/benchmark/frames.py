@@ -262,8 +262,7 @@ def main(arguments):
         "Closer: to the center of the whole than the center of mass is. Own axes: those that the model was made in, in any\n"
         "order and sign. Like for like: the axes that the same method gives the whole, up to the symmetries of the mesh."
     )
-    json = {m: {k: getattr(v, "json", v) for k, v in r.items()} for m, r in results.items()}
-    bench.write_json(arguments, {"methods": json, "left_out": left_out, "rows": rows})
+    bench.write_json(arguments, {"methods": bench.plain(results), "left_out": left_out, "rows": rows})
     if arguments.figure:
         drawn = [m for m in ("symmetry", "exact map, ISP", "mass", "pushed mass") if m in results]
         stem, dot, ending = arguments.figure.rpartition(".")
@@ -280,7 +279,9 @@ if __name__ == "__main__":
     parser.add_argument("--noise", type=float, default=0.0, help="standard deviation, along the ray for scans, in diagonals")
     parser.add_argument("--missing", type=float, default=0.0, help="share of the points that is taken away, in ten patches")
     parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
-    parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS), help="mass is always among them")
+    parser.add_argument("--methods", type=bench.numbers(str), default=",".join(METHODS), help="mass is always among them")
     asked = parser.parse_args()
+    if set(asked.methods) - set(METHODS):
+        parser.error(f"--methods {','.join(asked.methods)}: must be of {', '.join(METHODS)}")
     asked.methods = [m for m in METHODS if m in {*asked.methods, "mass"}] if not asked.judge else ["judged", "mass"]
     bench.main(main, asked)

@@ -271,8 +271,7 @@ def main(arguments):
           number(r["distance"], 4), number(r["median_ms"], 0)] for m, r in results.items()],
     )  # fmt: skip
     print("Degrees, diagonals: median errors of those that are right. ms: median processor time.")
-    json = {m: {k: getattr(v, "json", v) for k, v in r.items()} for m, r in results.items()}
-    bench.write_json(arguments, {"methods": json, "left_out": left_out, "rows": rows})
+    bench.write_json(arguments, {"methods": bench.plain(results), "left_out": left_out, "rows": rows})
     if arguments.figure:
         bench.save_figure(arguments.figure, draw(rows, results))
 
@@ -288,7 +287,9 @@ if __name__ == "__main__":
     parser.add_argument("--around_distance", type=float, default=0.1, help="and how far, in diagonals")
     parser.add_argument("--impostors", action="store_true", help="also bring each scan to the model before its own")
     parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
-    parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    parser.add_argument("--methods", type=bench.numbers(str), default=",".join(METHODS), help="of " + ", ".join(METHODS))
     asked = parser.parse_args()
+    if set(asked.methods) - set(METHODS):
+        parser.error(f"--methods {','.join(asked.methods)}: must be of {', '.join(METHODS)}")
     asked.methods = ["judged"] if asked.judge else asked.methods
     bench.main(main, asked)

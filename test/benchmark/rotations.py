@@ -185,8 +185,7 @@ def measure_solids(arguments):
         ["group", "surface distance", "poses that are equal", "track"],
         [[group, *(f"{w[key]:.1e}" for key in ("mssd", "equal", "jump"))] for group, w in worst.items()],
     )
-    json = {"rates": {k: rate.json for k, rate in rates.items()}, "poses": worst}
-    bench.write_json(arguments, {**json, "left_out": left_out, "rows": rows})
+    bench.write_json(arguments, {"rates": bench.plain(rates), "poses": worst, "left_out": left_out, "rows": rows})
     if arguments.figure:
         kinds = dict.fromkeys(row["kind"] for row in rows)
         by_kind = {kind: bench.Rate(is_right(row) for row in rows if row["kind"] == kind) for kind in kinds}
@@ -247,8 +246,8 @@ def measure_meshes(arguments):
     what = "Turns of scans" if scans else "Groups of meshes"
     bench.print_table(what, ["", "rate"], [[k, rate.text] for k, rate in rates.items()])
     print("{answers} answers: calibration error {error:.3f} ({by_chance:.3f} by chance), Brier {brier:.3f}".format(**reliability))
-    json = {"rates": {k: rate.json for k, rate in rates.items()}, "reliability": reliability}
-    bench.write_json(arguments, {**json, "left_out": left_out, "rows": rows})
+    found = {"rates": bench.plain(rates), "reliability": bench.plain(reliability)}
+    bench.write_json(arguments, {**found, "left_out": left_out, "rows": rows})
     if arguments.figure:
         bench.save_figure(arguments.figure, lambda axes: draw_rates(axes, rates))
 
@@ -259,8 +258,8 @@ def main(arguments):
 
 if __name__ == "__main__":
     parser = bench.make_parser(__doc__)
-    parser.add_argument("--counts", type=int, nargs="+", default=[2000, 10_000, 50_000], help="points of the clouds")
-    parser.add_argument("--noise", type=float, nargs="+", default=[0.0, 0.003], help="of solids, in diameters")
+    parser.add_argument("--counts", type=bench.numbers(int), default="2000,10000,50000", help="points of the clouds")
+    parser.add_argument("--noise", type=bench.numbers(float), default="0,0.003", help="of solids, in diameters")
     parser.add_argument("--seeds", type=int, default=1, help="samplings and poses of each solid")
     parser.add_argument("--kind", help="solids of this kind alone")
     parser.add_argument("--views", type=int, default=0, help="judge the turns that are found in so many scans of each mesh")
