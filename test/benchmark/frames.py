@@ -7,6 +7,7 @@ for the whole model, and with the axes that the model was made in. Right is with
 frames.py PSB --classes train.cla --fold 1 --every 8 --views 4 --figure misalignment.png
 """
 
+import argparse
 import dataclasses
 import time
 
@@ -138,7 +139,7 @@ METHODS = {
     "no free space": lambda points, viewpoint, seed: by_symmetry(points, None, seed),
     "first maximum": lambda points, viewpoint, seed: as_published(points, seed, "sampled", False),
     "exact map": lambda points, viewpoint, seed: as_published(points, seed, "convolution", False),
-    "exact map, ISP": lambda points, viewpoint, seed: as_published(points, seed, "convolution", True),
+    "exact map ISP": lambda points, viewpoint, seed: as_published(points, seed, "convolution", True),
     "mass": by_mass,
     "pushed mass": by_pushed_mass,
 }
@@ -147,18 +148,18 @@ METHODS = {
 # Evaluation
 
 
-def clouds_of(mesh, model, arguments):
-    """(view, points, scan or None, T_cloud_model) of the whole model, view -1, and of its scans, in random poses."""
-    for view in range(-1, arguments.views):
-        random = bench.generator(arguments.seed, model.key, view)
-        pose, scan = bench.random_pose(random, mesh), None
-        if view < 0:
-            noise = arguments.noise * mesh.diagonal * random.normal(size=(arguments.points, 3))
-            points = bench.moved(pose, bench.sample(mesh, arguments.points, random)) + noise
-        else:
-            scan = bench.scan(mesh, bench.CUBE_CORNERS[view], random, arguments.points, arguments.noise, pose)
-            points = scan.rows
-        yield view, bench.without_patches(points, arguments.missing, random).astype("f"), scan, pose
+def cloud_of(mesh, model, view, arguments, clean=False):
+    """(points, scan or None, T_cloud_model) of a scan, or of the whole model, view -1, in a random pose."""
+    random, count = bench.generator(arguments.seed, model.key, view), arguments.points
+    noise, missing = (0.0, 0.0) if clean else (arguments.noise, arguments.missing)
+    pose, scan = bench.random_pose(random, mesh), None
+    if view < 0:
+        points = bench.moved(pose, bench.sample(mesh, count, random))
+        points = points + noise * mesh.diagonal * random.normal(size=points.shape)
+    else:
+        scan = bench.scan(mesh, bench.CUBE_CORNERS[view], random, count, noise, pose)
+        points = scan.rows
+    return bench.without_patches(points, missing, random).astype("f"), scan, pose
 
 
 def judge(found, whole, diagonal, ties):
@@ -185,7 +186,8 @@ def evaluate(model, arguments):
     mesh = bench.read_mesh(model.path)
     ties = Ties(references.references_of(model, mesh, arguments.references))
     rows, wholes, truths = [], {}, {}
-    for view, points, scan, pose in clouds_of(mesh, model, arguments):
+    for view in range(-1, arguments.views):
+        points, scan, pose = cloud_of(mesh, model, view, arguments)
         name = f"{model.name}_{'whole' if view < 0 else view}"
         if arguments.export:
             bench.write_cloud(f"{arguments.export}/{name}.pcd", points, scan and scan.T_cloud_sensor)
@@ -264,7 +266,7 @@ def main(arguments):
     )
     bench.write_json(arguments, {"methods": bench.plain(results), "left_out": left_out, "rows": rows})
     if arguments.figure:
-        drawn = [m for m in ("symmetry", "exact map, ISP", "mass", "pushed mass") if m in results]
+        drawn = [m for m in ("symmetry", "exact map ISP", "mass", "pushed mass") if m in results]
         stem, dot, ending = arguments.figure.rpartition(".")
         centers = draw(rows, drawn, "center", 100, np.arange(0, 22.0), "distance of the centers, % of the diagonal")
         axes = draw(rows, drawn, "axes", 1, np.arange(0, 65, 2.5), "angle of the axes in any order and sign, degrees")
@@ -272,16 +274,28 @@ def main(arguments):
         bench.save_figure(f"{stem}_rotation{dot}{ending}", axes)
 
 
-if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+def make_parser(description, methods):
+    """Parser of the flags that frames.py and registration.py share."""
+    parser = bench.make_parser(description)
     parser.add_argument("--views", type=int, choices=range(1, 9), default=8, help="scans of a model")
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
     parser.add_argument("--noise", type=float, default=0.0, help="standard deviation, along the ray for scans, in diagonals")
     parser.add_argument("--missing", type=float, default=0.0, help="share of the points that is taken away, in ten patches")
     parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
-    parser.add_argument("--methods", type=bench.numbers(str), default=",".join(METHODS), help="mass is always among them")
-    asked = parser.parse_args()
-    if set(asked.methods) - set(METHODS):
-        parser.error(f"--methods {','.join(asked.methods)}: must be of {', '.join(METHODS)}")
+    parser.add_argument("--methods", type=method_names(methods), default=",".join(methods), help="of " + ", ".join(methods))
+    return parser
+
+
+def method_names(known):
+    def names(text):
+        if set(text.split(",")) - set(known):
+            raise argparse.ArgumentTypeError(f"{text}, must be of {', '.join(known)}")
+        return text.split(",")
+
+    return names
+
+
+if __name__ == "__main__":
+    asked = make_parser(__doc__, METHODS).parse_args()
     asked.methods = [m for m in METHODS if m in {*asked.methods, "mass"}] if not asked.judge else ["judged", "mass"]
     bench.main(main, asked)

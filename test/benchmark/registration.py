@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 import bench
 import references
-from frames import by_mass
+from frames import by_mass, cloud_of, make_parser
 
 RIGHT_ANGLE, RIGHT_DISTANCE = 5.0, 0.02  # degrees, diagonals
 ACROSS = np.cos(np.radians(3.0))  # a plane that lies across an axis, within the angle at which planes count as found
@@ -149,20 +149,16 @@ def mesh_of(path):
     return bench.read_mesh(path)
 
 
-def scan_of(model, view, arguments):
+def seen(points, scan, pose):
     """((points, viewpoint), T_cloud_model)"""
-    random, mesh = bench.generator(arguments.seed, model.key, view), mesh_of(model.path)
-    pose = bench.random_pose(random, mesh)
-    scan = bench.scan(mesh, bench.CUBE_CORNERS[view], random, arguments.points, arguments.noise, pose)
-    return (bench.without_patches(scan.rows, arguments.missing, random).astype("f"), scan.viewpoint), pose
+    return (points, None if scan is None else scan.viewpoint), pose
 
 
 def target_of(model, view, arguments):
     """What a scan is brought to, and the pose of the model in it: the model, or the scan from the next corner."""
     if arguments.target == "model":
-        random = bench.generator(arguments.seed, model.key, "whole")
-        return (bench.sample(mesh_of(model.path), arguments.points, random).astype("f"), None), np.eye(4)
-    return scan_of(model, view ^ 1, arguments)  # views that differ in one bit are from corners of one edge
+        return seen(*cloud_of(mesh_of(model.path), model, -1, arguments, clean=True))
+    return seen(*cloud_of(mesh_of(model.path), model, view ^ 1, arguments))  # corners of one edge differ in one bit
 
 
 def guess_for(T_target_source, target, diagonal, random, arguments):
@@ -188,7 +184,7 @@ def evaluate(item, arguments):
     symmetries = references.references_of(item, mesh, arguments.references)
     rows, truths = [], {}
     for view in range(arguments.views):
-        source, T_source_model = scan_of(item, view, arguments)
+        source, T_source_model = seen(*cloud_of(mesh, item, view, arguments))
         tried = [(target_of(item, view, arguments), None)]
         if arguments.impostors and item.before is not None:
             tried.append((target_of(item.before, view, arguments), item.before.name))
@@ -277,19 +273,11 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+    parser = make_parser(__doc__, METHODS)
     parser.add_argument("--target", choices=["model", "scan"], default="model", help="what scans are brought to")
-    parser.add_argument("--views", type=int, choices=range(1, 9), default=8, help="scans of a model")
-    parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
-    parser.add_argument("--noise", type=float, default=0.0, help="standard deviation of the depth, in diagonals")
-    parser.add_argument("--missing", type=float, default=0.0, help="share of a scan that is taken away, in ten patches")
     parser.add_argument("--around", type=float, help="tracks: degrees that a guess is off; symmetry alone uses it")
     parser.add_argument("--around_distance", type=float, default=0.1, help="and how far, in diagonals")
     parser.add_argument("--impostors", action="store_true", help="also bring each scan to the model before its own")
-    parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
-    parser.add_argument("--methods", type=bench.numbers(str), default=",".join(METHODS), help="of " + ", ".join(METHODS))
     asked = parser.parse_args()
-    if set(asked.methods) - set(METHODS):
-        parser.error(f"--methods {','.join(asked.methods)}: must be of {', '.join(METHODS)}")
     asked.methods = ["judged"] if asked.judge else asked.methods
     bench.main(main, asked)
