@@ -597,9 +597,16 @@ def make_parser(description, models=True):
     return parser
 
 
-def numbers(kind):
-    """Type of a flag of several values: "0.05,0.2"."""
-    return lambda text: [kind(part) for part in text.split(",")]
+def numbers(kind, known=None):
+    """Type of a flag of several values, "0.05,0.2", all among the known ones."""
+
+    def values(text):
+        found = [kind(part) for part in text.split(",")]
+        if known and set(found) - set(known):
+            raise argparse.ArgumentTypeError(f"{text}, must be of {','.join(known)}")
+        return found
+
+    return values
 
 
 def main(program, arguments):

@@ -289,7 +289,7 @@ def program(arguments):
 
 if __name__ == "__main__":
     parser = bench.make_parser(__doc__)
-    parser.add_argument("--rows", type=bench.numbers(str), default="whole,noise,scan,moved,crop", help="of " + ",".join(ROWS))
+    parser.add_argument("--rows", type=bench.numbers(str, ROWS), default="whole,noise,scan,moved,crop", help="of " + ",".join(ROWS))
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
     parser.add_argument("--noise", type=bench.numbers(float), default="0.02", help="standard deviations, diagonals")
     parser.add_argument("--scan_noise", type=bench.numbers(float), default="0", help="of scans along the ray, diagonals")
@@ -299,7 +299,4 @@ if __name__ == "__main__":
     parser.add_argument("--tolerance", type=float, default=0.01, help="of a symmetry, in diameters")
     parser.add_argument("--references", metavar="DIR", help="keeps the references of models here")
     parser.add_argument("--tool", metavar="FILE", help="pcl_symmetry_planes: asked in place of the Python module")
-    arguments = parser.parse_args()
-    if set(arguments.rows) - set(ROWS):
-        parser.error(f"--rows {','.join(arguments.rows)}: must be of {','.join(ROWS)}")
-    bench.main(program, arguments)
+    bench.main(program, parser.parse_args())
