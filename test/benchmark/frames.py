@@ -7,7 +7,6 @@ for the whole model, and with the axes that the model was made in. Right is with
 frames.py PSB --classes train.cla --fold 1 --every 8 --views 4 --figure misalignment.png
 """
 
-import argparse
 import dataclasses
 import time
 
@@ -260,10 +259,8 @@ def main(arguments):
          "the same at any angle about an axis", "like for like", "ms"],
         [[m, *(text(r[key]) for key in texts), f"{r['median_ms']:.0f}"] for m, r in results.items()],
     )  # fmt: skip
-    print(
-        "Closer: to the center of the whole than the center of mass is. Own axes: those that the model was made in, in any\n"
-        "order and sign. Like for like: the axes that the same method gives the whole, up to the symmetries of the mesh."
-    )
+    print("Closer: to the center of the whole than the center of mass is. Own axes: those that the model was made in, in")
+    print("any order and sign. Like for like: the axes that the method gives the whole, up to the symmetries of the mesh.")
     bench.write_json(arguments, {"methods": bench.plain(results), "left_out": left_out, "rows": rows})
     if arguments.figure:
         drawn = [m for m in ("symmetry", "exact map ISP", "mass", "pushed mass") if m in results]
@@ -282,17 +279,9 @@ def make_parser(description, methods):
     parser.add_argument("--noise", type=float, default=0.0, help="standard deviation, along the ray for scans, in diagonals")
     parser.add_argument("--missing", type=float, default=0.0, help="share of the points that is taken away, in ten patches")
     parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
-    parser.add_argument("--methods", type=method_names(methods), default=",".join(methods), help="of " + ", ".join(methods))
+    names = ",".join(methods)
+    parser.add_argument("--methods", type=bench.numbers(str, methods), default=names, help="of " + names)
     return parser
-
-
-def method_names(known):
-    def names(text):
-        if set(text.split(",")) - set(known):
-            raise argparse.ArgumentTypeError(f"{text}, must be of {', '.join(known)}")
-        return text.split(",")
-
-    return names
 
 
 if __name__ == "__main__":

@@ -7,6 +7,8 @@ each scan is also brought to the model before its own in the list, where nothing
 registration.py PSB --classes train.cla --fold 1 --every 2 --views 1 --impostors
 """
 
+import contextlib
+import dataclasses
 import functools
 import itertools
 import time
@@ -187,7 +189,8 @@ def evaluate(item, arguments):
         source, T_source_model = seen(*cloud_of(mesh, item, view, arguments))
         tried = [(target_of(item, view, arguments), None)]
         if arguments.impostors and item.before is not None:
-            tried.append((target_of(item.before, view, arguments), item.before.name))
+            with contextlib.suppress(bench.BadInput):  # its own item says so
+                tried.append((target_of(item.before, view, arguments), item.before.name))
         for (target, T_target_model), impostor in tried:
             true = T_target_model @ np.linalg.inv(T_source_model)
             name = f"{item.name}_{view}" + f"_to_{impostor}" * (impostor is not None)
@@ -253,7 +256,7 @@ def draw(rows, methods):
 
 def main(arguments):
     models = bench.list_models(arguments)
-    for model, before in zip(models, [None] + models):
+    for model, before in zip(models, [None, *map(dataclasses.replace, models)]):
         model.before = before
     found, left_out = bench.run(models, evaluate, arguments)
     rows = [row for each in found for row in each["rows"]]
