@@ -233,6 +233,15 @@ def random_pose(random, mesh):
     return pose
 
 
+def rotation_about(point, direction, angle):
+    """(4, 4) by an angle in radians about a line of unit direction."""
+    c, s, k = math.cos(angle), math.sin(angle), np.asarray(direction, float)
+    motion = np.eye(4)
+    motion[:3, :3] = c * np.eye(3) + (1 - c) * np.outer(k, k) + s * np.cross(np.eye(3), k)
+    motion[:3, 3] = point - motion[:3, :3] @ point
+    return motion
+
+
 def moved(pose, points):
     return points @ pose[:3, :3].T + pose[:3, 3]
 

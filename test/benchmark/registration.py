@@ -167,9 +167,8 @@ def guess_for(T_target_source, target, diagonal, random, arguments):
     """The true pose, turned about the middle of the target and moved, and how far a search around it goes."""
     angle, distance = np.radians(arguments.around), arguments.around_distance * diagonal
     middle, (axis, way) = target.mean(axis=0), bench.random_directions(random, 2)
-    off = np.eye(4)
-    off[:3, :3] = Rotation.from_rotvec(angle * axis).as_matrix()
-    off[:3, 3] = middle - off[:3, :3] @ middle + distance * way
+    off = bench.rotation_about(middle, axis, angle)
+    off[:3, 3] += distance * way
     # The center of a scan is at most a diagonal from the middle that the guess is turned about.
     reach = SEARCHED * distance + 2 * np.sin(SEARCHED * angle / 2) * diagonal
     return off @ T_target_source, (SEARCHED * angle, reach)

@@ -41,16 +41,8 @@ def draw_rates(axes, rates):
 # Judging on the mesh
 
 
-def rotation_about(point, direction, angle):
-    """(4, 4)"""
-    motion = np.eye(4)
-    motion[:3, :3] = Rotation.from_rotvec(angle * np.asarray(direction)).as_matrix()
-    motion[:3, 3] = point - motion[:3, :3] @ point
-    return motion
-
-
 def by_any_angle(point, direction):
-    return [rotation_about(point, direction, 2 * np.pi * k / (NUM_ANGLES + 1)) for k in range(1, NUM_ANGLES + 1)]
+    return [bench.rotation_about(point, direction, 2 * np.pi * k / (NUM_ANGLES + 1)) for k in range(1, NUM_ANGLES + 1)]
 
 
 def motions_of(group):
@@ -88,32 +80,34 @@ def surface_distance(estimate, truth, points, symmetries):
 def judge_poses(group, points, random):
     """How the group's distances of poses agree with the definition, and whether tracks go on without a jump.
 
-    Returns the worst errors: of mssd and of an equivalent pose, in diameters; and the degrees by which the pose that
-    goes on with a track is farther from the last one than the object was turned.
+    Returns the worst errors: of distances, and of an equivalent pose from the first one, in diameters; between the
+    matrices of what should be one canonical pose; and by how much a track turns farther than the object.
     """
     size = bench.diameter(points)
     symmetries = [np.eye(4), *group.discrete]
     for point, direction in group.continuous[:1]:
-        around = [rotation_about(point, direction, angle) for angle in np.linspace(0, 2 * np.pi, 720, endpoint=False)]
+        around = [bench.rotation_about(point, direction, angle) for angle in np.linspace(0, 2 * np.pi, 720, endpoint=False)]
         symmetries = [a @ b for a in around for b in symmetries]
-    mssd_error = equal_error = jump = 0.0
+    errors = []
     for _ in range(NUM_POSES):
-        truth, motion = np.eye(4), np.eye(4)
-        truth[:3, :3] = bench.random_rotation(random)
-        truth[:3, 3] = random.normal(size=3)
-        angle = random.uniform(0, 0.4)
-        motion[:3, :3] = Rotation.from_rotvec(angle * bench.random_directions(random, 1)[0]).as_matrix()
+        truth, angle = np.eye(4), random.uniform(0, 0.4)
+        truth[:3, :3], truth[:3, 3] = bench.random_rotation(random), random.normal(size=3)
+        motion = bench.rotation_about(np.zeros(3), bench.random_directions(random, 1)[0], angle)
         symmetry = symmetries[random.integers(len(symmetries))]
         estimate = truth @ motion @ symmetry  # turned a little, and then as the symmetry has it
-        if group.name != "SO3":
-            exact = surface_distance(estimate, truth, points, symmetries)
-            mssd_error = max(mssd_error, abs(group.mssd(estimate, truth, points) - exact) / size)
-        equal_error = max(equal_error, group.mssd(truth @ symmetry, truth, points) / size)
-        equal_error = max(equal_error, np.abs(group.canonical(truth @ symmetry) - group.canonical(truth)).max())
-        next_pose = group.closest_to(estimate, truth)
-        turned = Rotation.from_matrix(next_pose[:3, :3] @ truth[:3, :3].T).magnitude()
-        jump = max(jump, np.degrees(turned - angle))
-    return {"mssd": float(mssd_error), "equal": float(equal_error), "jump": float(jump)}
+        exact = surface_distance(estimate, truth, points, symmetries) if group.name != "SO3" else None
+        went_on = group.closest_to(estimate, truth)
+        errors.append({
+            "surface distance": 0.0 if exact is None else abs(group.mssd(estimate, truth, points) - exact) / size,
+            "equal poses": group.mssd(truth @ symmetry, truth, points) / size,
+            "canonical pose": np.abs(group.canonical(truth @ symmetry) - group.canonical(truth)).max(),
+            "track, degrees": np.degrees(Rotation.from_matrix(went_on[:3, :3] @ truth[:3, :3].T).magnitude() - angle),
+        })  # fmt: skip
+    return worst_of(errors)
+
+
+def worst_of(errors):
+    return {key: max(float(error[key]) for error in errors) for key in errors[0]}
 
 
 # Solids
@@ -164,6 +158,7 @@ def measure_solids(arguments):
         cells.setdefault((row["solid"], row["noise"], row["seed"]), set()).add(row["found"])
     is_right = lambda row: row["found"] == row["group"]
     rates = {"all": bench.Rate(map(is_right, rows))}
+    rates["kinds that no number was chosen on"] = bench.Rate(is_right(r) for r in rows if r["kind"] not in solids.CHOSEN_ON)
     for count, noise in itertools.product(arguments.counts, arguments.noise):
         some = [row for row in rows if (row["points"], row["noise"]) == (count, noise)]
         rates[f"{count} points, noise of {100 * noise:g} %"] = bench.Rate(map(is_right, some))
@@ -179,12 +174,10 @@ def measure_solids(arguments):
     for row in rows:
         if "poses" in row:
             poses.setdefault(row["group"], []).append(row["poses"])
-    worst = {group: {key: max(p[key] for p in some) for key in some[0]} for group, some in sorted(poses.items())}
-    bench.print_table(
-        "Distances of poses: worst errors, diameters; degrees that a track turns farther than the object",
-        ["group", "surface distance", "poses that are equal", "track"],
-        [[group, *(f"{w[key]:.1e}" for key in ("mssd", "equal", "jump"))] for group, w in worst.items()],
-    )
+    worst = {group: worst_of(some) for group, some in sorted(poses.items())}
+    cells = [[group, *(f"{value:.0e}" for value in errors.values())] for group, errors in worst.items()]
+    names = list(next(iter(worst.values()), []))
+    bench.print_table("Poses that symmetry makes equal: worst errors, distances in diameters", ["group", *names], cells)
     bench.write_json(arguments, {"rates": bench.plain(rates), "poses": worst, "left_out": left_out, "rows": rows})
     if arguments.figure:
         kinds = dict.fromkeys(row["kind"] for row in rows)
@@ -220,7 +213,7 @@ def judge_scans(model, arguments):
         found = pcl_symmetry.planes(scan.rows.astype("f"), viewpoint=tuple(scan.viewpoint), threads=1)
         for turn in found.turns:
             angles = 2 * np.pi * np.arange(1, turn.fold // 2 + 1) / max(turn.fold, 1)  # none: by any angle
-            motions = [rotation_about(turn.point, turn.direction, a) for a in angles]
+            motions = [bench.rotation_about(turn.point, turn.direction, a) for a in angles]
             motions = motions or by_any_angle(turn.point, turn.direction)
             worst = excess(mesh, points, [in_frame_of(pose, motion) for motion in motions])
             row = {"mesh": model.name, "view": view, "fold": turn.fold}
@@ -263,4 +256,7 @@ if __name__ == "__main__":
     parser.add_argument("--seeds", type=int, default=1, help="samplings and poses of each solid")
     parser.add_argument("--kind", help="solids of this kind alone")
     parser.add_argument("--views", type=int, default=0, help="judge the turns that are found in so many scans of each mesh")
-    bench.main(main, parser.parse_args())
+    asked = parser.parse_args()
+    if asked.export or asked.judge:
+        parser.error("--export and --judge: frames.py, registration.py and planes.py have them")
+    bench.main(main, asked)

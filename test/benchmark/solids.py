@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 AROUND = 144  # sides of a body of revolution: divides by 2, 3, 4, 6 and 8; off by 2.4e-4 radii
 GOLDEN = (1 + 5**0.5) / 2
+CHOSEN_ON = ("bowls", "rims", "boxes", "nuts", "mugs", "keyways", "nearly round")  # the library's numbers were
 SIGNS = [(a, b) for a in (-1, 1) for b in (-1, 1)]
 
 

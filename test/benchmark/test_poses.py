@@ -3,7 +3,6 @@
 import unittest
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 import bench
 import frames
@@ -14,14 +13,14 @@ import solids
 Z = {"point": [0, 0, 0], "direction": [0, 0, 1]}
 
 
-def rotated(degrees, axis):
-    return Rotation.from_rotvec(np.radians(degrees) * np.array(axis) / np.linalg.norm(axis)).as_matrix()
-
-
 def pose(degrees, axis, way=(0, 0, 0)):
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = rotated(degrees, axis), way
+    matrix = bench.rotation_about(np.zeros(3), np.array(axis) / np.linalg.norm(axis), np.radians(degrees))
+    matrix[:3, 3] = way
     return matrix
+
+
+def rotated(degrees, axis):
+    return pose(degrees, axis)[:3, :3]
 
 
 def symmetries(planes=(), axes=(), centers=()):
@@ -35,6 +34,7 @@ class TestPoseError(unittest.TestCase):
         return registration.pose_error(estimate @ true, true, symmetries(**known))
 
     def test_without_symmetry(self):
+        np.testing.assert_allclose(pose(90, (0, 0, 1))[:3, 0], (0, 1, 0), atol=1e-9)
         np.testing.assert_allclose(self.error(pose(30, (1, 1, 0), (0.2, 0, 0))), (30, 0.1), atol=1e-9)
         np.testing.assert_allclose(self.error(pose(180, (0, 0, 1)), planes=[0]), (180, 0), atol=1e-5)
 
@@ -83,7 +83,7 @@ class TestRotations(unittest.TestCase):
         for solid in (solid for solid in solids.solids() if solid.name in known):
             mesh, (axis, order) = bench.make_mesh(solid.vertices, solid.faces), known[solid.name]
             points, axis = bench.sample(mesh, 500, np.random.default_rng(1)), np.array(axis) / np.linalg.norm(axis)
-            about = lambda degrees: [rotations.rotation_about(np.zeros(3), axis, np.radians(degrees))]
+            about = lambda degrees: [bench.rotation_about(np.zeros(3), axis, np.radians(degrees))]
             with self.subTest(solid.name):
                 self.assertLessEqual(rotations.excess(mesh, points, about(360 / order if order else 77)), 1)
                 if order:
