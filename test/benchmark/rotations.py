@@ -192,11 +192,12 @@ def judge_mesh(model, arguments):
     """Groups of clouds of the whole mesh."""
     mesh = bench.read_mesh(model.path)
     random = bench.generator(arguments.seed, model.key)
-    clouds = {count: bench.sample(mesh, count, random).astype("f") for count in arguments.counts}
+    pose = bench.random_pose(random, mesh)
+    clouds = {count: bench.moved(pose, bench.sample(mesh, count, random)).astype("f") for count in arguments.counts}
     found = {count: pcl_symmetry.rotations(points, threads=1) for count, points in clouds.items()}
     group = found[10_000 if 10_000 in found else arguments.counts[0]]
     row = {"mesh": model.name, "group": group.name, "confidence": group.confidence}
-    motions = motions_of(group)
+    motions = [in_frame_of(pose, motion) for motion in motions_of(group)]
     row["excess"] = excess(mesh, bench.sample(mesh, 5000, random), motions) if motions else None
     return {**row, "names": [g.name for g in found.values()]}
 
