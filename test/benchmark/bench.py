@@ -561,6 +561,13 @@ def print_table(title, header, rows):
     print(f"{title}\n\n" + "\n".join(lines) + "\n", flush=True)
 
 
+def draw_rates(axes, x, counts, total, label):
+    """A curve of rates, in per cent, with the band of their 95 % intervals."""
+    low, high = np.transpose([wilson(int(count), total) for count in counts])
+    line = axes.plot(x, 100 * np.asarray(counts) / total, label=label)[0]
+    axes.fill_between(x, 100 * low, 100 * high, alpha=0.2, color=line.get_color(), linewidth=0)
+
+
 def save_figure(path, draw):
     """Draws on fresh axes of matplotlib, draw(axes), and writes the picture."""
     import matplotlib

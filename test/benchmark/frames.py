@@ -52,7 +52,7 @@ class Frame:
 
 
 def angle_of_axes(axes, others, revolution=None):
-    """Degrees between axes and others in any order and with any sign, at any angle about an axis of revolution, (3,)."""
+    """Degrees between axes and others in any order and with any sign, at any angle about an axis of revolution."""
     return least_angle(axes @ (others @ ORDERS).swapaxes(1, 2), revolution)
 
 
@@ -235,11 +235,9 @@ def draw(rows, methods, key, scale, bins, label):
         for method in methods:
             values = [scale * r[key] for r in rows if r["method"] == method and r["view"] >= 0]
             counts = np.histogram(np.minimum(values, bins[-1] - 1e-9), bins)[0]
-            low, high = np.transpose([bench.wilson(count, len(values)) for count in counts])
-            middle = 0.5 * (bins[1:] + bins[:-1])
-            line = axes.plot(middle, 100 * counts / len(values), marker=".", label=method)[0]
-            axes.fill_between(middle, 100 * low, 100 * high, alpha=0.2, color=line.get_color(), linewidth=0)
-        axes.set(xlabel=f"{label} (last bin: and more)", ylabel="share of the scans, %", xlim=(0, bins[-1]), ylim=(0, None))
+            bench.draw_rates(axes, 0.5 * (bins[1:] + bins[:-1]), counts, len(values), method)
+        axes.set(xlabel=f"{label} (last bin: and more)", ylabel="share of the scans, %")
+        axes.set(xlim=(0, bins[-1]), ylim=(0, None))
         axes.legend()
 
     return histograms
@@ -259,8 +257,8 @@ def main(arguments):
          "the same at any angle about an axis", "like for like", "ms"],
         [[m, *(text(r[key]) for key in texts), f"{r['median_ms']:.0f}"] for m, r in results.items()],
     )  # fmt: skip
-    print("Closer: to the center of the whole than the center of mass is. Own axes: those that the model was made in, in")
-    print("any order and sign. Like for like: the axes that the method gives the whole, up to the symmetries of the mesh.")
+    print("Closer: to the center of the whole than the center of mass is. Own axes: those that the model was made in,")
+    print("in any order and sign. Like for like: those that the method gives the whole, up to symmetries of the mesh.")
     bench.write_json(arguments, {"methods": bench.plain(results), "left_out": left_out, "rows": rows})
     if arguments.figure:
         drawn = [m for m in ("symmetry", "exact map ISP", "mass", "pushed mass") if m in results]
@@ -276,8 +274,8 @@ def make_parser(description, methods):
     parser = bench.make_parser(description)
     parser.add_argument("--views", type=int, choices=range(1, 9), default=8, help="scans of a model")
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
-    parser.add_argument("--noise", type=float, default=0.0, help="standard deviation, along the ray for scans, in diagonals")
-    parser.add_argument("--missing", type=float, default=0.0, help="share of the points that is taken away, in ten patches")
+    parser.add_argument("--noise", type=float, default=0.0, help="standard deviation, along rays in scans, in diagonals")
+    parser.add_argument("--missing", type=float, default=0.0, help="share of the points taken away, in ten patches")
     parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
     names = ",".join(methods)
     parser.add_argument("--methods", type=bench.numbers(str, methods), default=names, help="of " + names)

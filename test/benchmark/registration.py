@@ -43,8 +43,8 @@ def pose_error(T_model_scan, T_model_scan_true, symmetries):
     """(degrees, diagonals at the center of the model) of the error that comes closest to being right.
 
     Two planes of symmetry make a rotation about their common line, and every rotation that a finite set of planes
-    generates is made by two of them. About an axis of revolution any angle is right, and a half turn of it where a plane
-    lies across; about the center of a sphere any rotation is.
+    generates is made by two of them. About an axis of revolution any angle is right, and a half turn of it where a
+    plane lies across; about the center of a sphere any rotation is.
     """
     error, center = T_model_scan @ np.linalg.inv(T_model_scan_true), np.array(symmetries["center"])
     reflections = [reflection(plane["coefficients"]) for plane in symmetries["planes"]]
@@ -242,9 +242,7 @@ def draw(rows, methods):
             own = [row for row in rows if row["method"] == method and row["impostor"] is None]
             errors = np.array([max(row["degrees"] / RIGHT_ANGLE, row["distance"] / RIGHT_DISTANCE) for row in own])
             counts = (errors[:, None] <= limits).sum(axis=0)
-            low, high = np.transpose([bench.wilson(int(count), len(own)) for count in counts])
-            line = axes.plot(RIGHT_ANGLE * limits, 100 * counts / len(own), label=method)[0]
-            axes.fill_between(RIGHT_ANGLE * limits, 100 * low, 100 * high, alpha=0.2, color=line.get_color(), linewidth=0)
+            bench.draw_rates(axes, RIGHT_ANGLE * limits, counts, len(own), method)
         axes.axvline(RIGHT_ANGLE, color="black", linewidth=0.8, linestyle=":")
         axes.set(xlabel="limit, degrees (per cent of the diagonal: 0.4 times it)", ylabel="scans within the limit, %")
         axes.set(xlim=(0, 20), ylim=(0, 100))

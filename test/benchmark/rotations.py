@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Groups of rotations of solids made by code, of meshes, and of single scans, and the poses that they make equal.
 
-Without a folder: solids of known groups, in random poses (solids.py), and distances of poses under the groups that are
-found. With a folder: groups of clouds of meshes, judged by exact distances on the mesh. With --views: the turns that are
-found in so many scans of each mesh, judged alike. A rotation is right where it maps at most 10 % of the area further off
-the surface than 1 % of the diameter, and at most 1.25 % further than ten times that.
+Without a folder: solids of known groups, in random poses (solids.py), and distances of poses under the groups that
+are found. With a folder: groups of clouds of meshes, judged by exact distances on the mesh. With --views: the turns
+that are found in this number of scans of each mesh, judged alike. A rotation is right where it maps at most 10 % of the
+area further off the surface than 1 % of the diameter, and at most 1.25 % further than ten times that.
 
 rotations.py --seeds 5 --figure rotations.png
 rotations.py PSB --classes train.cla --fold 1
@@ -86,7 +86,7 @@ def judge_poses(group, points, random):
     size = bench.diameter(points)
     symmetries = [np.eye(4), *group.discrete]
     for point, direction in group.continuous[:1]:
-        around = [bench.rotation_about(point, direction, angle) for angle in np.linspace(0, 2 * np.pi, 720, endpoint=False)]
+        around = [bench.rotation_about(point, direction, 2 * np.pi * k / 720) for k in range(720)]
         symmetries = [a @ b for a in around for b in symmetries]
     errors = []
     for _ in range(NUM_POSES):
@@ -158,7 +158,8 @@ def measure_solids(arguments):
         cells.setdefault((row["solid"], row["noise"], row["seed"]), set()).add(row["found"])
     is_right = lambda row: row["found"] == row["group"]
     rates = {"all": bench.Rate(map(is_right, rows))}
-    rates["kinds that no number was chosen on"] = bench.Rate(is_right(r) for r in rows if r["kind"] not in solids.CHOSEN_ON)
+    others = [row for row in rows if row["kind"] not in solids.CHOSEN_ON]
+    rates["kinds that no number was chosen on"] = bench.Rate(map(is_right, others))
     for count, noise in itertools.product(arguments.counts, arguments.noise):
         some = [row for row in rows if (row["points"], row["noise"]) == (count, noise)]
         rates[f"{count} points, noise of {100 * noise:g} %"] = bench.Rate(map(is_right, some))
@@ -239,7 +240,8 @@ def measure_meshes(arguments):
         rates["the same, of meshes with a rotation"] = bench.Rate(len(n) == 1 for n in names if n != {"C1"})
     what = "Turns of scans" if scans else "Groups of meshes"
     bench.print_table(what, ["", "rate"], [[k, rate.text] for k, rate in rates.items()])
-    print("{answers} answers: calibration error {error:.3f} ({by_chance:.3f} by chance), Brier {brier:.3f}".format(**reliability))
+    text = "{answers} answers: calibration error {error:.3f} ({by_chance:.3f} by chance), Brier score {brier:.3f}"
+    print(text.format(**reliability))
     found = {"rates": bench.plain(rates), "reliability": bench.plain(reliability)}
     bench.write_json(arguments, {**found, "left_out": left_out, "rows": rows})
     if arguments.figure:
@@ -256,7 +258,7 @@ if __name__ == "__main__":
     parser.add_argument("--noise", type=bench.numbers(float), default="0,0.003", help="of solids, in diameters")
     parser.add_argument("--seeds", type=int, default=1, help="samplings and poses of each solid")
     parser.add_argument("--kind", help="solids of this kind alone")
-    parser.add_argument("--views", type=int, default=0, help="judge the turns that are found in so many scans of each mesh")
+    parser.add_argument("--views", type=int, default=0, help="judge the turns found in this number of scans of each mesh")
     asked = parser.parse_args()
     if asked.export or asked.judge:
         parser.error("--export and --judge: frames.py, registration.py and planes.py have them")
