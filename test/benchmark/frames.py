@@ -264,6 +264,7 @@ def main(arguments):
         drawn = [m for m in ("symmetry", "exact map ISP", "mass", "pushed mass") if m in results]
         stem, dot, ending = arguments.figure.rpartition(".")
         centers = draw(rows, drawn, "center", 100, np.arange(0, 22.0), "distance of the centers, % of the diagonal")
+        drawn = [m for m in drawn if m != "pushed mass"]  # its axes are those of mass
         axes = draw(rows, drawn, "axes", 1, np.arange(0, 65, 2.5), "angle of the axes in any order and sign, degrees")
         bench.save_figure(f"{stem}_translation{dot}{ending}", centers)
         bench.save_figure(f"{stem}_rotation{dot}{ending}", axes)

@@ -34,7 +34,7 @@ def draw_rates(axes, rates):
     ends = 100 * np.array([bench.wilson(rate.count, rate.total) for rate in rates.values()]).T
     axes.errorbar(middle, range(len(rates)), xerr=np.abs(ends - middle), fmt="o")
     axes.set_yticks(range(len(rates)), [f"{name} ({rate.total})" for name, rate in rates.items()])
-    axes.set(xlabel="right, % (95 % intervals)", xlim=(0, 101))
+    axes.set(xlabel="rate, % (95 % intervals)", xlim=(0, 101))
     axes.invert_yaxis()
 
 
