@@ -9,7 +9,6 @@ registration.py PSB --classes train.cla --fold 1 --every 2 --views 1 --impostors
 
 import contextlib
 import dataclasses
-import functools
 import itertools
 import time
 
@@ -146,21 +145,16 @@ METHODS = {"symmetry": by_symmetry, "principal axes": by_principal_axes, "featur
 # Evaluation
 
 
-@functools.lru_cache(maxsize=2)
-def mesh_of(path):
-    return bench.read_mesh(path)
-
-
 def seen(points, scan, pose):
     """((points, viewpoint), T_cloud_model)"""
     return (points, None if scan is None else scan.viewpoint), pose
 
 
-def target_of(model, view, arguments):
+def target_of(mesh, model, view, arguments):
     """What a scan is brought to, and the pose of the model in it: the model, or the scan from the next corner."""
     if arguments.target == "model":
-        return seen(*cloud_of(mesh_of(model.path), model, -1, arguments, clean=True))
-    return seen(*cloud_of(mesh_of(model.path), model, view ^ 1, arguments))  # corners of one edge differ in one bit
+        return seen(*cloud_of(mesh, model, -1, arguments, clean=True))
+    return seen(*cloud_of(mesh, model, view ^ 1, arguments))  # corners of one edge differ in one bit
 
 
 def guess_for(T_target_source, target, diagonal, random, arguments):
@@ -181,15 +175,17 @@ def judged_answer(folder, name):
 
 
 def evaluate(item, arguments):
-    mesh = mesh_of(item.path)
+    mesh, impostor_mesh = bench.read_mesh(item.path), None
+    if arguments.impostors and item.before is not None:
+        with contextlib.suppress(bench.BadInput):  # its own item says so
+            impostor_mesh = bench.read_mesh(item.before.path)
     symmetries = references.references_of(item, mesh, arguments.references)
     rows, truths = [], {}
     for view in range(arguments.views):
         source, T_source_model = seen(*cloud_of(mesh, item, view, arguments))
-        tried = [(target_of(item, view, arguments), None)]
-        if arguments.impostors and item.before is not None:
-            with contextlib.suppress(bench.BadInput):  # its own item says so
-                tried.append((target_of(item.before, view, arguments), item.before.name))
+        tried = [(target_of(mesh, item, view, arguments), None)]
+        if impostor_mesh is not None:
+            tried.append((target_of(impostor_mesh, item.before, view, arguments), item.before.name))
         for (target, T_target_model), impostor in tried:
             true = T_target_model @ np.linalg.inv(T_source_model)
             name = f"{item.name}_{view}" + f"_to_{impostor}" * (impostor is not None)
