@@ -648,6 +648,13 @@ def write_truth(arguments, truths):
         write_whole(pathlib.Path(arguments.export) / "truth.json", json.dumps(truths, indent=1) + "\n")
 
 
+def make_folder(path):
+    try:
+        pathlib.Path(path).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be made, {error.strerror}") from None
+
+
 def write_whole(path, text):
     """Writes a file whole or not at all."""
     try:
@@ -666,8 +673,8 @@ def run(items, function, arguments, stage=""):
     stage: tells several runs of one program apart. Returns (results in the order of the items, sentences of failures).
     """
     named = {getattr(item, "name", str(item)): item for item in items}
-    for folder in filter(None, [arguments.export]):
-        pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+    if arguments.export:
+        make_folder(arguments.export)
     journal = _Journal(arguments, stage)
     results = {name: result for name, result in journal.read().items() if name in named}
     waiting = {name: item for name, item in named.items() if name not in results}
