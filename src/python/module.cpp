@@ -166,7 +166,7 @@ Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, st
 }
 
 SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, const std::string& method,
-                      std::uint64_t seed, int threads) {
+                      const Eigen::Vector3d& center, double radius, double sigma, std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 0, seed);
   PlanarTransformOptions options;
   const std::vector<std::string> names{"sampled", "convolution", "voting"};
@@ -177,6 +177,9 @@ SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, co
   options.sampled.num_threads = options.convolution.num_threads = options.voting.num_threads = threads;
   const py::gil_scoped_release release;
   GaussianEdtOptions edt_options;
+  edt_options.center = center;
+  edt_options.radius = radius;
+  edt_options.sigma = sigma;
   edt_options.num_threads = threads;
   const GaussianEdt edt(input.points(), edt_options);
   const PlaneGrid grid(bins[0], bins[1], bins[2], edt.center(), edt.radius());
@@ -304,9 +307,12 @@ void addShapeFunctions(py::module_& module) {
              py::arg("seed") = 1, py::arg("threads") = 0,
              "(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2).");
   module.def("transform", &transform, py::arg("points"), py::arg("bins") = std::array<int, 3>{64, 64, 64},
-             py::kw_only(), py::arg("method") = "sampled", py::arg("seed") = 1, py::arg("threads") = 0,
+             py::kw_only(), py::arg("method") = "sampled", py::arg("center") = Eigen::Vector3d(0.0, 0.0, 0.0),
+             py::arg("radius") = 0.0, py::arg("sigma") = 0.0, py::arg("seed") = 1, py::arg("threads") = 0,
              "The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.\n"
-             "method: sampled, convolution or voting. Returns Map.");
+             "method: sampled, convolution or voting.\n"
+             "center, radius: of the ball whose planes are measured; radius 0: the bounding ball of the points.\n"
+             "sigma: width of the Gaussian; 0: two cells of a grid of 64. All in input units. Returns Map.");
 }
 
 }  // namespace

@@ -219,6 +219,14 @@ class OtherFunctions(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "method = guess, must be"):
             pcl_symmetry.transform(box(), method="guess")
 
+    def test_the_map_covers_the_ball_that_is_given(self):
+        map_ = pcl_symmetry.transform(box() + (1, 0, 0), (8, 16, 9), center=(1, 0, 0), radius=2.0, sigma=0.1)
+        self.assertAlmostEqual(map_.sigma, 0.1)
+        offsets = [plane[:3] @ (1, 0, 0) + plane[3] for plane in (map_.plane(0, 0, k) for k in range(9))]
+        np.testing.assert_allclose(offsets, np.linspace(16 / 9, -16 / 9, 9), atol=1e-9)
+        with self.assertRaisesRegex(ValueError, "radius = -1, must be"):
+            pcl_symmetry.transform(box(), radius=-1)
+
     def test_views_show_three_sides_of_a_box(self):
         views = pcl_symmetry.viewpoints(pcl_symmetry.planes(box()).planes)
         self.assertGreater(np.abs(views[0].direction).min(), 0.3)

@@ -261,13 +261,24 @@ def describe(points: Any, *, viewpoint: Viewpoint = "auto", seed: int = 1, threa
 
 
 def transform(
-    points: Any, bins: Sequence[int] = (64, 64, 64), *, method: str = "sampled", seed: int = 1, threads: int = 0
+    points: Any,
+    bins: Sequence[int] = (64, 64, 64),
+    *,
+    method: str = "sampled",
+    center: "ArrayLike" = (0.0, 0.0, 0.0),
+    radius: float = 0.0,
+    sigma: float = 0.0,
+    seed: int = 1,
+    threads: int = 0,
 ) -> Map:
     """The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.
 
     method: sampled, convolution or voting.
+    center, radius: of the ball whose planes are measured, input frame and units; radius 0: the bounding ball of the points.
+    sigma: width of the Gaussian, input units; 0: two cells of a grid of 64.
     """
     array, shift = prepare("points", points)
-    found = core.transform(array, tuple(bins), method=method, seed=seed, threads=threads)
+    options = dict(center=_seen_from(center, shift), radius=radius, sigma=sigma, seed=seed, threads=threads)
+    found = core.transform(array, tuple(bins), method=method, **options)
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)
