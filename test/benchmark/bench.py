@@ -262,15 +262,26 @@ def depth_picture(corners, size, half_width):
     """(size, size) depth z of the nearest of (T, 3, 3) triangles at each pixel, infinite where there is none.
 
     Frame of the sensor: x right, y down, z forward; the picture is 2 half_width wide at depth one. Exact at the middle
-    of each pixel. (Rays of Open3D miss everything where Embree has ray masks, as in Debian 12.)
+    of each pixel.
     """
-    depth = np.full(size * size, np.inf)
     z = corners[..., 2]
     corners, z = corners[(z > 0).any(1)], z[(z > 0).any(1)]
     pixels = (corners[..., :2] / np.maximum(z, 1e-9)[..., None] / half_width + 1) * size / 2 - 0.5
     pixels[(z <= 0).any(1), 0], pixels[(z <= 0).any(1), 1] = -1, size  # reaches behind the sensor: all pixels are tried
-    low = np.clip(np.ceil(pixels.min(1)), 0, size).astype(int)
-    high = np.clip(np.floor(pixels.max(1)), -1, size - 1).astype(int)
+    x, y = np.meshgrid(*2 * [(2 * (np.arange(size) + 0.5) / size - 1) * half_width])
+    return first_hits(corners, np.stack([x, y, np.ones_like(x)], -1), pixels.min(1), pixels.max(1))
+
+
+def first_hits(corners, rays, low, high):
+    """(H, W) lengths, in those of the rays (H, W, 3) from the origin, at which they first meet (T, 3, 3) triangles.
+
+    low, high: (T, 2) first and last column and row in which each triangle can be. Infinite where a ray meets nothing.
+    (Rays of Open3D miss everything where Embree has ray masks, as in Debian 12.)
+    """
+    height, width = rays.shape[:2]
+    lengths, rays = np.full(height * width, np.inf), rays.reshape(-1, 3)
+    low = np.clip(np.ceil(low), 0, [width, height]).astype(int)
+    high = np.clip(np.floor(high), -1, [width - 1, height - 1]).astype(int)
     counts = np.prod(np.maximum(high - low + 1, 0), axis=1)
     order = np.flatnonzero(counts)
     blocks = np.cumsum(counts[order]) // 1_000_000
@@ -279,21 +290,19 @@ def depth_picture(corners, size, half_width):
             continue
         index = np.repeat(block, counts[block])
         within = np.arange(len(index)) - np.repeat(np.cumsum(counts[block]) - counts[block], counts[block])
-        width = (high - low + 1)[index, 0]
-        column, row = low[index, 0] + within % width, low[index, 1] + within // width
-        x, y = ((2 * (v + 0.5) / size - 1) * half_width for v in (column, row))
+        columns = (high - low + 1)[index, 0]
+        pixel = (low[index, 1] + within // columns) * width + low[index, 0] + within % columns
         a, b, c = corners[block].swapaxes(0, 1)
         edges = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], 1)  # a ray hits where all signs agree
         volume = np.einsum("ij,ij->i", a, edges[:, 0])
         position = np.repeat(np.arange(len(block)), counts[block])
-        sides = edges[position, :, 0] * x[:, None] + edges[position, :, 1] * y[:, None] + edges[position, :, 2]
+        sides = sum(edges[position, :, k] * rays[pixel, k, None] for k in range(3))
         total = sides.sum(1)
         sides *= np.sign(total)[:, None]
         hit = (sides >= -1e-12 * np.abs(total)[:, None]).all(1) & (total != 0)
         at = volume[position[hit]] / total[hit]
-        pixel = (row * size + column)[hit]
-        np.minimum.at(depth, pixel[at > 0], at[at > 0])
-    return depth.reshape(size, size)
+        np.minimum.at(lengths, pixel[hit][at > 0], at[at > 0])
+    return lengths.reshape(height, width)
 
 
 def look_along(forward):
@@ -393,8 +402,9 @@ def sample_pattern(mesh, pattern, count, random):
 # Files of clouds and of answers
 
 
-def write_cloud(path, points, T_cloud_sensor=None):
-    """Binary PCD of (N, 3) or organized (H, W, 3) points, with the pose of the sensor where it is known."""
+def write_cloud(path, points, T_cloud_sensor=None, **fields):
+    """Binary PCD of (N, 3) or organized (H, W, 3) points, with the pose of the sensor where it is known, and fields of
+    one number for each point."""
     height, width = points.shape[:2] if points.ndim == 3 else (1, len(points))
     viewpoint = [0, 0, 0, 1, 0, 0, 0]
     if T_cloud_sensor is not None:
@@ -402,9 +412,12 @@ def write_cloud(path, points, T_cloud_sensor=None):
 
         x, y, z, w = Rotation.from_matrix(T_cloud_sensor[:3, :3]).as_quat()
         viewpoint = [*T_cloud_sensor[:3, 3], w, x, y, z]
-    header = (f"VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {width}\nHEIGHT {height}\n"
+    names, values = ["x", "y", "z", *fields], [points, *(np.asarray(f)[..., None] for f in fields.values())]
+    repeated = lambda word: " ".join(len(names) * [word])
+    header = (f"VERSION 0.7\nFIELDS {' '.join(names)}\nSIZE {repeated('4')}\nTYPE {repeated('F')}\nCOUNT {repeated('1')}\n"
+              f"WIDTH {width}\nHEIGHT {height}\n"
               f"VIEWPOINT {' '.join(f'{v:.9g}' for v in viewpoint)}\nPOINTS {width * height}\nDATA binary\n")  # fmt: skip
-    pathlib.Path(path).write_bytes(header.encode() + np.ascontiguousarray(points, "<f4").tobytes())
+    pathlib.Path(path).write_bytes(header.encode() + np.concatenate(values, -1).astype("<f4").tobytes())
 
 
 def answers_of(found, milliseconds=None):
