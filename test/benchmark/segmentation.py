@@ -1,0 +1,284 @@
+#!/usr/bin/env python3
+"""How close segmentations come to those that people made (Section 5.3): Princeton Segmentation Benchmark.
+
+segmentation.py PSEG/off --people PSEG/seg/Benchmark --remainders 2 --json parts.json --figure parts.png
+
+Takes meshes whose name is an odd number; those with even numbers are kept apart. The measures are those of Chen,
+Golovinskiy and Funkhouser (A Benchmark for 3D Mesh Segmentation, 2009): means over all people and models, 0 for equal
+segmentations. Methods:
+
+  people       each person judged by all others
+  one, k-means one segment; six clusters of the centers of the faces
+  segment      pcl_symmetry.segment() on the mesh
+  points       the same on 30 000 points; a face takes the label of the nearest one
+  concavity, symmetry       pcl_symmetry_segment with less evidence
+  paper-1 to paper-4        pcl_symmetry_segment by splitting as in the paper, by depth
+"""
+import pathlib
+import subprocess
+import tempfile
+import time
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import cKDTree
+from sklearn.cluster import KMeans
+
+import bench
+import references
+
+MEASURES = {"rand": "Rand", "cut": "cut", "hamming": "Hamming", "missing": "missing", "false": "false", "gce": "GCE", "lce": "LCE"}
+CATEGORIES = ("Human Cup Glasses Airplane Ant Chair Octopus Table Teddy Hand Plier Fish Bird Spring Armadillo Bust Mech "
+              "Bearing Vase Fourleg").split()  # fmt: skip
+NUM_POINTS = 30_000  # of "points": about one a face
+
+
+class Surface:
+    """What comparisons of segmentations need of a mesh."""
+
+    def __init__(self, mesh):
+        self.centers, self.areas = mesh.corners.mean(axis=1), mesh.areas / mesh.areas.sum()
+        self.mean_radius = self.areas @ np.linalg.norm(self.centers - self.areas @ self.centers, axis=1)
+        sides = np.sort(mesh.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        self.edges, first, self.edge_of_sides = np.unique(sides, axis=0, return_index=True, return_inverse=True)
+        self.face_of_sides = np.arange(len(sides)) // 3
+        self.other_of_sides = self.face_of_sides[first][self.edge_of_sides]  # a face at the same edge
+        self.lengths = np.linalg.norm(np.subtract(*mesh.vertices[self.edges.T]), axis=1)
+        size = len(mesh.vertices)
+        self.graph = csr_matrix((np.maximum(self.lengths, 1e-300), tuple(self.edges.T)), (size, size))
+
+
+class Segmentation:
+    """Labels of faces, from 0 without gaps, with the edges at their borders and distances from these along edges."""
+
+    def __init__(self, surface, labels):
+        self.labels = np.unique(labels, return_inverse=True)[1]
+        self.num_segments = self.labels.max() + 1
+        differs = self.labels[surface.face_of_sides] != self.labels[surface.other_of_sides]
+        self.cuts = np.unique(surface.edge_of_sides[differs])
+        self.distances = None
+        if len(self.cuts):
+            ends = np.unique(surface.edges[self.cuts])
+            self.distances = dijkstra(surface.graph, directed=False, indices=ends, min_only=True)
+
+
+def rand_distance(counts):
+    """1 - Rand index: share of the pairs of faces that one segmentation puts together and the other apart.
+
+    counts: table of the number of faces in each segment of one and of the other.
+    """
+    pairs = lambda n: (n * (n - 1)).sum() / 2
+    together = pairs(counts.sum(1)) + pairs(counts.sum(0)) - 2 * pairs(counts)
+    return together / max(pairs(counts.sum()), 1)
+
+
+def cut_distance(surface, from_, to):
+    """Mean distance of the cuts of one segmentation from those of another, in mean radii of the surface."""
+    lengths = surface.lengths[from_.cuts]
+    distances = to.distances[surface.edges[from_.cuts]].mean(axis=1)
+    known = np.isfinite(distances)  # elsewhere no way along the surface leads to a cut
+    return (lengths @ np.where(known, distances, 0)) / (lengths[known].sum() * surface.mean_radius) if known.any() else np.nan
+
+
+def compare(surface, reference, other):
+    """Measures of the benchmark, by their names. Areas weigh in all but the Rand index."""
+    shape, cell = (reference.num_segments, other.num_segments), reference.labels * other.num_segments + other.labels
+    counts = np.bincount(cell, minlength=np.prod(shape)).reshape(shape).astype(float)
+    areas = np.bincount(cell, surface.areas, np.prod(shape)).reshape(shape)
+    both_cut = len(reference.cuts) and len(other.cuts)
+    cut = cut_distance(surface, reference, other) + cut_distance(surface, other, reference) if both_cut else np.nan
+    missing, false = max(0, 1 - areas.max(1).sum()), max(0, 1 - areas.max(0).sum())
+    own, others = 1 - areas / areas.sum(1, keepdims=True), 1 - areas / areas.sum(0)  # refinement errors, both ways
+    return {"rand": rand_distance(counts), "cut": cut, "hamming": (missing + false) / 2, "missing": missing, "false": false,
+            "gce": min((areas * own).sum(), (areas * others).sum()), "lce": (areas * np.minimum(own, others)).sum()}  # fmt: skip
+
+
+def mirror_agreement(surface, labels, plane):
+    """Share of the area whose image in a plane lies in the partner of its segment, which receives most of it."""
+    normal, d = np.asarray(plane[:3]), plane[3]
+    images = surface.centers - 2 * np.outer(surface.centers @ normal + d, normal)
+    nearest = cKDTree(surface.centers).query(images)[1]
+    labels = np.unique(labels, return_inverse=True)[1]
+    size = labels.max() + 1
+    received = np.bincount(labels[nearest] * size + labels, surface.areas, size * size).reshape(size, size)
+    return received.max(0).sum() / received.sum()
+
+
+# Methods: (mesh, path, arguments) -> a label for each triangle
+
+
+def k_means(mesh, path, arguments):
+    clusters = KMeans(6, n_init=1, random_state=arguments.seed)
+    return clusters.fit_predict(mesh.corners.mean(axis=1), sample_weight=mesh.areas)
+
+
+def segment(mesh, path, arguments):
+    import pcl_symmetry
+
+    return pcl_symmetry.segment(mesh.vertices, mesh.triangles, threads=1)
+
+
+def segment_points(mesh, path, arguments):
+    import pcl_symmetry
+
+    points = bench.sample(mesh, NUM_POINTS, bench.generator(arguments.seed, path))
+    labels = np.array(pcl_symmetry.segment(points, threads=1))
+    points, labels = points[labels >= 0], labels[labels >= 0]
+    return labels[cKDTree(points).query(mesh.corners.mean(axis=1))[1]]
+
+
+def tool(*flags):
+    def segment_by_tool(mesh, path, arguments):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(arguments.tools) / "pcl_symmetry_segment"
+            command = [program, path, f"{folder}/parts.seg", *flags, "-threads", "1", "-quiet"]
+            try:
+                subprocess.run(command, check=True, capture_output=True, text=True)
+            except OSError as error:
+                raise bench.BadInput(f"{program}: cannot be run, {error.strerror}") from None
+            except subprocess.CalledProcessError as error:
+                raise bench.BadInput(error.stderr.strip()) from None
+            return read_labels(f"{folder}/parts.seg", mesh)
+
+    return segment_by_tool
+
+
+METHODS = {"people": None, "one": lambda mesh, path, arguments: np.zeros(len(mesh.triangles), int), "k-means": k_means,
+           "segment": segment, "points": segment_points,
+           "concavity": tool("-evidence", "concavity"), "symmetry": tool("-evidence", "symmetry"),
+           **{f"paper-{depth}": tool("-method", "splitting", "-depth", str(depth)) for depth in (1, 2, 3, 4)}}  # fmt: skip
+
+
+def read_labels(path, mesh):
+    """Labels of the triangles of a mesh from a .seg file, a number for each face of its file."""
+    try:
+        labels = np.array(pathlib.Path(path).read_text().split(), int)
+    except (OSError, ValueError) as error:
+        raise bench.BadInput(f"{path}: is no list of labels, {getattr(error, 'strerror', None) or error}") from None
+    if len(labels) <= mesh.polygons.max():
+        raise bench.BadInput(f"{path}: {len(labels)} labels, must be one for each face, more than {mesh.polygons.max()}")
+    return labels[mesh.polygons]
+
+
+def mean(rows):
+    """Means of the values with one name; those that are not defined do not count."""
+    return {name: float(np.nanmean(values)) if np.isfinite(values).any() else None
+            for name, values in ((name, np.array([row[name] for row in rows], float)) for name in rows[0])}  # fmt: skip
+
+
+def reference_plane(model, mesh, arguments):
+    """Coefficients of the best plane that maps the mesh onto itself, or None."""
+    found = references.references_of(model, mesh, arguments.references)["planes"] if arguments.mirrored else []
+    return max(found, key=lambda plane: plane["share"])["coefficients"] if found else None
+
+
+def evaluate(model, arguments):
+    """{method: measures} of one mesh."""
+    mesh = bench.read_mesh(model.path)
+    surface = Surface(mesh)
+    files = sorted(pathlib.Path(arguments.people, model.name).glob("*.seg"))
+    if not files:
+        raise bench.BadInput(f"{model.path}: no .seg file in {arguments.people}/{model.name}")
+    people = [Segmentation(surface, read_labels(path, mesh)) for path in files]
+    plane = reference_plane(model, mesh, arguments)
+    mirrored = lambda labels: np.nan if plane is None else mirror_agreement(surface, labels, plane)
+    rows = {}
+    for method in arguments.methods:
+        if method == "people":
+            pairs = [compare(surface, a, b) for a in people for b in people if a is not b]
+            own = [{"segments": p.num_segments, "mirrored": mirrored(p.labels), "milliseconds": np.nan} for p in people]
+            rows[method] = {**mean(pairs), **mean(own)} if pairs else None
+            continue
+        start = time.perf_counter()
+        labels = METHODS[method](mesh, model.path, arguments)
+        milliseconds = 1000 * (time.perf_counter() - start)
+        found = Segmentation(surface, labels)
+        own = {"segments": found.num_segments, "mirrored": mirrored(labels), "milliseconds": milliseconds}
+        rows[method] = {**mean([compare(surface, person, found) for person in people]), **mean([own])}
+    if arguments.judge:
+        found = Segmentation(surface, read_labels(f"{arguments.judge}/{model.name}.seg", mesh))
+        own = {"segments": found.num_segments, "mirrored": mirrored(found.labels), "milliseconds": np.nan}
+        rows["judged"] = {**mean([compare(surface, person, found) for person in people]), **mean([own])}
+    return {"model": model.name, "category": CATEGORIES[(int(model.name) - 1) // 20], "methods": rows}
+
+
+def interval(values):
+    """Mean and half the width of its 95 % interval over models, or None."""
+    values = np.array([value for value in values if value is not None], float)
+    if not len(values):
+        return None, None
+    return float(values.mean()), float(1.96 * values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else None
+
+
+def summarize(results):
+    """{method: {measure: [mean, half of the 95 % interval], ...}}"""
+    methods = {name for result in results for name in result["methods"]}
+    summary = {}
+    for method in sorted(methods, key=lambda name: [*METHODS, "judged"].index(name)):
+        rows = {r["model"]: r["methods"][method] for r in results if r["methods"].get(method)}
+        names = [*MEASURES, "segments", "mirrored", "milliseconds"]
+        summary[method] = {"models": len(rows), **{name: interval([row[name] for row in rows.values()]) for name in names}}
+        others = {r["model"]: r["methods"].get("segment") for r in results}
+        gains = [row["rand"] - others[model]["rand"] for model, row in rows.items() if others.get(model)]
+        summary[method]["minus segment"] = interval(gains)
+        by_category = {r["category"]: [] for r in results}
+        for result in results:
+            if result["model"] in rows:
+                by_category[result["category"]].append(rows[result["model"]]["rand"])
+        summary[method]["by category"] = {c: interval(values)[0] for c, values in by_category.items()}
+    return summary
+
+
+def report(summary):
+    between = lambda pair, digits=3: "-" if pair[0] is None else f"{pair[0]:.{digits}f}" + (
+        f" ({pair[0] - pair[1]:.{digits}f} to {pair[0] + pair[1]:.{digits}f})" if pair[1] is not None else "")  # fmt: skip
+    plain = lambda value, digits=3: "-" if value is None else f"{value:.{digits}f}"
+    header = ["", "models", "Rand", "minus segment", *list(MEASURES.values())[1:], "segments", "mirrored", "ms"]
+    rows = [[name, s["models"], between(s["rand"]), between(s["minus segment"]) if name != "segment" else "",
+             *(plain(s[m][0]) for m in list(MEASURES)[1:]), plain(s["segments"][0], 1), plain(s["mirrored"][0]),
+             plain(s["milliseconds"][0], 0)] for name, s in summary.items()]  # fmt: skip
+    bench.print_table("Distance from segmentations of people, means over models with 95 % intervals", header, rows)
+    categories = list(dict.fromkeys(c for s in summary.values() for c in s["by category"]))
+    rows = [[c, *(plain(s["by category"].get(c)) for s in summary.values())] for c in categories]
+    bench.print_table("Rand distance by category", ["", *summary], rows)
+
+
+def draw(summary, axes):
+    names = list(summary)
+    means, halves = zip(*(summary[name]["rand"] for name in names))
+    axes.barh(names, means, xerr=[half or 0 for half in halves], capsize=3, color="#4c78a8")
+    axes.invert_yaxis()
+    axes.set(xlabel="1 - Rand index against people, 95 % intervals over models", title="Parts of meshes")
+
+
+def main(arguments):
+    unknown = [name for name in arguments.methods if name not in METHODS]
+    if unknown:
+        raise bench.BadInput(f"--methods {unknown[0]}: must be among {', '.join(METHODS)}")
+    if not pathlib.Path(arguments.people).is_dir():
+        raise bench.BadInput(f"{arguments.people}: must be a folder")
+    every, arguments.every, largest, arguments.max = arguments.every, 1, arguments.max, None
+    wanted = lambda number: number % 2 == 1 and (number - 1) // 20 % 3 in arguments.remainders
+    models = [m for m in bench.list_models(arguments) if m.name.isdigit() and wanted(int(m.name))]
+    models = models[::every][:largest]
+    if not models:
+        raise bench.BadInput(f"{arguments.models[0]}: no mesh with an odd number of these categories")
+    results, left_out = bench.run(models, evaluate, arguments)
+    summary = summarize(results)
+    report(summary)
+    if arguments.figure:
+        bench.save_figure(arguments.figure, lambda axes: draw(summary, axes))
+    bench.write_json(arguments, {"methods": summary, "models": results, "left_out": left_out})
+
+
+if __name__ == "__main__":
+    parser = bench.make_parser(__doc__)
+    parser.add_argument("--people", metavar="DIR", required=True, help="folder of .seg files: 12/12_0.seg, ...")
+    parser.add_argument("--methods", type=lambda text: text.split(","), default="people,one,k-means,segment")
+    parser.add_argument("--remainders", type=lambda text: [int(n) for n in text.split(",")], default="0,1,2",
+                        help="categories, numbered from 0, modulo 3; weights were fitted to 0 and 1")  # fmt: skip
+    parser.add_argument("--mirrored", action="store_true", help="also agreement with the mirror image")
+    parser.add_argument("--references", metavar="DIR", help="with --mirrored: folder that keeps the planes of the models")
+    parser.add_argument("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_segment")
+    bench.main(main, parser.parse_args())
