@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""Which model a scan shows (Section 5.2): pcl_symmetry.Database on scans from one side.
+
+recognition.py PSB --classes train.cla --fold 1 --query-every 8 --json recognition.json --figure recognition.png
+
+Scans each model from a random direction in a random pose, and asks a database of all models but some which of them it
+is. --export writes the scans; --judge reads the answer of another program to each, NAME.json as
+`pcl_symmetry_match -recognize -json` writes it.
+"""
+import functools
+import json
+import pathlib
+import tempfile
+import time
+
+import numpy as np
+
+import bench
+
+MODEL_POINTS = 20_000  # of a model in the database
+
+
+def build(models, arguments):
+    """Builds the database, whole or not at all; returns sentences about the models that were left out."""
+    import pcl_symmetry
+
+    left_out, clouds = [], []
+    for model in models:
+        try:
+            points = bench.sample(bench.read_mesh(model.path), MODEL_POINTS, bench.generator(arguments.seed, model.key, "model"))
+            clouds.append((model.name, points.astype(np.float32)))
+        except bench.BadInput as error:
+            left_out.append(str(error))
+    part = pathlib.Path(f"{arguments.database}.part")
+    part.unlink(missing_ok=True)
+    database = pcl_symmetry.Database(str(part), threads=arguments.jobs)
+    report = database.build(clouds)
+    del database
+    part.replace(arguments.database)
+    return left_out + [f"{name}: {reason}" for name, reason in report.failures]
+
+
+@functools.lru_cache(maxsize=1)
+def opened(path):
+    import pcl_symmetry
+
+    return pcl_symmetry.Database(path, threads=1)
+
+
+def ask(model, arguments):
+    """What the database says about a scan of the model."""
+    if arguments.judge:
+        return {"model": model.name, **read_answer(pathlib.Path(arguments.judge, f"{model.name}.json")), "milliseconds": None}
+    mesh, random = bench.read_mesh(model.path), bench.generator(arguments.seed, model.key)
+    direction = bench.random_directions(random, 1)[0]
+    pose = bench.random_pose(random, mesh)
+    scan = bench.scan(mesh, direction, random, arguments.points, arguments.noise, pose)
+    if arguments.export:
+        bench.write_cloud(pathlib.Path(arguments.export, f"{model.name}.pcd"), scan.points, scan.T_cloud_sensor)
+    start = time.perf_counter()
+    found = opened(arguments.database).recognize(scan.rows.astype(np.float32), viewpoint=scan.viewpoint,
+                                                 min_confidence=arguments.accept, threads=1)  # fmt: skip
+    milliseconds = 1000 * (time.perf_counter() - start)
+    best = {"answer": found[0].name, "confidence": found[0].confidence, "merit": found[0].score.merit} if found else {"answer": None}
+    return {"model": model.name, **best, "milliseconds": milliseconds}
+
+
+def read_answer(path):
+    try:
+        content = json.loads(path.read_text())
+        models = content["models"] if content.get("known", True) else []
+        return {"answer": models[0]["name"] if models else None}
+    except (OSError, ValueError, KeyError, TypeError):
+        raise bench.BadInput(f"{path}: is no answer of pcl_symmetry_match -recognize -json") from None
+
+
+def judge(results, known, class_of):
+    """Rates of the answers. known: names in the database. class_of: {name: class}; without it each is its own."""
+    alike = lambda a, b: a == b or (a in class_of and class_of[a] == class_of.get(b))
+    inside, outside = ([r for r in results if (r["model"] in known) == yes] for yes in (True, False))
+    return {"the scanned model first": bench.Rate(r["answer"] == r["model"] for r in inside),
+            "a model of its class first": bench.Rate(alike(r["answer"], r["model"]) for r in inside),
+            "falsely unknown": bench.Rate(r["answer"] is None for r in inside),
+            "unknown objects found to be unknown": bench.Rate(r["answer"] is None for r in outside)}  # fmt: skip
+
+
+def draw(results, known, axes):
+    """Rates at every least confidence that could be asked for."""
+    confidence = lambda r: -1 if r["answer"] is None else r.get("confidence", 1)
+    least = np.linspace(0, 1, 101)
+    inside, outside = ([r for r in results if (r["model"] in known) == yes] for yes in (True, False))
+    share = lambda rows, yes: [np.mean([yes(r, x) for r in rows]) if rows else np.nan for x in least]
+    axes.plot(least, share(inside, lambda r, x: r["answer"] == r["model"] and confidence(r) >= x), label="the scanned model first")
+    axes.plot(least, share(outside, lambda r, x: confidence(r) < x), label="unknown objects found to be unknown")
+    axes.set(xlabel="least confidence of an answer", ylabel="share of the scans", ylim=(0, 1.02), title="Recognition of scans")
+    axes.legend()
+
+
+def main(arguments):
+    models = bench.list_models(arguments)
+    leaves = bench.read_classes(arguments.classes) if arguments.classes else {}
+    class_of = {name: leaf.name for name, leaf in leaves.items()}
+    is_left_out = lambda i: i % arguments.leave_out == arguments.leave_out - 1
+    inside = [model for i, model in enumerate(models) if not is_left_out(i)]
+    asked = [model for i, model in enumerate(models) if is_left_out(i) or i % arguments.query_every == 0]
+    failures, own_database = [], not arguments.database
+    with tempfile.TemporaryDirectory() as folder:
+        if own_database:
+            arguments.database = f"{arguments.json}.db" if arguments.json else f"{folder}/models.db"
+        if not arguments.judge and not pathlib.Path(arguments.database).exists():
+            failures = build(inside, arguments)
+        results, left_out = bench.run(asked, ask, arguments)
+        if own_database:
+            pathlib.Path(arguments.database).unlink(missing_ok=True)
+    rates = judge(results, {model.name for model in inside}, class_of)
+    times = [r["milliseconds"] for r in results]
+    title = f"{len(results)} scans, {len(inside)} models; median {bench.median(times, 0)} ms"
+    bench.print_table(title, ["", "rate"], [[name, rate.text] for name, rate in rates.items()])
+    if arguments.figure:
+        known = {model.name for model in inside}
+        bench.save_figure(arguments.figure, lambda axes: draw(results, known, axes))
+    bench.write_truth(arguments, {model.name: {"model": model.name, "known": model in inside} for model in asked})
+    rates = {name: rate.json for name, rate in rates.items()}
+    bench.write_json(arguments, {"rates": rates, "scans": results, "left_out": failures + left_out})
+
+
+if __name__ == "__main__":
+    parser = bench.make_parser(__doc__)
+    add = parser.add_argument
+    add("--leave-out", type=int, default=10, help="every N-th model is not in the database")
+    add("--query-every", type=int, default=1, help="scan every N-th model of the database only")
+    add("--points", type=int, default=10_000, help="points of a scan")
+    add("--noise", type=float, default=0.0, help="standard deviation of the depth, in diagonals")
+    add("--accept", type=float, default=0.5, help="least confidence of a model that is accepted")
+    add("--database", metavar="FILE", help="database to ask; built where it is missing, and kept")
+    bench.main(main, parser.parse_args())
