@@ -1,0 +1,503 @@
+#!/usr/bin/env python3
+"""Objects among others: planes, names and poses in frames of a depth camera or a LiDAR scanner.
+
+scenes.py PSB --classes train.cla --fold 1 --every 3 --scenes 45 --noise 0,1 --most-in-band 60 --json scenes.json
+
+Models of 0.15 to 0.3 m stand on a table or in a bin, none meets another, and a sensor looks at them. Each object that
+shows enough points is asked for twice:
+
+  alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes() and Database.recognize()
+  scene   the whole frame: pcl_symmetry_scene; the object that it finds must share half of the points (IoU >= 0.5)
+
+Answers of kind symmetry with a confidence of at least 0.5 decide, as in planes.py. A name is right with the pose where no
+point of the model is off by more than 5 % of its diameter, symmetries counted.
+
+--frames keeps the frames (PCD with a field object: -1 table, -2 nothing) and truth.json, or judges those that are there.
+--judge reads what another program found in each: NAME.json and NAME.pcd as `pcl_symmetry_scene` writes them.
+"""
+import functools
+import json
+import math
+import pathlib
+import subprocess
+import tempfile
+import time
+
+import numpy as np
+
+import bench
+import planes
+import references
+
+LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, metres
+MODEL_POINTS = 20_000  # in the database
+BANDS = (0.0, 0.1, 0.3, 0.5, 0.7)  # of the share of an object that others hide
+RIGHT_POSE = 0.05  # of the diameter: the limit of the BOP benchmark
+MIN_IOU = 0.5
+DEVIATION, STEP, FLYING, EDGE = 1.425e-3, 2.85e-3, 0.5, 0.02  # structured light at 1 m (Khoshelham and Elberink 2012); shares
+RANGE_DEVIATION = 0.001  # of a LiDAR scanner: 2 cm at a car of 4.5 m, for an object of 0.22 m
+TABLE_RIM, BIN_HEIGHT, BIN_WALL, BIN_GAP = 0.4, 0.15, 0.01, 0.01  # metres
+
+
+# Models in their size
+
+
+@functools.lru_cache(maxsize=2)
+def prepared(path):
+    return json.loads(pathlib.Path(path).read_text())
+
+
+@functools.lru_cache(maxsize=64)
+def mesh_of(path, diagonal):
+    """The mesh centered at the origin, with a bounding box of this diagonal."""
+    mesh = bench.read_mesh(path)
+    return bench.Mesh((mesh.vertices - mesh.center) * (diagonal / mesh.diagonal), mesh.triangles, mesh.polygons)
+
+
+def prepare(model, arguments):
+    """Size and reference symmetries of a model, in metres about its center."""
+    random = bench.generator(arguments.seed, model.key, "size")
+    diagonal = random.uniform(LEAST_DIAGONAL, GREATEST_DIAGONAL)
+    mesh = bench.read_mesh(model.path)
+    found, factor = references.references_of(model, mesh, arguments.references), diagonal / mesh.diagonal
+    point = lambda p: [float(x) for x in factor * (np.array(p) - mesh.center)]
+    offset = lambda c: [*c[:3], float(factor * (np.dot(c[:3], mesh.center) + c[3]))]
+    change = lambda row: {**row, **({"coefficients": offset(row["coefficients"])} if "coefficients" in row else {}),
+                          **({"point": point(row["point"])} if "point" in row else {})}  # fmt: skip
+    lists = {k: [change(row) for row in v] for k, v in found.items() if isinstance(v, list) and k != "center"}
+    sizes = {k: factor * found[k] for k in ("diagonal", "diameter", "tolerance")}
+    symmetries = {**found, **lists, **sizes, "center": point(found["center"])}
+    return {"name": model.name, "path": model.path, "diagonal": diagonal, "symmetries": symmetries}
+
+
+# Scenes
+
+
+def standing(random):
+    """Rotation that stands a model on one face of its bounding box, at any angle about the vertical."""
+    up, sign, angle = random.integers(3), random.choice([1, -1]), random.uniform(0, 2 * np.pi)
+    upright = np.roll(np.eye(3), 2 - up, axis=0)  # brings the axis to z
+    upright = upright if sign > 0 else np.diag([1, -1, -1]) @ upright
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ upright
+
+
+def draw_scene(models, arguments, number):
+    """Objects that stand apart: [(index of the model, T_scene_model, middle, radius of the circle around it)]."""
+    random = bench.generator(arguments.seed, "scene", number)
+    count = random.integers(1, arguments.objects + 1)
+    half_side, placed = 0.02 + 0.08 * math.sqrt(count), []
+    for index in random.integers(len(models), size=count):
+        rotation = standing(random)
+        corners = mesh_of(models[index]["path"], models[index]["diagonal"]).corners.reshape(-1, 3) @ rotation.T
+        middle = 0.5 * (corners.min(0) + corners.max(0))[:2]
+        radius = np.linalg.norm(corners[:, :2] - middle, axis=1).max()
+        for at in random.uniform(-half_side, half_side, (100, 2)):
+            if all(np.linalg.norm(other - at) > reach + radius + 0.005 for _, _, other, reach in placed):
+                pose = np.eye(4)
+                pose[:3, :3], pose[:3, 3] = rotation, [*(at - middle), -corners[:, 2].min()]
+                placed.append((int(index), pose, at, radius))
+                break
+    return placed, random
+
+
+def look_at_middle(placed, arguments, random):
+    """T_scene_sensor; most often along the line from an object to its nearest neighbour, which hides a part of it."""
+    azimuth = random.uniform(0, 2 * np.pi)
+    if len(placed) > 1 and random.uniform() < 0.8:
+        hidden = random.integers(len(placed))
+        away = np.array([other[2] - placed[hidden][2] for i, other in enumerate(placed) if i != hidden])
+        nearest = away[np.argmin(np.linalg.norm(away, axis=1))]
+        azimuth = math.atan2(nearest[1], nearest[0]) + random.uniform(-0.5, 0.5)
+    elevation = math.radians(random.uniform(45, 80) if arguments.place == "bin" else random.uniform(10, 40))
+    towards = np.array([math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)])
+    right = np.cross(-towards, [0, 0, 1])
+    right /= np.linalg.norm(right)
+    pose = np.eye(4)
+    pose[:3, :3] = np.stack([right, np.cross(-towards, right), -towards], 1)
+    pose[:3, 3] = random.uniform(0.9, 1.3) * towards
+    return pose
+
+
+TURN, RING_FIELD = math.radians(0.1), math.radians(26.8)  # of a scanner: from column to column; from first to last ring
+
+
+def rays_of(arguments):
+    """(H, W, 3) rays in the frame of the sensor: z = 1 for a camera of 640 x 480 pixels, of unit length for a scanner
+    (HDL-64E), of which a sixth of a turn is taken, a row of pixels for each ring."""
+    if arguments.sensor == "camera":
+        x, y = np.meshgrid((np.arange(640) - 319.5) / 525, (np.arange(480) - 239.5) / 525)
+        return np.stack([x, y, np.ones_like(x)], -1)
+    turn, fall = np.meshgrid(TURN * (np.arange(600) - 299.5), np.linspace(-RING_FIELD / 2, RING_FIELD / 2, arguments.rings))
+    return np.stack([np.cos(fall) * np.sin(turn), np.sin(fall), np.cos(fall) * np.cos(turn)], -1)
+
+
+def depths_of(corners, rays, arguments):
+    """Lengths along the rays at which they meet (T, 3, 3) triangles in the frame of the sensor."""
+    if arguments.sensor == "camera":
+        return bench.depth_picture(corners, 640, 320 / 525)[80:560]
+    turn = np.arctan2(corners[..., 0], corners[..., 2]) / TURN + 299.5
+    fall = np.arctan2(corners[..., 1], np.hypot(corners[..., 0], corners[..., 2]))
+    bulge = 0.25 * np.square(np.ptp(turn, axis=1) * TURN)  # edges of wide triangles are arcs
+    ring = lambda angle: (angle / RING_FIELD + 0.5) * (arguments.rings - 1)
+    low = np.stack([turn.min(1), ring(fall.min(1) - bulge)], 1)
+    return bench.first_hits(corners, rays, low, np.stack([turn.max(1), ring(fall.max(1) + bulge)], 1))
+
+
+def box(low, high):
+    """(12, 3, 3) triangles of the faces of a box."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * np.subtract(high, low) + low
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return corners[[t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]]
+
+
+def surroundings(placed, arguments):
+    """Triangles of the table, and of the walls of a bin as wide as its objects need."""
+    half = 0.02 + 0.08 * math.sqrt(max(1, len(placed))) + TABLE_RIM
+    parts = []
+    if arguments.place == "bin":
+        inner = max(np.abs(at).max() + radius for _, _, at, radius in placed) + BIN_GAP
+        outer, half = inner + BIN_WALL, max(half, inner + TABLE_RIM)
+        for low, high in ((-outer, -inner), (inner, outer)):
+            parts += [box((low, -outer, 0), (high, outer, BIN_HEIGHT)), box((-outer, low, 0), (outer, high, BIN_HEIGHT))]
+    cuts = np.linspace(-half, half, 9)  # small triangles have small boxes in the picture
+    squares = [box((x, y, 0), (x + cuts[1] - cuts[0], y + cuts[1] - cuts[0], 0))[8:10] for x in cuts[:-1] for y in cuts[:-1]]
+    return np.concatenate(squares + parts)
+
+
+def render(models, placed, sensor, arguments):
+    """(depths, ids, [(pixels of each object, pixels without the others, reaches beyond the picture)])"""
+    rays = rays_of(arguments)
+    inside = lambda corners: depths_of((corners - sensor[:3, 3]) @ sensor[:3, :3], rays, arguments)
+    alone = []
+    for index, pose, _, _ in placed:
+        mesh = mesh_of(models[index]["path"], models[index]["diagonal"])
+        alone.append(inside(bench.moved(pose, mesh.corners)))
+    layers = np.stack([*alone, inside(surroundings(placed, arguments))])
+    depths, ids = layers.min(0), layers.argmin(0)
+    ids = np.where(ids == len(alone), -1, ids)
+    ids[np.isinf(depths)] = -2
+    border = np.ones(depths.shape, bool)
+    border[1:-1, 1:-1] = False
+    hits = [np.isfinite(layer) for layer in alone]
+    return depths, ids, [(int((ids == k).sum()), int(hit.sum()), bool((hit & border).any())) for k, hit in enumerate(hits)]
+
+
+def with_noise(depths, factor, sensor, random):
+    """Errors of a depth camera with structured light, which measures disparities in whole steps and mixes the depths at
+    edges; or of the range of a scanner."""
+    if factor == 0:
+        return depths
+    if sensor == "lidar":
+        return depths + factor * RANGE_DEVIATION * random.normal(size=depths.shape)
+    noisy = depths.copy()
+    for axis in (1, 0):
+        beside = np.roll(depths, -1, axis)
+        step = np.where(np.isfinite(depths) & np.isfinite(beside), beside, 0) - np.where(np.isfinite(depths), depths, 0)
+        edge = np.isfinite(depths) & np.isfinite(beside) & (np.abs(step) > EDGE * depths)
+        edge[(slice(None),) * axis + (-1,)] = False  # nothing is beside the last ones
+        flying = edge & (random.uniform(size=depths.shape) < factor * FLYING)
+        noisy[flying] = (depths + random.uniform(size=depths.shape) * step)[flying]
+    disparities = 1 / (factor * STEP * noisy) + DEVIATION / STEP * random.normal(size=depths.shape)
+    return np.where(np.isfinite(depths), 1 / (factor * STEP * np.maximum(1, np.round(disparities))), np.inf)
+
+
+def make(number, arguments):
+    """Writes the frames of one scene; returns {name of the frame: its objects}."""
+    models = prepared(f"{arguments.frames}/models.json")
+    placed, random = draw_scene(models, arguments, number)
+    sensor = look_at_middle(placed, arguments, random)
+    depths, ids, seen = render(models, placed, sensor, arguments)
+    objects, frames = [], {}
+    for k, (index, pose, _, _) in enumerate(placed):
+        num_visible, num_alone, cropped = seen[k]
+        objects.append({"object": k, "model": models[index]["name"], "diagonal": models[index]["diagonal"],
+                        "T_scene_model": pose.ravel().tolist(), "num_visible": num_visible, "num_alone": num_alone,
+                        "cropped": cropped, "symmetries": references.moved(models[index]["symmetries"], pose)})  # fmt: skip
+    for noise in arguments.noise:
+        measured = with_noise(depths, noise, arguments.sensor, bench.generator(arguments.seed, "noise", number, noise))
+        points = bench.moved(sensor, np.where(np.isfinite(measured), measured, np.nan)[..., None] * rays_of(arguments))
+        labels, name = ids, f"scene_{int(number):04d}_noise_{noise:g}"
+        if arguments.sensor == "lidar":  # no rows: what met nothing is left out
+            points, labels = points[ids > -2], ids[ids > -2]
+        bench.write_cloud(f"{arguments.frames}/{name}.pcd", points, sensor, object=labels)
+        frames[name] = objects
+    return frames
+
+
+def build_database(models, arguments):
+    """All models but every N-th one, whole or not at all."""
+    import pcl_symmetry
+
+    path = pathlib.Path(arguments.frames, "models.db")
+    if path.exists():
+        return
+    part = path.with_suffix(".part")
+    part.unlink(missing_ok=True)
+    clouds = [(m["name"], bench.sample(mesh_of(m["path"], m["diagonal"]), MODEL_POINTS, bench.generator(arguments.seed, m["name"])))
+              for i, m in enumerate(models) if i % arguments.leave_out != arguments.leave_out - 1]  # fmt: skip
+    pcl_symmetry.Database(str(part), threads=arguments.jobs).build((name, points.astype(np.float32)) for name, points in clouds)
+    part.replace(path)
+
+
+# Judging
+
+
+def read_frame(path):
+    """(N, 3) points, NaN where nothing was met, (N,) objects, and the position of the sensor."""
+    import open3d
+
+    try:
+        with open(path, "rb") as file:
+            header = next((line for line in file if line.startswith(b"VIEWPOINT")), b"VIEWPOINT 0 0 0")
+        cloud = open3d.t.io.read_point_cloud(str(path)).point
+        labels = cloud["object"].numpy().ravel().astype(int)
+        return cloud["positions"].numpy().astype(np.float32), labels, np.array(header.split()[1:4], float)
+    except (OSError, KeyError, RuntimeError, ValueError):
+        raise bench.BadInput(f"{path}: is no frame with the field object") from None
+
+
+def intersections(labels, truth):
+    """IoU of each label in `labels` (rows, from 0) with each in `truth` (columns); negative ones belong to nothing."""
+    rows, columns = labels.max(initial=-1) + 1, truth.max(initial=-1) + 1
+    both = (labels >= 0) & (truth >= 0)
+    common = np.bincount(labels[both] * columns + truth[both], minlength=rows * columns).reshape(rows, columns)
+    sizes = [np.bincount(x[x >= 0], minlength=n) for x, n in ((labels, rows), (truth, columns))]
+    return common / np.maximum(1, sizes[0][:, None] + sizes[1] - common)
+
+
+def farthest_off(error, symmetries):
+    """How far a pose that is off by a motion (scene frame) moves points of the model at most, up to its symmetries."""
+    center, diagonal = np.array(symmetries["center"]), symmetries["diagonal"]
+    angle = lambda rotation: math.acos(np.clip(0.5 * (np.trace(rotation) - 1), -1, 1))
+    between = lambda a, b: math.atan2(np.linalg.norm(np.cross(a, b)), a @ b)
+    reflections = []
+    for plane in symmetries["planes"]:
+        n, d = np.array(plane["coefficients"][:3]), plane["coefficients"][3]
+        reflections.append(np.block([[np.eye(3) - 2 * np.outer(n, n), -2 * d * n[:, None]], [0, 0, 0, 1]]))
+    found = []  # (angle, distance)
+    for s in [np.eye(4), *(a @ b for a in reflections for b in reflections if a is not b)]:
+        shift = np.linalg.norm(bench.moved(error, center) - bench.moved(s, center))
+        found.append((angle(error[:3, :3] @ s[:3, :3].T), shift))
+    for axis in symmetries["axes"]:
+        direction, point = np.array(axis["direction"]), np.array(axis["point"])
+        point = point + direction * ((center - point) @ direction)
+        turned, moved = error[:3, :3] @ direction, bench.moved(error, point)
+        found.append((between(turned, direction), np.linalg.norm(moved - point)))
+        for plane, s in zip(symmetries["planes"], reflections):
+            if abs(np.dot(plane["coefficients"][:3], direction)) > math.cos(math.radians(3)):
+                found.append((between(turned, -direction), np.linalg.norm(moved - bench.moved(s, point))))
+    found += [(0.0, np.linalg.norm(bench.moved(error, np.array(c["point"])) - c["point"])) for c in symmetries["centers"]]
+    turn, shift = min(found, key=lambda f: max(f[0] / math.radians(5), f[1] / (0.02 * diagonal)))
+    return shift + diagonal * math.sin(0.5 * turn)
+
+
+def judge_name(models, truth, known):
+    """models: [{name, confidence, T_model_scene}], accepted ones, best first."""
+    row = {"known": known, "answer": models[0]["name"] if models else None, "right_model": False, "right_pose": False}
+    if models and models[0]["name"] == truth["model"]:
+        pose = np.reshape(truth["T_scene_model"], (4, 4)) @ np.reshape(models[0]["T_model_scene"], (4, 4))
+        row["right_model"] = True
+        row["right_pose"] = bool(farthest_off(pose, truth["symmetries"]) < RIGHT_POSE * truth["symmetries"]["diameter"])
+    return row
+
+
+@functools.lru_cache(maxsize=1)
+def database(path):
+    import pcl_symmetry
+
+    return pcl_symmetry.Database(path, threads=1)
+
+
+def ask_database(points, viewpoint, arguments):
+    found = database(f"{arguments.frames}/models.db").recognize(points, viewpoint=viewpoint, threads=1)
+    return [{"name": m.name, "confidence": m.confidence, "T_model_scene": m.transform} for m in found]
+
+
+def run_tool(frame, folder, arguments):
+    program = pathlib.Path(arguments.tools, "pcl_symmetry_scene")
+    flags = ["-database", f"{arguments.frames}/models.db"] if arguments.leave_out else []
+    command = [program, f"{arguments.frames}/{frame}.pcd", f"{folder}/{frame}.pcd", "-json", f"{folder}/{frame}.json",
+               "-quiet", "-threads", "1", "-seed", str(arguments.seed + 1), *flags]  # fmt: skip
+    try:
+        done = subprocess.run(command, capture_output=True, text=True)
+    except OSError as error:
+        raise bench.BadInput(f"{program}: cannot be run, {error.strerror}") from None
+    if done.returncode:
+        raise bench.BadInput(done.stderr.strip())
+
+
+def found_in_frame(frame, finite, truth, arguments):
+    """([answers of each object found], IoU of each with each true one, milliseconds)"""
+    start = time.perf_counter()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = arguments.judge or temporary
+        if not arguments.judge:
+            run_tool(frame, folder, arguments)
+        milliseconds = 1000 * (time.perf_counter() - start)
+        try:
+            content = json.loads(pathlib.Path(folder, f"{frame}.json").read_text())
+        except (OSError, ValueError):
+            raise bench.BadInput(f"{folder}/{frame}.json: is no answer of pcl_symmetry_scene") from None
+        labels = read_frame(f"{folder}/{frame}.pcd")[1][: finite.sum()] - 1  # points that the completion adds come behind
+    if len(labels) < finite.sum():
+        raise bench.BadInput(f"{folder}/{frame}.pcd: {len(labels)} points, must be those of the frame")
+    return content["objects"], intersections(labels, truth[finite]), milliseconds
+
+
+def judge_frame(frame, arguments):
+    """Rows of the wanted objects of one frame: alone, and in the scene."""
+    points, labels, viewpoint = read_frame(f"{arguments.frames}/{frame.name}.pcd")
+    finite, rows = np.isfinite(points[:, 0]), []
+    found, overlap, milliseconds = found_in_frame(frame.name, finite, labels, arguments) if "scene" in arguments.seen else ([], None, 0)
+    sensor = np.eye(4)
+    sensor[:3, 3] = viewpoint
+    for truth in frame.objects:
+        k, symmetries = truth["object"], truth["symmetries"]
+        base = {"frame": frame.name, "noise": frame.noise, "object": k, "model": truth["model"], "kind": symmetries["kind"],
+                "occlusion": occlusion(truth), "points": int((finite & (labels == k)).sum())}  # fmt: skip
+        known = truth["model"] in frame.known
+        if "alone" in arguments.seen:
+            own = points[finite & (labels == k)]
+            answers = planes.judge(bench.detect(own, sensor, arguments.seed + 1), symmetries)
+            name = judge_name(ask_database(own, viewpoint, arguments), truth, known) if arguments.leave_out else {}
+            rows.append({**base, "seen": "alone", "found": True, **short(answers), **name})
+        if "scene" in arguments.seen:
+            best = int(overlap[:, k].argmax()) if len(found) and k < overlap.shape[1] else 0
+            is_found = len(found) > 0 and k < overlap.shape[1] and overlap[best, k] >= MIN_IOU
+            own = found[best] if is_found else {"planes": [], "axes": [], "centers": [], "models": []}
+            name = judge_name(own["models"], truth, known) if arguments.leave_out else {}
+            rows.append({**base, "seen": "scene", "found": bool(is_found), **short(planes.judge(own, symmetries)), **name})
+    return {"rows": rows, "milliseconds": milliseconds}
+
+
+def short(judged):
+    return {name: judged[name] for name in ("called", "decided_right", "first_right")}
+
+
+def occlusion(truth):
+    return 1 - truth["num_visible"] / truth["num_alone"] if truth["num_alone"] else 1.0
+
+
+def band_of(share):
+    """Index of the band of occlusion; None where too little is seen."""
+    return next((i for i in range(4) if BANDS[i] <= share < BANDS[i + 1]), None)
+
+
+class Frame:
+    def __init__(self, name, objects, known):
+        self.name, self.objects, self.known = name, objects, known
+        self.noise = float(name.rsplit("_", 1)[-1])
+
+
+def wanted_frames(truths, arguments):
+    """Frames with the objects that are asked for: the first ones of each band, in the order of the scenes."""
+    in_band, frames = {}, []
+    known = {m["name"] for i, m in enumerate(prepared(f"{arguments.frames}/models.json"))
+             if arguments.leave_out and i % arguments.leave_out != arguments.leave_out - 1}  # fmt: skip
+    for name in sorted(truths):
+        frame = Frame(name, [], known)
+        for truth in truths[name]:
+            band = band_of(occlusion(truth))
+            if band is None or truth.get("cropped") or truth["num_visible"] < arguments.min_points:
+                continue
+            key = (frame.noise, band)
+            in_band[key] = in_band.get(key, 0) + (occlusion(truth) >= arguments.least_occlusion)
+            if occlusion(truth) >= arguments.least_occlusion and in_band[key] <= (arguments.most_in_band or math.inf):
+                frame.objects.append(truth)
+        frames += [frame] if frame.objects else []
+    return frames
+
+
+# Tables
+
+
+def summarize(rows, arguments):
+    """Rates of each noise, band of occlusion and way of asking."""
+    groups = {}
+    for row in rows:
+        groups.setdefault((row["noise"], band_of(row["occlusion"]), row["seen"]), []).append(row)
+    summary = []
+    for (noise, band, seen), own in sorted(groups.items()):
+        known = [r for r in own if r.get("known")]
+        rates = {"found": bench.Rate(r["found"] for r in own),
+                 "decided_right": bench.Rate(r["decided_right"] for r in own if r["kind"] == "symmetric"),
+                 "asymmetric_called": bench.Rate(r["called"] for r in own if r["kind"] == "asymmetric"),
+                 "right_model": bench.Rate(r["right_model"] for r in known), "right_pose": bench.Rate(r["right_pose"] for r in known),
+                 "unknown_of_others": bench.Rate(r["answer"] is None for r in own if r.get("known") is False)}  # fmt: skip
+        summary.append({"noise": noise, "band": band, "seen": seen, "rates": rates})
+    return summary
+
+
+def report(summary, milliseconds, arguments):
+    hidden = lambda s: f"{100 * BANDS[s['band']]:.0f} to {100 * BANDS[s['band'] + 1]:.0f} %"
+    cells = lambda s, names: [f"{s['noise']:g}", hidden(s), s["seen"], *(s["rates"][name].text for name in names)]
+    header = ["noise", "hidden", "seen"]
+    title = f"Planes of objects in frames; median time of a whole frame {bench.median(milliseconds, 0)} ms"
+    bench.print_table(title, [*header, "found, IoU >= 0.5", "symmetric: decided right", "asymmetric: called symmetric"],
+                      [cells(s, ("found", "decided_right", "asymmetric_called")) for s in summary])  # fmt: skip
+    if arguments.leave_out:
+        bench.print_table("Names and poses", [*header, "right model", "right model and pose", "unknown objects called unknown"],
+                          [cells(s, ("right_model", "right_pose", "unknown_of_others")) for s in summary])  # fmt: skip
+
+
+def draw(summary, axes):
+    for i, (noise, seen) in enumerate(sorted({(s["noise"], s["seen"]) for s in summary})):
+        own = [s for s in summary if (s["noise"], s["seen"]) == (noise, seen) and s["rates"]["decided_right"].total]
+        rates = [s["rates"]["decided_right"].json for s in own]
+        y = np.array([r["rate"] for r in rates])
+        ends = np.abs(np.array([[r["low"], r["high"]] for r in rates]).T - y)
+        axes.errorbar([s["band"] + 0.06 * i for s in own], y, ends, fmt="o-", capsize=3, label=f"{seen}, noise {noise:g}")
+    axes.set_xticks(range(4), [f"{100 * a:.0f} to {100 * b:.0f} %" for a, b in zip(BANDS, BANDS[1:])])
+    axes.set(xlabel="hidden by others", ylabel="symmetric objects decided right", ylim=(0, 1), title="Planes of objects in scenes")
+    axes.legend(fontsize="small")
+
+
+def make_frames(arguments):
+    """Writes models.json, models.db, the frames, and truth.json last."""
+    folder = pathlib.Path(arguments.frames)
+    folder.mkdir(parents=True, exist_ok=True)
+    models, left_out = bench.run(bench.list_models(arguments), prepare, arguments, "models")
+    bench.write_whole(folder / "models.json", json.dumps(models))
+    if arguments.leave_out:
+        build_database(models, arguments)
+    made, failures = bench.run(range(arguments.scenes), make, arguments, "frames")
+    bench.write_whole(folder / "truth.json", json.dumps({"scenes": {k: v for frames in made for k, v in frames.items()}}))
+    return left_out + failures
+
+
+def program(arguments):
+    with tempfile.TemporaryDirectory() as temporary:
+        arguments.frames = arguments.frames or (f"{arguments.json}.frames" if arguments.json else temporary)
+        truth, left_out = pathlib.Path(arguments.frames, "truth.json"), []
+        if not truth.exists():
+            left_out = make_frames(arguments)
+        frames = wanted_frames(json.loads(truth.read_text())["scenes"], arguments)
+        judged, failures = bench.run(frames, judge_frame, arguments, "judged")
+    rows = [row for frame in judged for row in frame["rows"]]
+    summary = summarize(rows, arguments)
+    report(summary, [frame["milliseconds"] for frame in judged if frame["milliseconds"]], arguments)
+    if arguments.figure:
+        bench.save_figure(arguments.figure, lambda axes: draw(summary, axes))
+    summary = [{**s, "rates": {name: rate.json for name, rate in s["rates"].items()}} for s in summary]
+    bench.write_json(arguments, {"rows": summary, "objects": rows, "left_out": left_out + failures})
+
+
+if __name__ == "__main__":
+    parser = bench.make_parser(__doc__)
+    add = parser.add_argument
+    add("--scenes", type=int, default=100, help="number of scenes")
+    add("--objects", type=int, default=12, help="greatest number of objects of a scene")
+    add("--noise", type=lambda text: [float(n) for n in text.split(",")], default="0,1", help="factors of the sensor's noise")
+    add("--place", choices=("table", "bin"), default="table")
+    add("--sensor", choices=("camera", "lidar"), default="camera")
+    add("--rings", type=int, default=64, help="of a LiDAR scanner")
+    add("--seen", type=lambda text: text.split(","), default="alone,scene", help="how objects are asked for")
+    add("--min-points", type=int, default=300, help="least number of points of an object")
+    add("--least-occlusion", type=float, default=0.0, help="objects of which others hide less are passed over")
+    add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
+    add("--leave-out", type=int, default=0, help="also ask a database without every N-th model; 0: do not")
+    add("--references", metavar="DIR", help="folder that keeps the reference symmetries of the models")
+    add("--frames", metavar="DIR", help="folder that keeps the frames, or holds those that are judged")
+    add("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_scene")
+    bench.main(program, parser.parse_args())
