@@ -9,6 +9,7 @@ import math
 import multiprocessing
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -468,6 +469,16 @@ def _detect_by_tool(points, sensor, seed, tool, options):
         return read_answers(folder, "found")
 
 
+def run_tool(folder, name, *arguments):
+    """Runs a command-line tool; what it says against its input is said of the item that it was run for."""
+    try:
+        subprocess.run([pathlib.Path(folder, name), *arguments], check=True, capture_output=True, text=True)
+    except OSError as error:
+        raise BadInput(f"{folder}/{name}: cannot be run, {error.strerror}") from None
+    except subprocess.CalledProcessError as error:
+        raise BadInput(error.stderr.strip()) from None
+
+
 def read_answers(folder, name):
     """Answers of another program: NAME.json as `pcl_symmetry_planes -json` writes it, or NAME.txt with rows
     `a b c d [confidence]`, best first. No file is a failure."""
@@ -653,6 +664,8 @@ def write_json(arguments, content):
         write_whole(arguments.json, json.dumps(content, indent=1) + "\n")
         for path in pathlib.Path(arguments.json).parent.glob(pathlib.Path(arguments.json).name + "*.journal"):
             path.unlink()
+        for folder in pathlib.Path(arguments.json).parent.glob(pathlib.Path(arguments.json).name + ".*.work"):
+            shutil.rmtree(folder)
 
 
 def write_truth(arguments, truths):
@@ -676,6 +689,20 @@ def write_whole(path, text):
         part.replace(path)
     except OSError as error:
         raise BadInput(f"{path}: cannot be written, {error.strerror}") from None
+
+
+def _asked(arguments):
+    """What the results of a run depend on."""
+    return {k: v for k, v in vars(arguments).items() if k not in ("jobs", "scheduler", "json", "figure")}
+
+
+def work_folder(arguments, given, temporary):
+    """Folder for what a run makes on its way: the given one; else one beside --json, from which the same run goes on
+    after an interruption and which write_json() deletes; without --json a temporary one."""
+    digest = hashlib.sha256(json.dumps(_asked(arguments), default=str).encode()).hexdigest()[:8]
+    folder = pathlib.Path(given or (f"{arguments.json}.{digest}.work" if arguments.json else temporary))
+    folder.mkdir(parents=True, exist_ok=True)
+    return str(folder)
 
 
 def run(items, function, arguments, stage=""):
@@ -781,8 +808,7 @@ class _Journal:
 
     def __init__(self, arguments, stage):
         self.path = pathlib.Path(f"{arguments.json}{'.' * bool(stage)}{stage}.journal") if arguments.json else None
-        no_matter = ("jobs", "scheduler", "json", "figure")
-        self.asked = {k: v for k, v in vars(arguments).items() if k not in no_matter}
+        self.asked = _asked(arguments)
         self.file = None
 
     def read(self):

@@ -84,10 +84,10 @@ def judge(results, known, class_of):
             "unknown objects found to be unknown": bench.Rate(r["answer"] is None for r in outside)}  # fmt: skip
 
 
-def draw(results, known, axes):
-    """Rates at every least confidence that could be asked for."""
+def draw(results, known, accept, axes):
+    """Rates at every greater least confidence that could be asked for."""
     confidence = lambda r: -1 if r["answer"] is None else r.get("confidence", 1)
-    least = np.linspace(0, 1, 101)
+    least = np.linspace(accept, 1, 101)
     inside, outside = ([r for r in results if (r["model"] in known) == yes] for yes in (True, False))
     share = lambda rows, yes: [np.mean([yes(r, x) for r in rows]) if rows else np.nan for x in least]
     axes.plot(least, share(inside, lambda r, x: r["answer"] == r["model"] and confidence(r) >= x), label="the scanned model first")
@@ -103,22 +103,18 @@ def main(arguments):
     is_left_out = lambda i: i % arguments.leave_out == arguments.leave_out - 1
     inside = [model for i, model in enumerate(models) if not is_left_out(i)]
     asked = [model for i, model in enumerate(models) if is_left_out(i) or i % arguments.query_every == 0]
-    failures, own_database = [], not arguments.database
-    with tempfile.TemporaryDirectory() as folder:
-        if own_database:
-            arguments.database = f"{arguments.json}.db" if arguments.json else f"{folder}/models.db"
-        if not arguments.judge and not pathlib.Path(arguments.database).exists():
-            failures = build(inside, arguments)
+    with tempfile.TemporaryDirectory() as temporary:
+        arguments.database = arguments.database or bench.work_folder(arguments, None, temporary) + "/models.db"
+        built = arguments.judge or pathlib.Path(arguments.database).exists()
+        failures = [] if built else build(inside, arguments)
         results, left_out = bench.run(asked, ask, arguments)
-        if own_database:
-            pathlib.Path(arguments.database).unlink(missing_ok=True)
     rates = judge(results, {model.name for model in inside}, class_of)
     times = [r["milliseconds"] for r in results]
     title = f"{len(results)} scans, {len(inside)} models; median {bench.median(times, 0)} ms"
     bench.print_table(title, ["", "rate"], [[name, rate.text] for name, rate in rates.items()])
     if arguments.figure:
         known = {model.name for model in inside}
-        bench.save_figure(arguments.figure, lambda axes: draw(results, known, axes))
+        bench.save_figure(arguments.figure, lambda axes: draw(results, known, arguments.accept, axes))
     bench.write_truth(arguments, {model.name: {"model": model.name, "known": model in inside} for model in asked})
     rates = {name: rate.json for name, rate in rates.items()}
     bench.write_json(arguments, {"rates": rates, "scans": results, "left_out": failures + left_out})
@@ -132,5 +128,5 @@ if __name__ == "__main__":
     add("--points", type=int, default=10_000, help="points of a scan")
     add("--noise", type=float, default=0.0, help="standard deviation of the depth, in diagonals")
     add("--accept", type=float, default=0.5, help="least confidence of a model that is accepted")
-    add("--database", metavar="FILE", help="database to ask; built where it is missing, and kept")
+    add("--database", metavar="FILE", help="database to ask, built where it is missing")
     bench.main(main, parser.parse_args())

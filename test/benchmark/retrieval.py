@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How well shapes find others of their class (Section 5.2): the descriptors of Figures 12 to 14, and this library's.
 
-retrieval.py PSB --classes train.cla --descriptors DIR --json retrieval.json --figure recall.png
+retrieval.py PSB --classes train.cla --json retrieval.json --figure recall.png
 
 Each model asks for the others of its class (Princeton Shape Benchmark). Descriptors of the paper stand about the center
 of mass, in a ball of twice the mean distance of the points from it:
@@ -21,7 +21,6 @@ format of the benchmark's own programs.
 """
 import itertools
 import pathlib
-import shutil
 import tempfile
 
 import numpy as np
@@ -55,18 +54,13 @@ def prst(points, bins):
     """sqrt(D) of planes (theta, phi, r) within distance 1 of the origin."""
     import pcl_symmetry
 
-    map_ = pcl_symmetry.transform(points, bins, method="convolution", radius=1.0, sigma=1 / 16, threads=1)
+    map_ = pcl_symmetry.transform(points, bins, radius=1.0, sigma=1 / 16, threads=1)
     return np.sqrt(np.maximum(map_.values, 0))
 
 
 def in_ball(points, reach):
     """Points in units of `reach` times their mean distance from the origin."""
     return points / (reach * np.linalg.norm(points, axis=1).mean())
-
-
-def about_middle(points):
-    """Points about the point half-way between their center of mass and the middle of their extent."""
-    return points - 0.5 * (points.mean(0) + 0.5 * (points.min(0) + points.max(0)))
 
 
 def stretched(points):
@@ -91,11 +85,13 @@ def describe(model, arguments):
         forms[f"prst {name}"] = prst(points, (32, 32, 32))
         forms[f"prsd {name}"] = prst(points, (32, 32, 1))
         forms[f"gedt {name}"] = gedt(points, 32)
-    points = about_middle(turned @ right_handed(frame))
+    points = turned @ right_handed(frame)  # about the point half-way between center of mass and middle of the extent
+    points = points - 0.5 * (points.mean(0) + 0.5 * (points.min(0) + points.max(0)))
     shapes = [in_ball(points, 2.2), in_ball(stretched(points), 2.0)]
     forms["prst turns"] = [prst(shape, (24, 48, 24)) for shape in shapes]
     forms["gedt turns"] = [gedt(shape, 24) for shape in shapes]
-    forms["signature"] = pcl_symmetry.describe(turned, viewpoint=None, threads=1)[0].reshape(2, 6, 12, 12, 12).transpose(0, 1, 4, 3, 2)
+    signature = pcl_symmetry.describe(turned, viewpoint=None, threads=1)[0]
+    forms["signature"] = signature.reshape(2, 6, 12, 12, 12).transpose(0, 1, 4, 3, 2)
     np.savez(pathlib.Path(arguments.descriptors, model.name), turned=turned.astype(np.float32),
              **{name: np.asarray(values, np.float16) for name, values in forms.items()})  # fmt: skip
     return True
@@ -372,14 +368,9 @@ def distances_of(models, arguments):
 def main(arguments):
     if not arguments.classes:
         raise bench.BadInput("--classes FILE is missing: it says which models belong together")
-    if not arguments.descriptors:
-        arguments.descriptors = tempfile.mkdtemp()
-        try:
-            return evaluate(arguments)
-        finally:
-            shutil.rmtree(arguments.descriptors)
-    pathlib.Path(arguments.descriptors).mkdir(parents=True, exist_ok=True)
-    evaluate(arguments)
+    with tempfile.TemporaryDirectory() as temporary:
+        arguments.descriptors = bench.work_folder(arguments, arguments.descriptors, temporary)
+        evaluate(arguments)
 
 
 def evaluate(arguments):
@@ -411,5 +402,5 @@ def evaluate(arguments):
 
 if __name__ == "__main__":
     parser = bench.make_parser(__doc__)
-    parser.add_argument("--descriptors", metavar="DIR", help="folder that keeps descriptors, 1 MB a model, so that a run can go on")
+    parser.add_argument("--descriptors", metavar="DIR", help="folder that keeps descriptors, 1 MB a model")
     bench.main(main, parser.parse_args())

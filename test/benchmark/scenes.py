@@ -19,15 +19,16 @@ import functools
 import json
 import math
 import pathlib
-import subprocess
 import tempfile
 import time
+import types
 
 import numpy as np
 
 import bench
 import planes
 import references
+import registration
 
 LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, metres
 MODEL_POINTS = 20_000  # in the database
@@ -257,49 +258,28 @@ def read_frame(path):
         raise bench.BadInput(f"{path}: is no frame with the field object") from None
 
 
-def intersections(labels, truth):
-    """IoU of each label in `labels` (rows, from 0) with each in `truth` (columns); negative ones belong to nothing."""
-    rows, columns = labels.max(initial=-1) + 1, truth.max(initial=-1) + 1
+def overlaps(labels, truth, shape):
+    """(rows, columns) IoU of labels, from 0, with true ones; negative ones belong to nothing."""
     both = (labels >= 0) & (truth >= 0)
-    common = np.bincount(labels[both] * columns + truth[both], minlength=rows * columns).reshape(rows, columns)
-    sizes = [np.bincount(x[x >= 0], minlength=n) for x, n in ((labels, rows), (truth, columns))]
+    common = np.bincount(labels[both] * shape[1] + truth[both], minlength=shape[0] * shape[1]).reshape(shape)
+    sizes = [np.bincount(x[x >= 0], minlength=n) for x, n in zip((labels, truth), shape)]
     return common / np.maximum(1, sizes[0][:, None] + sizes[1] - common)
 
 
 def farthest_off(error, symmetries):
     """How far a pose that is off by a motion (scene frame) moves points of the model at most, up to its symmetries."""
-    center, diagonal = np.array(symmetries["center"]), symmetries["diagonal"]
-    angle = lambda rotation: math.acos(np.clip(0.5 * (np.trace(rotation) - 1), -1, 1))
-    between = lambda a, b: math.atan2(np.linalg.norm(np.cross(a, b)), a @ b)
-    reflections = []
-    for plane in symmetries["planes"]:
-        n, d = np.array(plane["coefficients"][:3]), plane["coefficients"][3]
-        reflections.append(np.block([[np.eye(3) - 2 * np.outer(n, n), -2 * d * n[:, None]], [0, 0, 0, 1]]))
-    found = []  # (angle, distance)
-    for s in [np.eye(4), *(a @ b for a in reflections for b in reflections if a is not b)]:
-        shift = np.linalg.norm(bench.moved(error, center) - bench.moved(s, center))
-        found.append((angle(error[:3, :3] @ s[:3, :3].T), shift))
-    for axis in symmetries["axes"]:
-        direction, point = np.array(axis["direction"]), np.array(axis["point"])
-        point = point + direction * ((center - point) @ direction)
-        turned, moved = error[:3, :3] @ direction, bench.moved(error, point)
-        found.append((between(turned, direction), np.linalg.norm(moved - point)))
-        for plane, s in zip(symmetries["planes"], reflections):
-            if abs(np.dot(plane["coefficients"][:3], direction)) > math.cos(math.radians(3)):
-                found.append((between(turned, -direction), np.linalg.norm(moved - bench.moved(s, point))))
-    found += [(0.0, np.linalg.norm(bench.moved(error, np.array(c["point"])) - c["point"])) for c in symmetries["centers"]]
-    turn, shift = min(found, key=lambda f: max(f[0] / math.radians(5), f[1] / (0.02 * diagonal)))
-    return shift + diagonal * math.sin(0.5 * turn)
+    angle, distance = registration.pose_error(error, np.eye(4), symmetries)
+    return symmetries["diagonal"] * (distance + math.sin(0.5 * math.radians(angle)))
 
 
 def judge_name(models, truth, known):
-    """models: [{name, confidence, T_model_scene}], accepted ones, best first."""
-    row = {"known": known, "answer": models[0]["name"] if models else None, "right_model": False, "right_pose": False}
-    if models and models[0]["name"] == truth["model"]:
-        pose = np.reshape(truth["T_scene_model"], (4, 4)) @ np.reshape(models[0]["T_model_scene"], (4, 4))
-        row["right_model"] = True
-        row["right_pose"] = bool(farthest_off(pose, truth["symmetries"]) < RIGHT_POSE * truth["symmetries"]["diameter"])
-    return row
+    """models: [{name, T_model_scene}] that were accepted, best first. known: names in the database."""
+    answer, symmetries = models[0]["name"] if models else None, truth["symmetries"]
+    right, right_pose = answer == truth["model"], False
+    if right:
+        error = np.reshape(truth["T_scene_model"], (4, 4)) @ np.reshape(models[0]["T_model_scene"], (4, 4))
+        right_pose = bool(farthest_off(error, symmetries) < RIGHT_POSE * symmetries["diameter"])
+    return {"known": truth["model"] in known, "answer": answer, "right_model": right, "right_pose": right_pose}
 
 
 @functools.lru_cache(maxsize=1)
@@ -311,20 +291,7 @@ def database(path):
 
 def ask_database(points, viewpoint, arguments):
     found = database(f"{arguments.frames}/models.db").recognize(points, viewpoint=viewpoint, threads=1)
-    return [{"name": m.name, "confidence": m.confidence, "T_model_scene": m.transform} for m in found]
-
-
-def run_tool(frame, folder, arguments):
-    program = pathlib.Path(arguments.tools, "pcl_symmetry_scene")
-    flags = ["-database", f"{arguments.frames}/models.db"] if arguments.leave_out else []
-    command = [program, f"{arguments.frames}/{frame}.pcd", f"{folder}/{frame}.pcd", "-json", f"{folder}/{frame}.json",
-               "-quiet", "-threads", "1", "-seed", str(arguments.seed + 1), *flags]  # fmt: skip
-    try:
-        done = subprocess.run(command, capture_output=True, text=True)
-    except OSError as error:
-        raise bench.BadInput(f"{program}: cannot be run, {error.strerror}") from None
-    if done.returncode:
-        raise bench.BadInput(done.stderr.strip())
+    return [{"name": m.name, "T_model_scene": m.transform} for m in found]
 
 
 def found_in_frame(frame, finite, truth, arguments):
@@ -333,46 +300,44 @@ def found_in_frame(frame, finite, truth, arguments):
     with tempfile.TemporaryDirectory() as temporary:
         folder = arguments.judge or temporary
         if not arguments.judge:
-            run_tool(frame, folder, arguments)
+            flags = ["-database", f"{arguments.frames}/models.db"] if arguments.leave_out else []
+            bench.run_tool(arguments.tools, "pcl_symmetry_scene", f"{arguments.frames}/{frame}.pcd", f"{folder}/{frame}.pcd", "-json",
+                           f"{folder}/{frame}.json", "-quiet", "-threads", "1", "-seed", str(arguments.seed + 1), *flags)  # fmt: skip
         milliseconds = 1000 * (time.perf_counter() - start)
         try:
-            content = json.loads(pathlib.Path(folder, f"{frame}.json").read_text())
-        except (OSError, ValueError):
+            found = json.loads(pathlib.Path(folder, f"{frame}.json").read_text())["objects"]
+        except (OSError, ValueError, KeyError, TypeError):
             raise bench.BadInput(f"{folder}/{frame}.json: is no answer of pcl_symmetry_scene") from None
         labels = read_frame(f"{folder}/{frame}.pcd")[1][: finite.sum()] - 1  # points that the completion adds come behind
-    if len(labels) < finite.sum():
-        raise bench.BadInput(f"{folder}/{frame}.pcd: {len(labels)} points, must be those of the frame")
-    return content["objects"], intersections(labels, truth[finite]), milliseconds
+    if len(labels) < finite.sum() or labels.max() >= len(found):
+        raise bench.BadInput(f"{folder}/{frame}.pcd: must have the points of the frame, and objects of {frame}.json")
+    return found, overlaps(labels, truth[finite], (len(found), truth.max() + 1)), milliseconds
 
 
 def judge_frame(frame, arguments):
     """Rows of the wanted objects of one frame: alone, and in the scene."""
     points, labels, viewpoint = read_frame(f"{arguments.frames}/{frame.name}.pcd")
-    finite, rows = np.isfinite(points[:, 0]), []
-    found, overlap, milliseconds = found_in_frame(frame.name, finite, labels, arguments) if "scene" in arguments.seen else ([], None, 0)
-    sensor = np.eye(4)
+    finite, sensor, rows, milliseconds = np.isfinite(points[:, 0]), np.eye(4), [], 0
     sensor[:3, 3] = viewpoint
+    if "scene" in arguments.seen:
+        found, iou, milliseconds = found_in_frame(frame.name, finite, labels, arguments)
     for truth in frame.objects:
-        k, symmetries = truth["object"], truth["symmetries"]
-        base = {"frame": frame.name, "noise": frame.noise, "object": k, "model": truth["model"], "kind": symmetries["kind"],
-                "occlusion": occlusion(truth), "points": int((finite & (labels == k)).sum())}  # fmt: skip
-        known = truth["model"] in frame.known
+        k, ways = truth["object"], []  # (how it was seen, whether it was found, answers)
+        own = points[finite & (labels == k)]
         if "alone" in arguments.seen:
-            own = points[finite & (labels == k)]
-            answers = planes.judge(bench.detect(own, sensor, arguments.seed + 1), symmetries)
-            name = judge_name(ask_database(own, viewpoint, arguments), truth, known) if arguments.leave_out else {}
-            rows.append({**base, "seen": "alone", "found": True, **short(answers), **name})
+            models = ask_database(own, viewpoint, arguments) if arguments.leave_out else []
+            ways.append(("alone", True, {**bench.detect(own, sensor, arguments.seed + 1), "models": models}))
         if "scene" in arguments.seen:
-            best = int(overlap[:, k].argmax()) if len(found) and k < overlap.shape[1] else 0
-            is_found = len(found) > 0 and k < overlap.shape[1] and overlap[best, k] >= MIN_IOU
-            own = found[best] if is_found else {"planes": [], "axes": [], "centers": [], "models": []}
-            name = judge_name(own["models"], truth, known) if arguments.leave_out else {}
-            rows.append({**base, "seen": "scene", "found": bool(is_found), **short(planes.judge(own, symmetries)), **name})
+            best = max(range(len(found)), key=lambda i: iou[i, k], default=None)
+            is_found = best is not None and bool(iou[best, k] >= MIN_IOU)
+            ways.append(("scene", is_found, found[best] if is_found else {**bench.NO_ANSWERS, "models": []}))
+        for seen, is_found, answers in ways:
+            judged = planes.judge(answers, truth["symmetries"])
+            name = judge_name(answers["models"], truth, frame.known) if arguments.leave_out else {}
+            rows.append({"frame": frame.name, "noise": frame.noise, "object": k, "model": truth["model"],
+                         "kind": truth["symmetries"]["kind"], "occlusion": occlusion(truth), "points": len(own), "seen": seen,
+                         "found": is_found, "called": judged["called"], "decided_right": judged["decided_right"], **name})  # fmt: skip
     return {"rows": rows, "milliseconds": milliseconds}
-
-
-def short(judged):
-    return {name: judged[name] for name in ("called", "decided_right", "first_right")}
 
 
 def occlusion(truth):
@@ -384,19 +349,13 @@ def band_of(share):
     return next((i for i in range(4) if BANDS[i] <= share < BANDS[i + 1]), None)
 
 
-class Frame:
-    def __init__(self, name, objects, known):
-        self.name, self.objects, self.known = name, objects, known
-        self.noise = float(name.rsplit("_", 1)[-1])
-
-
 def wanted_frames(truths, arguments):
     """Frames with the objects that are asked for: the first ones of each band, in the order of the scenes."""
     in_band, frames = {}, []
     known = {m["name"] for i, m in enumerate(prepared(f"{arguments.frames}/models.json"))
              if arguments.leave_out and i % arguments.leave_out != arguments.leave_out - 1}  # fmt: skip
     for name in sorted(truths):
-        frame = Frame(name, [], known)
+        frame = types.SimpleNamespace(name=name, noise=float(name.rsplit("_", 1)[-1]), objects=[], known=known)
         for truth in truths[name]:
             band = band_of(occlusion(truth))
             if band is None or truth.get("cropped") or truth["num_visible"] < arguments.min_points:
@@ -456,7 +415,6 @@ def draw(summary, axes):
 def make_frames(arguments):
     """Writes models.json, models.db, the frames, and truth.json last."""
     folder = pathlib.Path(arguments.frames)
-    folder.mkdir(parents=True, exist_ok=True)
     models, left_out = bench.run(bench.list_models(arguments), prepare, arguments, "models")
     bench.write_whole(folder / "models.json", json.dumps(models))
     if arguments.leave_out:
@@ -468,7 +426,7 @@ def make_frames(arguments):
 
 def program(arguments):
     with tempfile.TemporaryDirectory() as temporary:
-        arguments.frames = arguments.frames or (f"{arguments.json}.frames" if arguments.json else temporary)
+        arguments.frames = bench.work_folder(arguments, arguments.frames, temporary)
         truth, left_out = pathlib.Path(arguments.frames, "truth.json"), []
         if not truth.exists():
             left_out = make_frames(arguments)
@@ -488,16 +446,16 @@ if __name__ == "__main__":
     add = parser.add_argument
     add("--scenes", type=int, default=100, help="number of scenes")
     add("--objects", type=int, default=12, help="greatest number of objects of a scene")
-    add("--noise", type=lambda text: [float(n) for n in text.split(",")], default="0,1", help="factors of the sensor's noise")
+    add("--noise", type=bench.numbers(float), default="0,1", help="factors of the sensor's noise")
     add("--place", choices=("table", "bin"), default="table")
     add("--sensor", choices=("camera", "lidar"), default="camera")
     add("--rings", type=int, default=64, help="of a LiDAR scanner")
-    add("--seen", type=lambda text: text.split(","), default="alone,scene", help="how objects are asked for")
+    add("--seen", type=bench.numbers(str, ("alone", "scene")), default="alone,scene", help="how objects are asked for")
     add("--min-points", type=int, default=300, help="least number of points of an object")
     add("--least-occlusion", type=float, default=0.0, help="objects of which others hide less are passed over")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
     add("--leave-out", type=int, default=0, help="also ask a database without every N-th model; 0: do not")
     add("--references", metavar="DIR", help="folder that keeps the reference symmetries of the models")
-    add("--frames", metavar="DIR", help="folder that keeps the frames, or holds those that are judged")
+    add("--frames", metavar="DIR", help="folder of the frames, made where it has no truth.json")
     add("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_scene")
     bench.main(program, parser.parse_args())

@@ -15,7 +15,6 @@ segmentations. Methods:
   paper-1 to paper-4        pcl_symmetry_segment by splitting as in the paper, by depth
 """
 import pathlib
-import subprocess
 import tempfile
 import time
 
@@ -131,15 +130,9 @@ def segment_points(mesh, path, arguments):
 def tool(*flags):
     def segment_by_tool(mesh, path, arguments):
         with tempfile.TemporaryDirectory() as folder:
-            program = pathlib.Path(arguments.tools) / "pcl_symmetry_segment"
-            command = [program, path, f"{folder}/parts.seg", *flags, "-threads", "1", "-quiet"]
-            try:
-                subprocess.run(command, check=True, capture_output=True, text=True)
-            except OSError as error:
-                raise bench.BadInput(f"{program}: cannot be run, {error.strerror}") from None
-            except subprocess.CalledProcessError as error:
-                raise bench.BadInput(error.stderr.strip()) from None
-            return read_labels(f"{folder}/parts.seg", mesh)
+            segments = f"{folder}/parts.seg"
+            bench.run_tool(arguments.tools, "pcl_symmetry_segment", path, segments, *flags, "-threads", "1", "-quiet")
+            return read_labels(segments, mesh)
 
     return segment_by_tool
 
@@ -253,9 +246,6 @@ def draw(summary, axes):
 
 
 def main(arguments):
-    unknown = [name for name in arguments.methods if name not in METHODS]
-    if unknown:
-        raise bench.BadInput(f"--methods {unknown[0]}: must be among {', '.join(METHODS)}")
     if not pathlib.Path(arguments.people).is_dir():
         raise bench.BadInput(f"{arguments.people}: must be a folder")
     every, arguments.every, largest, arguments.max = arguments.every, 1, arguments.max, None
@@ -275,8 +265,8 @@ def main(arguments):
 if __name__ == "__main__":
     parser = bench.make_parser(__doc__)
     parser.add_argument("--people", metavar="DIR", required=True, help="folder of .seg files: 12/12_0.seg, ...")
-    parser.add_argument("--methods", type=lambda text: text.split(","), default="people,one,k-means,segment")
-    parser.add_argument("--remainders", type=lambda text: [int(n) for n in text.split(",")], default="0,1,2",
+    parser.add_argument("--methods", type=bench.numbers(str, METHODS), default="people,one,k-means,segment")
+    parser.add_argument("--remainders", type=bench.numbers(int, (0, 1, 2)), default="0,1,2",
                         help="categories, numbered from 0, modulo 3; weights were fitted to 0 and 1")  # fmt: skip
     parser.add_argument("--mirrored", action="store_true", help="also agreement with the mirror image")
     parser.add_argument("--references", metavar="DIR", help="with --mirrored: folder that keeps the planes of the models")

@@ -13,7 +13,7 @@ NOTHING = {"planes": [], "axes": [], "centers": [], "center": [0, 0, 0], "diagon
 class Judging(unittest.TestCase):
     def test_objects_match_by_the_share_of_common_points(self):
         found, truth = np.array([0, 0, 0, 1, -1, 1]), np.array([1, 1, -1, 0, 0, 0])
-        np.testing.assert_allclose(scenes.intersections(found, truth), [[0, 2 / 3], [2 / 3, 0]])
+        np.testing.assert_allclose(scenes.overlaps(found, truth, (2, 2)), [[0, 2 / 3], [2 / 3, 0]])
 
     def test_poses_count_symmetries(self):
         half_turn, quarter = np.diag([-1.0, -1, 1, 1]), np.eye(4)
