@@ -17,27 +17,20 @@ import numpy as np
 
 import bench
 
-MODEL_POINTS = 20_000  # of a model in the database
+MODEL_POINTS = 20_000  # of a model in a database
 
 
-def build(models, arguments):
-    """Builds the database, whole or not at all; returns sentences about the models that were left out."""
+def build(path, clouds, jobs):
+    """Builds a database of (name, points), whole or not at all; returns sentences about those that were left out."""
     import pcl_symmetry
 
-    left_out, clouds = [], []
-    for model in models:
-        try:
-            points = bench.sample(bench.read_mesh(model.path), MODEL_POINTS, bench.generator(arguments.seed, model.key, "model"))
-            clouds.append((model.name, points.astype(np.float32)))
-        except bench.BadInput as error:
-            left_out.append(str(error))
-    part = pathlib.Path(f"{arguments.database}.part")
+    part = pathlib.Path(f"{path}.part")
     part.unlink(missing_ok=True)
-    database = pcl_symmetry.Database(str(part), threads=arguments.jobs)
-    report = database.build(clouds)
+    database = pcl_symmetry.Database(str(part), threads=jobs)
+    report = database.build((name, points.astype(np.float32)) for name, points in clouds)
     del database
-    part.replace(arguments.database)
-    return left_out + [f"{name}: {reason}" for name, reason in report.failures]
+    part.replace(path)
+    return [f"{name}: {reason}" for name, reason in report.failures]
 
 
 @functools.lru_cache(maxsize=1)
@@ -47,10 +40,22 @@ def opened(path):
     return pcl_symmetry.Database(path, threads=1)
 
 
+def build_of_meshes(models, arguments):
+    left_out, clouds = [], []
+    for model in models:
+        try:
+            random = bench.generator(arguments.seed, model.key, "model")
+            clouds.append((model.name, bench.sample(bench.read_mesh(model.path), MODEL_POINTS, random)))
+        except bench.BadInput as error:
+            left_out.append(str(error))
+    return left_out + build(arguments.database, clouds, arguments.jobs)
+
+
 def ask(model, arguments):
     """What the database says about a scan of the model."""
     if arguments.judge:
-        return {"model": model.name, **read_answer(pathlib.Path(arguments.judge, f"{model.name}.json")), "milliseconds": None}
+        answer = read_answer(pathlib.Path(arguments.judge, f"{model.name}.json"))
+        return {"model": model.name, **answer, "milliseconds": None}
     mesh, random = bench.read_mesh(model.path), bench.generator(arguments.seed, model.key)
     direction = bench.random_directions(random, 1)[0]
     pose = bench.random_pose(random, mesh)
@@ -61,15 +66,16 @@ def ask(model, arguments):
     found = opened(arguments.database).recognize(scan.rows.astype(np.float32), viewpoint=scan.viewpoint,
                                                  min_confidence=arguments.accept, threads=1)  # fmt: skip
     milliseconds = 1000 * (time.perf_counter() - start)
-    best = {"answer": found[0].name, "confidence": found[0].confidence, "merit": found[0].score.merit} if found else {"answer": None}
-    return {"model": model.name, **best, "milliseconds": milliseconds}
+    name, confidence = (found[0].name, found[0].confidence) if found else (None, None)
+    return {"model": model.name, "answer": name, "confidence": confidence, "milliseconds": milliseconds}
 
 
 def read_answer(path):
     try:
         content = json.loads(path.read_text())
         models = content["models"] if content.get("known", True) else []
-        return {"answer": models[0]["name"] if models else None}
+        name, confidence = (models[0]["name"], models[0].get("confidence", 1)) if models else (None, None)
+        return {"answer": name, "confidence": confidence}
     except (OSError, ValueError, KeyError, TypeError):
         raise bench.BadInput(f"{path}: is no answer of pcl_symmetry_match -recognize -json") from None
 
@@ -86,11 +92,12 @@ def judge(results, known, class_of):
 
 def draw(results, known, accept, axes):
     """Rates at every greater least confidence that could be asked for."""
-    confidence = lambda r: -1 if r["answer"] is None else r.get("confidence", 1)
+    confidence = lambda r: -1 if r["answer"] is None else r["confidence"]
     least = np.linspace(accept, 1, 101)
     inside, outside = ([r for r in results if (r["model"] in known) == yes] for yes in (True, False))
     share = lambda rows, yes: [np.mean([yes(r, x) for r in rows]) if rows else np.nan for x in least]
-    axes.plot(least, share(inside, lambda r, x: r["answer"] == r["model"] and confidence(r) >= x), label="the scanned model first")
+    first = lambda r, x: r["answer"] == r["model"] and confidence(r) >= x
+    axes.plot(least, share(inside, first), label="the scanned model first")
     axes.plot(least, share(outside, lambda r, x: confidence(r) < x), label="unknown objects found to be unknown")
     axes.set(xlabel="least confidence of an answer", ylabel="share of the scans", ylim=(0, 1.02), title="Recognition of scans")
     axes.legend()
@@ -106,7 +113,7 @@ def main(arguments):
     with tempfile.TemporaryDirectory() as temporary:
         arguments.database = arguments.database or bench.work_folder(arguments, None, temporary) + "/models.db"
         built = arguments.judge or pathlib.Path(arguments.database).exists()
-        failures = [] if built else build(inside, arguments)
+        failures = [] if built else build_of_meshes(inside, arguments)
         results, left_out = bench.run(asked, ask, arguments)
     rates = judge(results, {model.name for model in inside}, class_of)
     times = [r["milliseconds"] for r in results]

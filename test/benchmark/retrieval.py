@@ -34,8 +34,8 @@ NUM_CONSIDERED = 32  # of the E-measure
 NUM_REFERENCES, NUM_NEAREST = 200, 10  # models, of any class, and the nearest of them, that scale distances
 AXES = ("files", "symmetry", "principal")
 MEASURES = {"nearest": "nearest", "tier1": "tier 1", "tier2": "tier 2", "e": "E", "dcg": "DCG"}
-ROTATIONS = [(order, np.array(signs)) for order in itertools.permutations(range(3)) for signs in itertools.product((1, -1), repeat=3)
-             if np.linalg.det(np.eye(3)[list(order)] * signs) > 0]  # fmt: skip
+ROTATIONS = [(order, np.array(signs)) for order in itertools.permutations(range(3))
+             for signs in itertools.product((1, -1), repeat=3) if np.linalg.det(np.eye(3)[list(order)] * signs) > 0]  # fmt: skip
 
 
 # Descriptors
@@ -195,7 +195,8 @@ def published(load, axes):
     roots, through_center, f = load(f"prst {axes}"), load(f"prsd {axes}"), load(f"gedt {axes}")
     weights = plane_weights(roots.shape[1:])
     rows = {"PRSD": l2(weights * through_center), "PRSD, max": greatest_difference(through_center),
-            "PRST": l2(weights * roots), "PRST by equation 1": l2(weights * np.sqrt((1 + roots**2) / 2)), "GEDT": l2(f)}  # fmt: skip
+            "PRST": l2(weights * roots), "GEDT": l2(f)}  # fmt: skip
+    rows["PRST by equation 1"] = l2(weights * np.sqrt((1 + roots**2) / 2))
     rows["PRST x GEDT"] = rows["PRST"] * rows["GEDT"]
     rows["PRST by equation 1 x GEDT"] = rows["PRST by equation 1"] * rows["GEDT"]
     return {f"{name}, {axes} axes": distances for name, distances in rows.items()}
@@ -292,7 +293,8 @@ def report(judged):
             a, b = judged[with_], judged[without]
             gains[f"{with_} - {without}"] = {m: interval(a[m] - b[m], a["class"]) for m in ("nearest", "dcg")}
     if gains:
-        rows = [[name, *("{:+.1f} ({:+.1f} to {:+.1f})".format(*(100 * v for v in gain[m])) for m in gain)] for name, gain in gains.items()]
+        points = lambda gain: "{:+.1f} ({:+.1f} to {:+.1f})".format(*(100 * v for v in gain))
+        rows = [[name, *map(points, gain.values())] for name, gain in gains.items()]
         bench.print_table("What symmetry brings, points", ["", "nearest", "DCG"], rows)
     by_class = classes_by_gain(judged)
     if by_class:
@@ -335,14 +337,15 @@ def draw_classes(by_class, axes):
     axes.legend()
 
 
+CURVES = {"files": ("axes of the files", [f"{name}, files axes" for name in ("PRSD", "PRST", "GEDT", "PRST x GEDT")]),
+          "turned": ("models turned at random", ["PRST x GEDT, principal axes", "PRST x GEDT, symmetry axes", "PRST, all turns",
+                     "GEDT, all turns", "PRST x GEDT, all turns", "signatures, all turns, scaled", "Database.match"])}  # fmt: skip
+
+
 def draw(judged, by_class, path):
     path = pathlib.Path(path)
-    groups = {"files": ("axes of the files", [n for n in judged if "files axes" in n and "equation" not in n and "max" not in n]),
-              "turned": ("models turned at random", [n for n in judged if n.endswith(("GEDT, symmetry axes", "GEDT, principal axes",
-                         "all turns", "signatures, all turns, scaled")) or n == "Database.match"])}  # fmt: skip
-    for end, (title, names) in groups.items():
-        if names:
-            bench.save_figure(path.with_stem(f"{path.stem}_{end}"), lambda axes: draw_curves(judged, names, title, axes))
+    for end, (title, names) in CURVES.items() if by_class else [("judged", ("precision against recall", judged))]:
+        bench.save_figure(path.with_stem(f"{path.stem}_{end}"), lambda axes: draw_curves(judged, names, title, axes))
     if by_class:
         bench.save_figure(path.with_stem(f"{path.stem}_classes"), lambda axes: draw_classes(by_class, axes))
 

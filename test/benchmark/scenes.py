@@ -27,11 +27,11 @@ import numpy as np
 
 import bench
 import planes
+import recognition
 import references
 import registration
 
 LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, metres
-MODEL_POINTS = 20_000  # in the database
 BANDS = (0.0, 0.1, 0.3, 0.5, 0.7)  # of the share of an object that others hide
 RIGHT_POSE = 0.05  # of the diameter: the limit of the BOP benchmark
 MIN_IOU = 0.5
@@ -226,21 +226,6 @@ def make(number, arguments):
     return frames
 
 
-def build_database(models, arguments):
-    """All models but every N-th one, whole or not at all."""
-    import pcl_symmetry
-
-    path = pathlib.Path(arguments.frames, "models.db")
-    if path.exists():
-        return
-    part = path.with_suffix(".part")
-    part.unlink(missing_ok=True)
-    clouds = [(m["name"], bench.sample(mesh_of(m["path"], m["diagonal"]), MODEL_POINTS, bench.generator(arguments.seed, m["name"])))
-              for i, m in enumerate(models) if i % arguments.leave_out != arguments.leave_out - 1]  # fmt: skip
-    pcl_symmetry.Database(str(part), threads=arguments.jobs).build((name, points.astype(np.float32)) for name, points in clouds)
-    part.replace(path)
-
-
 # Judging
 
 
@@ -282,15 +267,8 @@ def judge_name(models, truth, known):
     return {"known": truth["model"] in known, "answer": answer, "right_model": right, "right_pose": right_pose}
 
 
-@functools.lru_cache(maxsize=1)
-def database(path):
-    import pcl_symmetry
-
-    return pcl_symmetry.Database(path, threads=1)
-
-
 def ask_database(points, viewpoint, arguments):
-    found = database(f"{arguments.frames}/models.db").recognize(points, viewpoint=viewpoint, threads=1)
+    found = recognition.opened(f"{arguments.frames}/models.db").recognize(points, viewpoint=viewpoint, threads=1)
     return [{"name": m.name, "T_model_scene": m.transform} for m in found]
 
 
@@ -349,11 +327,15 @@ def band_of(share):
     return next((i for i in range(4) if BANDS[i] <= share < BANDS[i + 1]), None)
 
 
+def known_of(models, arguments):
+    """Those that are in the database: all but every N-th one."""
+    return [m for i, m in enumerate(models) if arguments.leave_out and i % arguments.leave_out != arguments.leave_out - 1]
+
+
 def wanted_frames(truths, arguments):
     """Frames with the objects that are asked for: the first ones of each band, in the order of the scenes."""
     in_band, frames = {}, []
-    known = {m["name"] for i, m in enumerate(prepared(f"{arguments.frames}/models.json"))
-             if arguments.leave_out and i % arguments.leave_out != arguments.leave_out - 1}  # fmt: skip
+    known = {m["name"] for m in known_of(prepared(f"{arguments.frames}/models.json"), arguments)}
     for name in sorted(truths):
         frame = types.SimpleNamespace(name=name, noise=float(name.rsplit("_", 1)[-1]), objects=[], known=known)
         for truth in truths[name]:
@@ -417,8 +399,11 @@ def make_frames(arguments):
     folder = pathlib.Path(arguments.frames)
     models, left_out = bench.run(bench.list_models(arguments), prepare, arguments, "models")
     bench.write_whole(folder / "models.json", json.dumps(models))
-    if arguments.leave_out:
-        build_database(models, arguments)
+    if arguments.leave_out and not (folder / "models.db").exists():
+        known = [(m["name"], mesh_of(m["path"], m["diagonal"])) for m in known_of(models, arguments)]
+        sample = lambda name, mesh: bench.sample(mesh, recognition.MODEL_POINTS, bench.generator(arguments.seed, name))
+        clouds = [(name, sample(name, mesh)) for name, mesh in known]
+        recognition.build(folder / "models.db", clouds, arguments.jobs)
     made, failures = bench.run(range(arguments.scenes), make, arguments, "frames")
     bench.write_whole(folder / "truth.json", json.dumps({"scenes": {k: v for frames in made for k, v in frames.items()}}))
     return left_out + failures
