@@ -219,11 +219,10 @@ def by_database(clouds, seed):
     """Database.match(): each cloud, turned once more, asks a database of all."""
     import pcl_symmetry
 
-    names = [str(i) for i in range(len(clouds))]
     distances = np.full((len(clouds), len(clouds)), 1e6, np.float32)
     with tempfile.TemporaryDirectory() as folder:
         database = pcl_symmetry.Database(f"{folder}/models.db", threads=1)
-        database.build(zip(names, clouds))
+        database.build((str(i), cloud) for i, cloud in enumerate(clouds))
         for i, cloud in enumerate(clouds):
             turned = cloud @ bench.random_rotation(bench.generator(seed, "query", i)).T
             for match in database.match(turned, len(clouds), viewpoint=None):
@@ -350,13 +349,6 @@ def draw(judged, by_class, path):
         bench.save_figure(path.with_stem(f"{path.stem}_classes"), lambda axes: draw_classes(by_class, axes))
 
 
-def read_matrix(path, size):
-    values = np.fromfile(path, np.float32)
-    if len(values) != size * size:
-        raise bench.BadInput(f"{path}: {len(values)} distances, must be {size} x {size}")
-    return values.reshape(size, size)
-
-
 def distances_of(models, arguments):
     """{row: distances}, row by row of the table: matrices of all rows would fill the memory."""
     def load(form):
@@ -381,7 +373,10 @@ def evaluate(arguments):
     class_of = bench.read_classes(arguments.classes)
     if arguments.judge:
         paths = sorted(pathlib.Path(arguments.judge).glob("*.matrix"))
-        rows = ((path.stem, read_matrix(path, len(models))) for path in paths)
+        matrices = {path.stem: np.fromfile(path, np.float32) for path in paths}
+        if not matrices or any(len(values) != len(models) ** 2 for values in matrices.values()):
+            raise bench.BadInput(f"{arguments.judge}: must have files .matrix of {len(models)} x {len(models)} float32")
+        rows = ((name, values.reshape(len(models), -1)) for name, values in matrices.items())
     else:
         _, left_out = bench.run(models, describe, arguments)
         models = [m for m in models if pathlib.Path(arguments.descriptors, f"{m.name}.npz").exists()]
@@ -394,8 +389,6 @@ def evaluate(arguments):
         judged[name] = judge(distances, classes)
         if arguments.export:
             distances.astype(np.float32).tofile(pathlib.Path(arguments.export, f"{name}.matrix"))
-    if not judged:
-        raise bench.BadInput(f"{arguments.judge}: no file .matrix")
     bench.write_truth(arguments, {model.name: class_of[model.name].name for model in models})
     summary = report(judged)
     if arguments.figure:

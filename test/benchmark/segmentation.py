@@ -140,7 +140,8 @@ def tool(*flags):
 METHODS = {"people": None, "one": lambda mesh, path, arguments: np.zeros(len(mesh.triangles), int), "k-means": k_means,
            "segment": segment, "points": segment_points,
            "concavity": tool("-evidence", "concavity"), "symmetry": tool("-evidence", "symmetry"),
-           **{f"paper-{depth}": tool("-method", "splitting", "-depth", str(depth)) for depth in (1, 2, 3, 4)}}  # fmt: skip
+           **{f"paper-{depth}": tool("-method", "splitting", "-depth", str(depth)) for depth in (1, 2, 3, 4)},
+           "judged": lambda mesh, path, arguments: read_labels(f"{arguments.judge}/{pathlib.Path(path).stem}.seg", mesh)}  # fmt: skip
 
 
 def read_labels(path, mesh):
@@ -177,7 +178,7 @@ def evaluate(model, arguments):
     plane = reference_plane(model, mesh, arguments)
     mirrored = lambda labels: np.nan if plane is None else mirror_agreement(surface, labels, plane)
     rows = {}
-    for method in arguments.methods:
+    for method in arguments.methods + ["judged"] * bool(arguments.judge):
         if method == "people":
             pairs = [compare(surface, a, b) for a in people for b in people if a is not b]
             own = [{"segments": p.num_segments, "mirrored": mirrored(p.labels), "milliseconds": np.nan} for p in people]
@@ -189,10 +190,6 @@ def evaluate(model, arguments):
         found = Segmentation(surface, labels)
         own = {"segments": found.num_segments, "mirrored": mirrored(labels), "milliseconds": milliseconds}
         rows[method] = {**mean([compare(surface, person, found) for person in people]), **mean([own])}
-    if arguments.judge:
-        found = Segmentation(surface, read_labels(f"{arguments.judge}/{model.name}.seg", mesh))
-        own = {"segments": found.num_segments, "mirrored": mirrored(found.labels), "milliseconds": np.nan}
-        rows["judged"] = {**mean([compare(surface, person, found) for person in people]), **mean([own])}
     return {"model": model.name, "category": CATEGORIES[(int(model.name) - 1) // 20], "methods": rows}
 
 
@@ -208,18 +205,15 @@ def summarize(results):
     """{method: {measure: [mean, half of the 95 % interval], ...}}"""
     methods = {name for result in results for name in result["methods"]}
     summary = {}
-    for method in sorted(methods, key=lambda name: [*METHODS, "judged"].index(name)):
+    for method in sorted(methods, key=list(METHODS).index):
         rows = {r["model"]: r["methods"][method] for r in results if r["methods"].get(method)}
         names = [*MEASURES, "segments", "mirrored", "milliseconds"]
         summary[method] = {"models": len(rows), **{name: interval([row[name] for row in rows.values()]) for name in names}}
         others = {r["model"]: r["methods"].get("segment") for r in results}
         gains = [row["rand"] - others[model]["rand"] for model, row in rows.items() if others.get(model)]
         summary[method]["minus segment"] = interval(gains)
-        by_category = {r["category"]: [] for r in results}
-        for result in results:
-            if result["model"] in rows:
-                by_category[result["category"]].append(rows[result["model"]]["rand"])
-        summary[method]["by category"] = {c: interval(values)[0] for c, values in by_category.items()}
+        of = lambda category: [rows[r["model"]]["rand"] for r in results if r["category"] == category and r["model"] in rows]
+        summary[method]["by category"] = {c: interval(of(c))[0] for c in dict.fromkeys(r["category"] for r in results)}
     return summary
 
 
@@ -232,8 +226,7 @@ def report(summary):
              *(plain(s[m][0]) for m in list(MEASURES)[1:]), plain(s["segments"][0], 1), plain(s["mirrored"][0]),
              plain(s["milliseconds"][0], 0)] for name, s in summary.items()]  # fmt: skip
     bench.print_table("Distance from segmentations of people, means over models with 95 % intervals", header, rows)
-    categories = list(dict.fromkeys(c for s in summary.values() for c in s["by category"]))
-    rows = [[c, *(plain(s["by category"].get(c)) for s in summary.values())] for c in categories]
+    rows = [[c, *(plain(s["by category"][c]) for s in summary.values())] for c in next(iter(summary.values()))["by category"]]
     bench.print_table("Rand distance by category", ["", *summary], rows)
 
 
@@ -250,8 +243,7 @@ def main(arguments):
         raise bench.BadInput(f"{arguments.people}: must be a folder")
     every, arguments.every, largest, arguments.max = arguments.every, 1, arguments.max, None
     wanted = lambda number: number % 2 == 1 and (number - 1) // 20 % 3 in arguments.remainders
-    models = [m for m in bench.list_models(arguments) if m.name.isdigit() and wanted(int(m.name))]
-    models = models[::every][:largest]
+    models = [m for m in bench.list_models(arguments) if m.name.isdigit() and wanted(int(m.name))][::every][:largest]
     if not models:
         raise bench.BadInput(f"{arguments.models[0]}: no mesh with an odd number of these categories")
     results, left_out = bench.run(models, evaluate, arguments)
