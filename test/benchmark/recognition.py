@@ -117,7 +117,7 @@ def main(arguments):
         results, left_out = bench.run(asked, ask, arguments)
     rates = judge(results, {model.name for model in inside}, class_of)
     times = [r["milliseconds"] for r in results]
-    title = f"{len(results)} scans, {len(inside)} models; median {bench.median(times, 0)} ms"
+    title = f"{len(results)} scans, {len(inside) - len(failures)} models; median {bench.median(times, 0)} ms"
     bench.print_table(title, ["", "rate"], [[name, rate.text] for name, rate in rates.items()])
     if arguments.figure:
         known = {model.name for model in inside}
