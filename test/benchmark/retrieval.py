@@ -32,7 +32,7 @@ NUM_POINTS = 20_000
 NUM_RECALLS = 20
 NUM_CONSIDERED = 32  # of the E-measure
 NUM_REFERENCES, NUM_NEAREST = 200, 10  # models, of any class, and the nearest of them, that scale distances
-AXES = ("files", "symmetry", "principal")
+AXES = {"files": "axes of the files", "symmetry": "symmetry axes", "principal": "principal axes"}
 MEASURES = {"nearest": "nearest", "tier1": "tier 1", "tier2": "tier 2", "e": "E", "dcg": "DCG"}
 ROTATIONS = [(order, np.array(signs)) for order in itertools.permutations(range(3))
              for signs in itertools.product((1, -1), repeat=3) if np.linalg.det(np.eye(3)[list(order)] * signs) > 0]  # fmt: skip
@@ -199,7 +199,7 @@ def published(load, axes):
     rows["PRST by equation 1"] = l2(weights * np.sqrt((1 + roots**2) / 2))
     rows["PRST x GEDT"] = rows["PRST"] * rows["GEDT"]
     rows["PRST by equation 1 x GEDT"] = rows["PRST by equation 1"] * rows["GEDT"]
-    return {f"{name}, {axes} axes": distances for name, distances in rows.items()}
+    return {f"{name}, {AXES[axes]}": distances for name, distances in rows.items()}
 
 
 def in_all_turns(load, seed):
@@ -268,7 +268,7 @@ def interval(values, classes):
     return float(np.mean(values)), float(means[50]), float(means[-51])
 
 
-GAINS = [("PRST x GEDT, files axes", "GEDT, files axes"), ("PRST by equation 1 x GEDT, files axes", "GEDT, files axes"),
+GAINS = [("PRST x GEDT, axes of the files", "GEDT, axes of the files"), ("PRST by equation 1 x GEDT, axes of the files", "GEDT, axes of the files"),
          ("PRST x GEDT, symmetry axes", "GEDT, symmetry axes"),
          ("PRST by equation 1 x GEDT, symmetry axes", "GEDT, symmetry axes"),
          ("GEDT, symmetry axes", "GEDT, principal axes"), ("PRST x GEDT, all turns", "GEDT, all turns"),
@@ -306,7 +306,7 @@ def report(judged):
 
 
 def classes_by_gain(judged):
-    rows = [judged.get(f"{name}, files axes") for name in ("PRST", "GEDT", "PRST x GEDT")]
+    rows = [judged.get(f"{name}, axes of the files") for name in ("PRST", "GEDT", "PRST x GEDT")]
     if None in rows:
         return []
     of_class = lambda c: [float(q["dcg"][q["class"] == c].mean()) for q in rows]
@@ -336,7 +336,7 @@ def draw_classes(by_class, axes):
     axes.legend()
 
 
-CURVES = {"files": ("axes of the files", [f"{name}, files axes" for name in ("PRSD", "PRST", "GEDT", "PRST x GEDT")]),
+CURVES = {"files": ("axes of the files", [f"{name}, axes of the files" for name in ("PRSD", "PRST", "GEDT", "PRST x GEDT")]),
           "turned": ("models turned at random", ["PRST x GEDT, principal axes", "PRST x GEDT, symmetry axes", "PRST, all turns",
                      "GEDT, all turns", "PRST x GEDT, all turns", "signatures, all turns, scaled", "Database.match"])}  # fmt: skip
 

@@ -388,7 +388,7 @@ def draw(summary, axes):
         rates = [s["rates"]["decided_right"].json for s in own]
         y = np.array([r["rate"] for r in rates])
         ends = np.abs(np.array([[r["low"], r["high"]] for r in rates]).T - y)
-        axes.errorbar([s["band"] + 0.06 * i for s in own], y, ends, fmt="o-", capsize=3, label=f"{seen}, noise {noise:g}")
+        axes.errorbar([s["band"] + 0.06 * (i - 1.5) for s in own], y, ends, fmt="o-", capsize=3, label=f"{seen}, noise {noise:g}")
     axes.set_xticks(range(4), [f"{100 * a:.0f} to {100 * b:.0f} %" for a, b in zip(BANDS, BANDS[1:])])
     axes.set(xlabel="hidden by others", ylabel="symmetric objects decided right", ylim=(0, 1), title="Planes of objects in scenes")
     axes.legend(fontsize="small")
