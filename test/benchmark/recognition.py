@@ -57,8 +57,7 @@ def ask(model, arguments):
         answer = read_answer(pathlib.Path(arguments.judge, f"{model.name}.json"))
         return {"model": model.name, **answer, "milliseconds": None}
     mesh, random = bench.read_mesh(model.path), bench.generator(arguments.seed, model.key)
-    direction = bench.random_directions(random, 1)[0]
-    pose = bench.random_pose(random, mesh)
+    direction, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, mesh)
     scan = bench.scan(mesh, direction, random, arguments.points, arguments.noise, pose)
     if arguments.export:
         bench.write_cloud(pathlib.Path(arguments.export, f"{model.name}.pcd"), scan.points, scan.T_cloud_sensor)

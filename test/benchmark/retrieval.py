@@ -63,11 +63,6 @@ def in_ball(points, reach):
     return points / (reach * np.linalg.norm(points, axis=1).mean())
 
 
-def stretched(points):
-    spread = np.sqrt((points**2).mean(0))
-    return points / np.maximum(spread, 0.05 * spread.max())
-
-
 def describe(model, arguments):
     """Writes the descriptors of one model, half precision; a worker on another machine needs the same folder."""
     import pcl_symmetry
@@ -87,7 +82,8 @@ def describe(model, arguments):
         forms[f"gedt {name}"] = gedt(points, 32)
     points = turned @ right_handed(frame)  # about the point half-way between center of mass and middle of the extent
     points = points - 0.5 * (points.mean(0) + 0.5 * (points.min(0) + points.max(0)))
-    shapes = [in_ball(points, 2.2), in_ball(stretched(points), 2.0)]
+    spread = np.sqrt((points**2).mean(0))
+    shapes = [in_ball(points, 2.2), in_ball(points / np.maximum(spread, 0.05 * spread.max()), 2.0)]
     forms["prst turns"] = [prst(shape, (24, 48, 24)) for shape in shapes]
     forms["gedt turns"] = [gedt(shape, 24) for shape in shapes]
     signature = pcl_symmetry.describe(turned, viewpoint=None, threads=1)[0]

@@ -112,11 +112,8 @@ def look_at_middle(placed, arguments, random):
         azimuth = math.atan2(nearest[1], nearest[0]) + random.uniform(-0.5, 0.5)
     elevation = math.radians(random.uniform(45, 80) if arguments.place == "bin" else random.uniform(10, 40))
     towards = np.array([math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)])
-    right = np.cross(-towards, [0, 0, 1])
-    right /= np.linalg.norm(right)
     pose = np.eye(4)
-    pose[:3, :3] = np.stack([right, np.cross(-towards, right), -towards], 1)
-    pose[:3, 3] = random.uniform(0.9, 1.3) * towards
+    pose[:3, :3], pose[:3, 3] = bench.look_along(-towards), random.uniform(0.9, 1.3) * towards
     return pose
 
 
