@@ -20,13 +20,10 @@ using detail::PosedModel;
 using detail::PosedScan;
 using detail::StoredModel;
 
-/// How likely an answer is right, by its merit and by how far it is ahead of the best model of another shape.
-/// fitted: by `pcl_symmetry_evaluate scenes -classes train.cla -fold 0 -every 2 -max 133 -leave_out 4 -no_planes
-/// -objects 6 -scenes 400 -most_in_band 25 -noise 0,1 -seen table,filtered -fit`: 267 answers, 66 of them for objects
-/// that are not in the database.
-struct ConfidenceTerms {
-  double constant = -26.5, merit = 29.7, lead = 29.6;
-};
+// An answer is judged by its merit and by its lead over the best model of another shape, which count alike: the sum at
+// which it is right as often as wrong, and by how much more its odds grow by a factor of e. chosen: after 267 answers
+// in scenes of fold 0, 66 of them for objects that are not in the database: too few for a fit of their own weights.
+constexpr double kEvenMeritAndLead = 0.894, kStepOfOdds = 1.0 / 30.0;
 
 // Greatest lead that counts. derived: with it, a merit of 0.6 decides; a scan that only one model was brought to leads
 // by as much. Unbounded, a poor fit would be certain where all others fit worse.
@@ -75,7 +72,6 @@ std::vector<std::size_t> firstsOfShapes(const std::vector<PosedModel>& found) {
 /// See RecognizedModel::confidence.
 /// \param found best first.
 void fillConfidences(std::vector<PosedModel>& found) {
-  constexpr ConfidenceTerms kTerms;
   const std::vector<std::size_t> firsts = firstsOfShapes(found);
   double sum = 0.0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -83,7 +79,7 @@ void fillConfidences(std::vector<PosedModel>& found) {
     std::size_t other = 0;
     while (other < found.size() && firsts[other] == firsts[i]) ++other;
     const double lead = std::min(merit - (other < found.size() ? found[other].model.score.merit() : 0.0), kMostLead);
-    found[i].model.confidence = 1.0 / (1.0 + std::exp(-kTerms.constant - kTerms.merit * merit - kTerms.lead * lead));
+    found[i].model.confidence = 1.0 / (1.0 + std::exp((kEvenMeritAndLead - merit - lead) / kStepOfOdds));
     if (firsts[i] == i) sum += found[i].model.confidence;
   }
   if (sum > 1.0)
@@ -133,7 +129,7 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   fit(0, first);
   if (first < candidates.size() && (found.empty() || !isAccepted(found.front().model, options)))
     fit(first, candidates.size());
-  // The confidence was fitted to merits before this step.
+  // The confidence is that of the merit before this step.
   if (!found.empty() && isAccepted(found.front().model, options)) found.front() = scan.turned(found.front());
   return found;
 }
