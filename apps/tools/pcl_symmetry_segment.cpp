@@ -53,8 +53,8 @@ CommandLine commandLine(SegmentOptions& o) {
       .number("size", o.size, Range::closed(16, 4096), "edge of the picture, pixels")
       .choice("method", o.method, {"merging", "splitting"},
               "merging: small patches grow to parts; splitting: as in the paper, by support for symmetry planes")
-      .choice("evidence", o.evidence, {"all", "concavity", "symmetry"},
-              "for merging: symmetry alone, with concavity, or with thickness and line of sight too")
+      .choice("evidence", o.evidence, {"all", "concavity"},
+              "for merging: symmetry and concavity, for scans from one side, or thickness and line of sight too")
       .number("parts", o.num_parts, Range::closed(0, 10'000), "number of parts; 0: as many as the shape has")
       .number("depth", o.depth, Range::closed(0, 30),
               "for splitting: largest number of splits from the whole to a part")
@@ -68,9 +68,7 @@ CommandLine commandLine(SegmentOptions& o) {
 SegmentationOptions segmentationOptions(const SegmentOptions& o, int num_threads) {
   SegmentationOptions options;
   options.method = o.method == "splitting" ? SegmentationMethod::Splitting : SegmentationMethod::Merging;
-  options.merging.evidence = o.evidence == "symmetry"    ? MergingEvidence::Symmetry
-                             : o.evidence == "concavity" ? MergingEvidence::SymmetryAndConcavity
-                                                         : MergingEvidence::All;
+  options.merging.evidence = o.evidence == "all" ? MergingEvidence::All : MergingEvidence::SymmetryAndConcavity;
   options.splitting.depth = o.depth;
   options.splitting.concavity_weight = o.concavity;
   options.num_parts = o.num_parts;

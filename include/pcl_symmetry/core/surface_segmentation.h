@@ -18,11 +18,10 @@ enum class SegmentationMethod {
 
 /// The evidence that merging uses, beside areas and contact.
 enum class MergingEvidence {
-  Symmetry,              ///< support for the planes of the surface, and which regions are each other's reflection
-  SymmetryAndConcavity,  ///< also concave edges, where people see borders of parts
-  All,                   ///< also thickness of the body and lines of sight within it; needs a surface with an inside
-  AllButSymmetry,        ///< concavity, thickness and lines of sight; the transform is not computed
-  Nothing                ///< areas and contact alone: what the other kinds are compared with
+  /// Support for the planes of the surface, regions that are each other's reflection, and concave edges: for surfaces
+  /// without an inside, such as scans from one side.
+  SymmetryAndConcavity,
+  All  ///< also thickness of the body and lines of sight within it
 };
 
 /// Options of SegmentationMethod::Merging.
@@ -51,8 +50,7 @@ struct MergingOptions {
   /// the place that the evidence found.
   double cut_band = 0.03;
 
-  /// Preference of that cut for concave edges, as SplittingOptions::concavity_weight, >= 0; not used with
-  /// MergingEvidence::Symmetry.
+  /// Preference of that cut for concave edges, as SplittingOptions::concavity_weight, >= 0.
   /// chosen: smaller values shorten borders across creases; larger values let them follow every crease.
   double concavity_weight = 3.0;
 

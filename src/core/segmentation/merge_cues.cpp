@@ -4,15 +4,6 @@
 
 namespace pcl_symmetry {
 
-std::vector<Cue> cuesOf(MergingEvidence evidence) {
-  std::vector<Cue> cues{kAlways, kContact, kSmallArea, kLargeArea};
-  if (usesSymmetry(evidence)) cues.insert(cues.end(), {kSupportDifference, kImages});
-  if (usesConcavity(evidence)) cues.insert(cues.end(), {kEdgeConcavity, kPatchConcavity, kInnerConcavity});
-  if (usesBody(evidence))
-    cues.insert(cues.end(), {kThicknessRatio, kConstriction, kSight, kRelativeSight, kSightOfSmall});
-  return cues;
-}
-
 const MergeWeights& fittedWeights(MergingEvidence evidence) {
   return kMergeFit[static_cast<std::size_t>(evidence)];
 }

@@ -1,21 +1,10 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "pcl_symmetry/core/surface_segmentation.h"
 
 namespace pcl_symmetry {
-
-inline bool usesSymmetry(MergingEvidence evidence) {
-  return evidence != MergingEvidence::AllButSymmetry && evidence != MergingEvidence::Nothing;
-}
-inline bool usesConcavity(MergingEvidence evidence) {
-  return evidence != MergingEvidence::Symmetry && evidence != MergingEvidence::Nothing;
-}
-inline bool usesBody(MergingEvidence evidence) {
-  return evidence == MergingEvidence::All || evidence == MergingEvidence::AllButSymmetry;
-}
 
 /// What speaks for or against two neighbouring regions being one part.
 enum Cue {
@@ -39,9 +28,6 @@ using Cues = std::array<double, kNumCues>;
 
 /// Log odds per unit of each cue, in the order of Cue.
 using MergeWeights = std::array<double, kNumCues>;
-
-/// \return the cues that a kind of evidence has, in the order of Cue.
-std::vector<Cue> cuesOf(MergingEvidence evidence);
 
 /// \return the weights that were fitted for a kind of evidence.
 const MergeWeights& fittedWeights(MergingEvidence evidence);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/base/random.h"
-#include "core/segmentation/merge_cues.h"
 #include "core/segmentation/body_evidence.h"
 #include "core/segmentation/surface_patches.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -62,25 +61,22 @@ int firstSeed(const SurfaceGraph& graph, int division, std::uint64_t seed) {
 }  // namespace
 
 WholeEvidence::WholeEvidence(const SurfaceGraph& graph, const SegmentationOptions& options)
-    : graph_(graph), merging_(options.merging), seed_(options.seed) {
-  features_.support.resize(0, graph.size());
-  if (usesSymmetry(merging_.evidence)) features_ = featuresOfWhole(graph, options);
-  if (usesBody(merging_.evidence)) tree_.emplace(graph.corners, graph.triangles);
+    : graph_(graph),
+      merging_(options.merging),
+      seed_(options.seed),
+      features_(featuresOfWhole(graph, options)) {
+  if (merging_.evidence == MergingEvidence::All) tree_.emplace(graph.corners, graph.triangles);
 }
 
-PartEvidence WholeEvidence::ofDivision(int division, MergingEvidence kind) const {
-  const float concave_detour = usesConcavity(kind) ? kConcaveDetour : 0.0f;
+PartEvidence WholeEvidence::ofDivision(int division) const {
   const std::uint64_t seed = seed_ + static_cast<std::uint64_t>(division);
   PartEvidence evidence;
   evidence.patches = measuredPatches(
-      graph_, growPatches(graph_, merging_.num_patches, concave_detour, firstSeed(graph_, division, seed)));
+      graph_, growPatches(graph_, merging_.num_patches, kConcaveDetour, firstSeed(graph_, division, seed)));
   evidence.borders = patchBorders(graph_, evidence.patches);
-  const bool has_body = tree_ && usesBody(kind);
-  BodyEvidence body = has_body ? bodyEvidence(graph_, *tree_, evidence.patches, seed) : noBodyEvidence(evidence.size());
+  BodyEvidence body = tree_ ? bodyEvidence(graph_, *tree_, evidence.patches, seed) : noBodyEvidence(evidence.size());
   evidence.thickness = std::move(body.thickness);
   evidence.sight = std::move(body.sight);
-  evidence.support.resize(0, evidence.size());
-  if (!usesSymmetry(kind)) return evidence;
   evidence.planes = features_.planes;
   evidence.support = supportOfPatches(graph_, evidence.patches, features_.support);
   evidence.images = imagesOfPatches(evidence.patches, evidence.planes);

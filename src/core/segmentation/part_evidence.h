@@ -37,8 +37,7 @@ public:
 
   /// Divides the surface into patches (over-segmentation) and gathers evidence.
   /// \param division divisions with different numbers, from 0, grow their patches from different seeds.
-  /// \param kind that of the options, or one that uses less.
-  PartEvidence ofDivision(int division, MergingEvidence kind) const;
+  PartEvidence ofDivision(int division) const;
 
 private:
   const SurfaceGraph& graph_;

@@ -42,7 +42,7 @@ std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> label
   if (merging.cut_band > 0.0) {
     BorderCutOptions cut;
     cut.band = merging.cut_band * std::sqrt(graph.area());
-    cut.concavity_weight = usesConcavity(merging.evidence) ? merging.concavity_weight : 0.0;
+    cut.concavity_weight = merging.concavity_weight;
     labels = joinCrumbs(graph, smoothBorders(graph, std::move(labels), cut), merging.least_area * graph.area());
   }
   if (mirror) labels = mirroredLabels(graph, labels, mirror->global.plane, mirror->reflected);
@@ -87,7 +87,7 @@ Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptio
   std::vector<MergedDivision> divisions(num_divisions);
   std::optional<PartEvidence> first;
   parallelBlocks(num_divisions, options.num_threads, [&](std::size_t d) {
-    PartEvidence evidence = whole.ofDivision(static_cast<int>(d), options.merging.evidence);
+    PartEvidence evidence = whole.ofDivision(static_cast<int>(d));
     divisions[d] = mergedDivision(evidence, weights, options.num_parts);
     if (d == 0) first = std::move(evidence);
   });
