@@ -20,6 +20,7 @@
 #include "pcl_symmetry/core/symmetric_completion.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/viewpoint_score.h"
+#include "python/evidence.h"
 #include "python/input_points.h"
 #include "python/motions.h"
 #include "python/plane_results.h"
@@ -231,7 +232,8 @@ void addFrame(py::module_& module) {
           "turns", [](const SymmetryFrame& f) { return f.turns; },
           "list of Turn, of scans from one side, most confident first")
       .def_readonly("probable", &SymmetryFrame::probable,
-                    "list of `ProbableFrame`: this frame, then others by falling probability");
+                    "list of `ProbableFrame`: this frame, then others by falling probability")
+      .def_property_readonly("evidence", &frameEvidence);
 }
 
 void addMap(py::module_& module) {
@@ -254,20 +256,22 @@ void addPlaneFunctions(py::module_& module) {
   module.def(
       "planes",
       [](const AnyArray& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
-         bool approximate, int max_planes, const py::object& normals, std::size_t max_points, std::uint64_t seed,
-         int threads) {
+         bool approximate, int max_planes, const py::object& normals, std::size_t max_points, bool evidence,
+         std::uint64_t seed, int threads) {
         DetectionOptions options;
         options.tolerance = tolerance;
         options.absolute_tolerance = absolute_tolerance;
         options.approximate = approximate;
         options.max_planes = max_planes;
+        options.evidence = evidence;
         options.seed = seed;
         options.num_threads = threads;
         return planes(points, viewpoint, options, max_points, normals);
       },
       py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto", py::arg("tolerance") = standard.tolerance,
       py::arg("absolute_tolerance") = 0.0, py::arg("approximate") = false, py::arg("max_planes") = standard.max_planes,
-      py::arg("normals") = py::none(), py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0,
+      py::arg("normals") = py::none(), py::arg("max_points") = 50'000, py::arg("evidence") = false, py::arg("seed") = 1,
+      py::arg("threads") = 0,
       "Planes of symmetry of a cloud (Sections 4.1 to 4.4).\n\n"
       "points: (N, 3), input units; float32 rows are not copied. Rows that are not finite are left out.\n"
       "viewpoint: where the scanner stood: \"auto\" (the points decide), None (seen from all sides) or (x, y, z).\n"
@@ -277,6 +281,8 @@ void addPlaneFunctions(py::module_& module) {
       "approximate: also the other maxima of the transform, and symmetries of parts.\n"
       "normals: (N, 3), of any length and sign; None: estimated.\n"
       "max_points: larger clouds are thinned to so many. threads: 0 = one per core.\n"
+      "evidence: also what the decisions are taken from, `evidence` and `turn_evidence` of the result; takes about as\n"
+      "long again.\n"
       "Returns Planes. Raises ValueError for bad parameters.");
   module.def(
       "complete", &complete, py::arg("points"), py::arg("plane"), py::kw_only(), py::arg("viewpoint") = "auto",
@@ -318,6 +324,7 @@ void addShapeFunctions(py::module_& module) {
 }  // namespace
 
 PYBIND11_MODULE(_pcl_symmetry, module) {
+  addEvidence(module);
   addPlaneResults(module);
   addFrame(module);
   addMap(module);

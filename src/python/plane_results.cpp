@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pcl_symmetry/core/viewpoint_score.h"
+#include "python/evidence.h"
 
 namespace py = pybind11;
 
@@ -68,6 +69,11 @@ void addScores(py::class_<Symmetry>& type) {
       .def_readonly("support", &Symmetry::support, "as that of Plane");
 }
 
+void addEvidenceOfSearch(py::class_<PlaneSearch>& type) {
+  type.def_property_readonly("evidence", [](const PlaneSearch& s) { return planeEvidence(s.found); })
+      .def_property_readonly("turn_evidence", [](const PlaneSearch& s) { return turnEvidence(s.found); });
+}
+
 }  // namespace
 
 void addPlaneResults(py::module_& module) {
@@ -88,7 +94,9 @@ void addPlaneResults(py::module_& module) {
   py::class_<RankedView>(module, "View", "A direction to look at an object from.")
       .def_readonly("direction", &RankedView::direction, "(3,) unit, from the object to the camera")
       .def_readonly("score", &RankedView::score, "S of Section 5.4, >= 0");
-  py::class_<PlaneSearch>(module, "Planes", "What planes() found; behaves as the list of its planes.")
+  py::class_<PlaneSearch> search(module, "Planes", "What planes() found; behaves as the list of its planes.");
+  addEvidenceOfSearch(search);
+  search
       .def_property_readonly(
           "planes", [](const PlaneSearch& s) { return s.found.planes; },
           "list of Plane: symmetries, possible, approximate, local; each best first")

@@ -91,6 +91,33 @@ class Planes(unittest.TestCase):
         self.assertEqual(frame.turns[0].fold, 4)
         self.assertEqual(pcl_symmetry.frame(points).turns, [])
 
+    def test_evidence_is_an_array_of_candidates(self):
+        found = pcl_symmetry.planes(box(), evidence=True)
+        evidence = found.evidence
+        self.assertGreaterEqual(len(evidence), 3)
+        for plane in found:
+            gap = np.minimum(*(np.abs(evidence["coefficients"] - s * plane.coefficients).max(axis=1) for s in (1, -1)))
+            self.assertLess(gap.min(), 0.01)
+            row = evidence[gap.argmin()]
+            self.assertEqual(row["kind"], 0)
+            self.assertAlmostEqual(row["share"], plane.share, delta=0.01)
+            self.assertGreater(row["confidence"], 0.5)
+            self.assertEqual(row["terms"][0], 1)
+        self.assertEqual([plane.confidence for plane in found], [p.confidence for p in pcl_symmetry.planes(box())])
+        self.assertEqual((len(found.turn_evidence), len(pcl_symmetry.planes(box()).evidence)), (0, 0))
+
+    def test_evidence_of_turns_holds_those_of_no_confidence_too(self):
+        points, viewpoint = box((1.0, 1.0, 0.4), 40_000), np.array([1.6, 2.4, 3.2])
+        seen = points[(points[:, 0] == 0.5) | (points[:, 1] == 0.5) | (points[:, 2] == np.float32(0.2))]
+        found = pcl_symmetry.planes(seen, viewpoint=viewpoint, evidence=True)
+        turns = found.turn_evidence
+        self.assertGreaterEqual(len(turns), len(found.turns))
+        self.assertEqual(set(found.evidence["kind"]), {1})
+        for turn in found.turns:
+            row = turns[np.argmin(np.abs(turns["confidence"] - turn.confidence))]
+            self.assertEqual((row["fold"], row["off"], row["support"]), (turn.fold, turn.off, turn.support))
+        self.assertEqual(len(pcl_symmetry.planes(seen, viewpoint=viewpoint).turn_evidence), 0)
+
     def test_data_without_an_answer_give_a_reason(self):
         for points in (np.zeros((0, 3), np.float32), np.zeros((100, 3), np.float32), box(num_points=12)):
             found = pcl_symmetry.planes(points)
@@ -147,6 +174,9 @@ class OtherFunctions(unittest.TestCase):
         self.assertEqual(frame.probable[0].axes.tolist(), frame.axes.tolist())
         self.assertGreater(frame.probable[0].probability, 0.5)
         self.assertLess(sum(other.probability for other in frame.probable), 1)
+        self.assertEqual(len(frame.evidence), len(frame.probable))
+        self.assertEqual((frame.evidence["best"][0], frame.evidence["value"][0]), (1, 0))
+        self.assertEqual(frame.evidence["constant"].min(), 1)
         rotations = pcl_symmetry.rotations(box())
         self.assertEqual(rotations.name, "D2")
         self.assertEqual(rotations.discrete.shape, (3, 4, 4))
@@ -199,6 +229,17 @@ class OtherFunctions(unittest.TestCase):
         self.assertEqual(len(labels), 2000)
         self.assertTrue(shares and max(shares) <= 1.0)
         self.assertEqual(pcl_symmetry.sample_mesh(vertices, faces, 500).shape, (500, 3))
+
+    def test_merges_of_a_mesh_follow_their_weights(self):
+        vertices, faces = box_mesh()
+        merging = pcl_symmetry.Merging(vertices, faces)
+        self.assertEqual(len(merging.patches), len(faces))
+        merges = merging.merges()
+        self.assertEqual(len(merges), max(merging.patches))
+        self.assertEqual((merges["cues"].shape[1], merges["cues"][0, 0]), (14, 1))
+        self.assertTrue((merging.merges([1] + [0] * 13)["log_odds"] == 1).all())
+        with self.assertRaisesRegex(ValueError, "weights = 2 numbers, must be 14"):
+            merging.merges([1, 2])
 
     def test_description_does_not_depend_on_the_pose(self):
         points = box()

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -83,6 +84,10 @@ struct SymmetryTurn {
   double halfway = 0.0;  ///< off of turns halfway between those of the fold: these speak against other folds
 };
 
+/// What the decisions of one detection were taken from (core/detection/plane_judge.h); the Python module gives
+/// it as arrays.
+struct DetectionEvidence;
+
 /// All planes through a point are symmetries: a sphere.
 struct SymmetryCenter {
   Eigen::Vector3d point;    ///< input frame
@@ -125,6 +130,7 @@ struct DetectionOptions {
   bool turns = true;     ///< axes of turns of scans are searched too; false saves about a third of the time
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
+  bool evidence = false;   ///< fills Detection::evidence; takes about as long again as the detection
   int max_planes = 64;     ///< >= 1; folds of rotations go up to 60
   std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
   int num_threads = 0;     ///< >= 0; 0 = one per core
@@ -145,11 +151,12 @@ struct Detection {
   /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and say
   /// nothing.
   std::optional<ReflectionPlane> flat;
-  double tolerance = 0.0;               ///< that was decided at, input units
-  std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
-  std::vector<SymmetryCenter> centers;  ///< of spheres
-  std::vector<SymmetryTurn> turns;      ///< of scans: axes of turns, most confident first, from min_possible on
-  SymmetryMap map;                      ///< empty where one was given
+  double tolerance = 0.0;                       ///< that was decided at, input units
+  std::vector<SymmetryAxis> axes;               ///< best first; their planes are not among planes
+  std::vector<SymmetryCenter> centers;          ///< of spheres
+  std::vector<SymmetryTurn> turns;              ///< of scans: axes of turns, most confident first, from min_possible on
+  SymmetryMap map;                              ///< empty where one was given
+  std::shared_ptr<DetectionEvidence> evidence;  ///< with DetectionOptions::evidence; else null
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -44,9 +45,13 @@ struct ProbableFrame {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: as of SymmetryFrame
   int revolution_axis = -1;                            ///< as of SymmetryFrame
   /// That the axes, in any order and sign, are within 5 degrees of the own axes of the shape, in [0, 1]; a frame with
-  /// an axis of revolution may be turned about it. fitted: to models whose files tell the own axes
-  /// (`calibrate_frames`).
+  /// an axis of revolution may be turned about it. Fitted to models whose files tell the own axes
+  /// (test/benchmark/fit_frames.py).
   double probability = 0.0;
+  /// What the probability was taken from: 1; value less that of the best frame; score of the first plane; contact of
+  /// the outline with its box; angle to the principal axes over 20 degrees, at most 1; 1 for the frame that the search
+  /// put first; sum of the scores of the other planes; score of the first plane where the search put it first, else 0.
+  std::array<double, 8> evidence{};
 };
 
 /// The canonical frame of a shape: center of symmetry (COS) and principal symmetry axes (PSA, Section 5.1).

@@ -60,13 +60,30 @@ Detection bySubset(const CloudSubset& subset, const PointsRef& points, const Poi
   return detection;
 }
 
+/// The evidence of all candidates, also of those that the detection leaves out early.
+/// \param candidates after the second stage.
+std::vector<JudgedPlane> evidenceOf(std::vector<Candidate> candidates, const StagedRefinement& refinement,
+                                    const PlaneJudge& judge, const DetectionOptions& options) {
+  candidates = refinement.full(std::move(candidates));
+  refinement.climb(candidates);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
+  const PlaneTolerance same{options.merge_angle, options.merge_offset};
+  std::vector<Candidate> distinct;
+  for (Candidate& candidate : candidates)
+    if (!same.anySame(distinct, candidate.plane, [](const Candidate& other) { return other.plane; }))
+      distinct.push_back(std::move(candidate));
+  return judge.judgeWithEvidence(distinct);
+}
+
 /// Finds the axes of turns of a scan, and brings axes of revolution and planes in line with them.
 std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
                                         double tolerance, const DetectionOptions& options, Detection& detection) {
   // A ball turns about every line through its center.
   if (!options.turns || !cloud.isScan() || !detection.centers.empty()) return planes;
   const TurnEvidence turns(cloud, tolerance, options.seed);
-  detection.turns = scanAxes(turns, planes, detection.axes, options);
+  detection.turns =
+      scanAxes(turns, planes, detection.axes, options, detection.evidence ? &detection.evidence->turns : nullptr);
   detection.axes = withRoundTurns(turns, std::move(detection.axes), detection.turns, options);
   return withoutPlanesOf(std::move(planes), detection.axes, cloud);
 }
@@ -90,6 +107,11 @@ Detection planesOf(const NormalizedCloud& cloud, const Points& all, const Symmet
   timed("coarse_refinement");
   candidates = refinement.close(std::move(candidates));
   timed("close_refinement");
+  if (options.evidence) {
+    detection.evidence = std::make_shared<DetectionEvidence>();
+    detection.evidence->planes = evidenceOf(candidates, refinement, judge, options);
+    timed("evidence");
+  }
   std::vector<SymmetryPlane> planes = settler.planes(std::move(candidates));
   timed("full_refinement");
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/detection/turn_signs.h"
 #include "core/evidence/cut_planes.h"
 #include "core/evidence/outermost_points.h"
 #include "core/evidence/split_surface.h"
@@ -18,6 +19,13 @@ namespace pcl_symmetry {
 struct JudgedPlane {
   SymmetryPlane plane;  ///< input frame
   PlaneEvidence evidence;
+};
+
+/// What the decisions of one detection were taken from: what fits are made to.
+struct DetectionEvidence {
+  /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
+  std::vector<JudgedPlane> planes;
+  std::vector<JudgedTurn> turns;  ///< of scans
 };
 
 /// What the planes of a family say together.

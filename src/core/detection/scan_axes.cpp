@@ -146,7 +146,8 @@ bool isSameLine(const Line3d& a, const Line3d& b) {
 }  // namespace
 
 std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vector<SymmetryPlane>& planes,
-                                   const std::vector<SymmetryAxis>& axes, const DetectionOptions& options) {
+                                   const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
+                                   std::vector<JudgedTurn>* evidence_of_all) {
   const NormalizedCloud& cloud = evidence.cloud();
   std::vector<AxisStart> starts = startsFromNormals(cloud, options.seed, options.num_threads);
   const auto append = [&](const std::vector<AxisStart>& more) {
@@ -179,8 +180,12 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
     turns.turn.point = turns.line.projection(Eigen::Vector3d::Zero()) * cloud.scale + cloud.center;
     result.push_back(turns.turn);
   }
-  const std::vector<TurnSigns> signs = turnSigns(evidence, result, options.min_possible, options.num_threads);
-  for (std::size_t i = 0; i < result.size(); ++i) result[i].confidence = turnConfidence(result[i], signs[i]);
+  const double least = evidence_of_all ? 0.0 : options.min_possible;
+  const std::vector<TurnSigns> signs = turnSigns(evidence, result, least, options.num_threads);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i].confidence = turnConfidence(result[i], signs[i]);
+    if (evidence_of_all) evidence_of_all->push_back({result[i], signs[i]});
+  }
   result.erase(std::remove_if(result.begin(), result.end(),
                               [&](const SymmetryTurn& turn) { return turn.confidence < options.min_possible; }),
                result.end());

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/detection/turn_evidence.h"
+#include "core/detection/turn_signs.h"
 #include "pcl_symmetry/core/plane_detection.h"
 
 namespace pcl_symmetry {
@@ -16,9 +16,11 @@ namespace pcl_symmetry {
 /// own; round is what no turn contradicts.
 /// \param evidence of a scan.
 /// \param planes found so far, input frame.
+/// \param evidence_of_all takes what was seen of each turn, also of those that are not returned; may be null.
 /// \return input frame, most confident first; no two along one line.
 std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vector<SymmetryPlane>& planes,
-                                   const std::vector<SymmetryAxis>& axes, const DetectionOptions& options);
+                                   const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
+                                   std::vector<JudgedTurn>* evidence_of_all = nullptr);
 
 /// The same for points of which no planes are known.
 /// \param points 3 x N, finite, input units.

@@ -13,7 +13,7 @@ enum class TurnKind { AnyAngle, Half, Folds };
 TurnKind kindOf(const SymmetryTurn& turn);
 
 /// Terms of the log odds that turns which a scan shows are symmetries of the whole object; the first is 1. The numbers
-/// that they are multiplied with are fitted by calibrate_turns.
+/// that they are multiplied with are fitted by test/benchmark/fit_turns.py.
 /// \param turn with the shares that were seen.
 std::vector<double> turnOddsTerms(const SymmetryTurn& turn, const TurnSigns& signs);
 

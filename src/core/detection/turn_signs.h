@@ -20,6 +20,12 @@ struct TurnSigns {
   double beside = 0.0;
 };
 
+/// A turn that a scan was asked about, whatever its confidence.
+struct JudgedTurn {
+  SymmetryTurn turn;  ///< input frame
+  TurnSigns signs;
+};
+
 /// \param turns of one scan, input frame, with the shares that were seen.
 /// \param min_confidence planes are not looked for where the other signs leave a turn less, see turnConfidence().
 /// \param num_threads 0 = one per core.

@@ -102,7 +102,8 @@ EvidenceKind kindOf(const PlaneEvidence& evidence) {
   return evidence.partial ? EvidenceKind::Scan : evidence.volume ? EvidenceKind::Volume : EvidenceKind::Surface;
 }
 
-std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
+  const EvidenceUnits units;
   const double further = evidence.further ? byFurther(kindOf(evidence), evidence.unknown) : 0.0;
   switch (kindOf(evidence)) {
     case EvidenceKind::Scan:

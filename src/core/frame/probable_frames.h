@@ -12,7 +12,8 @@ namespace pcl_symmetry {
 /// A frame is right if its axes, in any order and with any sign, are within 5 degrees of those that people gave the
 /// shape; a frame with an axis of revolution may be turned about it by any angle. The probability of a frame is
 /// exp(w.x) / (1 + the sum of exp(w.x) over all frames of the shape), a conditional logit whose 1 stands for "none of
-/// them" (McFadden 1974). `calibrate_frames` fits the weights w.
+/// them" (McFadden 1974). test/benchmark/fit_frames.py fits the
+/// weights w.
 
 /// What speaks for a frame: x above.
 ///   0  1

@@ -1,6 +1,7 @@
 #include "pcl_symmetry/core/symmetry_frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -89,6 +90,12 @@ std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef
   return turnsOfScan(points, edt, visibility, axes, detection);
 }
 
+std::array<double, kNumFrameTerms> evidenceOf(const FrameChoice& choice) {
+  std::array<double, kNumFrameTerms> evidence;
+  std::copy(choice.terms.data(), choice.terms.data() + kNumFrameTerms, evidence.begin());
+  return evidence;
+}
+
 /// The frame itself, then the others by falling probability.
 std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const SymmetryFrame& frame,
                                           const std::vector<FrameChoice>& choices) {
@@ -97,11 +104,11 @@ std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const S
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const FrameChoice& choice = choices[i];
     if (i == 0)
-      probable.push_back({frame.center, frame.axes, frame.revolution_axis, probabilities[i]});
+      probable.push_back({frame.center, frame.axes, frame.revolution_axis, probabilities[i], evidenceOf(choice)});
     else
       probable.push_back({centerOfSymmetry(evidence, choice.frame),
                           principalSymmetryAxes(evidence.points(), choice.frame.axes), choice.revolution_axis,
-                          probabilities[i]});
+                          probabilities[i], evidenceOf(choice)});
   }
   if (!probable.empty())
     std::stable_sort(probable.begin() + 1, probable.end(),

@@ -11,6 +11,7 @@
 import importlib.util
 from typing import TYPE_CHECKING, Any, List
 
+from ._pcl_symmetry import Merging as Merging
 from ._pcl_symmetry import __version__ as __version__
 from .functions import complete, describe, frame, planes, rotations, sample_mesh, segment, transform, viewpoints
 from .results import (
@@ -42,6 +43,7 @@ __all__ = [
     "Frame",
     "Map",
     "Match",
+    "Merging",
     "Plane",
     "Planes",
     "PoseScore",

@@ -127,7 +127,6 @@ def planes(
     import numpy as np
 
     array, shift = prepare("points", points)
-    options: Dict[str, Any] = dict(evidence=evidence) if evidence else {}
     found = core.planes(
         array,
         viewpoint=_seen_from(viewpoint, shift),
@@ -137,9 +136,9 @@ def planes(
         max_planes=max_planes,
         normals=normals,
         max_points=max_points,
+        evidence=evidence,
         seed=seed,
         threads=threads,
-        **options,
     )
     scores = ("confidence", "score", "support")
     result = Planes(
@@ -148,8 +147,8 @@ def planes(
         centers=[Center(**_fields(c, "point", *scores)) for c in found.centers],
         turns=[_turn(t) for t in found.turns],
         best=None if found.best is None else _plane(found.best),
-        evidence=found.evidence if evidence else None,
-        turn_evidence=found.turn_evidence if evidence else None,
+        evidence=found.evidence,
+        turn_evidence=found.turn_evidence,
         _support=found.support,
         _rows=np.asarray(found.rows, dtype=np.int64),
         _num_rows=len(array),
@@ -189,7 +188,6 @@ def frame(
     *,
     viewpoint: Viewpoint = "auto",
     max_points: int = 50_000,
-    evidence: bool = False,
     seed: int = 1,
     threads: int = 0,
 ) -> Frame:
@@ -199,8 +197,7 @@ def frame(
     result = Frame(
         probable=[ProbableFrame(**_fields(f, "center", "axes", "probability", "revolution_axis")) for f in found.probable],
         turns=[_turn(t) for t in found.turns],
-        evidence=found.evidence if evidence else None,
-        **_fields(found, "center", "axes", "scores", "revolution_axis", "transform", "equivalent"),
+        **_fields(found, "center", "axes", "scores", "revolution_axis", "transform", "equivalent", "evidence"),
     )
     return result if shift is None else result._moved(shift)
 

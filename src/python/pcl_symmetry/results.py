@@ -306,10 +306,32 @@ class Planes(Result):
     """Why there is no answer; empty where the search ran."""
     viewpoint: Optional["Doubles"]
     """(3,) where the scanner stood; None: seen from all sides."""
-    evidence: Optional["NDArray[Any]"]
-    """With planes(evidence=True), what the decisions were taken from: one row a candidate."""
-    turn_evidence: Optional["NDArray[Any]"]
-    """The same for the rotations of scans."""
+    evidence: "NDArray[Any]"
+    """With planes(evidence=True), what the decisions are taken from: structured array, one row a candidate, best first.
+
+    coefficients: (4,) a, b, c, d. kind: 0 surface, 1 scan, 2 points that resolve no surface. flat: all points lie in one
+    plane. confidence: by this evidence alone. All shares are in [0, 1]:
+    share, double_share: of the surface that the plane maps to within once and twice the tolerance
+    unknown: that is uninformative, as its reflection was not seen or was cut off
+    score: D of equation 2. own_score: what noise leaves of D for a symmetry, in [0.5, 1]
+    support, conflict: mean over the points. baseline: support of the points on the surface of all others
+    hold: of scans, how firmly what is matched holds the plane, >= 0
+    spacing, tolerance: over the radius of the points. roughness: over the spacing
+    share_unit: error of the share that share_interval is in units of
+    terms: (7,) summands of the log odds of the confidence before their coefficients, by kind 7, 6 and 5 of them, then 0;
+        the last one of kinds 0 and 1 counts for planes beside the best of the cloud
+    """
+    turn_evidence: "NDArray[Any]"
+    """The same for the rotations of scans, also those of no confidence.
+
+    point, direction: (3,) each. fold: order of the rotations; 0: by any angle. kind: 0 by any angle, 1 half turns, 2 of
+    order 3 and more. confidence: of the rotations. Shares of the points seen:
+    support: that the best rotation maps onto the surface. off, far: that the worst rotation maps to where nothing was seen,
+    beyond one and ten tolerances. halfway: off of rotations halfway between those of the fold.
+    Of half turns: grown, extent with the image over that without, >= 1. hold: how firmly what is matched holds the line,
+    >= 0. planes_off: off of the best pair of planes through the line. beside: 1 where another rotation fits better.
+    terms: (7,) summands of the log odds before their coefficients, by kind 4, 7 and 6 of them, then 0
+    """
     _support: List["NDArray[np.float32]"]
     _rows: "NDArray[np.int64]"
     _num_rows: int
@@ -356,13 +378,11 @@ class Planes(Result):
             changes["flat"] = self.flat.copy()
             changes["flat"][3] -= self.flat[:3] @ shift
         for name in ("evidence", "turn_evidence"):
-            rows = getattr(self, name)
-            if rows is not None:
-                rows = changes[name] = rows.copy()
-                if "coefficients" in rows.dtype.names:
-                    rows["coefficients"][:, 3] -= rows["coefficients"][:, :3] @ shift
-                if "point" in rows.dtype.names:
-                    rows["point"] += shift
+            rows = changes[name] = getattr(self, name).copy()
+            if "coefficients" in rows.dtype.names:
+                rows["coefficients"][:, 3] -= rows["coefficients"][:, :3] @ shift
+            if "point" in rows.dtype.names:
+                rows["point"] += shift
         return dataclasses.replace(super()._moved(shift), **changes)
 
 
@@ -416,8 +436,14 @@ class Frame(Result):
     """Of scans from one side, most confident first."""
     probable: List[ProbableFrame]
     """This frame, then others by falling probability."""
-    evidence: Optional["NDArray[Any]"]
-    """With frame(evidence=True), what the probabilities were taken from: one row for each of `probable`."""
+    evidence: "NDArray[Any]"
+    """What the probabilities are taken from: structured array, one row for each of `probable`.
+
+    constant: 1. value: of the frame less that of the best one, <= 0. first_score: of the plane across the first axis.
+    contact: longest stretch of the outline on its box, share of the longer side. principal_angle: to the principal axes
+    over 20 degrees, at most 1. best: 1 for the frame that the search put first. other_scores: sum of the scores of the
+    other planes. best_score: first_score of the frame that the search put first, else 0.
+    """
 
     def plot(self, points: "ArrayLike", axes: Any = None) -> Any:
         """Draws points and axes with matplotlib into axes of projection 3d, by default new ones; returns them."""
