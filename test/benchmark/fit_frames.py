@@ -1,0 +1,133 @@
+"""Fits the probabilities that a frame is the one in which people put a shape, and writes the header of their weights.
+
+usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_frames.py PSB --classes train.cla --fold 0 --others 1
+
+A whole cloud and two scans of each model, in random poses, give frames with their evidence x. A frame is right where
+its axes, in any order and sign, are within 5 degrees of those of the file; about an axis of revolution at any angle.
+The probability of a frame is exp(w.x) / (1 + the sum of exp(w.x) over all frames of the cloud), a conditional logit
+whose 1 counts for "none of them" (McFadden 1974); w maximizes the likelihood that one of the right frames is right.
+"""
+import argparse
+import itertools
+
+import numpy as np
+from scipy.optimize import minimize
+from scipy.special import logsumexp
+
+import bench
+import fits
+
+OUTPUT = "src/core/frame/frame_fit.h"
+RIGHT = 5.0  # degrees
+PULL = 0.3  # of each weight to 0, clouds; at half of it no weight moves by a tenth
+VIEWS = 2
+SIGNED_ORDERS = [np.eye(3)[list(order)].T * signs for order in itertools.permutations(range(3))
+                 for signs in itertools.product((1, -1), repeat=3)]  # fmt: skip
+
+
+def angle_of_axes(own, axes, revolution):
+    """Least angle between two frames over all orders and signs, degrees; a column of axes may turn freely."""
+    if revolution == 3:
+        return 0.0
+    greatest = -1.0
+    for order in SIGNED_ORDERS:
+        turned = axes @ order
+        if np.linalg.det(turned) < 0:
+            continue
+        relative = turned.T @ own
+        trace = np.trace(relative)
+        if revolution >= 0:
+            k = int(np.argmax(np.abs(order[revolution])))
+            i, j = (k + 1) % 3, (k + 2) % 3
+            trace = relative[k, k] + np.hypot(relative[i, i] + relative[j, j], relative[i, j] - relative[j, i])
+        greatest = max(greatest, trace)
+    return float(np.degrees(np.arccos(np.clip(0.5 * (greatest - 1), -1, 1))))
+
+
+def sample_item(item, arguments):
+    """A row for each cloud: whether it is a scan, what is right, and the evidence of its frames."""
+    import pcl_symmetry
+
+    mesh, rows = bench.read_mesh(item.path), []
+    for view in range(VIEWS + 1):
+        random = bench.generator(arguments.seed, item.key, "frames", view)
+        pose, viewpoint = bench.random_pose(random, mesh), "auto"
+        if view == 0:
+            points = bench.moved(pose, bench.sample(mesh, 10_000, random))
+        else:
+            scan = bench.scan(mesh, bench.CUBE_CORNERS[view - 1], random, pose=pose)
+            points, viewpoint = scan.rows, tuple(scan.viewpoint)
+        frame = pcl_symmetry.frame(points.astype(np.float32), viewpoint=viewpoint, threads=1)
+        right = [angle_of_axes(pose[:3, :3], p.axes, p.revolution_axis) < RIGHT for p in frame.probable]
+        rows.append([view > 0, right, [list(map(float, row)) for row in frame.evidence.tolist()]])
+    return rows
+
+
+def fit_weights(rows):
+    """(weights, their standard errors)"""
+    clouds = [(np.array(right, bool), np.array(x)) for _, right, x in rows if x]
+
+    def loss(w):
+        total, slope = 0.5 * PULL * w @ w, PULL * w
+        for right, x in clouds:
+            odds = np.r_[0, x @ w]
+            p = np.exp(odds - logsumexp(odds))[1:]
+            chosen = right if right.any() else None
+            # Where no frame is right, "none of them" is, whose odds are 1.
+            total -= (logsumexp(odds[1:][chosen]) if chosen is not None else 0) - logsumexp(odds)
+            share = np.where(right, p, 0) / p[right].sum() if chosen is not None else 0
+            slope = slope - (share - p) @ x
+        return total, slope
+
+    size = len(clouds[0][1][0])
+    found = minimize(loss, np.zeros(size), jac=True, method="BFGS", options={"gtol": 1e-6, "maxiter": 500})
+    return found.x, np.sqrt(np.diag(found.hess_inv))
+
+
+def print_rates(rows, weights, title):
+    lines = []
+    for scanned, name in ((False, "whole"), (True, "scan")):
+        itself, probable, any_of, forecasts = bench.Rate(), bench.Rate(), bench.Rate(), []
+        for is_scan, right, x in rows:
+            if is_scan != scanned or not x:
+                continue
+            odds = np.r_[0, np.array(x) @ weights[scanned]]
+            p = np.exp(odds - logsumexp(odds))[1:]
+            itself.add(right[0])
+            probable.add(right[int(np.argmax(p))])
+            any_of.add(any(right))
+            forecasts += zip(p, right)
+        lines.append([name, itself.text, probable.text, any_of.text, f"{bench.calibration(*zip(*forecasts))['error']:.3f}"])
+    bench.print_table(title, ["clouds", "the frame is right", "the most probable one", "one of them", "calibration error"], lines)
+
+
+def header(fit, num_clouds, num_models):
+    numbers = ["{" + ", ".join(fits.rounded(*both)) + "}" for both in fit]
+    return f"""
+/// Weights of frameProbabilities(): of whole clouds and of scans.
+struct FrameFit {{
+  std::array<double, 8> whole, scan;
+}};
+
+// Fitted to {num_clouds} clouds of {num_models} models.
+constexpr FrameFit kFrameFit{{{numbers[0]},
+                             {numbers[1]}}};
+"""
+
+
+def program(arguments):
+    models = bench.list_models(arguments)
+    rows = fits.sampled(models, sample_item, arguments)
+    fit = [fit_weights([row for row in rows if row[0] == scanned]) for scanned in (False, True)]
+    weights = [one[0] for one in fit]
+    print_rates(rows, weights, "Models of the fit")
+    if arguments.others is not None:
+        others = argparse.Namespace(**{**vars(arguments), "fold": arguments.others})
+        print_rates(fits.sampled(bench.list_models(others), sample_item, others, "others"), weights, f"Fold {arguments.others}")
+    fits.write_header(arguments.output, header(fit, len(rows), len(rows) // (VIEWS + 1)), (["<array>"],))
+
+
+if __name__ == "__main__":
+    parser = fits.make_parser(__doc__, OUTPUT)
+    parser.add_argument("--others", type=int, help="fold that the fit is judged on")
+    bench.main(program, parser.parse_args())

@@ -1,0 +1,103 @@
+"""Fits the confidence of rotations that single scans show, and writes the header that holds its numbers.
+
+usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_turns.py PSB --classes train.cla --fold 0
+
+Scans of models, and of solids made by code (round, with folds, with a handle), give turns about lines with their
+evidence; by exact distances, what they map off the mesh. Turns are right where they map all but 10 % of the surface to
+within 1 % of the diameter of the surface, and all but 1.25 % to within ten times that. Half turns are fitted to the
+models alone: prisms have them more often than objects do.
+"""
+import numpy as np
+
+import bench
+import fits
+import references
+
+OUTPUT = "src/core/detection/turn_confidence_fit.h"
+KINDS, NUM_TERMS = ("by any angle", "half turns", "of order 3 and more"), (4, 7, 6)
+TOLERANCE, MOST_OFF, MOST_FAR = 0.01, 0.10, 0.0125
+NUM_SAMPLES = 5000  # of the mesh: a share of 0.1 is known to 0.004
+PULL = 0.5  # cases; half and twice change no confidence by 0.05, and without any separable cases would be certain
+NUM_SCANS, NUM_SOLIDS = 2, 480
+
+
+def solid(i, random):
+    """A round body, one with 3 to 8 folds, or a round one with a handle."""
+    if i % 3 == 1:
+        return fits.folded_shape(list(fits.PROFILES)[i // 3 % 5], int(random.integers(3, 9)), random)
+    mesh = fits.round_shape(fits.ROUND[i // 3 % 4], random)
+    return fits.with_handle(mesh) if i % 3 == 2 else mesh
+
+
+def excess(surface, point, direction, fold):
+    """The greater of the shares that the turns map off the mesh, over what is allowed of each."""
+    angles = 2 * np.pi * (np.arange(1, 17) / 17 if fold == 0 else np.arange(1, fold // 2 + 1) / fold)
+    worst = 0.0
+    for angle in angles:
+        x = surface.samples - point  # Rodrigues
+        along = x @ direction
+        rotated = x * np.cos(angle) + np.cross(direction, x) * np.sin(angle) + np.outer(along, direction) * (1 - np.cos(angle))
+        distances = surface.mesh.distances(rotated + point)
+        off, far = (distances > surface.tolerance).mean(), (distances > 10 * surface.tolerance).mean()
+        worst = max(worst, off / MOST_OFF, far / MOST_FAR)
+    return worst
+
+
+def sample_item(item, arguments):
+    """Rows of the turns of all scans of a model or solid: model, kind, excess and terms."""
+    import pcl_symmetry
+
+    name = str(getattr(item, "name", item))
+    if isinstance(item, str):
+        mesh, num_scans = solid(int(item.split()[1]), bench.generator(arguments.seed, item)), 1
+    else:
+        mesh, num_scans = bench.read_mesh(item.path), NUM_SCANS
+    surface, rows = references.Surface(mesh, TOLERANCE, NUM_SAMPLES), []
+    for view in range(num_scans):
+        random = bench.generator(arguments.seed, name, "turns", view)
+        scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=bench.random_pose(random, mesh))
+        found = pcl_symmetry.planes(scan.rows.astype(np.float32), viewpoint=tuple(scan.viewpoint), evidence=True, threads=1)
+        T_model_cloud = np.linalg.inv(scan.T_cloud_model)
+        for e in found.turn_evidence:
+            point = (bench.moved(T_model_cloud, e["point"]) - mesh.center) / mesh.diagonal
+            right = excess(surface, point, T_model_cloud[:3, :3] @ e["direction"], e["fold"])
+            rows.append([name, int(e["kind"]), round(right, 4), *map(float, e["terms"])])
+    return rows
+
+
+def header(fit, errors, counts):
+    numbers = ["{" + ", ".join(fits.rounded(*both)) + "}" for both in zip(fit, errors)]
+    return f"""
+// Coefficients of turnOddsTerms(), by TurnKind.
+// Fitted; symmetries among the turns of each kind: {", ".join(counts)}.
+inline const std::array<std::vector<double>, 3> kTurnConfidenceFit{{
+    {{{(","+chr(10)+"     ").join(numbers)}}}}};
+"""
+
+
+def program(arguments):
+    items = [*bench.list_models(arguments), *(f"solid {i}" for i in range(arguments.solids))]
+    rows = fits.sampled(items, sample_item, arguments)
+    names, table = np.array([row[0] for row in rows]), np.array([row[1:] for row in rows])
+    kinds, right, terms = table[:, 0], table[:, 1] <= 1, table[:, 2:]
+    results, lines, counts = [], [], []
+    for kind, count in enumerate(NUM_TERMS):
+        use = (kinds == kind) & ~((kind == 1) & np.char.startswith(names, "solid "))
+        x, y, models = terms[use, :count], right[use], names[use]
+        results.append(fits.logistic(x, y, pull=PULL, name=KINDS[kind]))
+        p = 1 / (1 + np.exp(-x @ results[-1][0]))
+        loss = "-"
+        if arguments.cross_validation:
+            judge = lambda train, test: fits.log_loss(x[test] @ fits.logistic(x[train], y[train], pull=PULL, least=0)[0], y[test])
+            loss = f"{fits.cross_validated(judge, models):.4f}"
+        lines.append([KINDS[kind], f"{y.sum()} of {len(y)}", bench.Rate(y[p >= 0.5]).text, bench.Rate(y[p < 0.5]).text,
+                      f"{bench.calibration(p, y)['error']:.3f}", loss])  # fmt: skip
+        counts.append(f"{y.sum()} of {len(y)}")
+    bench.print_table("Turns of the fit", ["turns", "right", "of those above 0.5", "below", "calibration error", "nats, other models"], lines)
+    fits.write_header(arguments.output, header(*zip(*results), counts), (["<array>", "<vector>"],))
+
+
+if __name__ == "__main__":
+    parser = fits.make_parser(__doc__, OUTPUT)
+    parser.add_argument("--solids", type=int, default=NUM_SOLIDS, help="number of scans of solids made by code")
+    bench.main(program, parser.parse_args())

@@ -1,0 +1,144 @@
+"""What the programs that fit decisions share: logistic regression, rounding, made-up shapes, and generated headers."""
+import argparse
+import math
+import pathlib
+import sys
+
+import numpy as np
+from sklearn.linear_model import LogisticRegression
+
+import bench
+
+LEAST_EXAMPLES = 100  # of either kind, weights counted; with fewer a decision is a rule, not a fit
+
+
+def logistic(terms, right, weights=None, pull=1e-3, name="the fit", least=LEAST_EXAMPLES):
+    """(coefficients, their standard errors) of the log odds of `right` by terms, of which the first is 1.
+
+    right: outcomes in [0, 1]; shares count as both outcomes. pull: on all but the first coefficient towards 0, in
+    cases, of terms scaled to a mean square of 1. Newton's method, so that the same cases give the same bits.
+    """
+    terms, right = np.asarray(terms, float), np.asarray(right, float)
+    weights = np.ones(len(terms)) if weights is None else np.asarray(weights, float)
+    fewest = min(weights @ right, weights @ (1 - right)) if len(terms) else 0
+    if fewest < least:
+        raise bench.BadInput(f"{name}: {fewest:.0f} examples of one of both kinds, must be {least} or more")
+    scale = np.sqrt(weights @ terms[:, 1:] ** 2 / weights.sum())
+    x = np.concatenate([terms[:, 1:] / scale] * 2)
+    outcomes = np.repeat([1, 0], len(terms))
+    cases = np.concatenate([weights * right, weights * (1 - right)])
+    keep = cases > 0
+    model = LogisticRegression(C=1 / pull, solver="newton-cholesky", tol=1e-9, max_iter=200)
+    model.fit(x[keep], outcomes[keep], sample_weight=cases[keep])
+    p = model.predict_proba(x[: len(terms)])[:, 1]
+    scaled = np.c_[terms[:, 0], terms[:, 1:] / scale]
+    hessian = scaled.T @ (scaled * (weights * p * (1 - p))[:, None]) + np.diag(np.r_[0, np.full(len(scale), pull)])
+    errors = np.sqrt(np.diag(np.linalg.inv(hessian)))
+    return np.r_[model.intercept_, model.coef_[0] / scale], errors / np.r_[1, scale]
+
+
+def rounded(values, errors):
+    """Texts of numbers, to a fiftieth of their standard error: summands that hold each other stay in step."""
+    digits = [max(0, math.ceil(-math.log10(error / 50))) for error in errors]
+    return [f"{value:.{d}f}" for value, d in zip(values, digits)]
+
+
+def log_loss(odds, right, weights=None):
+    """Mean negative log likelihood, nats a case."""
+    return float(np.average(np.logaddexp(0, np.where(right, -odds, odds)), weights=weights))
+
+
+def cross_validated(fit, names, num_parts=5):
+    """Mean of fit(train, test) over parts of the names: masks of the cases that are fitted and judged."""
+    number = {name: i % num_parts for i, name in enumerate(sorted(set(names)))}
+    part = np.array([number[name] for name in names])
+    return np.mean([fit(part != k, part == k) for k in range(num_parts)])
+
+
+def make_parser(description, output):
+    parser = bench.make_parser(description)
+    parser.add_argument("--output", metavar="FILE.h", default=output, help="header that is written")
+    parser.add_argument("--cross_validation", action="store_true", help="print the loss of fits to other models")
+    return parser
+
+
+def sampled(items, function, arguments, stage="fit"):
+    """Rows of function(item, arguments) of all items. With --json FILE, FILE.fit.journal keeps them for the next fit."""
+    asked = argparse.Namespace(**{**vars(arguments), "output": "", "others": None, "cross_validation": False})
+    return [row for rows in bench.run(items, function, asked, stage)[0] for row in rows]
+
+
+def write_header(path, body, includes=()):
+    """Writes a generated header of the library, whole or not at all; includes: in their groups, each a list."""
+    command = f"test/benchmark/{pathlib.Path(sys.argv[0]).name}"
+    groups = "\n".join("".join(f"#include {name}\n" for name in group) for group in includes)
+    text = f"// Written by {command}; do not edit.\n#pragma once\n\n{groups}\nnamespace pcl_symmetry {{\n\n"
+    bench.write_whole(path, text + body.strip("\n") + "\n\n}  // namespace pcl_symmetry\n")
+
+
+# Shapes made by code: a closed curve of radius 1 at most, swept along a profile of (radius, height)
+
+PROFILES = {"prism": [(0, 0), (1, 0), (1, 1), (0, 1)], "tube": [(1, 0), (1, 1)], "cone": [(0, 0), (1, 0), (0, 1)],
+            "rim": [(1, 0), (1, 1), (0.75, 1), (0.75, 0), (1, 0)], "open cone": [(1, 0), (0, 1)]}  # fmt: skip
+ROUND = ("bottle", "vase", "cup", "pin")
+
+
+def swept(curve, profile):
+    """Mesh of a closed curve, complex numbers, swept along a profile."""
+    radius, height = np.transpose(profile)[..., None]
+    rings = np.stack(np.broadcast_arrays(radius * curve.real, radius * curve.imag, height), -1)
+    i, k = np.meshgrid(np.arange(len(profile) - 1), np.arange(len(curve)), indexing="ij")
+    corner = lambda di, dk: (i + di) * len(curve) + (k + dk) % len(curve)
+    quads = np.stack([corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)], -1).reshape(-1, 4)
+    return bench.make_mesh(rings.reshape(-1, 3), quads.tolist())
+
+
+def folded_curve(folds, random):
+    """A polygon, or a flower with waves."""
+    if random.uniform() < 0.4:
+        aspect = random.uniform(0.5, 0.8)
+        corners = np.array([1 + aspect * 1j, -1 + aspect * 1j, -1 - aspect * 1j, 1 - aspect * 1j]) / abs(1 + aspect * 1j)
+        return corners if folds == 2 else np.exp(2j * np.pi * np.arange(folds) / folds)
+    depth, steps = random.uniform(0.1, 0.35), max(8, 192 // folds)
+    turn = np.arange(folds * steps) / steps
+    return (1 - 0.5 * depth * (1 - np.cos(2 * np.pi * turn))) * np.exp(2j * np.pi * turn / folds)
+
+
+def folded_shape(body, folds, random):
+    """A body of PROFILES with folds, without those whose sizes make more symmetries than the folds have."""
+    curve = folded_curve(folds, random)
+    while True:
+        height = random.uniform(0.5, 2.5)
+        special = [2 * abs(curve[0].real), 2 * abs(curve[0].imag), 2**0.5] if folds in (2, 4) else [2**0.5]
+        if "cone" in body and folds != 3 or "cone" not in body and folds not in (2, 4):
+            special = []
+        if all(abs(height / length - 1) > 0.15 for length in special if length):
+            return swept(curve, [(r, height * z) for r, z in PROFILES[body]])
+
+
+def round_shape(body, random):
+    h, r, s = random.uniform(1.6, 3.2), random.uniform(0.25, 0.45), random.uniform(0.5, 0.8)
+    profile = {
+        "bottle": [(0, 0), (1, 0), (1, s * h), (r, 0.85 * h), (r, h), (0, h)],
+        "vase": [(0, 0), (s, 0), (1, 0.3 * h), (0.9, 0.5 * h), (r, 0.8 * h), (s, h), (s - 0.06, h), (r - 0.06, 0.8 * h),
+                 (0.84, 0.5 * h), (0.94, 0.3 * h), (s, 0.06), (0, 0.06)],
+        "cup": [(0, 0), (s, 0), (1, 0.6 * h), (0.94, 0.6 * h), (s - 0.05, 0.08), (0, 0.08)],
+        "pin": [(0, 0), (s, 0), (1, 0.35 * h), (s, 0.6 * h), (r, 0.75 * h), (r + 0.12, 0.88 * h), (r, 0.97 * h), (0, h)],
+    }[body]  # fmt: skip
+    return swept(np.exp(2j * np.pi * np.arange(192) / 192), profile)
+
+
+def with_handle(mesh):
+    """The same with a handle, half an ellipse in the half plane x > 0, y = 0."""
+    low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
+    radius = np.linalg.norm(mesh.vertices[:, :2], axis=1).max()
+    rise = min(0.5 * radius, 0.35 * (high - low))
+    along, around = np.linspace(-np.pi / 2, np.pi / 2, 25)[:, None], np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    reach = 0.09 * radius * np.cos(around)
+    points = np.stack(np.broadcast_arrays(0.9 * radius + (0.55 * radius + reach) * np.cos(along), 0.09 * radius * np.sin(around),
+                                          0.5 * (low + high) + (rise + reach) * np.sin(along)), -1)  # fmt: skip
+    i, k = np.meshgrid(np.arange(24), np.arange(12), indexing="ij")
+    quads = np.stack([12 * i + k, 12 * i + (k + 1) % 12, 12 * i + 12 + (k + 1) % 12, 12 * i + 12 + k], -1).reshape(-1, 4)
+    first = len(mesh.vertices)
+    return bench.make_mesh(np.concatenate([mesh.vertices, points.reshape(-1, 3)]),
+                           mesh.triangles.tolist() + (quads + first).tolist())  # fmt: skip
