@@ -124,7 +124,7 @@ def program(arguments):
     if arguments.others is not None:
         others = argparse.Namespace(**{**vars(arguments), "fold": arguments.others})
         print_rates(fits.sampled(bench.list_models(others), sample_item, others, "others"), weights, f"Fold {arguments.others}")
-    fits.write_header(arguments.output, header(fit, len(rows), len(rows) // (VIEWS + 1)), (["<array>"],))
+    fits.write_header(arguments, header(fit, len(rows), len(rows) // (VIEWS + 1)), (["<array>"],))
 
 
 if __name__ == "__main__":

@@ -241,7 +241,7 @@ def program(arguments):
             one = lambda train, test: loss(table, fit_table(table, train)[0], kind, test)
             print(f"{name}: {fits.cross_validated(one, table.models):.4f} nats a plane by fits to other models")
     includes = (["<array>", "<vector>"], ['"core/evidence/plane_confidence.h"'])
-    fits.write_header(arguments.output, header(table, fit, errors), includes)
+    fits.write_header(arguments, header(table, fit, errors), includes)
 
 
 if __name__ == "__main__":

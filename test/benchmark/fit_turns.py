@@ -18,7 +18,7 @@ KINDS, NUM_TERMS = ("by any angle", "half turns", "of order 3 and more"), (4, 7,
 TOLERANCE, MOST_OFF, MOST_FAR = 0.01, 0.10, 0.0125
 NUM_SAMPLES = 5000  # of the mesh: a share of 0.1 is known to 0.004
 PULL = 0.5  # cases; half and twice change no confidence by 0.05, and without any separable cases would be certain
-NUM_SCANS, NUM_SOLIDS = 2, 480
+NUM_SCANS, NUM_SOLIDS = 4, 960
 
 
 def solid(i, random):
@@ -94,7 +94,7 @@ def program(arguments):
                       f"{bench.calibration(p, y)['error']:.3f}", loss])  # fmt: skip
         counts.append(f"{y.sum()} of {len(y)}")
     bench.print_table("Turns of the fit", ["turns", "right", "of those above 0.5", "below", "calibration error", "nats, other models"], lines)
-    fits.write_header(arguments.output, header(*zip(*results), counts), (["<array>", "<vector>"],))
+    fits.write_header(arguments, header(*zip(*results), counts), (["<array>", "<vector>"],))
 
 
 if __name__ == "__main__":

@@ -68,12 +68,14 @@ def sampled(items, function, arguments, stage="fit"):
     return [row for rows in bench.run(items, function, asked, stage)[0] for row in rows]
 
 
-def write_header(path, body, includes=()):
+def write_header(arguments, body, includes=()):
     """Writes a generated header of the library, whole or not at all; includes: in their groups, each a list."""
-    command = f"test/benchmark/{pathlib.Path(sys.argv[0]).name}"
+    chosen = {k: getattr(arguments, k, None) for k in ("fold", "every", "shapes", "solids")}
+    flags = "".join(f" --{k} {v}" for k, v in chosen.items() if v is not None)
+    command = f"test/benchmark/{pathlib.Path(sys.argv[0]).name}{flags}"
     groups = "\n".join("".join(f"#include {name}\n" for name in group) for group in includes)
     text = f"// Written by {command}; do not edit.\n#pragma once\n\n{groups}\nnamespace pcl_symmetry {{\n\n"
-    bench.write_whole(path, text + body.strip("\n") + "\n\n}  // namespace pcl_symmetry\n")
+    bench.write_whole(arguments.output, text + body.strip("\n") + "\n\n}  // namespace pcl_symmetry\n")
 
 
 # Shapes made by code: a closed curve of radius 1 at most, swept along a profile of (radius, height)

@@ -1,4 +1,5 @@
 """The fits on small made-up tables: known coefficients come back, and a header is written the same twice."""
+import argparse
 import contextlib
 import io
 import pathlib
@@ -59,9 +60,11 @@ class Fits(unittest.TestCase):
             for name in ("a.h", "b.h"):
                 table = fit_planes.Table(rows)
                 fit, errors = fit_planes.fit_table(table)
-                fits.write_header(f"{folder}/{name}", fit_planes.header(table, fit, errors), (["<array>"],))
+                arguments = argparse.Namespace(output=f"{folder}/{name}", fold=0)
+                fits.write_header(arguments, fit_planes.header(table, fit, errors), (["<array>"],))
                 texts.append(pathlib.Path(folder, name).read_bytes())
         self.assertEqual(*texts)
+        self.assertIn(b"test_fits.py --fold 0; do not edit", texts[0])
         self.assertIn(b"kConfidenceFit", texts[0])
         for kind in range(3):
             self.assertLess(abs(fit[kind][1] + 2), 4 * errors[kind][1])
