@@ -2,7 +2,7 @@
 """How near is each stage to what this machine can do?
 
 The least time of a stage is the sum of the steps that its result needs whatever the algorithm (look-ups, nearest points,
-bytes), each at the speed at which a loop of nothing else runs it here. Prints processor times of one thread, the least of five.
+bytes), each at the speed at which a loop of nothing else runs it here. Prints processor times of one thread, the least of three.
 
 example: roofline.py build-benchmark/test/benchmark/benchmark_speed
 """
@@ -39,9 +39,9 @@ def main():
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
     rows = {}
-    for _ in range(5):
+    for _ in range(3):
         wanted = "--benchmark_filter=^Machine|^(" + "|".join(STAGES) + ")(/|$)"
-        run = subprocess.run([sys.argv[1], wanted, "--benchmark_format=json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+        run = subprocess.run([sys.argv[1], wanted, "--benchmark_min_time=0.2", "--benchmark_format=json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
         for row in json.loads(run.stdout)["benchmarks"]:
             name = row["name"].replace("/process_time", "")
             row["cpu_ns"] = row["cpu_time"] * NANOSECONDS[row["time_unit"]]
