@@ -8,12 +8,10 @@
 namespace pcl_symmetry::apps {
 
 bool hasDisplay() {
-  Display* const display = ::XOpenDisplay(nullptr);
-  if (!display) return false;
+  // Stays open: an X server starts anew when its last client leaves, and turns away who comes meanwhile.
+  static Display* const display = ::XOpenDisplay(nullptr);
   int opcode = 0, event = 0, error = 0;
-  const bool has_opengl = ::XQueryExtension(display, "GLX", &opcode, &event, &error);
-  ::XCloseDisplay(display);
-  return has_opengl;
+  return display && ::XQueryExtension(display, "GLX", &opcode, &event, &error);
 }
 
 void requireDisplay(const std::string& name) {

@@ -40,18 +40,18 @@ protected:
 const std::string kVertices = "property float x\nproperty float y\nproperty float z\n";
 const std::string kSquare = "0 0 0\n2 0 0\n2 1 0\n0 1 0\n";
 
-std::string ply(const std::string& format, const std::string& elements, const std::string& body) {
+std::string plyText(const std::string& format, const std::string& elements, const std::string& body) {
   return "ply\nformat " + format + " 1.0\n" + elements + "end_header\n" + body;
 }
 
 TEST_F(FileVariants, PLYListsOfAnyType) {
   for (const std::string length : {"char", "uchar", "short", "ushort", "int", "uint", "int8", "uint32"})
     for (const std::string index : {"char", "uchar", "short", "ushort", "int", "uint", "uint16"}) {
-      const Shape shape =
-          read("a.ply", ply("ascii",
-                            "element vertex 4\n" + kVertices + "element face 2\nproperty uchar flags\nproperty list " +
-                                length + " " + index + " vertex_index\n",
-                            kSquare + "7 3 0 1 2\n7 4 0 1 2 3\n"));
+      const Shape shape = read(
+          "a.ply", plyText("ascii",
+                           "element vertex 4\n" + kVertices + "element face 2\nproperty uchar flags\nproperty list " +
+                               length + " " + index + " vertex_index\n",
+                           kSquare + "7 3 0 1 2\n7 4 0 1 2 3\n"));
       ASSERT_TRUE(shape.mesh) << length << " " << index;
       ASSERT_EQ(shape.mesh->polygons.size(), 2u);
       EXPECT_EQ(shape.mesh->polygons[1].vertices, (pcl::Indices{0, 1, 2, 3})) << length << " " << index;
@@ -61,7 +61,7 @@ TEST_F(FileVariants, PLYListsOfAnyType) {
   body += bytesOf<std::uint16_t>({3}) + bytesOf<std::uint32_t>({2, 1, 0});
   const std::string elements =
       "element vertex 3\n" + kVertices + "element face 1\nproperty list ushort uint vertex_indices\n";
-  EXPECT_EQ(read("b.ply", ply("binary_little_endian", elements, body)).mesh->polygons.at(0).vertices,
+  EXPECT_EQ(read("b.ply", plyText("binary_little_endian", elements, body)).mesh->polygons.at(0).vertices,
             (pcl::Indices{2, 1, 0}));
   std::string big;
   for (std::size_t i = 0; i < body.size();) {
@@ -71,15 +71,15 @@ TEST_F(FileVariants, PLYListsOfAnyType) {
     big += value;
     i += size;
   }
-  EXPECT_EQ(read("c.ply", ply("binary_big_endian", elements, big)).mesh->polygons.at(0).vertices,
+  EXPECT_EQ(read("c.ply", plyText("binary_big_endian", elements, big)).mesh->polygons.at(0).vertices,
             (pcl::Indices{2, 1, 0}));
 }
 
 TEST_F(FileVariants, PLYStripsOfTriangles) {
   const Shape shape = read(
       "a.ply",
-      ply("ascii", "element vertex 4\n" + kVertices + "element tristrips 1\nproperty list int int vertex_indices\n",
-          kSquare + "8 0 1 3 2 -1 0 1 2\n"));
+      plyText("ascii", "element vertex 4\n" + kVertices + "element tristrips 1\nproperty list int int vertex_indices\n",
+              kSquare + "8 0 1 3 2 -1 0 1 2\n"));
   ASSERT_TRUE(shape.mesh);
   ASSERT_EQ(shape.mesh->polygons.size(), 3u);
   EXPECT_EQ(shape.mesh->polygons[0].vertices, (pcl::Indices{0, 1, 3}));
@@ -91,10 +91,11 @@ TEST_F(FileVariants, PLYPropertiesOfAnyTypeAndOrder) {
   std::string body;
   for (int i = 0; i < 2; ++i) body += bytesOf<std::uint8_t>({9}) + bytesOf<float>({1.5f + static_cast<float>(i), 2, 3});
   const Shape red =
-      read("a.ply", ply("binary_little_endian", "element vertex 2\nproperty uchar red\n" + kVertices, body));
+      read("a.ply", plyText("binary_little_endian", "element vertex 2\nproperty uchar red\n" + kVertices, body));
   EXPECT_EQ(pointsOf(red).col(1), Eigen::Vector3f(2.5f, 2, 3));
-  const Shape colored = read(
-      "b.ply", ply("ascii",
+  const Shape colored =
+      read("b.ply",
+           plyText("ascii",
                    "element vertex 1\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty float "
                    "z\nproperty float nx\nproperty float x\nproperty float y\n",
                    "1 2 3 7 0.5 8 9\n"));
@@ -102,14 +103,14 @@ TEST_F(FileVariants, PLYPropertiesOfAnyTypeAndOrder) {
   EXPECT_EQ(colored.cloud.fields[0].name, "rgb");
   EXPECT_EQ(colored.cloud.fields[2].name, "normal_x");
   EXPECT_EQ(std::memcmp(colored.cloud.data.data(), "\3\2\1\0", 4), 0);
-  const Shape whole =
-      read("c.ply",
-           ply("ascii", "element vertex 2\nproperty int x\nproperty short y\nproperty uchar z\n", "-5 6 7\n1 2 3\n"));
+  const Shape whole = read(
+      "c.ply",
+      plyText("ascii", "element vertex 2\nproperty int x\nproperty short y\nproperty uchar z\n", "-5 6 7\n1 2 3\n"));
   EXPECT_EQ(pointsOf(whole).col(0), Eigen::Vector3f(-5, 6, 7));
-  const Shape lists = read(
-      "d.ply",
-      ply("ascii", "element vertex 2\nproperty list uchar int parts\n" + kVertices + "element edge 1\nproperty int a\n",
-          "2 0 0 1 2 3\n0 4 5 6\n7\n"));
+  const Shape lists = read("d.ply", plyText("ascii",
+                                            "element vertex 2\nproperty list uchar int parts\n" + kVertices +
+                                                "element edge 1\nproperty int a\n",
+                                            "2 0 0 1 2 3\n0 4 5 6\n7\n"));
   EXPECT_EQ(pointsOf(lists).col(1), Eigen::Vector3f(4, 5, 6));
   EXPECT_EQ(lists.left_out, (std::vector<std::string>{"list parts of the vertices", "1 of element edge"}));
 }
@@ -117,33 +118,33 @@ TEST_F(FileVariants, PLYPropertiesOfAnyTypeAndOrder) {
 TEST_F(FileVariants, PLYThatIsWrongIsRefusedWithTheReason) {
   const std::string face =
       "element vertex 4\n" + kVertices + "element face 1\nproperty list uchar int vertex_indices\n";
-  EXPECT_NE(complaint("a.ply", ply("ascii", face, kSquare + "3 0 1 4\n"))
+  EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + "3 0 1 4\n"))
                 .find("a corner of face 0 = 4, must be >= 0 and < 4"),
             std::string::npos);
-  EXPECT_NE(complaint("a.ply", ply("ascii", face, kSquare + "3 0 1 -1\n")).find("a corner of face 0 = -1"),
+  EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + "3 0 1 -1\n")).find("a corner of face 0 = -1"),
             std::string::npos);
-  EXPECT_NE(complaint("a.ply", ply("ascii", face, kSquare + "3 0 1 x\n"))
+  EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + "3 0 1 x\n"))
                 .find("vertex_indices of face 0 = x, must be a number"),
             std::string::npos);
-  EXPECT_NE(
-      complaint("a.ply", ply("ascii", face, kSquare + "-3 0 1 2\n")).find("length of list vertex_indices of face 0"),
-      std::string::npos);
+  EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + "-3 0 1 2\n"))
+                .find("length of list vertex_indices of face 0"),
+            std::string::npos);
 }
 
-std::string pcd(const std::string& fields, const std::string& sizes, const std::string& types,
-                const std::string& counts, const std::string& data) {
+std::string pcdText(const std::string& fields, const std::string& sizes, const std::string& types,
+                    const std::string& counts, const std::string& data) {
   return "VERSION 0.7\nFIELDS " + fields + "\nSIZE " + sizes + "\nTYPE " + types + "\nCOUNT " + counts +
          "\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA " + data;
 }
 
 TEST_F(FileVariants, PCDWithEmptyPaddingAndWholeCoordinates) {
   const Shape empty =
-      read("a.pcd", pcd("x y z _ ring _", "4 4 4 1 1 1", "F F F U U U", "1 1 1 0 1 3",
-                        "binary\n" + bytesOf<float>({1, 2, 3}) + "\7..." + bytesOf<float>({4, 5, 6}) + "\t..."));
+      read("a.pcd", pcdText("x y z _ ring _", "4 4 4 1 1 1", "F F F U U U", "1 1 1 0 1 3",
+                            "binary\n" + bytesOf<float>({1, 2, 3}) + "\7..." + bytesOf<float>({4, 5, 6}) + "\t..."));
   EXPECT_EQ(pointsOf(empty).col(1), Eigen::Vector3f(4, 5, 6));
   EXPECT_EQ(empty.cloud.fields.back().name, "ring");
   EXPECT_EQ(empty.cloud.data.at(empty.cloud.point_step + empty.cloud.fields.back().offset), '\t');
-  const Shape whole = read("b.pcd", pcd("x y z", "2 4 1", "I I U", "1 1 1", "ascii\n-1 70000 3\n4 5 6\n"));
+  const Shape whole = read("b.pcd", pcdText("x y z", "2 4 1", "I I U", "1 1 1", "ascii\n-1 70000 3\n4 5 6\n"));
   EXPECT_EQ(pointsOf(whole).col(0), Eigen::Vector3f(-1, 70000, 3));
 }
 
