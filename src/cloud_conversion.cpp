@@ -12,6 +12,8 @@
 #include "core/base/even_draw.h"
 #include "core/base/parallel.h"
 #include "core/geometry/answerable_points.h"
+#include "core/scan/depth_filter.h"
+#include "core/scan/sensor_noise.h"
 #include "core/scan/single_view.h"
 #include "core/scan/viewpoint_inference.h"
 
@@ -175,8 +177,9 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
   std::vector<float> depths(pixels.cols(), std::numeric_limits<float>::quiet_NaN());
   for (const pcl::index_t i : finite)
     depths[i] = static_cast<float>(projection.row(2).dot(Eigen::Vector4d(pixels.col(i).cast<double>().homogeneous())));
+  const DepthImage image{width, height, depths, 1.0 / focal};
   fillEmptyPixels(width, height, depths);
-  return Visibility(projection, width, height, std::move(depths));
+  return Visibility(projection, width, height, std::move(depths)).withDepthErrors(sensorError(image));
 }
 
 }  // namespace pcl_symmetry::detail

@@ -34,6 +34,7 @@ struct PlanesOptions {
   BatchOptions batch;
   std::optional<std::string> png_path, html_path, support_path;
   DetectionOptions detection;
+  std::optional<double> tolerance;
   CommonOptions common;
 };
 
@@ -56,8 +57,10 @@ CommandLine commandLine(PlanesOptions& options) {
             "also report approximate symmetries and symmetries of parts, marked as such")
       .number("min_confidence", options.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
-      .number("tolerance", options.detection.tolerance, Range::upTo(0, 0.1),
-              "how far a symmetric surface may be off, as a share of the greatest distance between two points")
+      .number(
+          "tolerance", options.tolerance, Range::upTo(0, 0.1),
+          "how far a symmetric surface may be off, as a share of the greatest distance between two points (default: "
+          "0.01, or what a depth camera resolves, up to 0.03)")
       .number("absolute_tolerance", options.detection.absolute_tolerance, Range::atLeast(0),
               "the same in input units; 0 = -tolerance decides")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "largest number of planes reported")
@@ -77,6 +80,8 @@ struct Findings {
   std::optional<SymmetryPlane> best;         ///< where nothing else was found
   std::optional<ReflectionPlane> flat;       ///< that all points lie near
   double tolerance = 0.0;                    ///< that was decided at, input units
+  double resolution = 0.0;                   ///< least tolerance that the sensor resolves, input units; 0: not known
+  double diameter = 0.0;                     ///< greatest distance between two points used, input units
   std::size_t num_points = 0;                ///< that were used
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::vector<float>> support;  ///< of each plane, by every point; empty where no output shows it
@@ -99,6 +104,15 @@ std::string lineOfBest(const SymmetryPlane& best, double tolerance, const Eigen:
                    c[0], c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
 }
 
+/// What the sensor leaves open.
+std::string lineOfTolerance(const Findings& findings) {
+  const double share = 100.0 * findings.tolerance / findings.diameter;
+  if (findings.tolerance >= findings.resolution)
+    return formatted("decided at %.1f %% of the diameter; the sensor resolves no less\n", share);
+  return formatted("decided at %.1f %% of the diameter; the sensor resolves %.1f %%\n", share,
+                   100.0 * findings.resolution / findings.diameter);
+}
+
 /// What a sheet leaves open.
 std::string lineOfFlat(const ReflectionPlane& flat, const Eigen::Vector3d& shift, int digits) {
   const Eigen::Vector4d c = shiftedBack(flat, shift).coefficients();
@@ -110,6 +124,7 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   const int digits = lengthDigits(shift);
   std::string table;
   if (findings.flat) table += lineOfFlat(*findings.flat, shift, digits);
+  if (findings.resolution >= findings.tolerance && findings.tolerance > 0.0) table += lineOfTolerance(findings);
   if (findings.empty())
     return table + "no symmetry plane\n" +
            (findings.best ? lineOfBest(*findings.best, findings.tolerance, shift, digits) : std::string());
@@ -197,6 +212,7 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
                       {"partial", findings.viewpoint.has_value()},
                       {"viewpoint", {{"from", toString(findings.viewpoint_source)}}},
                       {"tolerance", findings.tolerance},
+                      {"resolution", findings.resolution},
                       {"planes", nlohmann::json::array()},
                       {"axes", nlohmann::json::array()},
                       {"centers", nlohmann::json::array()},
@@ -284,6 +300,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     options.common.applyTo(detection);
     detection.num_threads = detection.edt.num_threads = job.numThreads();
     refinement.setOptions(detection);
+    if (options.tolerance) refinement.setTolerance(*options.tolerance);
     refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
     refinement.setInputCloud(input.points);
     findings.planes = refinement.compute();
@@ -297,6 +314,8 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   findings.best = refinement.getBestPlane();
   findings.flat = refinement.getFlatPlane();
   findings.tolerance = refinement.getUsedTolerance();
+  findings.resolution = refinement.getResolution();
+  findings.diameter = refinement.getDiameter();
   findings.viewpoint_source = refinement.getViewpointSource();
   findings.viewpoint = refinement.getUsedViewpoint();
   findings.num_points = refinement.getUsedIndices().size();

@@ -61,9 +61,9 @@ public:
     change([&](DetectionOptions& changed) { changed.min_confidence = min_confidence; });
   }
   /// \param tolerance how far a symmetric surface may be off, as a share of the greatest distance between two points, in
-  /// (0, 0.1]; default 0.01.
+  /// (0, 0.1], whatever the sensor resolves; default 0.01, or what a depth camera resolves, up to 0.03.
   void setTolerance(double tolerance) {
-    change([&](DetectionOptions& changed) { changed.tolerance = tolerance; });
+    change([&](DetectionOptions& changed) { changed.tolerance = changed.most_tolerance = tolerance; });
   }
   /// \param approximate also reports maxima of less confidence: approximate symmetries and symmetries of parts, marked
   /// by SymmetryPlane::kind; default false.
@@ -125,6 +125,11 @@ public:
   const std::optional<ReflectionPlane>& getFlatPlane() const { return found_.flat; }
   /// \return the tolerance that the last compute() decided at, input units.
   double getUsedTolerance() const { return found_.tolerance; }
+  /// \return the greatest distance between two points of the last compute(), which the tolerance is a share of, input
+  /// units.
+  double getDiameter() const { return found_.diameter; }
+  /// \return the least tolerance that the sensor of the last compute() resolves, input units; 0 where it is not known.
+  double getResolution() const { return found_.resolution; }
   /// \return the map that was given, or else the map that the last compute() made.
   const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : found_.map; }
   /// \return stages of the last compute() and their milliseconds, in order.

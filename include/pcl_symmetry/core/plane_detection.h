@@ -124,7 +124,11 @@ struct DetectionOptions {
   /// How far a symmetric surface may be off, as a share of the greatest distance between two points, in (0, 0.1]: a
   /// symmetry maps 97 % of the surface to within this of the surface.
   double tolerance = 0.01;
-  /// The same in input units, >= 0; 0 = tolerance decides.
+  /// Where the errors of a depth camera hide a tolerance, planes are decided at what the camera resolves, up to this
+  /// share, in (0, 0.1]; at most `tolerance`: that one decides, and where the camera does not resolve it, symmetries
+  /// are possible ones.
+  double most_tolerance = 0.03;
+  /// A tolerance in input units in place of both, >= 0; 0 = they decide.
   double absolute_tolerance = 0.0;
   bool families = true;  ///< planes through one axis or one center are reported as such in place of single planes
   bool turns = true;     ///< axes of turns of scans are searched too; false saves about a third of the time
@@ -152,6 +156,8 @@ struct Detection {
   /// nothing.
   std::optional<ReflectionPlane> flat;
   double tolerance = 0.0;                       ///< that was decided at, input units
+  double resolution = 0.0;                      ///< least tolerance that the sensor resolves, input units; 0 = not known
+  double diameter = 0.0;                        ///< greatest distance between two points, input units
   std::vector<SymmetryAxis> axes;               ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;          ///< of spheres
   std::vector<SymmetryTurn> turns;              ///< of scans: axes of turns, most confident first, from min_possible on

@@ -68,6 +68,15 @@ public:
   /// \param margin by which objects may seem to reach into it, input units, >= 0.
   Visibility withSupport(const Eigen::Vector4d& support, double margin) const;
 
+  /// The same for a sensor whose inverse depths have errors: those of stereo and of structured light are equal at all
+  /// depths.
+  /// \param inverse_depth_error standard deviation, 1 / input units, >= 0; 0 = not known.
+  Visibility withDepthErrors(double inverse_depth_error) const;
+
+  /// \param x in the frame of the points.
+  /// \return standard deviation of the errors of a depth measured there, input units; 0 where it is not known.
+  double depthError(const Eigen::Vector3d& x) const;
+
   /// \return these planes with their margins: below n . x + d = 0 is no object.
   const std::vector<Eigen::Vector4d>& supports() const { return supports_; }
 
@@ -110,7 +119,8 @@ private:
     int width, height;
     std::shared_ptr<const std::vector<float>> depths;  // in the units that the picture was taken in
     float outside;
-    double unit = 1.0;  // of this frame, in units of the depths
+    double unit = 1.0;                 // of this frame, in units of the depths
+    double inverse_depth_error = 0.0;  // in units of the depths
     // Lines in homogeneous pixels at which the picture cut the object: no ray passed where their product is positive.
     std::vector<Eigen::Vector3d> sides;
 

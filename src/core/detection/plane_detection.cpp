@@ -138,6 +138,8 @@ Detection planesOf(const NormalizedCloud& cloud, const Points& all, const Symmet
   if (detection.best) detection.best->deviation = judge.deviation(*detection.best);
   if (const std::optional<ReflectionPlane> flat = judge.flatPlane()) detection.flat = cloud.toInput(*flat);
   detection.tolerance = judge.tolerance() * cloud.scale;
+  detection.resolution = judge.resolution() * cloud.scale;
+  detection.diameter = cloud.extent * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
   timed("report");
   return detection;
@@ -208,6 +210,7 @@ void DetectionOptions::validate() const {
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
   check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
   check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");
+  check(most_tolerance > 0.0 && most_tolerance <= 0.1, "most_tolerance", most_tolerance, "in (0, 0.1]");
   check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
   check(max_possible >= 1, "max_possible", max_possible, ">= 1");
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");

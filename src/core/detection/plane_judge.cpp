@@ -14,6 +14,7 @@
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
 #include "core/geometry/open_borders.h"
+#include "core/scan/sensor_noise.h"
 
 namespace pcl_symmetry {
 
@@ -78,8 +79,11 @@ PlaneJudge::PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const 
     : cloud_(cloud),
       fit_(fit),
       options_(options),
-      tolerance_(options.absolute_tolerance > 0.0 ? options.absolute_tolerance / cloud.scale
-                                                  : options.tolerance * cloud.extent),
+      resolution_(cloud.isScan() ? resolvedTolerance(cloud.points, *cloud.visibility) : 0.0),
+      tolerance_(options.absolute_tolerance > 0.0
+                     ? options.absolute_tolerance / cloud.scale
+                     : std::max(options.tolerance * cloud.extent,
+                                std::min(resolution_, options.most_tolerance * cloud.extent))),
       thinness_(thinnessOf(cloud.points, cloud.principal_axes, (cloud.isVolume() ? kNoisyThinness : 1.0) * tolerance_,
                            lineTolerance())),
       halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
@@ -302,7 +306,7 @@ bool PlaneJudge::leavesAllInPlace(const ReflectionPlane& plane) const {
 
 PlaneKind PlaneJudge::kindOf(const ReflectionPlane& plane, double confidence) const {
   // What moves nothing says nothing: a sheet is mapped onto itself by its own plane, whatever it is a part of.
-  const bool decides = confidence >= options_.min_confidence && !leavesAllInPlace(plane);
+  const bool decides = confidence >= options_.min_confidence && isResolved() && !leavesAllInPlace(plane);
   return decides                               ? PlaneKind::Symmetry
          : confidence >= options_.min_possible ? PlaneKind::Possible
                                                : PlaneKind::Approximate;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <mutex>
 #include <optional>
@@ -35,6 +36,10 @@ struct JudgedFamily {
   double score = 0.0, support = 0.0;
 };
 
+/// Share of the diameter: a sensor that resolves less decides at this. measured: of 100 labelled objects in frames of a
+/// Kinect 90 are decided right at 2 %, 94 at 2.5 % and 95 at 3 %, with four, three and three wrong.
+constexpr double kCoarsestTolerance = 0.03;
+
 /// From refined planes to answers: support, D, and the confidence that decides between symmetry, possible symmetry and
 /// approximate symmetry (see evidence/README.md).
 class PlaneJudge {
@@ -44,6 +49,9 @@ public:
 
   /// What symmetric means here: how far a symmetric surface may be off, normalised frame.
   double tolerance() const { return tolerance_; }
+
+  /// The least tolerance that the sensor resolves, normalised frame; 0 where its errors are not known.
+  double resolution() const { return resolution_; }
 
   /// Whether nothing but a line is left of the cloud at the tolerance.
   bool isLine() const { return thinness_ == Thinness::Line; }
@@ -134,6 +142,8 @@ private:
   JudgedPlane judged(const ReflectionPlane& plane, const PlaneShares& shares, const IspStep& step,
                      const std::vector<int>& samples) const;
   bool leavesAllInPlace(const ReflectionPlane& plane) const;
+  /// Whether the sensor resolves the tolerance, or no tolerance that counts.
+  bool isResolved() const { return tolerance_ >= std::min(resolution_, kCoarsestTolerance * cloud_.extent); }
   PlaneKind kindOf(const ReflectionPlane& plane, double confidence) const;
   const std::vector<char>& borders() const;
   /// \pre borders() was called.
@@ -142,7 +152,7 @@ private:
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
   const DetectionOptions& options_;
-  double tolerance_;
+  double resolution_, tolerance_;
   Thinness thinness_;
   std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
   /// Within one and two tolerances, of the points themselves and the surface of the others.

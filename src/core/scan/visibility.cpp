@@ -186,6 +186,19 @@ Visibility Visibility::withSupport(const Eigen::Vector4d& support, double margin
   return result;
 }
 
+Visibility Visibility::withDepthErrors(double inverse_depth_error) const {
+  Visibility result = *this;
+  for (Picture& picture : result.pictures_) picture.inverse_depth_error = inverse_depth_error / picture.unit;
+  return result;
+}
+
+double Visibility::depthError(const Eigen::Vector3d& x) const {
+  // As d(1 / z) = dz / z^2.
+  const Picture& picture = pictures_.front();
+  const double depth = picture.projection.row(2).dot(x.homogeneous());
+  return picture.inverse_depth_error * picture.unit * depth * depth;
+}
+
 double Visibility::Picture::depthBehind(const Eigen::Vector3d& x) const {
   const Eigen::Vector3d image = projection.leftCols<3>() * x + projection.col(3);
   if (!(image.z() > 0.0)) return std::numeric_limits<double>::infinity();
