@@ -120,6 +120,7 @@ private:
     double hold;          ///< how firmly those within the tolerance hold the plane; 0 where nothing is missing
     double unknown;       ///< say nothing
     double deviation;     ///< distance that 97 % of those that say something stay within
+    double told;          ///< of all samples, those that move and land where something is known; 1 of whole clouds
   };
 
   /// How near to a line points are one: where there are few, noise of the line is wider than what they resolve.
@@ -135,6 +136,8 @@ private:
   std::vector<float> unknownMatches(const Reflected& reflected, const IspStep& step, const std::vector<char>& matched,
                                     double offset_stiffness, double rim) const;
   Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step, double rim) const;
+  /// Whether a plane moves a point, or its reflection, so far that this says something.
+  bool moves(const ReflectionPlane& plane, const Eigen::Vector3f& x) const;
   /// The distances of those whose place says something: of scans without what the plane leaves in place.
   std::vector<float> movedOnly(const std::vector<float>& distances, const ReflectionPlane& plane,
                                const Points& reflected) const;
