@@ -3,6 +3,7 @@
 #include <pcl/point_cloud.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -40,13 +41,14 @@ namespace detail {
 /// The pose that a cloud stores for its sensor.
 struct StoredPose {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< frame of the points
+  Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
   bool is_default = true;  ///< nobody may have set it: at 0 0 0, not turned. That is no evidence by itself.
 };
 
 template <typename PointT>
 StoredPose storedPose(const pcl::PointCloud<PointT>& cloud) {
   const Eigen::Vector3d origin = cloud.sensor_origin_.template head<3>().template cast<double>();
-  return {origin, origin.isZero(0.0) && cloud.sensor_orientation_.vec().isZero(0.0f)};
+  return {origin, cloud.sensor_orientation_, origin.isZero(0.0) && cloud.sensor_orientation_.vec().isZero(0.0f)};
 }
 
 /// A cloud as its scanner delivered it.

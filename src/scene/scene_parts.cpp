@@ -1,5 +1,6 @@
 #include "scene/scene_parts.h"
 
+#include <pcl/common/point_tests.h>
 #include <pcl/sample_consensus/ransac.h>
 #include <pcl/sample_consensus/sac_model_plane.h>
 #include <pcl/segmentation/extract_clusters.h>
@@ -13,10 +14,25 @@
 #include "core/base/constants.h"
 #include "core/base/median.h"
 #include "core/geometry/surface_normals.h"
+#include "core/scan/sensor_noise.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
+#include "scene/object_feet.h"
 
 namespace pcl_symmetry::detail {
 
 namespace {
+
+// Spacings and roughnesses of the points: distance of points of a supporting plane. chosen: half leaves a film of the
+// table under the objects, twice takes off their feet.
+constexpr double kPlaneSpacings = 2.0, kPlaneRoughnesses = 4.0;
+// Spacings between points of one object. chosen: half breaks slanted surfaces up, twice joins neighbouring objects.
+constexpr double kClusterSpacings = 4.0;
+// Share of an object's points above a plane that it stands on or before. chosen: half takes things that stick through a
+// plane for things on it, at 1 a single stray point decides.
+constexpr double kAboveShare = 0.98;
+// Plane distances that an object may seem to reach into its support where the noise of the support is not known.
+// chosen: half takes noise of its foot for a contradiction, twice lets reflections sink into the table.
+constexpr double kSupportMargin = 2.0;
 
 // Points that the scale is measured at. chosen: the median of 1000 is certain to 4 %; half 6 %, twice costs time.
 constexpr std::size_t kScaleSamples = 1000;
@@ -174,6 +190,59 @@ SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices&
         std::sqrt(static_cast<float>(kPi) * sq_distances[(i + 1) * static_cast<std::size_t>(num_neighbours) - 1] /
                   static_cast<float>(std::max(1, num_neighbours - 1)));
   return {median(std::move(spacing)), median(localGeometryAt(surface, *search, places).roughness)};
+}
+
+SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
+  const SurfaceScale scale = surfaceScale(scene, points);
+  return {scale.spacing, kPlaneSpacings * scale.spacing + kPlaneRoughnesses * scale.roughness,
+          kClusterSpacings * scale.spacing};
+}
+
+SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
+                       const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
+                       const SceneDistances& distances, double tolerance) {
+  if (!seen.visibility() || supports.empty()) return seen;
+  Points points(3, static_cast<Eigen::Index>(object.size()));
+  for (std::size_t i = 0; i < object.size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)) = scene[object[i]].getVector3fMap();
+  const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
+  const double off = std::max(tolerance * diagonal, resolvedTolerance(points, *seen.visibility()));
+  const double most = kSupportMargin * distances.plane;
+  SeenSpace result = seen;
+  for (const SupportingPlane& support : supports) {
+    const Eigen::RowVector3f normal = support.coefficients.head<3>().cast<float>();
+    const auto offset = static_cast<float>(support.coefficients[3] + most);
+    const auto num_above = ((normal * points).array() > -offset).count();
+    if (static_cast<double>(num_above) < kAboveShare * static_cast<double>(object.size())) continue;
+    // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
+    // table, where a reflection costs nothing.
+    const double rise = riseOfNoise(scene, support, object, distances.spacing, distances.cluster);
+    result = result.withSupport(support.coefficients, std::min(most, rise + off));
+  }
+  return result;
+}
+
+SeenSpace seenOfPart(const ScannerOutput& scanned, const pcl::Indices& part, const Viewpoint& viewpoint,
+                     double tolerance) {
+  auto scene = pcl::make_shared<SymmetryScene::Cloud>(scanned.width, scanned.height);
+  for (std::size_t i = 0; i < scene->size(); ++i)
+    (*scene)[i].getVector3fMap() = scanned.pixels.col(static_cast<Eigen::Index>(i));
+  scene->sensor_origin_.head<3>() = scanned.stored.origin.cast<float>();
+  scene->sensor_orientation_ = scanned.stored.orientation;
+  const SeenSpace seen(*scene, viewpoint);
+  if (!seen.visibility()) return seen;
+  // A face of the object is no table.
+  std::vector<char> is_part(scene->size(), 0);
+  for (const pcl::index_t i : part) is_part[static_cast<std::size_t>(i)] = 1;
+  pcl::Indices object, others;
+  for (std::size_t i = 0; i < scene->size(); ++i)
+    if (pcl::isXYZFinite((*scene)[i])) (is_part[i] ? object : others).push_back(static_cast<pcl::index_t>(i));
+  if (object.empty() || others.empty()) return seen;
+  const SceneDistances distances = sceneDistances(*scene, others);
+  if (!(distances.plane > 0.0)) return seen;
+  const std::vector<SupportingPlane> supports =
+      findSupports(scene, others, seen.visibility()->viewpoint(), distances.plane);
+  return seenOfObject(seen, *scene, supports, object, distances, tolerance);
 }
 
 std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,

@@ -20,6 +20,23 @@ struct SurfaceScale {
 /// \param points indices of finite points, at least one.
 SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices& points);
 
+/// Distances that decide what belongs together, input units.
+struct SceneDistances {
+  double spacing;  ///< of neighbouring points
+  double plane;    ///< of the points of a supporting plane
+  double cluster;  ///< between the points of one object
+};
+
+/// \param points indices of finite points, at least one.
+SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points);
+
+/// What the supporting planes add to what a sensor saw: behind those that carry or back an object, none of it is.
+/// \param object indices of its points, at least one.
+/// \param tolerance how far a symmetric surface may be off, as a share of the diameter.
+SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
+                       const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
+                       const SceneDistances& distances, double tolerance);
+
 /// The greatest planes of a scene that carry or back other points.
 /// \param points indices of finite points.
 /// \param viewpoint of the sensor; nothing: the normals point to where most of the other points are.

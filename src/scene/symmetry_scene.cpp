@@ -1,7 +1,5 @@
 #include "pcl_symmetry/symmetry_scene.h"
 
-#include <pcl/common/common.h>
-
 #include <algorithm>
 #include <future>
 #include <utility>
@@ -20,19 +18,6 @@ namespace pcl_symmetry {
 namespace {
 
 using Cloud = SymmetryScene::Cloud;
-
-// Spacings and roughnesses of the points: distance of points of a supporting plane. chosen: half leaves a film of the
-// table under the objects, twice takes off their feet.
-constexpr double kPlaneSpacings = 2.0, kPlaneRoughnesses = 4.0;
-// Spacings between points of one object. chosen: half breaks slanted surfaces up, twice joins neighbouring objects.
-constexpr double kClusterSpacings = 4.0;
-
-// Share of an object's points above a plane that it stands on or before. chosen: half takes things that stick through a
-// plane for things on it, at 1 a single stray point decides.
-constexpr double kAboveShare = 0.98;
-// Plane distances that an object may seem to reach into its support where the noise of the support is not known.
-// chosen: half takes noise of its foot for a contradiction, twice lets reflections sink into the table.
-constexpr double kSupportMargin = 2.0;
 
 /// The finite points that are near enough, seen along the rays of the sensor.
 pcl::Indices nearPoints(const Cloud& scene, const std::optional<Eigen::Vector3d>& viewpoint, double max_range) {
@@ -69,7 +54,9 @@ public:
       : scene_(scene), found_(found), spacing_(spacing), options_(options), database_(database) {}
 
   SceneObject analyse(const pcl::Indices& cluster) {
-    seen_ = seenSpaceOf(cluster);
+    seen_ = std::make_shared<const SeenSpace>(
+        detail::seenOfObject(*found_.seen, *scene_, found_.supports, cluster,
+                             {spacing_, found_.plane_distance, found_.cluster_distance}, options_.detection.tolerance));
     SceneObject object;
     object.indices = cluster;
     findPlanes(object);
@@ -81,31 +68,6 @@ public:
   }
 
 private:
-  /// Behind a plane that carries or backs the object, none of the object is.
-  SeenSpace::ConstPtr seenSpaceOf(const pcl::Indices& cluster) const {
-    SeenSpace seen = *found_.seen;
-    const double most = kSupportMargin * found_.plane_distance;
-    for (const SupportingPlane& support : found_.supports) {
-      const auto num_above = std::count_if(cluster.begin(), cluster.end(), [&](pcl::index_t i) {
-        return support.coefficients.dot((*scene_)[i].getVector3fMap().cast<double>().homogeneous().eval()) > -most;
-      });
-      if (static_cast<double>(num_above) < kAboveShare * static_cast<double>(cluster.size())) continue;
-      // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
-      // table, where a reflection costs nothing.
-      const double rise = detail::riseOfNoise(*scene_, support, cluster, spacing_, found_.cluster_distance);
-      seen = seen.withSupport(support.coefficients, std::min(most, rise + toleranceOf(cluster)));
-    }
-    return std::make_shared<const SeenSpace>(std::move(seen));
-  }
-
-  /// How far a symmetric surface may be off.
-  double toleranceOf(const pcl::Indices& cluster) const {
-    if (options_.detection.absolute_tolerance > 0.0) return options_.detection.absolute_tolerance;
-    Eigen::Vector4f low, high;
-    pcl::getMinMax3D(*scene_, cluster, low, high);
-    return options_.detection.tolerance * static_cast<double>((high - low).head<3>().norm());
-  }
-
   template <typename Analysis>
   void prepare(Analysis& analysis, const SceneObject& object) const {
     analysis.setNumberOfThreads(options_.num_threads);
@@ -212,12 +174,9 @@ SceneAnalysis SymmetryScene::compute() const {
   }
   analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};
   // The filter leaves the bends of a camera's picture: the distances follow from the frame as it was.
-  const detail::SurfaceScale scale = detail::surfaceScale(*input_, points);
-  analysis.plane_distance = options_.plane_distance > 0.0
-                                ? options_.plane_distance
-                                : kPlaneSpacings * scale.spacing + kPlaneRoughnesses * scale.roughness;
-  analysis.cluster_distance =
-      options_.cluster_distance > 0.0 ? options_.cluster_distance : kClusterSpacings * scale.spacing;
+  const detail::SceneDistances distances = detail::sceneDistances(*input_, points);
+  analysis.plane_distance = options_.plane_distance > 0.0 ? options_.plane_distance : distances.plane;
+  analysis.cluster_distance = options_.cluster_distance > 0.0 ? options_.cluster_distance : distances.cluster;
   if (!(analysis.plane_distance > 0.0 && analysis.cluster_distance > 0.0)) {
     detail::warnOfNoAnswer("SymmetryScene", "scene: all points at one place");
     return analysis;
@@ -227,7 +186,7 @@ SceneAnalysis SymmetryScene::compute() const {
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
   std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
                                                             analysis.cluster_distance, options_.min_points);
-  detail::returnFeet(frame, analysis.supports, clusters, scale.spacing, analysis.cluster_distance);
+  detail::returnFeet(frame, analysis.supports, clusters, distances.spacing, analysis.cluster_distance);
   const auto is_bulge = [&](const pcl::Indices& cluster) {
     return detail::isBulge(*frame, cluster, analysis.supports, options_.detection.tolerance, analysis.cluster_distance);
   };
@@ -237,7 +196,7 @@ SceneAnalysis SymmetryScene::compute() const {
     prepared.valid() ? prepared.get() : database_->prepare();
     timed("database");
   }
-  analysis.objects = analyseObjects(frame, clusters, analysis, scale.spacing, options_, database_.get());
+  analysis.objects = analyseObjects(frame, clusters, analysis, distances.spacing, options_, database_.get());
   timed("objects");
   return analysis;
 }

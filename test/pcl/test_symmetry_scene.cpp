@@ -11,6 +11,8 @@
 #include <set>
 
 #include "pcl/error_message.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "shapes/table.h"
 
 namespace pcl_symmetry {
@@ -165,6 +167,42 @@ TEST(SymmetryScene, DecidesPlanesOfBoxesThroughTheErrorsOfACamera) {
     ASSERT_FALSE(object.planes.empty());
     EXPECT_EQ(object.planes[0].kind, PlaneKind::Symmetry) << "left and right of a box";
     expectPlanesAcrossAxes(object);
+  }
+}
+
+/// The planes of a part of a frame.
+SymmetryMaximaRefinement<pcl::PointXYZ> ofBox(const Cloud::ConstPtr& frame, int box) {
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(frame);
+  refinement.setIndices(pcl::make_shared<pcl::Indices>(twoBoxes().pixelsOf(box)));
+  return refinement;
+}
+
+TEST(SymmetryMaximaRefinement, APartOfAFrameKnowsTheTableThatItStandsOn) {
+  const Cloud::ConstPtr frame = organized(twoBoxes().scan);
+  const SeenSpace seen = detail::seenOfPart(detail::ScannerOutput(*frame), twoBoxes().pixelsOf(1), Viewpoint(), 0.01);
+  ASSERT_NE(seen.visibility(), nullptr);
+  ASSERT_EQ(seen.visibility()->supports().size(), 1u);
+  EXPECT_LT((seen.visibility()->supports()[0].head<3>() - Eigen::Vector3d::UnitZ()).norm(), 1e-3);
+}
+
+TEST(SymmetryMaximaRefinement, DecidesAtWhatTheSensorResolves) {
+  const Cloud::ConstPtr exact = organized(twoBoxes().scan), noisy = withDepthErrors(twoBoxes().scan);
+  for (const int box : {1, 2}) {
+    auto clean = ofBox(exact, box);
+    clean.compute();
+    EXPECT_LT(clean.getResolution(), 0.01 * clean.getDiameter());
+    EXPECT_NEAR(clean.getUsedTolerance(), 0.01 * clean.getDiameter(), 1e-9);
+    auto blurred = ofBox(noisy, box);
+    const auto planes = blurred.compute();
+    EXPECT_GT(blurred.getUsedTolerance(), 0.015 * blurred.getDiameter()) << "errors of 4 mm at 1.8 m";
+    ASSERT_FALSE(planes.empty());
+    EXPECT_EQ(planes[0].kind, PlaneKind::Symmetry) << "left and right of a box";
+    auto fixed = ofBox(noisy, box);
+    fixed.setTolerance(0.01);
+    for (const SymmetryPlane& plane : fixed.compute())
+      EXPECT_NE(plane.kind, PlaneKind::Symmetry) << "the sensor does not show whether it is";
+    EXPECT_NEAR(fixed.getUsedTolerance(), 0.01 * fixed.getDiameter(), 1e-9);
   }
 }
 

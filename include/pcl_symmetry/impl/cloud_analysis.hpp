@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "pcl_symmetry/core/plane_detection.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -95,7 +96,8 @@ private:
 /// plane; reflections that land behind the surface do not count.
 ///
 /// Where setIndices() names a part of the cloud, what the scanner saw is made of the whole cloud: another object in
-/// front hides what lies behind it, and space beyond the cloud is unknown.
+/// front hides what lies behind it, space beyond the cloud is unknown, and none of the part lies behind the table,
+/// floor or wall that it stands on or before. For many parts of one scene, SymmetryScene finds these planes once.
 template <typename PointT>
 class ScanAnalysis : public CloudAnalysis<PointT> {
 public:
@@ -132,8 +134,11 @@ protected:
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.
   std::optional<Visibility> seenSpace(const Points& points) {
     const bool is_part = this->use_indices_ && this->indices_->size() < this->input_->size();
-    const SeenSpace seen =
-        seen_space_ ? *seen_space_ : detail::findSeenSpace(*this->input_, points, viewpoint_, is_part);
+    const SeenSpace seen = seen_space_ ? *seen_space_
+                           : is_part && viewpoint_.mode != Viewpoint::Mode::None
+                               ? detail::seenOfPart(detail::ScannerOutput(*this->input_), *this->indices_, viewpoint_,
+                                                    DetectionOptions().tolerance)
+                               : detail::findSeenSpace(*this->input_, points, viewpoint_);
     viewpoint_source_ = seen.source();
     used_viewpoint_.reset();
     if (seen.visibility()) used_viewpoint_ = seen.visibility()->viewpoint();

@@ -172,6 +172,13 @@ SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& poin
   return seenFrom(points, viewpoint, storedPose(cloud));
 }
 
+/// Seen, free and unknown space about a part of a scene: its other points hide it, and behind the supporting planes
+/// that it stands on or before, which PCL's sample consensus finds, none of it is.
+/// \param part indices of its points, at least one of them finite.
+/// \param tolerance how far a symmetric surface may be off, as a share of the diameter.
+SeenSpace seenOfPart(const ScannerOutput& scene, const pcl::Indices& part, const Viewpoint& viewpoint,
+                     double tolerance);
+
 /// \return nothing where there is no viewpoint.
 inline std::optional<Visibility> visibilityOf(const SeenSpace& seen) {
   return seen.visibility() ? std::optional<Visibility>(*seen.visibility()) : std::nullopt;

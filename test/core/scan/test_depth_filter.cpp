@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/scan/sensor_noise.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -111,6 +112,19 @@ TEST(DepthFilter, PixelsWithoutAPointHaveNone) {
   const DepthImage empty = picture([](int, int) { return std::numeric_limits<double>::quiet_NaN(); });
   EXPECT_EQ(filterDepths(empty, 2, 1).inverse_error, 0.0);
   EXPECT_EQ(inverseDepthError({1, 1, {1.0f}, kPixelAngle}), 0.0);
+}
+
+TEST(SensorNoise, ResolvesWhatItsErrorsLeave) {
+  const double error = sensorError(noisy(picture(slanted)));
+  EXPECT_GT(error, kError) << "neighbors share a part of it";
+  Visibility::Projection projection = Visibility::Projection::Zero();
+  projection.leftCols<3>() = Eigen::Matrix3d::Identity();
+  const Visibility seen = Visibility(projection, 1, 1, {1.0f}).withDepthErrors(error);
+  Points near(3, 2), far(3, 2);
+  near << 0.0f, 0.1f, 0.0f, 0.0f, 1.0f, 1.0f;
+  far = 2.0f * near;
+  EXPECT_NEAR(resolvedTolerance(near, seen), 2.17 * std::sqrt(2.0) * error, 1e-9);
+  EXPECT_NEAR(resolvedTolerance(far, seen), 4.0 * resolvedTolerance(near, seen), 1e-9);
 }
 
 TEST(DepthFilter, IsTheSameForAnyNumberOfThreads) {

@@ -39,6 +39,17 @@ std::vector<Eigen::Vector3d> hits() {
   return points;
 }
 
+TEST(Visibility, KnowsTheErrorsOfDepthsInAnyFrame) {
+  Visibility::Projection projection = Visibility::Projection::Zero();
+  projection.leftCols<3>() = Eigen::Matrix3d::Identity();  // looks along z
+  const Visibility exact(projection, 1, 1, {2.0f});
+  EXPECT_EQ(exact.depthError({0.0, 0.0, 2.0}), 0.0);
+  const Visibility seen = exact.withDepthErrors(1.5e-3);
+  EXPECT_NEAR(seen.depthError({0.1, 0.0, 2.0}), 6e-3, 1e-12) << "1.5e-3 / m at 2 m";
+  const Visibility scaled = seen.normalized({0.0, 0.0, 1.0}, 0.5);
+  EXPECT_NEAR(scaled.depthError({0.0, 0.0, 2.0}), 12e-3, 1e-12) << "the same point, in units of 0.5 m";
+}
+
 TEST(Visibility, FrontIsFreeBehindIsUnknownBesideIsFree) {
   const auto seen = Visibility::fromPoints(sphereScan(), kViewpoint);
   ASSERT_TRUE(seen);
