@@ -34,7 +34,10 @@ struct SceneOptions {
   double max_range = 0.0;
   /// Points of a cluster that are analysed, >= 100. chosen: time grows with them; half makes weak planes less certain.
   int max_points = 5'000;
-  bool filter = true;  ///< takes the errors of depth cameras out of organized frames, see withoutDepthErrors()
+  bool separate = true;  ///< objects that touch are cut apart where their surface bends inwards
+  /// Takes the errors of depth cameras out of organized frames, see withoutDepthErrors(): smoother completions, but the
+  /// planes of boxes, whose edges it rounds, are decided less often.
+  bool filter = false;
   bool frames = true;  ///< finds the frame of each object
   /// Completes objects whose best plane, or a plane through their axis, decides.
   bool complete = true;

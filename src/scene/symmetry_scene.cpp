@@ -9,6 +9,7 @@
 #include "core/base/stopwatch.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "scene/convex_pieces.h"
 #include "scene/object_feet.h"
 #include "scene/scene_parts.h"
 #include "scene/support_bulge.h"
@@ -114,6 +115,18 @@ private:
   const SymmetryDatabase* database_;
 };
 
+/// \return clusters whose objects do not touch, most points first.
+std::vector<pcl::Indices> separated(const Cloud& scene, const std::vector<pcl::Indices>& clusters, double spacing,
+                                    int min_points) {
+  std::vector<pcl::Indices> all;
+  for (const pcl::Indices& cluster : clusters)
+    for (pcl::Indices& piece : detail::convexPieces(scene, cluster, spacing))
+      if (piece.size() >= static_cast<std::size_t>(min_points)) all.push_back(std::move(piece));
+  std::stable_sort(all.begin(), all.end(),
+                   [](const pcl::Indices& a, const pcl::Indices& b) { return a.size() > b.size(); });
+  return all;
+}
+
 /// \param spacing of the points, input units.
 /// \return the objects of the clusters, in their order. Where there are no fewer clusters than threads, each has one.
 std::vector<SceneObject> analyseObjects(const Cloud::ConstPtr& scene, const std::vector<pcl::Indices>& clusters,
@@ -186,6 +199,7 @@ SceneAnalysis SymmetryScene::compute() const {
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
   std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
                                                             analysis.cluster_distance, options_.min_points);
+  if (options_.separate) clusters = separated(*frame, clusters, distances.spacing, options_.min_points);
   detail::returnFeet(frame, analysis.supports, clusters, distances.spacing, analysis.cluster_distance);
   const auto is_bulge = [&](const pcl::Indices& cluster) {
     return detail::isBulge(*frame, cluster, analysis.supports, options_.detection.tolerance, analysis.cluster_distance);
