@@ -17,9 +17,8 @@ DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const Symmetry
   const Visibility* visibility = seen ? &*seen : nullptr;
   const Points* given = normals ? &*normals : nullptr;
   DetectedPlanes found;
-  static_cast<Detection&>(found) =
-      edt ? refineMaxima(points, *edt, map, options, search ? search(*edt) : nullptr, visibility, given)
-          : detectPlanes(points, options, search, visibility, given);
+  static_cast<Detection&>(found) = edt ? refineMaxima(points, *edt, map, options, search, visibility, given)
+                                       : detectPlanes(points, options, search, visibility, given);
   if (visibility && !visibility->supports().empty()) doubtSlantedPlanes(found.planes, points, *visibility, options);
   found.points = std::move(points);
   return found;

@@ -121,10 +121,10 @@ Eigen::Vector3f labOf(const Eigen::Vector3f& rgb) {
 }
 
 ColouredSurface::ColouredSurface(const SurfaceColours& colours, Points points, double tolerance)
-    : points_(std::move(points)), tolerance_(tolerance), search_(makeTreeSearch(points_)) {
+    : points_(std::move(points)), tolerance_(tolerance), search_(makeFlannSearch(points_)) {
   std::vector<int> closest;
   std::vector<float> ignored;
-  makeTreeSearch(colours.points)->search(points_, 1, closest, ignored);
+  makeFlannSearch(colours.points)->search(points_, 1, closest, ignored);
   lab_.resize(3, points_.cols());
   for (Eigen::Index i = 0; i < points_.cols(); ++i)
     lab_.col(i) = labOf(colours.rgb.col(closest[static_cast<std::size_t>(i)]));

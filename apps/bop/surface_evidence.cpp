@@ -19,7 +19,7 @@ constexpr double kDeviationShare = 0.97;
 SurfaceEvidence::SurfaceEvidence(Points points, double tolerance)
     : points_(std::move(points)),
       tolerance_(tolerance),
-      search_(makeTreeSearch(points_)),
+      search_(makeFlannSearch(points_)),
       geometry_(localGeometry(points_, *search_, kNumSupportNeighbours, 1)) {}
 
 std::vector<double> SurfaceEvidence::distances(const Eigen::Isometry3d& motion) const {

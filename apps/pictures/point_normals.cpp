@@ -30,7 +30,7 @@ Points pointNormals(const pcl::PointCloud<pcl::PointXYZ>& points, const Normaliz
   }
   if (index.size() < kMinShadedPoints || index.size() > kMaxShadedPoints) return result;
   finite.conservativeResize(3, static_cast<Eigen::Index>(index.size()));
-  const Points normals = localGeometry(finite, *makeTreeSearch(finite), kShadingNeighbours, 0).normals;
+  const Points normals = localGeometry(finite, *makeFlannSearch(finite), kShadingNeighbours, 0).normals;
   for (std::size_t i = 0; i < index.size(); ++i) result.col(index[i]) = normals.col(static_cast<Eigen::Index>(i));
   return result;
 }

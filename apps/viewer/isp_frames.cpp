@@ -42,7 +42,7 @@ IspFrame frameOf(const Points& points, const std::vector<int>& samples, const Re
 }  // namespace
 
 std::vector<IspFrame> ispFrames(const Points& points, const ReflectionPlane& plane) {
-  const ClosestPointSearch::Ptr search = makeTreeSearch(points);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(points);
   const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, 0);
   const IspSurface surface{points, geometry.normals, *search};
   std::vector<int> samples;

@@ -186,7 +186,7 @@ private:
       Points queries(3, vertices.size());
       for (std::size_t i = 0; i < vertices.size(); ++i) queries.col(i) = vertices[i].getVector3fMap();
       std::vector<float> sq_distances;
-      makeTreeSearch(positions())->search(queries, kNumClosest, closest_to_vertices_, sq_distances);
+      makeFlannSearch(positions())->search(queries, kNumClosest, closest_to_vertices_, sq_distances);
     }
     std::vector<double> support(closest_to_vertices_.size() / kNumClosest, 0.0);
     for (std::size_t i = 0; i < closest_to_vertices_.size(); ++i)

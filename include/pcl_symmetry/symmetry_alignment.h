@@ -9,6 +9,7 @@
 
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
+#include "pcl_symmetry/impl/pcl_search.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -19,6 +20,7 @@ class SymmetryAlignment : public ScanAnalysis<PointT> {
 public:
   using Ptr = pcl::shared_ptr<SymmetryAlignment<PointT>>;
   using ConstPtr = pcl::shared_ptr<const SymmetryAlignment<PointT>>;
+  using SearchPtr = typename pcl::search::Search<PointT>::Ptr;
 
   /// Uses at most 50 000 points, see setMaxPoints().
   SymmetryAlignment() : ScanAnalysis<PointT>("SymmetryAlignment", 50'000) {}
@@ -44,6 +46,11 @@ public:
     change([&](FrameOptions& changed) { changed.num_threads = changed.edt.num_threads = num_threads; });
   }
 
+  /// Finds the closest points by a search of PCL in place of FLANN's k-d tree. Only the axes of turns of a scan need
+  /// any (FrameOptions::turns).
+  /// \param search as in SymmetryMaximaRefinement::setSearchMethod(). Null: FLANN (default).
+  void setSearchMethod(const SearchPtr& search) { search_ = search; }
+
   /// \return the frame, in the frame of the input; SymmetryFrame::equivalent is empty where the input holds no answer,
   /// see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
@@ -65,6 +72,7 @@ private:
   }
 
   FrameOptions options_;
+  SearchPtr search_;
   std::vector<std::pair<std::string, double>> timing_ms_;
 };
 
@@ -76,7 +84,8 @@ SymmetryFrame SymmetryAlignment<PointT>::compute() {
     if (points.cols() == 0) return SymmetryFrame();
     const std::optional<Visibility> seen = this->seenSpace(points);
     const std::chrono::duration<double, std::milli> seen_ms = std::chrono::steady_clock::now() - start;
-    SymmetryFrame frame = symmetryFrame(points, options_, seen ? &*seen : nullptr);
+    SymmetryFrame frame = symmetryFrame(points, options_, seen ? &*seen : nullptr,
+                                        detail::searchOf<PointT>(search_, "SymmetryAlignment", options_.num_threads));
     frame.timing_ms.insert(frame.timing_ms.begin(), {"seen_space", seen_ms.count()});
     timing_ms_ = frame.timing_ms;
     return frame;

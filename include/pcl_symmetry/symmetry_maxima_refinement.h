@@ -87,9 +87,11 @@ public:
     change([&](DetectionOptions& changed) { changed.num_threads = changed.edt.num_threads = num_threads; });
   }
 
-  /// Finds closest points by a search of PCL in place of the library's k-d tree.
-  /// \param search any but pcl::search::OrganizedNeighbor (reflected points lie behind what the sensor saw). It is
-  /// given a cloud of the points used, and is called from one thread at a time. Null: that tree (default).
+  /// Finds the closest points of Iterative Symmetric Points by a search of PCL in place of FLANN's k-d tree.
+  /// \param search is given a cloud of the points that decide: the points used without copies, of large clouds a subset.
+  /// pcl::search::KdTree and FlannSearch are called from all threads, others from one at a time.
+  /// pcl::search::OrganizedNeighbor is not used, because reflected points lie behind what the sensor saw. PCL_WARN says
+  /// so. Null: FLANN (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
 
   /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not

@@ -4,13 +4,13 @@
 #include <pcl/PolygonMesh.h>
 #include <pcl/search/search.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
+#include "pcl_symmetry/impl/pcl_search.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -21,8 +21,11 @@ namespace detail {
 bool hasArea(const pcl::PolygonMesh& mesh);
 
 /// \param points 3 x N.
+/// \param search over these points.
+/// \param num_threads 0 = one per core.
 /// \return for each point the num_neighbors closest others, or all where there are fewer, nearest first.
-std::vector<std::vector<int>> nearestOthers(const Points& points, int num_neighbors);
+std::vector<std::vector<int>> nearestOthers(const Points& points, const ClosestPointSearch& search, int num_neighbors,
+                                            int num_threads);
 
 }  // namespace detail
 
@@ -74,8 +77,10 @@ public:
     change([&](SegmentationOptions& changed) { changed.num_threads = num_threads; });
   }
 
-  /// Finds the neighbours of the points by any search of PCL.
-  /// \param search is given a cloud of the points used. Null: makeTreeSearch() (default).
+  /// Finds neighbors and the closest points of Iterative Symmetric Points by a search of PCL in place of FLANN's k-d
+  /// tree.
+  /// \param search is given a cloud of the points used, then clouds of samples of the surface and of its parts, and is
+  /// called as in SymmetryMaximaRefinement::setSearchMethod(). Null: FLANN (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
   /// \param num_neighbors number of neighbours that each point is joined with, >= 3; default 12.
   void setNumberOfNeighbors(int num_neighbors) {
@@ -116,8 +121,6 @@ private:
   }
   void segmentMesh();
   void segmentCloud();
-  /// For each point the closest others by the search of the user, nearest first.
-  std::vector<std::vector<int>> neighborsOf(const pcl::Indices& used) const;
 
   SegmentationOptions options_;
   pcl::PolygonMesh::ConstPtr mesh_;
@@ -148,7 +151,9 @@ void SymmetrySegmentation<PointT>::segmentMesh() {
     this->giveNoAnswer("mesh: no polygon has an area");
     return;
   }
-  segmentation_ = segmentSurface(meshGraph(*mesh_), options_);
+  SegmentationOptions options = options_;
+  options.make_search = detail::searchOf<PointT>(search_, "SymmetrySegmentation", options_.num_threads);
+  segmentation_ = segmentSurface(meshGraph(*mesh_), options);
   labels_ = segmentation_.labels;
 }
 
@@ -157,34 +162,21 @@ void SymmetrySegmentation<PointT>::segmentCloud() {
   const Points points = this->selectInput(options_.seed, options_.num_threads);
   if (points.cols() == 0) return;
   const pcl::Indices& used = this->getUsedIndices();
+  SegmentationOptions options = options_;
+  options.make_search = detail::searchOf<PointT>(search_, "SymmetrySegmentation", options_.num_threads);
+  const MakeSearch make_search = options.make_search ? options.make_search : makeFlannSearch;
   const std::vector<std::vector<int>> neighbors =
-      search_ ? neighborsOf(used) : detail::nearestOthers(points, num_neighbors_);
-  segmentation_ = segmentSurface(cloudGraph(points, neighbors), options_);
+      detail::nearestOthers(points, *make_search(points), num_neighbors_, options_.num_threads);
+  segmentation_ = segmentSurface(cloudGraph(points, neighbors), options);
 
   labels_.assign(input_->size(), -1);
   const detail::SelectedPoints all =
       detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, input_->size(), options_.seed);
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeTreeSearch(points)->search(all.points, 1, closest, sq_distances);
+  make_search(points)->search(all.points, 1, closest, sq_distances);
   for (std::size_t i = 0; i < all.indices.size(); ++i) labels_[all.indices[i]] = segmentation_.labels[closest[i]];
   for (std::size_t i = 0; i < used.size(); ++i) labels_[used[i]] = segmentation_.labels[i];
-}
-
-template <typename PointT>
-std::vector<std::vector<int>> SymmetrySegmentation<PointT>::neighborsOf(const pcl::Indices& used) const {
-  const auto num_neighbors = std::min<std::size_t>(num_neighbors_, used.size() - 1);
-  const auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>(*input_, used);
-  search_->setInputCloud(cloud);
-  std::vector<std::vector<int>> neighbors(cloud->size());
-  pcl::Indices found;
-  std::vector<float> sq_distances;
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    search_->nearestKSearch((*cloud)[i], static_cast<int>(num_neighbors) + 1, found, sq_distances);
-    for (const pcl::index_t j : found)
-      if (static_cast<std::size_t>(j) != i && neighbors[i].size() < num_neighbors) neighbors[i].push_back(j);
-  }
-  return neighbors;
 }
 
 }  // namespace pcl_symmetry

@@ -121,7 +121,7 @@ std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions
   const PointsRef used = input.points();
   if (used.cols() <= kCloudNeighbours)
     throw std::invalid_argument("points: too few to have parts, must be more than 12");
-  const ClosestPointSearch::Ptr search = makeTreeSearch(used);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(used);
   std::vector<int> found, labels(input.numRows(), -1);
   std::vector<float> sq_distances;
   search->search(used, kCloudNeighbours + 1, found, sq_distances);

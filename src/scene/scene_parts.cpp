@@ -178,7 +178,7 @@ SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices&
   const std::size_t stride = 1 + (points.size() - 1) / kScaleSamples;
   Points places(3, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
-  const auto search = makeTreeSearch(surface);
+  const auto search = makeFlannSearch(surface);
   const int num_neighbours = static_cast<int>(std::min<std::size_t>(kNumSupportNeighbours + 1, points.size()));
   std::vector<int> closest;
   std::vector<float> sq_distances;

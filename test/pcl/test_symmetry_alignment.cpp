@@ -4,6 +4,7 @@
 #include <pcl/common/point_tests.h>
 
 #include "pcl/clouds.h"
+#include "pcl/counting_search.h"
 #include "pcl/error_message.h"
 #include "shapes/scans.h"
 
@@ -47,6 +48,16 @@ TEST(SymmetryAlignment, HonoursIndices) {
   alignment.setIndices(indices);
   EXPECT_EQ(alignment.compute().T_canonical_input.matrix(), expected.T_canonical_input.matrix());
   EXPECT_EQ(alignment.getUsedIndices(), *indices);
+}
+
+TEST(SymmetryAlignment, AsksTheSearchMethodForTheTurnsOfAScan) {
+  const auto cloud = organizedCloud(test::scan(test::blockBox(), {3.5, 4.2, 2.9}));
+  const auto search = pcl::make_shared<test::CountingKdTree>();
+  SymmetryAlignment<pcl::PointXYZ> alignment;
+  alignment.setInputCloud(cloud);
+  alignment.setSearchMethod(search);
+  EXPECT_EQ(alignment.compute().turns.size(), frameOf(cloud).turns.size());
+  EXPECT_GT(search->num_queries, 1000);
 }
 
 TEST(SymmetryAlignment, SeesTheViewpointOfAScan) {

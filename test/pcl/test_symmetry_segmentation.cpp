@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "pcl/clouds.h"
+#include "pcl/counting_search.h"
 #include "pcl/error_message.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "shapes/meshes.h"
@@ -89,6 +90,20 @@ TEST_F(SymmetrySegmentationTest, ASearchOfPCLFindsTheSegmentsOfTheDefault) {
   segmentation_.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
   segmentation_.segment(segments_);
   EXPECT_EQ(segmentation_.getLabels(), labels);
+}
+
+TEST_F(SymmetrySegmentationTest, SplittingAsksTheSearchMethod) {
+  SegmentationOptions options;
+  options.method = SegmentationMethod::Splitting;
+  segmentation_.setOptions(options);
+  segmentation_.setInputCloud(sampleMesh(*mesh_, 2000));
+  segmentation_.segment(segments_);
+  const std::vector<int> labels = segmentation_.getLabels();
+  const auto search = pcl::make_shared<test::CountingKdTree>();
+  segmentation_.setSearchMethod(search);
+  segmentation_.segment(segments_);
+  EXPECT_EQ(segmentation_.getLabels(), labels);
+  EXPECT_GT(search->num_queries, 2 * 2000) << "neighbors of all points, labels, and Iterative Symmetric Points";
 }
 
 TEST_F(SymmetrySegmentationTest, GivesNoSegmentsWhereThereIsNoAnswer) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -8,7 +9,12 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// Finds the closest points of one fixed point set, for many queries at a time.
+/// Finds the closest points of one fixed point set, for many queries at a time (Section 4.4).
+///
+/// Iterative Symmetric Points finds its pairs here: iterateSymmetricPoints() reflects all samples and calls
+/// searchWithin() once for all of them. makeFlannSearch() answers that call by FLANN's k-d tree. Where detection has
+/// neighbor lists of the points (src/core/geometry/neighbor_lists.h), these answer what they can prove and hand the
+/// rest to FLANN; the answers are the same.
 ///
 /// Derive from it to use a search structure of your own. Implement search(); searchWithin() has a default that calls
 /// it. Both are called from several threads at once. Results are written into vectors of the caller, so that repeated
@@ -37,12 +43,12 @@ public:
 };
 
 /// \param points 3 x N, finite, N >= 1; they are copied.
-/// \return a search by a k-d tree; exact. It gives the answers of makeFlannSearch(), those of one neighbour in less than
-/// half of the time.
-ClosestPointSearch::Ptr makeTreeSearch(const PointsRef& points);
-
-/// \param points 3 x N, finite, N >= 1; they are copied.
-/// \return a search by a k-d tree of FLANN; exact.
+/// \return a search by a k-d tree of FLANN; exact. Several neighbors of many queries are found fastest where each query
+/// lies near the one before.
 ClosestPointSearch::Ptr makeFlannSearch(const PointsRef& points);
+
+/// Makes a search over some points, 3 x N, finite, N >= 1; such as makeFlannSearch(). The points are those that a
+/// computation works with, in input units: without copies, and of large clouds a subset.
+using MakeSearch = std::function<ClosestPointSearch::Ptr(const PointsRef& points)>;
 
 }  // namespace pcl_symmetry

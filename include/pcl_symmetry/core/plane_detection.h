@@ -168,14 +168,14 @@ struct Detection {
 
 /// From points to planes: transform, maxima, refinement (Sections 4.1 to 4.4).
 /// \param points 3 x N, finite, input units. Fewer than 20 distinct points, at one place or on one line give an empty
-/// result with a reason. Of more than 20 000, as many decide as the tolerance needs, unless make_search is given.
-/// \param make_search makes the search of refineMaxima() for the distance transform of these points; null = a k-d tree.
+/// result with a reason. Of more than 20 000, as many decide as the tolerance needs.
+/// \param make_search makes the search for the points that are used, once; null = FLANN's.
 /// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
 /// \param normals of the points, 3 x N, of any length and sign; one that is zero or not finite is estimated from the
 /// neighbours, as are all where this is null.
 /// \throws std::invalid_argument for bad options, coordinates that are not finite, or another number of normals.
 Detection detectPlanes(const PointsRef& points, const DetectionOptions& options = {},
-                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search = nullptr,
+                       const MakeSearch& make_search = nullptr,
                        const Visibility* visibility = nullptr, const Points* normals = nullptr);
 
 /// The planes of many clouds: each thread takes the next cloud and works on it alone. This keeps all cores busy, where
@@ -194,11 +194,10 @@ void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::
 /// From a map that was made before to planes: maxima, refinement (Section 4.4).
 /// \param points as in detectPlanes().
 /// \param edt,map of these points.
-/// \param search closest points among (points - edt.center()) / edt.radius(); null = a k-d tree.
-/// \param visibility,normals as in detectPlanes().
+/// \param make_search,visibility,normals as in detectPlanes().
 /// \throws std::invalid_argument as detectPlanes() does.
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
-                       const DetectionOptions& options = {}, ClosestPointSearch::Ptr search = nullptr,
+                       const DetectionOptions& options = {}, const MakeSearch& make_search = nullptr,
                        const Visibility* visibility = nullptr, const Points* normals = nullptr);
 
 }  // namespace pcl_symmetry

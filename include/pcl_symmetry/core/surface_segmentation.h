@@ -6,6 +6,7 @@
 
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/surface_graph.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -104,6 +105,7 @@ struct SegmentationOptions {
   int num_threads = 0;     ///< >= 0; 0: one per core
   /// Called now and then with the share of the work that is done, in [0, 1]; may be empty.
   std::function<void(double)> progress;
+  MakeSearch make_search;  ///< makes the searches of Iterative Symmetric Points, one after the other; null = FLANN's
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

@@ -98,16 +98,14 @@ struct SymmetryFrame {
 /// side where less of the shape reaches further. The sign of the first makes the frame right-handed, because the first
 /// axis has the least direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan
 /// has the moments of the side that was seen. SymmetryFrame::equivalent lists all signs.
-/// \param points 3 x N, finite,
-/// input units; at least two different ones.
+/// \param points 3 x N, finite, input units; at least two different ones.
 /// \param options numbers of bins and samples, tie, threads.
-/// \param
-/// visibility what a scanner saw, input frame; null = the points show the object from all sides.
-/// \return the frame, in
-/// the input frame.
+/// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
+/// \param make_search makes the search that looks for the axes of turns of a scan; null = FLANN's.
+/// \return the frame, in the input frame.
 /// \throws std::invalid_argument for bad options or points without extent.
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options = {},
-                            const Visibility* visibility = nullptr);
+                            const Visibility* visibility = nullptr, const MakeSearch& make_search = nullptr);
 
 /// Judges given frames: is another frame as symmetric as the one that was found?
 /// \param points 3 x N, finite, input units; at least two different ones, that show the object from all sides.

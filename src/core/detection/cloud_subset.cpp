@@ -63,7 +63,7 @@ std::vector<int> CloudSubset::nearTo(const PointsRef& all, int num_threads) cons
   if (far.empty()) return near;
   std::vector<int> nearest;
   std::vector<float> sq_distances;
-  makeTreeSearch(points)->search(pointsAt(all, far), 1, nearest, sq_distances);
+  makeFlannSearch(points)->search(pointsAt(all, far), 1, nearest, sq_distances);
   for (std::size_t i = 0; i < far.size(); ++i) near[static_cast<std::size_t>(far[i])] = nearest[i];
   return near;
 }

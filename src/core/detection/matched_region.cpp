@@ -45,7 +45,7 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
     : cloud_(cloud), fit_(fit), samples_(drawSamples(cloud.points.cols(), kNumRegionSamples, seed)) {
   std::sort(samples_.begin(), samples_.end());
   const Points places = pointsAt(cloud.points, samples_);
-  const ClosestPointSearch::Ptr search = makeTreeSearch(places);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(places);
   std::vector<float> sq_distances;
   const int num_neighbours = std::min<int>(kNumSmoothing + 1, static_cast<int>(samples_.size()));
   search->search(places, num_neighbours, neighbours_, sq_distances);

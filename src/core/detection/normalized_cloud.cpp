@@ -11,7 +11,7 @@
 #include "core/transform/edt_correlation.h"
 #include "core/evidence/plane_support.h"
 #include "core/geometry/diameter.h"
-#include "core/geometry/point_tree.h"
+#include "core/geometry/flann_search.h"
 
 namespace pcl_symmetry {
 
@@ -26,29 +26,15 @@ constexpr double kVolumeRoughness = 0.36;
 constexpr double kLeastSpacing = 1e-6;   // radii. derived: the rounding of coordinates about 1; avoids a division by 0
 constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supports of surfaces; avoids a division by 0
 
-/// A tree of points, and beside it the grid in which walks along its lists begin.
-std::shared_ptr<PointTree> treeOf(const Points& points, int num_threads, std::optional<ClosestPointGrid>& starts) {
-  std::shared_ptr<PointTree> tree;
-  parallelBlocks(NeighbourLists::isUseful(points.cols()) ? 2 : 1, num_threads, [&](std::size_t part) {
-    if (part == 0)
-      tree = std::make_shared<PointTree>(points);
-    else
-      starts = NeighbourLists::starts(points);
-  });
-  return tree;
-}
-
-/// The geometry of points, whose neighbours a tree uses from then on.
-/// \param search over the points.
-/// \param tree the same search, or null.
-/// \param starts of the lists of the tree; used up.
+/// The geometry of points, whose neighbors FLANN's search uses from then on.
+/// \param flann null: the search is of the caller.
 /// \param[out] neighbours of the points.
-LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, PointTree* tree,
-                         std::optional<ClosestPointGrid>& starts, int num_threads, FoundNeighbours& neighbours) {
+LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, FlannSearch* flann, int num_threads,
+                         FoundNeighbours& neighbours) {
   LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbours, num_threads, &neighbours);
-  static_assert(kNumSupportNeighbours == NeighbourLists::kNeighbours);
-  if (tree && starts)
-    tree->use(NeighbourLists(std::move(*starts), points, neighbours.indices, neighbours.sq_reach, num_threads));
+  static_assert(kNumSupportNeighbours == NeighborLists::kNeighbors);
+  if (flann && NeighborLists::isUseful(points.cols()))
+    flann->use(NeighborLists(points, neighbours.indices, neighbours.sq_reach, num_threads));
   return geometry;
 }
 
@@ -70,9 +56,9 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       center(edt.center()),
       scale(edt.radius()),
       points(normalizePoints(input, center, scale)),
-      tree(input_search ? nullptr : treeOf(points, num_threads, starts_)),
-      search(input_search ? std::move(input_search) : tree),
-      geometry(withNormals(geometryOf(points, *search, tree.get(), starts_, num_threads, neighbours), given_normals)),
+      flann(input_search ? nullptr : std::make_shared<FlannSearch>(points)),
+      search(input_search ? std::move(input_search) : flann),
+      geometry(withNormals(geometryOf(points, *search, flann.get(), num_threads, neighbours), given_normals)),
       samples(points, geometry, num_threads),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),

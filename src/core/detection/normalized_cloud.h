@@ -5,14 +5,13 @@
 
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/principal_axes.h"
-#include "core/geometry/closest_point_grid.h"
 #include "core/detection/far_test.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 
-class PointTree;
+class FlannSearch;
 
 /// The cloud as all stages of detection see it: in the unit ball about 0, with normals, spacing and roughness.
 ///
@@ -20,7 +19,7 @@ class PointTree;
 struct NormalizedCloud {
   /// \param input 3 x N, finite, distinct, input units.
   /// \param edt_of_input distance transform of these points; must outlive this object.
-  /// \param input_search closest points among the normalised points; null = a k-d tree.
+  /// \param input_search closest points among the normalised points; null = FLANN's.
   /// \param seen what a scanner saw, input frame; null = the points show the object from all sides.
   /// \param num_threads 0 = one per core.
   /// \param given_normals 3 x N, of any length and sign, used where they are finite and not zero; null = all estimated.
@@ -33,13 +32,8 @@ struct NormalizedCloud {
   const Eigen::Vector3d center;  ///< of the edt, input units
   const double scale;            ///< radius of the edt, input units
 
-  const Points points;  ///< 3 x N
-
-private:
-  std::optional<ClosestPointGrid> starts_;  // until the lists of the tree take it
-
-public:
-  const std::shared_ptr<PointTree> tree;  ///< null: the search is of the caller
+  const Points points;                       ///< 3 x N
+  const std::shared_ptr<FlannSearch> flann;  ///< null: the search is of the caller
   const ClosestPointSearch::Ptr search;
   FoundNeighbours neighbours;  ///< of the points, found together with their geometry
   const LocalGeometry geometry;

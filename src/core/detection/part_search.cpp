@@ -14,8 +14,7 @@
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
-#include "core/geometry/neighbour_walk.h"
-#include "core/geometry/point_tree.h"
+#include "core/geometry/flann_search.h"
 #include "core/detection/plane_tolerance.h"
 #include "core/detection/surface_fit.h"
 
@@ -134,7 +133,7 @@ std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vec
 struct BallSearch {
   const NormalizedCloud& cloud;
   const PlaneFit& fit;
-  const std::unique_ptr<NeighbourWalk> walk;  ///< null: the cloud has no lists of neighbours
+  const std::unique_ptr<NeighborWalk> walk;  ///< null: the cloud has no lists of neighbors
   /// Planes of balls are matched by walks, as those that are kept are refined again on their regions.
   const IspSurface surface;
   IspOptions isp;
@@ -142,8 +141,8 @@ struct BallSearch {
   BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit, IspUpdate update)
       : cloud(the_cloud),
         fit(the_fit),
-        walk(cloud.tree && cloud.tree->lists() ? std::make_unique<NeighbourWalk>(*cloud.tree->lists(), *cloud.search)
-                                               : nullptr),
+        walk(cloud.flann && cloud.flann->lists() ? std::make_unique<NeighborWalk>(*cloud.flann->lists(), *cloud.search)
+                                                 : nullptr),
         surface{cloud.points,
                 cloud.geometry.normals,
                 walk ? *walk : *cloud.search,

@@ -23,6 +23,7 @@
 #include "core/geometry/point_samples.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/distinct_points.h"
+#include "core/geometry/search_views.h"
 #include "core/detection/surface_fit.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
@@ -159,7 +160,9 @@ Detection planesOfEven(const NormalizedCloud& cloud, const Points& input, const 
   edt_options.num_threads = options.num_threads;
   const Points even_points = pointsAt(input, kept);
   const GaussianEdt edt(even_points, edt_options);
-  const NormalizedCloud even(even_points, edt, nullptr, nullptr, options.num_threads);
+  const ClosestPointSearch::Ptr search =
+      cloud.flann ? nullptr : among(cloud.search, static_cast<std::size_t>(cloud.points.cols()), kept);
+  const NormalizedCloud even(even_points, edt, search, nullptr, options.num_threads);
   Detection detection = planesOf(even, cloud.points, map, options, watch);
   const SurfaceFit all(
       cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
@@ -173,12 +176,13 @@ Detection planesOfEven(const NormalizedCloud& cloud, const Points& input, const 
 
 /// Planes of points that can have an answer and need no subset, from the maxima of their map.
 Detection planesOfMap(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
-                      const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
+                      const DetectionOptions& options, const MakeSearch& make_search, const Visibility* visibility,
                       const Points* normals) {
   Stopwatch watch;
   const DistinctPoints distinct(points);
   const bool repeated = distinct.points.cols() < points.cols();
-  if (repeated) search = nullptr;  // it knows the copies
+  ClosestPointSearch::Ptr search;
+  if (make_search) search = inFrame(make_search(distinct.points), edt.center(), edt.radius());
   const Points distinct_normals = normals ? normalsOf(distinct, *normals) : Points();
   const NormalizedCloud cloud(distinct.points, edt, std::move(search), visibility, options.num_threads,
                               normals ? &distinct_normals : nullptr);
@@ -217,18 +221,17 @@ void DetectionOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
-                       const std::function<ClosestPointSearch::Ptr(const GaussianEdt&)>& make_search,
+Detection detectPlanes(const PointsRef& points, const DetectionOptions& options, const MakeSearch& make_search,
                        const Visibility* visibility, const Points* normals) {
   options.validate();
   if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
   if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
   Stopwatch watch;
-  if (const std::optional<CloudSubset> subset = make_search ? std::nullopt : subsetOf(points, options)) {
+  if (const std::optional<CloudSubset> subset = subsetOf(points, options)) {
     const double subset_ms = watch.lap();
-    Detection detection =
-        bySubset(*subset, points, normals, options.num_threads,
-                 [&](const Points& p, const Points* n) { return detectPlanes(p, options, nullptr, visibility, n); });
+    Detection detection = bySubset(
+        *subset, points, normals, options.num_threads,
+        [&](const Points& p, const Points* n) { return detectPlanes(p, options, make_search, visibility, n); });
     detection.map.center_of_mass = centerOfMass(points);
     detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
     return detection;
@@ -246,8 +249,7 @@ Detection detectPlanes(const PointsRef& points, const DetectionOptions& options,
   SymmetryMap map = sampledTransform(edt, grid, sampling, free_space);
   map.center_of_mass = centerOfMass(points);
   const double transform_ms = watch.lap();
-  Detection detection =
-      planesOfMap(points, edt, map, options, make_search ? make_search(edt) : nullptr, visibility, normals);
+  Detection detection = planesOfMap(points, edt, map, options, make_search, visibility, normals);
   detection.map = std::move(map);
   detection.timing_ms.insert(
       detection.timing_ms.begin(),
@@ -269,16 +271,16 @@ void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::
 }
 
 Detection refineMaxima(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
-                       const DetectionOptions& options, ClosestPointSearch::Ptr search, const Visibility* visibility,
+                       const DetectionOptions& options, const MakeSearch& make_search, const Visibility* visibility,
                        const Points* normals) {
   options.validate();
   if (normals) check(normals->cols() == points.cols(), "number of normals", normals->cols(), "the number of points");
   if (std::string reason = whyUnanswerable(points); !reason.empty()) return unanswered(std::move(reason));
-  if (const std::optional<CloudSubset> subset = search ? std::nullopt : subsetOf(points, options))
+  if (const std::optional<CloudSubset> subset = subsetOf(points, options))
     return bySubset(*subset, points, normals, options.num_threads, [&](const Points& p, const Points* n) {
-      return refineMaxima(p, edt, map, options, nullptr, visibility, n);
+      return refineMaxima(p, edt, map, options, make_search, visibility, n);
     });
-  return planesOfMap(points, edt, map, options, std::move(search), visibility, normals);
+  return planesOfMap(points, edt, map, options, make_search, visibility, normals);
 }
 
 }  // namespace pcl_symmetry

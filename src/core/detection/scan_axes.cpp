@@ -14,6 +14,7 @@
 #include "core/geometry/point_samples.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/distinct_points.h"
+#include "core/geometry/search_views.h"
 
 namespace pcl_symmetry {
 
@@ -195,11 +196,13 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
 }
 
 std::vector<SymmetryTurn> turnsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
-                                      const std::vector<SymmetryAxis>& axes, const DetectionOptions& options) {
+                                      const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
+                                      const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
   const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kMostScanTurnPoints, options.seed));
-  const NormalizedCloud cloud(used, edt, nullptr, &visibility, options.num_threads);
+  const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
+  const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
   return scanAxes(TurnEvidence(cloud, options.tolerance * cloud.extent, options.seed), {}, axes, options);
 }
 

@@ -26,9 +26,11 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
 /// \param points 3 x N, finite, input units.
 /// \param edt of these points.
 /// \param axes lines that are tried first, input frame.
+/// \param make_search as in detectPlanes().
 /// \return nothing where the points hold no answer.
 std::vector<SymmetryTurn> turnsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
-                                      const std::vector<SymmetryAxis>& axes, const DetectionOptions& options);
+                                      const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
+                                      const MakeSearch& make_search = nullptr);
 
 /// The axes of revolution of a scan with what the turns say of them: those that throw a visible handle into empty space
 /// are dropped, the others moved to where turns fit best, and round bodies added that showed too few planes.

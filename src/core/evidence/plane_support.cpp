@@ -96,7 +96,7 @@ std::vector<float> planeSupport(const PointsRef& points, const PointsRef& sample
   const BoundingBall ball = boundingBall(samples);
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
-  const auto search = makeTreeSearch(surface);
+  const auto search = makeFlannSearch(surface);
   const SurfaceSamples described(surface, localGeometry(surface, *search, kNumSupportNeighbours, num_threads));
   const Eigen::Vector3f n = plane.normal().cast<float>();
   std::vector<float> support(points.cols());

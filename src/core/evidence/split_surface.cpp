@@ -45,7 +45,7 @@ double lost(const GaussianEdt& a, const GaussianEdt& b) {
 
 SplitSurface::SplitSurface(const Points& points, std::uint64_t seed, int num_threads) : seed_(seed) {
   std::tie(first_, second_) = halvesOf(points, seed);
-  search_ = makeTreeSearch(second_);
+  search_ = makeFlannSearch(second_);
   samples_.emplace(second_, localGeometry(second_, *search_, kNumSupportNeighbours, num_threads));
 }
 

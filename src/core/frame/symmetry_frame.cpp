@@ -78,7 +78,8 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
 
 /// Axes of turns of a scan; the axes of its frame are tried first.
 std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef& points, const GaussianEdt& edt,
-                                     const FrameOptions& options, const Visibility& visibility) {
+                                     const FrameOptions& options, const Visibility& visibility,
+                                     const MakeSearch& make_search) {
   DetectionOptions detection;
   detection.seed = options.seed;
   detection.num_threads = options.num_threads;
@@ -87,7 +88,7 @@ std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef
     axes[static_cast<std::size_t>(k)].point = frame.center;
     axes[static_cast<std::size_t>(k)].direction = frame.axes.col(k);
   }
-  return turnsOfScan(points, edt, visibility, axes, detection);
+  return turnsOfScan(points, edt, visibility, axes, detection, make_search);
 }
 
 std::array<double, kNumFrameTerms> evidenceOf(const FrameChoice& choice) {
@@ -148,7 +149,8 @@ FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& option
   return found;
 }
 
-SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options, const Visibility* visibility) {
+SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options, const Visibility* visibility,
+                            const MakeSearch& make_search) {
   options.validate();
   if (options.as_published) return publishedFrame(points, options);
   SymmetryFrame frame;
@@ -180,7 +182,7 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   frame.equivalent = equivalent.poses();
   done("equivalent");
   if (visibility && options.turns) {
-    frame.turns = turnsAlong(frame, points, evidence.edt(), options, *visibility);
+    frame.turns = turnsAlong(frame, points, evidence.edt(), options, *visibility, make_search);
     done("turns");
   }
   if (options.probabilities) {

@@ -5,6 +5,8 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/geometry/point_samples.h"
+#include "core/geometry/curve_order.h"
 #include "core/geometry/tangent_planes.h"
 
 namespace pcl_symmetry {
@@ -52,25 +54,28 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
     neighbours->indices.resize(size * static_cast<std::size_t>(count));
     neighbours->sq_reach.resize(size);
   }
+  const std::vector<int> order = curveOrder(points);  // a search finds the neighbors of near points together
   parallelRanges(size, kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+    const Points queries = pointsAt(points, std::vector<int>(order.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                             order.begin() + static_cast<std::ptrdiff_t>(end)));
     std::vector<int> indices;
     std::vector<float> sq_distances;
-    search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
-    if (neighbours)
-      std::copy(indices.begin(), indices.end(),
-                neighbours->indices.begin() + static_cast<std::ptrdiff_t>(begin) * count);
+    search.search(queries, count, indices, sq_distances);
     TangentPlanes planes;
-    for (std::size_t i = begin; i < end; ++i) {
-      const int* nearest = indices.data() + (i - begin) * count;
-      const std::size_t place = (i - begin) % TangentPlanes::kMost;
+    for (std::size_t k = 0; k < end - begin; ++k) {
+      const auto i = static_cast<std::size_t>(order[begin + k]);
+      const int* nearest = indices.data() + k * static_cast<std::size_t>(count);
+      if (neighbours) std::copy_n(nearest, count, &neighbours->indices[i * static_cast<std::size_t>(count)]);
+      const std::size_t place = k % TangentPlanes::kMost;
       if (place == 0)
-        planes.fit(points, points.middleCols(i, std::min<std::size_t>(TangentPlanes::kMost, end - i)), nearest, count);
+        planes.fit(points, queries.middleCols(k, std::min<std::size_t>(TangentPlanes::kMost, end - begin - k)), nearest,
+                   count);
       geometry.nearest[i] = witnessesOf(static_cast<int>(i), nearest, count);
       geometry.normals.col(i) << planes.normal[0][place], planes.normal[1][place], planes.normal[2][place];
       geometry.roughness[i] = planes.roughness[place];
       const Eigen::Vector3f offset_sum(planes.offset_sum[0][place], planes.offset_sum[1][place],
                                        planes.offset_sum[2][place]);
-      const double sq_radius = sq_distances[(i - begin) * count + count - 1];
+      const double sq_radius = sq_distances[(k + 1) * count - 1];
       if (neighbours) neighbours->sq_reach[i] = static_cast<float>(sq_radius);
       const double offset = offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
       geometry.at_border[i] = offset > kBorderOffset * std::sqrt(sq_radius) ? 1 : 0;

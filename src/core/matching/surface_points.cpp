@@ -117,7 +117,7 @@ double areaOf(PointNormals& normals, std::vector<int> order, Eigen::Index num_po
 }  // namespace
 
 std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::vector<int>& counts, std::uint64_t seed) {
-  const ClosestPointSearch::Ptr search = makeTreeSearch(points);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(points);
   const std::vector<int> order = drawSamples(points.cols(), static_cast<int>(points.cols()) - 1, seed);
   PointNormals normals(points, *search);
   const double area = areaOf(normals, order, points.cols());

@@ -45,7 +45,7 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       order(randomOrder(static_cast<int>(input.cols()), seed)),
       seen(std::move(seen_space)),
       grid(std::make_shared<LateGrid>(kCells)),
-      search(makeTreeSearch(input)) {
+      search(makeFlannSearch(input)) {
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, num_threads);
   const double typical = median(geometry.spacing);
   spacing = geometry.spacing;

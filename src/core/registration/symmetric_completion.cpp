@@ -18,7 +18,7 @@ std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane
   options.validate();
   std::vector<int> completing;
   if (points.cols() == 0) return completing;
-  const auto search = makeTreeSearch(points);
+  const auto search = makeFlannSearch(points);
   const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, options.num_threads);
   Points reflected(3, points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i)

@@ -131,7 +131,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   const auto surface = std::make_shared<Surface>();
   surface->points = std::move(points);
   const Points& p = surface->points;
-  const auto search = makeTreeSearch(p);
+  const auto search = makeFlannSearch(p);
   surface->geometry = localGeometry(p, *search, kNumSupportNeighbours, num_threads);
   const LocalGeometry& geometry = surface->geometry;
   surface->spacing = median(geometry.spacing);

@@ -51,7 +51,7 @@ std::optional<PixelRows> rowsOf(const Places& places) {
   std::vector<int> closest;
   std::vector<float> sq_distances, distances;
   constexpr int kCount = kGridNeighbours + 1;  // derived: the closest point is the sample itself
-  makeTreeSearch(flat)->search(samples, kCount, closest, sq_distances);
+  makeFlannSearch(flat)->search(samples, kCount, closest, sq_distances);
   std::complex<double> sum = 0.0;
   for (std::size_t k = 0; k < closest.size(); ++k) {
     const auto sample = static_cast<Eigen::Index>(k) / kCount;

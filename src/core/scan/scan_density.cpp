@@ -136,7 +136,7 @@ ScanDensity::ScanDensity(const PointsRef& points) : ball_(boundingBall(points)) 
       std::min(indices.size(), 1 + std::clamp(indices.size() / kNeighbourhoods, kFewestNeighbours, kMostNeighbours)));
   std::vector<int> neighbours;
   std::vector<float> sq_distances;
-  makeTreeSearch(used)->search(used.leftCols(num_samples), count, neighbours, sq_distances);
+  makeFlannSearch(used)->search(used.leftCols(num_samples), count, neighbours, sq_distances);
 
   samples_.resize(3, num_samples);
   normals_.resize(3, num_samples);

@@ -48,7 +48,7 @@ Points everyNth(const Points& points, Eigen::Index stride) {
 
 /// Median distance of neighbours from the tangent planes at every \p stride-th point.
 double typicalRoughness(const Points& surface, Eigen::Index stride) {
-  return median(localGeometryAt(surface, *makeTreeSearch(surface), everyNth(surface, stride)).roughness);
+  return median(localGeometryAt(surface, *makeFlannSearch(surface), everyNth(surface, stride)).roughness);
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   const Points directions = picture(points, viewpoint, ball.center, width);
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeTreeSearch(directions)->search(everyNth(directions, stride), 2, closest, sq_distances);
+  makeFlannSearch(directions)->search(everyNth(directions, stride), 2, closest, sq_distances);
 
   const auto depth = [&](Eigen::Index i) { return (points.col(i).cast<double>() - viewpoint).norm() / ball.radius; };
   std::size_t num_layered = 0;

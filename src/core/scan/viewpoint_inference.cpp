@@ -58,7 +58,7 @@ constexpr double kWire = 0.9;
 /// everywhere.
 bool isWire(const PointsRef& points) {
   const Points drawn = pointsAt(points, drawSamples(points.cols(), kBorderSamples, 1));
-  const ClosestPointSearch::Ptr search = makeTreeSearch(drawn);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(drawn);
   const LocalGeometry geometry = localGeometry(drawn, *search, kNumSupportNeighbours, 1);
   return shareNearBorders(openBorders(drawn, *search, geometry.normals, 1), geometry) > kWire;
 }

@@ -77,7 +77,7 @@ std::vector<int> reflectedElements(const SurfaceGraph& graph, const ReflectionPl
     reflected.col(i) = plane.reflect(graph.centers.col(i).cast<double>()).cast<float>();
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeTreeSearch(graph.centers)->search(reflected, 1, closest, sq_distances);
+  makeFlannSearch(graph.centers)->search(reflected, 1, closest, sq_distances);
   return closest;
 }
 

@@ -19,7 +19,7 @@ constexpr float kConcaveDetour = 4.0f;
 SymmetryFeatures featuresOfWhole(const SurfaceGraph& graph, const SegmentationOptions& options) {
   std::vector<int> all(static_cast<std::size_t>(graph.size()));
   std::iota(all.begin(), all.end(), 0);
-  return symmetryFeatures(graph, all, options.splitting, options.seed, options.num_threads);
+  return symmetryFeatures(graph, all, options.splitting, options.seed, options.num_threads, options.make_search);
 }
 
 /// Means of the support of the elements of each patch, weighted by area.
@@ -37,7 +37,7 @@ Eigen::MatrixXf supportOfPatches(const SurfaceGraph& graph, const Patches& patch
 /// The patch at the reflection of the center of each patch, for each plane that maps enough of the surface onto itself.
 std::vector<std::vector<int>> imagesOfPatches(const Patches& patches, const std::vector<PartPlane>& planes) {
   std::vector<std::vector<int>> images;
-  const auto search = makeTreeSearch(patches.centers);
+  const auto search = makeFlannSearch(patches.centers);
   for (const PartPlane& plane : planes) {
     if (plane.share < kMappedShare) continue;
     Points reflected(3, patches.size());

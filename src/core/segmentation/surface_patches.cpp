@@ -133,7 +133,7 @@ std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> p
   };
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeTreeSearch(centersOf(reached))->search(centersOf(missed), 1, closest, sq_distances);
+  makeFlannSearch(centersOf(reached))->search(centersOf(missed), 1, closest, sq_distances);
   for (std::size_t k = 0; k < missed.size(); ++k) patch[missed[k]] = patch[reached[closest[k]]];
   return patch;
 }

@@ -95,8 +95,9 @@ bool staysInCell(const ReflectionPlane& plane, const ReflectionPlane& start, con
 /// Refines planes by Iterative Symmetric Points (Section 4.4). A plane that leaves its basin keeps its start, a
 /// departure from the paper; as published, one that leaves its cell is dropped.
 std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
-                                     const GaussianEdt& edt, bool as_published, int num_threads) {
-  const auto search = makeTreeSearch(samples);
+                                     const GaussianEdt& edt, bool as_published, int num_threads,
+                                     const MakeSearch& make_search) {
+  const ClosestPointSearch::Ptr search = make_search ? make_search(samples) : makeFlannSearch(samples);
   const LocalGeometry geometry = localGeometry(samples, *search, kNumNormalNeighbours, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
   std::vector<int> reflected;
@@ -125,7 +126,8 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
 }  // namespace
 
 SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
-                                  const SplittingOptions& options, std::uint64_t seed, int num_threads) {
+                                  const SplittingOptions& options, std::uint64_t seed, int num_threads,
+                                  const MakeSearch& make_search) {
   const Points samples = sampleElements(graph, elements, seed);
   GaussianEdtOptions edt_options;
   edt_options.num_threads = num_threads;
@@ -133,7 +135,7 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
   SymmetryFeatures features;
   features.radius = boundingBall(samples).radius;
   const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, options, seed, num_threads);
-  for (const ReflectionPlane& plane : refined(maxima, samples, edt, options.as_published, num_threads))
+  for (const ReflectionPlane& plane : refined(maxima, samples, edt, options.as_published, num_threads, make_search))
     features.planes.push_back({plane, 0.0});
   features.support.resize(static_cast<Eigen::Index>(features.planes.size()),
                           static_cast<Eigen::Index>(elements.size()));

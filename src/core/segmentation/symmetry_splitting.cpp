@@ -43,7 +43,7 @@ public:
     is_open_[leaf] = false;
     const std::uint64_t seed = options_.seed + leaf;
     const SymmetryFeatures features =
-        symmetryFeatures(graph_, elements_[leaf], options_.splitting, seed, options_.num_threads);
+        symmetryFeatures(graph_, elements_[leaf], options_.splitting, seed, options_.num_threads, options_.make_search);
     nodes_[leaf].planes = features.planes;
     if (!hasDistinctSymmetries(features.planes, options_.splitting)) return false;
     auto sides = splitByTwoMeans(graph_, elements_[leaf], features, options_.splitting, seed);

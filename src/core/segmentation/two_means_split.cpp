@@ -50,7 +50,7 @@ std::vector<int> sidesOfClosest(const SurfaceGraph& graph, std::vector<int> side
   std::vector<int> closest;
   std::vector<float> sq_distances;
   const Points known_centers = graph.centers(Eigen::all, known);
-  makeTreeSearch(known_centers)->search(graph.centers(Eigen::all, unknown), 1, closest, sq_distances);
+  makeFlannSearch(known_centers)->search(graph.centers(Eigen::all, unknown), 1, closest, sq_distances);
   for (std::size_t k = 0; k < unknown.size(); ++k) side[unknown[k]] = side[known[closest[k]]];
   return side;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pcl_symmetry/core/plane_detection.h"
+#include "shapes/counting_search.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -21,6 +22,28 @@ void expectNoAnswer(const Points& cloud, const std::string& reason) {
   const Detection detection = detectPlanes(cloud);
   EXPECT_TRUE(detection.planes.empty() && detection.axes.empty() && detection.centers.empty()) << reason;
   EXPECT_EQ(detection.reason, reason);
+}
+
+TEST(DetectionInput, AGivenSearchIsAskedForEveryKindOfCloud) {
+  const Points one = moved(box(3000, Sampling::Random, 4), randomPose(2)).cloud();
+  const Points large = moved(box(30'000, Sampling::Random, 5), randomPose(3)).cloud();
+  Points twice(3, 2 * one.cols());
+  twice << one, one;
+  for (const auto& [points, num_used] : {std::pair(one, 3000), std::pair(twice, 3000), std::pair(large, 20'000)}) {
+    AskedSearch asked;
+    const Detection expected = detectPlanes(points), found = detectPlanes(points, {}, asked.make());
+    EXPECT_EQ(asked.num_made, 1);
+    EXPECT_EQ(asked.num_points, num_used);
+    EXPECT_GT(asked.num_queries, 10 * num_used);
+    ASSERT_EQ(found.planes.size(), expected.planes.size());
+    for (std::size_t i = 0; i < found.planes.size(); ++i) {
+      EXPECT_LT(found.planes[i].angleTo(expected.planes[i]), 1e-3);
+      EXPECT_EQ(found.planes[i].point_support.size(), static_cast<std::size_t>(points.cols()));
+    }
+    AskedSearch asked_with_map;
+    refineMaxima(points, GaussianEdt(points), expected.map, {}, asked_with_map.make());
+    EXPECT_GT(asked_with_map.num_queries, 10 * num_used);
+  }
 }
 
 TEST(DetectPlanes, FewPointsHoldNoSymmetry) {

@@ -9,6 +9,7 @@
 #include "core/detection/fold_spectrum.h"
 #include "core/detection/plane_lattice.h"
 #include "pcl_symmetry/core/plane_detection.h"
+#include "shapes/counting_search.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -122,6 +123,15 @@ TEST(Polygons, ARoundWallHasAnAxisInNoiseAndUnevenDensity) {
     ASSERT_EQ(found.axes.size(), 1u) << (thinned ? "thinned" : "even");
     EXPECT_GT(std::abs(found.axes[0].direction.z()), std::cos(1.5 * kDegree));
   }
+}
+
+/// Of a noisy cloud that is thinner on one side, fewer points decide: the search of the user finds these among all.
+TEST(Polygons, AGivenSearchIsAskedWhereTheDensityIsUneven) {
+  AskedSearch asked;
+  const Detection found = detectPlanes(wheel(12, 0.12, 0.03, true, 2), manyPlanes(), asked.make());
+  EXPECT_EQ(numRight(found, 12), 13u);
+  EXPECT_EQ(asked.num_made, 1);
+  EXPECT_GT(asked.num_queries, 100'000);
 }
 
 /// Rows of the file that lie in order must not decide: a wheel whose points are sorted is the same wheel.

@@ -36,7 +36,7 @@ std::vector<std::pair<std::string, Points>> surfaces() {
 
 TEST(OpenBorders, AreTheSameWithKnownNeighbours) {
   for (const auto& [name, points] : surfaces()) {
-    const ClosestPointSearch::Ptr search = makeTreeSearch(points);
+    const ClosestPointSearch::Ptr search = makeFlannSearch(points);
     FoundNeighbours known;
     const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, 1, &known);
     const std::vector<char> directly = openBorders(points, *search, geometry.normals, 1);

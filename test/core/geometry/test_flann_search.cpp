@@ -1,13 +1,15 @@
-#include "core/geometry/point_tree.h"
+#include "core/geometry/flann_search.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/geometry/curve_order.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -51,57 +53,38 @@ Points queriesFor(const Points& points) {
   return queries;
 }
 
-TEST(PointTree, GivesTheAnswersOfFlannAlsoWherePointsAreEquallyFar) {
+TEST(FlannSearch, FindsTheNeighborsOfManyQueriesAsOfEachAlone) {
   for (const auto& [name, points] : pointSets()) {
-    const PointTree tree(points);
-    const ClosestPointSearch::Ptr flann = makeFlannSearch(points);
-    // Scattered queries, whose neighbours are looked for one by one, and the points themselves, many at a time.
-    for (const Points& queries : {queriesFor(points), points}) {
+    const FlannSearch search(points);
+    // Scattered queries, and points along a curve, whose neighbors are found by groups.
+    for (const Points& queries : {queriesFor(points), Points(points(Eigen::all, curveOrder(points)))}) {
       for (const int count : {1, 5, 9, 17, 24, 30}) {
         if (count > points.cols()) continue;
-        std::vector<int> indices, expected;
-        std::vector<float> sq_distances, expected_sq;
-        tree.search(queries, count, indices, sq_distances);
-        flann->search(queries, count, expected, expected_sq);
-        EXPECT_EQ(indices, expected) << name << ", " << count << " neighbours";
-        EXPECT_EQ(sq_distances, expected_sq) << name << ", " << count << " neighbours";
+        std::vector<int> indices, alone;
+        std::vector<float> sq_distances, sq_alone;
+        search.search(queries, count, indices, sq_distances);
+        for (Eigen::Index i = 0; i < queries.cols(); ++i) {
+          search.search(queries.col(i), count, alone, sq_alone);
+          const auto first = i * count;
+          ASSERT_TRUE(std::equal(alone.begin(), alone.end(), indices.begin() + first)) << name << ", " << count;
+          ASSERT_TRUE(std::equal(sq_alone.begin(), sq_alone.end(), sq_distances.begin() + first)) << name;
+        }
       }
     }
   }
 }
 
-TEST(PointTree, GivesTheAnswersOfFlannWithinALimit) {
+TEST(FlannSearch, GivesTheSameAnswersWithLists) {
   for (const auto& [name, points] : pointSets()) {
-    const PointTree tree(points);
-    const ClosestPointSearch::Ptr flann = makeFlannSearch(points);
-    const Points queries = queriesFor(points);
-    const auto size = static_cast<std::size_t>(queries.cols());
-    std::vector<int> guesses(size);
-    for (std::size_t i = 0; i < size; ++i) guesses[i] = static_cast<int>(7 * i % points.cols());
-    for (const float limit : {0.0f, 1e-4f, 0.0625f, 1e6f}) {
-      for (const std::vector<int>& guess : {std::vector<int>(size, -1), guesses}) {
-        std::vector<int> indices = guess, expected = guess;
-        std::vector<float> sq_distances, expected_sq;
-        tree.searchWithin(queries, limit, indices, sq_distances);
-        flann->searchWithin(queries, limit, expected, expected_sq);
-        EXPECT_EQ(indices, expected) << name << ", limit " << limit;
-        EXPECT_EQ(sq_distances, expected_sq) << name << ", limit " << limit;
-      }
-    }
-  }
-}
-
-TEST(PointTree, GivesTheAnswersOfFlannWithTheNeighboursOfGuesses) {
-  for (const auto& [name, points] : pointSets()) {
-    if (!NeighbourLists::isUseful(points.cols())) continue;
-    PointTree tree(points);
+    if (!NeighborLists::isUseful(points.cols())) continue;
+    FlannSearch search(points);
     std::vector<int> nearest;
     std::vector<float> sq_nearest, sq_reach;
-    constexpr int kCount = NeighbourLists::kNeighbours + 1;
-    tree.search(points, kCount, nearest, sq_nearest);
+    constexpr int kCount = NeighborLists::kNeighbors + 1;
+    search.search(points, kCount, nearest, sq_nearest);
     for (std::size_t i = kCount - 1; i < sq_nearest.size(); i += kCount) sq_reach.push_back(sq_nearest[i]);
-    tree.use(NeighbourLists(points, nearest, sq_reach));
-    const ClosestPointSearch::Ptr flann = makeFlannSearch(points);
+    search.use(NeighborLists(points, nearest, sq_reach, 1));
+    const ClosestPointSearch::Ptr without = makeFlannSearch(points);
     const Points queries = queriesFor(points);
     const auto size = static_cast<std::size_t>(queries.cols());
     // Guesses anywhere, twice, and close ones: the point that the query was made from; none for every third query, and
@@ -114,8 +97,8 @@ TEST(PointTree, GivesTheAnswersOfFlannWithTheNeighboursOfGuesses) {
       for (const float limit : {0.0f, 1e-4f, 0.0625f, 1e6f}) {
         std::vector<int> indices = guesses, expected = guesses;
         std::vector<float> sq_distances, expected_sq;
-        tree.searchWithin(queries, limit, indices, sq_distances);
-        flann->searchWithin(queries, limit, expected, expected_sq);
+        search.searchWithin(queries, limit, indices, sq_distances);
+        without->searchWithin(queries, limit, expected, expected_sq);
         EXPECT_EQ(indices, expected) << name << ", limit " << limit << ", guesses " << kind;
         EXPECT_EQ(sq_distances, expected_sq) << name << ", limit " << limit << ", guesses " << kind;
       }
@@ -123,22 +106,22 @@ TEST(PointTree, GivesTheAnswersOfFlannWithTheNeighboursOfGuesses) {
   }
 }
 
-TEST(PointTree, QueriesThatAreNoNumbersEndWithoutHarm) {
+TEST(FlannSearch, QueriesThatAreNoNumbersEndWithoutHarm) {
   const Points points = Points::Random(3, 500);
-  PointTree tree(points);
-  constexpr int kCount = NeighbourLists::kNeighbours + 1;
+  FlannSearch search(points);
+  constexpr int kCount = NeighborLists::kNeighbors + 1;
   std::vector<int> indices;
   std::vector<float> sq_distances, sq_reach;
-  tree.search(points, kCount, indices, sq_distances);
+  search.search(points, kCount, indices, sq_distances);
   for (std::size_t i = kCount - 1; i < sq_distances.size(); i += kCount) sq_reach.push_back(sq_distances[i]);
-  if (NeighbourLists::isUseful(points.cols())) tree.use(NeighbourLists(points, indices, sq_reach));
+  if (NeighborLists::isUseful(points.cols())) search.use(NeighborLists(points, indices, sq_reach, 1));
   const Points queries = Points::Constant(3, 4, std::numeric_limits<float>::quiet_NaN());
   for (const int count : {1, kCount}) {
-    tree.search(queries, count, indices, sq_distances);
+    search.search(queries, count, indices, sq_distances);
     for (const int i : indices) EXPECT_TRUE(i >= 0 && i < points.cols()) << i;
   }
   std::vector<int> guesses{0, 1, 2, -1};
-  tree.searchWithin(queries, 1.0f, guesses, sq_distances);
+  search.searchWithin(queries, 1.0f, guesses, sq_distances);
   EXPECT_EQ(guesses, std::vector<int>(4, -1));
 }
 

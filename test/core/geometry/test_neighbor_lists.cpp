@@ -1,4 +1,4 @@
-/// Walks from neighbour to neighbour, against the tree.
+/// Walks from neighbor to neighbor, against FLANN.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,8 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/geometry/neighbour_walk.h"
-#include "core/geometry/point_tree.h"
+#include "core/geometry/flann_search.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -15,22 +14,22 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-/// Points, their lists, and a walk and a tree over them.
+/// Points, their lists, and a walk and FLANN over them.
 struct Searches {
-  explicit Searches(const Points& cloud) : points(cloud), tree(points), lists(listsOf(points, tree)) {}
+  explicit Searches(const Points& cloud) : points(cloud), flann(points), lists(listsOf(points, flann)) {}
 
-  static NeighbourLists listsOf(const Points& points, const PointTree& tree) {
-    constexpr int kCount = NeighbourLists::kNeighbours + 1;
+  static NeighborLists listsOf(const Points& points, const FlannSearch& flann) {
+    constexpr int kCount = NeighborLists::kNeighbors + 1;
     std::vector<int> nearest;
     std::vector<float> sq_distances, sq_reach;
-    tree.search(points, kCount, nearest, sq_distances);
+    flann.search(points, kCount, nearest, sq_distances);
     for (Eigen::Index i = 0; i < points.cols(); ++i) sq_reach.push_back(sq_distances[kCount * i + kCount - 1]);
-    return NeighbourLists(points, nearest, sq_reach);
+    return NeighborLists(points, nearest, sq_reach, 1);
   }
 
   Points points;
-  PointTree tree;
-  NeighbourLists lists;
+  FlannSearch flann;
+  NeighborLists lists;
 };
 
 /// Points at some distance of those of a cloud.
@@ -41,11 +40,11 @@ Points near(const Points& points, float distance) {
   return queries;
 }
 
-TEST(NeighbourWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
+TEST(NeighborWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
   const Points points = box(4000, Sampling::Random, 5).cloud();
-  if (!NeighbourLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
+  if (!NeighborLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
   const Searches searches(points);
-  const NeighbourWalk walk(searches.lists, searches.tree);
+  const NeighborWalk walk(searches.lists, searches.flann);
   // 4000 points on a box of about 2 x 2 x 1 are 0.06 apart.
   for (const float distance : {0.002f, 0.15f}) {
     const Points queries = near(points, distance);
@@ -53,7 +52,7 @@ TEST(NeighbourWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
     std::vector<float> sq_walked, sq_closest;
     constexpr float kFar = 1.0f;
     walk.searchWithin(queries, kFar, walked, sq_walked);
-    searches.tree.searchWithin(queries, kFar, closest, sq_closest);
+    searches.flann.searchWithin(queries, kFar, closest, sq_closest);
     int num_same = 0;
     double excess = 0.0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -69,11 +68,11 @@ TEST(NeighbourWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
   }
 }
 
-TEST(NeighbourWalk, KeepsTheLimitAndTheExactSearch) {
+TEST(NeighborWalk, KeepsTheLimitAndTheExactSearch) {
   const Points points = box(2000, Sampling::Random, 6).cloud();
-  if (!NeighbourLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
+  if (!NeighborLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
   const Searches searches(points);
-  const NeighbourWalk walk(searches.lists, searches.tree);
+  const NeighborWalk walk(searches.lists, searches.flann);
   const Points queries = near(points, 0.1f);
   std::vector<int> within(points.cols(), -1);
   std::vector<float> sq_distances;
@@ -90,14 +89,14 @@ TEST(NeighbourWalk, KeepsTheLimitAndTheExactSearch) {
   EXPECT_GT(num_within, 0);
   EXPECT_LT(num_within, 2000);
   std::vector<int> exact, of_walk;
-  searches.tree.search(queries, 3, exact, sq_distances);
+  searches.flann.search(queries, 3, exact, sq_distances);
   walk.search(queries, 3, of_walk, sq_distances);
   EXPECT_EQ(exact, of_walk);
 }
 
-/// A walk as its description has it, one neighbour after the other.
+/// A walk as its description has it, one neighbor after the other.
 std::pair<int, float> walkedAlone(const Searches& searches, const Eigen::Vector3f& query, int at) {
-  constexpr int kCount = NeighbourLists::kNeighbours + 1;
+  constexpr int kCount = NeighborLists::kNeighbors + 1;
   std::vector<int> nearest;
   std::vector<float> sq_distances;
   const auto sqDistance = [&](int i) {
@@ -105,7 +104,7 @@ std::pair<int, float> walkedAlone(const Searches& searches, const Eigen::Vector3
     return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
   };
   while (true) {
-    searches.tree.search(searches.points.col(at), kCount, nearest, sq_distances);
+    searches.flann.search(searches.points.col(at), kCount, nearest, sq_distances);
     const int closest =
         *std::min_element(nearest.begin(), nearest.end(), [&](int a, int b) { return sqDistance(a) < sqDistance(b); });
     if (closest == at) return {at, sqDistance(at)};
@@ -113,9 +112,9 @@ std::pair<int, float> walkedAlone(const Searches& searches, const Eigen::Vector3
   }
 }
 
-TEST(NeighbourLists, QueriesWalkSideBySideAsEachWouldAlone) {
+TEST(NeighborLists, QueriesWalkSideBySideAsEachWouldAlone) {
   const Points points = box(1500, Sampling::Random, 8).cloud();
-  if (!NeighbourLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
+  if (!NeighborLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
   const Searches searches(points);
   // More queries than walk at a time, in every second column of a matrix.
   const Points queries = near(points, 0.1f);
@@ -125,19 +124,18 @@ TEST(NeighbourLists, QueriesWalkSideBySideAsEachWouldAlone) {
                                                                            Eigen::OuterStride<>(6));
   std::vector<int> guesses(points.cols());
   for (std::size_t i = 0; i < guesses.size(); ++i) guesses[i] = static_cast<int>((i + 3 * (i % 5)) % guesses.size());
-  std::vector<int> ends = guesses, closest(guesses.size(), -1);
-  std::vector<float> sq_ends(guesses.size()), sq_closest;
-  std::vector<char> is_closest(guesses.size());
-  searches.lists.walk(spread, ends.data(), sq_ends.data(), is_closest.data());
-  searches.tree.searchWithin(queries, 1e6f, closest, sq_closest);
+  std::vector<int> closest(guesses.size(), -1);
+  std::vector<float> sq_closest;
+  const std::vector<NeighborLists::Found> found = searches.lists.search(spread, guesses);
+  searches.flann.searchWithin(queries, 1e6f, closest, sq_closest);
   int num_decided = 0;
   for (std::size_t i = 0; i < guesses.size(); ++i) {
     const auto [end, sq_end] = walkedAlone(searches, queries.col(static_cast<Eigen::Index>(i)), guesses[i]);
-    EXPECT_EQ(ends[i], end) << i;
-    EXPECT_FLOAT_EQ(sq_ends[i], sq_end) << i;
-    if (!is_closest[i]) continue;
+    EXPECT_EQ(found[i].index, end) << i;
+    EXPECT_FLOAT_EQ(found[i].sq_distance, sq_end) << i;
+    if (!found[i].is_closest) continue;
     ++num_decided;
-    EXPECT_EQ(ends[i], closest[i]) << i;
+    EXPECT_EQ(found[i].index, closest[i]) << i;
   }
   EXPECT_GT(num_decided, 0);
 }

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <pcl/console/print.h>
+#include <pcl/search/flann_search.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/search/organized.h>
+
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <typeinfo>
+#include <vector>
+
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+namespace detail {
+
+/// A search of PCL over some points. Its input cloud is replaced by one of these points.
+template <typename PointT>
+class PCLPointSearch : public ClosestPointSearch {
+public:
+  /// \param one_at_a_time queries wait for each other: the search may not be called from several threads at once.
+  PCLPointSearch(const typename pcl::search::Search<PointT>::Ptr& search, const PointsRef& points, bool one_at_a_time)
+      : search_(search), one_at_a_time_(one_at_a_time) {
+    const auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>();
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      PointT point;
+      point.getVector3fMap() = points.col(i);
+      cloud->push_back(point);
+    }
+    search_->setInputCloud(cloud);
+  }
+
+  void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+              std::vector<float>& sq_distances) const override {
+    indices.clear();
+    sq_distances.clear();
+    pcl::Indices found;
+    std::vector<float> sq_found;
+    std::unique_lock<std::mutex> lock(mutex_, std::defer_lock);
+    if (one_at_a_time_) lock.lock();
+    for (Eigen::Index i = 0; i < queries.cols(); ++i) {
+      PointT query;
+      query.getVector3fMap() = queries.col(i);
+      if (search_->nearestKSearch(query, num_neighbours, found, sq_found) < num_neighbours)
+        throw std::invalid_argument("search method: found fewer neighbours than points, must find all");
+      indices.insert(indices.end(), found.begin(), found.begin() + num_neighbours);
+      sq_distances.insert(sq_distances.end(), sq_found.begin(), sq_found.begin() + num_neighbours);
+    }
+  }
+
+private:
+  typename pcl::search::Search<PointT>::Ptr search_;
+  bool one_at_a_time_;
+  mutable std::mutex mutex_;
+};
+
+/// What a class does with the search that it was given; says by PCL_WARN what it cannot honor.
+/// \param search null: the library's own.
+/// \param class_name for messages.
+/// \param num_threads of the class.
+/// \return null where the library's own search is used.
+template <typename PointT>
+MakeSearch searchOf(const typename pcl::search::Search<PointT>::Ptr& search, const std::string& class_name,
+                    int num_threads) {
+  if (!search) return nullptr;
+  const pcl::search::Search<PointT>& given = *search;
+  if (dynamic_cast<const pcl::search::OrganizedNeighbor<PointT>*>(&given)) {
+    PCL_WARN("[pcl_symmetry::%s] search method %s: finds no points behind what the sensor saw, FLANN is used instead\n",
+             class_name.c_str(), given.getName().c_str());
+    return nullptr;
+  }
+  // Classes derived from these may not be safe.
+  const bool is_safe =
+      typeid(given) == typeid(pcl::search::KdTree<PointT>) || typeid(given) == typeid(pcl::search::FlannSearch<PointT>);
+  if (!is_safe && num_threads != 1)
+    PCL_WARN(
+        "[pcl_symmetry::%s] search method %s: may not be safe to call from several threads, its queries wait for "
+        "each other\n",
+        class_name.c_str(), given.getName().c_str());
+  return [search, is_safe](const PointsRef& points) -> ClosestPointSearch::Ptr {
+    return std::make_shared<PCLPointSearch<PointT>>(search, points, !is_safe);
+  };
+}
+
+}  // namespace detail
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/neighbor_lists.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace pcl_symmetry {
+
+/// Closest points by FLANN's k-d tree, and by lists of neighbors where these prove the answer.
+class FlannSearch : public ClosestPointSearch {
+public:
+  /// \param points 3 x N, finite, N >= 1; they are copied.
+  explicit FlannSearch(const PointsRef& points);
+  ~FlannSearch() override;
+
+  void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+              std::vector<float>& sq_distances) const override;
+  void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
+                    std::vector<float>& sq_distances) const override;
+
+  /// From now on, searchWithin() asks FLANN only where these lists do not prove the answer. The answers stay the same.
+  /// \param lists of the same points.
+  void use(NeighborLists lists) { lists_ = std::move(lists); }
+
+  /// \return what use() was given; null = nothing.
+  const NeighborLists* lists() const { return lists_ ? &*lists_ : nullptr; }
+
+private:
+  struct Tree;  // of FLANN
+
+  Points points_;
+  std::unique_ptr<Tree> tree_;
+  std::optional<NeighborLists> lists_;
+};
+
+}  // namespace pcl_symmetry
