@@ -654,8 +654,10 @@ def main(program, arguments):
     try:
         program(arguments)
     except (BadInput, ImportError) as error:
-        hint = ", set PYTHONPATH=build/src/python" if "pcl_symmetry" in str(error) and isinstance(error, ImportError) else ""
+        hint = ", set PYTHONPATH=build/src/python" if isinstance(error, ImportError) and "pcl_symmetry" in str(error) else ""
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}{hint}")
+    except KeyboardInterrupt:
+        sys.exit("interrupted" + ", the same command goes on from its journal" * bool(arguments.json))
 
 
 def write_json(arguments, content):
