@@ -12,7 +12,7 @@ MOST_REFINED = 8  # maxima of the map: the first plane is the strongest of them 
 MOST_STEPS, AT_REST = 50, 1e-3  # of the refinement; radians and shares of the radius, far below 5 degrees
 NUM_ANGLES = 128  # of second planes over the half turn: as far apart as the bins of theta
 NUM_CELLS = 64  # of the distance transform along each side
-NUM_SEARCHED = 1000  # points that rank the planes perpendicular to the axes found before
+NUM_SAMPLES = 2048  # points drawn from the distance transform, at which the symmetry of a plane is measured
 
 
 class PublishedFrame:
@@ -60,9 +60,9 @@ class PublishedFrame:
     def _within(self, basis, refined):
         """The plane of greatest symmetry whose normal lies in the span of the columns of basis, two or one."""
         angles = np.pi * np.arange(NUM_ANGLES) / NUM_ANGLES if basis.shape[1] == 2 else np.zeros(1)
-        middle, cell, grid = self._distance_transform
+        middle, cell, grid, samples = self._distance_transform
         offsets = np.arange(-(NUM_CELLS // 2), NUM_CELLS // 2 + 1) * cell
-        x, best = self.points[:NUM_SEARCHED] - middle, (-1.0, None)
+        x, best = samples - middle, (-1.0, None)
         for normal in np.outer(np.cos(angles), basis[:, 0]) + np.outer(np.sin(angles), basis[:, -1]):
             reflected = x - 2 * ((x @ normal) - offsets[:, None])[..., None] * normal  # (offsets, points, 3)
             cells = np.moveaxis(reflected / cell + 0.5 * (NUM_CELLS - 1), -1, 0)
@@ -72,29 +72,35 @@ class PublishedFrame:
 
     @functools.cached_property
     def _distance_transform(self):
-        """(middle, edge of a cell, exp(-d^2 / sigma^2) at the centers of cells, d the distance to the closest point)"""
+        """Middle, edge of a cell, f = exp(-d^2 / sigma^2) at the centers of cells, d the distance to the closest point,
+        and points drawn with probability f: D is the mean of f at their reflections, up to a factor."""
         middle, cell = 0.5 * (self.surface.min(axis=0) + self.surface.max(axis=0)), 2 * self.radius / NUM_CELLS
         centers = middle + cell * (np.moveaxis(np.indices([NUM_CELLS] * 3), 0, -1) - 0.5 * (NUM_CELLS - 1))
-        return middle, cell, self._nearness(centers)[0].astype("f")
+        grid = self._nearness(centers)[0].astype("f")
+        up_to = np.cumsum(grid, dtype=float)
+        drawn = np.searchsorted(up_to, up_to[-1] * (np.arange(NUM_SAMPLES) + 0.5) / NUM_SAMPLES)
+        return middle, cell, grid, centers.reshape(-1, 3)[drawn]
 
     def _nearness(self, x):
         """exp(-d^2 / sigma^2) and index of the closest points to x; 0 and no index beyond three sigma."""
         distance, closest = self.tree.query(x, distance_upper_bound=3 * self.map.sigma)
         return np.exp(-((distance / self.map.sigma) ** 2)), closest
 
-    def _reflected(self, plane):
-        return self.points - 2 * (self.points @ plane[0] - plane[1])[:, None] * plane[0]
+    @staticmethod
+    def _reflected(x, plane):
+        return x - 2 * (x @ plane[0] - plane[1])[:, None] * plane[0]
 
     def _strongest(self, starts, basis):
         """The plane of greatest symmetry among some and what they become when they are refined. Maxima that leave their
         cell stay, because so the method does best."""
         planes = starts + [self._refined(start, basis) for start in starts]
-        return max(planes, key=lambda plane: self._nearness(self._reflected(plane))[0].mean())
+        samples = self._distance_transform[3]
+        return max(planes, key=lambda plane: self._nearness(self._reflected(samples, plane))[0].mean())
 
     def _refined(self, plane, basis):
         """Iterative Symmetric Points with the normal in the span of basis."""
         for _ in range(MOST_STEPS):
-            weight, closest = self._nearness(self._reflected(plane))
+            weight, closest = self._nearness(self._reflected(self.points, plane))
             near = weight > 0
             if not near.any():
                 break
