@@ -200,7 +200,7 @@ std::pair<py::array_t<int>, py::array_t<float>> closest(const AnyArray& points, 
   std::vector<float> distances;
   {
     const py::gil_scoped_release release;
-    makeTreeSearch(input.points())->search(asked.points(), 1, indices, distances);
+    makeFlannSearch(input.points())->search(asked.points(), 1, indices, distances);
     for (float& distance : distances) distance = std::sqrt(distance);
   }
   const auto size = static_cast<py::ssize_t>(indices.size());

@@ -202,6 +202,28 @@ def list_models(arguments):
     return models
 
 
+# What a process keeps for its next item; here, as Dask cannot send functions with a cache that are part of a program
+
+
+@functools.lru_cache(maxsize=2)
+def read_json(path):
+    return json.loads(pathlib.Path(path).read_text())
+
+
+@functools.lru_cache(maxsize=64)
+def mesh_of_size(path, diagonal):
+    """The mesh centered at the origin, with a bounding box of this diagonal."""
+    mesh = read_mesh(path)
+    return Mesh((mesh.vertices - mesh.center) * (diagonal / mesh.diagonal), mesh.triangles, mesh.polygons)
+
+
+@functools.lru_cache(maxsize=1)
+def opened_database(path):
+    import pcl_symmetry
+
+    return pcl_symmetry.Database(path, threads=1)
+
+
 # Random numbers, poses and clouds
 
 

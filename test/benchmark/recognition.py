@@ -7,7 +7,6 @@ Scans each model from a random direction in a random pose, and asks a database o
 is. --export writes the scans; --judge reads the answer of another program to each, NAME.json as
 `pcl_symmetry_match -recognize -json` writes it.
 """
-import functools
 import json
 import pathlib
 import tempfile
@@ -33,13 +32,6 @@ def build(path, clouds, jobs):
     return [f"{name}: {reason}" for name, reason in report.failures]
 
 
-@functools.lru_cache(maxsize=1)
-def opened(path):
-    import pcl_symmetry
-
-    return pcl_symmetry.Database(path, threads=1)
-
-
 def build_of_meshes(models, arguments):
     left_out, clouds = [], []
     for model in models:
@@ -62,7 +54,7 @@ def ask(model, arguments):
     if arguments.export:
         bench.write_cloud(pathlib.Path(arguments.export, f"{model.name}.pcd"), scan.points, scan.T_cloud_sensor)
     start = time.perf_counter()
-    found = opened(arguments.database).recognize(scan.rows.astype(np.float32), viewpoint=scan.viewpoint,
+    found = bench.opened_database(arguments.database).recognize(scan.rows.astype(np.float32), viewpoint=scan.viewpoint,
                                                  min_confidence=arguments.accept, threads=1)  # fmt: skip
     milliseconds = 1000 * (time.perf_counter() - start)
     name, confidence = (found[0].name, found[0].confidence) if found else (None, None)

@@ -15,7 +15,6 @@ point of the model is off by more than 5 % of its diameter, symmetries counted.
 --frames keeps the frames (PCD with a field object: -1 table, -2 nothing) and truth.json, or judges those that are there.
 --judge reads what another program found in each: NAME.json and NAME.pcd as `pcl_symmetry_scene` writes them.
 """
-import functools
 import json
 import math
 import pathlib
@@ -41,18 +40,6 @@ TABLE_RIM, BIN_HEIGHT, BIN_WALL, BIN_GAP = 0.4, 0.15, 0.01, 0.01  # metres
 
 
 # Models in their size
-
-
-@functools.lru_cache(maxsize=2)
-def prepared(path):
-    return json.loads(pathlib.Path(path).read_text())
-
-
-@functools.lru_cache(maxsize=64)
-def mesh_of(path, diagonal):
-    """The mesh centered at the origin, with a bounding box of this diagonal."""
-    mesh = bench.read_mesh(path)
-    return bench.Mesh((mesh.vertices - mesh.center) * (diagonal / mesh.diagonal), mesh.triangles, mesh.polygons)
 
 
 def prepare(model, arguments):
@@ -90,7 +77,7 @@ def draw_scene(models, arguments, number):
     half_side, placed = 0.02 + 0.08 * math.sqrt(count), []
     for index in random.integers(len(models), size=count):
         rotation = standing(random)
-        corners = mesh_of(models[index]["path"], models[index]["diagonal"]).corners.reshape(-1, 3) @ rotation.T
+        corners = bench.mesh_of_size(models[index]["path"], models[index]["diagonal"]).corners.reshape(-1, 3) @ rotation.T
         middle = 0.5 * (corners.min(0) + corners.max(0))[:2]
         radius = np.linalg.norm(corners[:, :2] - middle, axis=1).max()
         for at in random.uniform(-half_side, half_side, (100, 2)):
@@ -169,7 +156,7 @@ def render(models, placed, sensor, arguments):
     inside = lambda corners: depths_of((corners - sensor[:3, 3]) @ sensor[:3, :3], rays, arguments)
     alone = []
     for index, pose, _, _ in placed:
-        mesh = mesh_of(models[index]["path"], models[index]["diagonal"])
+        mesh = bench.mesh_of_size(models[index]["path"], models[index]["diagonal"])
         alone.append(inside(bench.moved(pose, mesh.corners)))
     layers = np.stack([*alone, inside(surroundings(placed, arguments))])
     depths, ids = layers.min(0), layers.argmin(0)
@@ -202,7 +189,7 @@ def with_noise(depths, factor, sensor, random):
 
 def make(number, arguments):
     """Writes the frames of one scene; returns {name of the frame: its objects}."""
-    models = prepared(f"{arguments.frames}/models.json")
+    models = bench.read_json(f"{arguments.frames}/models.json")
     placed, random = draw_scene(models, arguments, number)
     sensor = look_at_middle(placed, arguments, random)
     depths, ids, seen = render(models, placed, sensor, arguments)
@@ -265,7 +252,7 @@ def judge_name(models, truth, known):
 
 
 def ask_database(points, viewpoint, arguments):
-    found = recognition.opened(f"{arguments.frames}/models.db").recognize(points, viewpoint=viewpoint, threads=1)
+    found = bench.opened_database(f"{arguments.frames}/models.db").recognize(points, viewpoint=viewpoint, threads=1)
     return [{"name": m.name, "T_model_scene": m.transform} for m in found]
 
 
@@ -332,7 +319,7 @@ def known_of(models, arguments):
 def wanted_frames(truths, arguments):
     """Frames with the objects that are asked for: the first ones of each band, in the order of the scenes."""
     in_band, frames = {}, []
-    known = {m["name"] for m in known_of(prepared(f"{arguments.frames}/models.json"), arguments)}
+    known = {m["name"] for m in known_of(bench.read_json(f"{arguments.frames}/models.json"), arguments)}
     for name in sorted(truths):
         frame = types.SimpleNamespace(name=name, noise=float(name.rsplit("_", 1)[-1]), objects=[], known=known)
         for truth in truths[name]:
@@ -397,7 +384,7 @@ def make_frames(arguments):
     models, left_out = bench.run(bench.list_models(arguments), prepare, arguments, "models")
     bench.write_whole(folder / "models.json", json.dumps(models))
     if arguments.leave_out and not (folder / "models.db").exists():
-        known = [(m["name"], mesh_of(m["path"], m["diagonal"])) for m in known_of(models, arguments)]
+        known = [(m["name"], bench.mesh_of_size(m["path"], m["diagonal"])) for m in known_of(models, arguments)]
         sample = lambda name, mesh: bench.sample(mesh, recognition.MODEL_POINTS, bench.generator(arguments.seed, name))
         clouds = [(name, sample(name, mesh)) for name, mesh in known]
         recognition.build(folder / "models.db", clouds, arguments.jobs)
