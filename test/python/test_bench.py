@@ -1,4 +1,4 @@
-"""Tests of what the programs of this folder share, of the search for references, and of how planes are judged."""
+"""Tests of what the programs of test/benchmark share, of the search for references, and of how planes are judged."""
 import contextlib
 import io
 import json
@@ -46,8 +46,8 @@ def beast(side_leg):
 
 
 def run_program(*words):
-    """Exit code and standard error of a program of this folder."""
-    path = pathlib.Path(__file__).parent / words[0]
+    """Exit code and standard error of a program of test/benchmark."""
+    path = pathlib.Path(bench.__file__).parent / words[0]
     done = subprocess.run([sys.executable, path, *map(str, words[1:])], capture_output=True, text=True)
     return done.returncode, done.stderr.strip()
 
