@@ -75,7 +75,7 @@ void prepareSTL(std::string& text) {
 
 }  // namespace
 
-ExactShape readMesh(const std::string& path, std::string text, const std::string& kind) {
+void readMesh(const std::string& path, std::string& text, const std::string& kind, ExactShape& shape) {
   if (kind == "stl") prepareSTL(text);
   // Assimp 5.2 reads the bytes of these as if they were plain numbers.
   for (const char* extension : {"KHR_mesh_quantization", "EXT_meshopt_compression"})
@@ -88,9 +88,8 @@ ExactShape readMesh(const std::string& path, std::string text, const std::string
     boost::algorithm::trim(reason);
     throw InputError(path + ": cannot be read as " + kind + (reason.empty() ? "" : ", " + reason));
   }
-  ExactShape shape = SceneReader(*scene).shape();
+  shape = SceneReader(*scene).shape();
   if (shape.vertices.empty()) throw InputError(path + ": has neither faces nor points");
-  return shape;
 }
 
 }  // namespace pcl_symmetry::apps

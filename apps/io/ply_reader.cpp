@@ -134,13 +134,13 @@ public:
   }
 
   double number(const PLYElement& element, std::uint64_t index, const PLYProperty& property) {
-    return numberAt(next(element, index, property, property.type), property.type);
+    return number(element, index, property, property.type);
   }
 
   /// Calls use(number) for each entry of a list.
   template <typename Function>
   void list(const PLYElement& element, std::uint64_t index, const PLYProperty& property, const Function& use) {
-    const double length = numberAt(next(element, index, property, *property.length_type), *property.length_type);
+    const double length = number(element, index, property, *property.length_type);
     if (!(length >= 0.0) || length != std::floor(length))
       reject(path_, "length of list " + property.name + " of " + element.name + " " + std::to_string(index) +
                         " must be a whole number >= 0");
@@ -148,6 +148,11 @@ public:
   }
 
 private:
+  double number(const PLYElement& element, std::uint64_t index, const PLYProperty& property, std::uint8_t type) {
+    if (is_text_) type = pcl::PCLPointField::FLOAT64;  // what does not fit into the type is noticed
+    return numberAt(next(element, index, property, type), type);
+  }
+
   const std::string& path_;
   std::string_view body_;
   TokenReader tokens_;

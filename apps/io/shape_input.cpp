@@ -14,6 +14,7 @@
 #include "io/pcd_reader.h"
 #include "io/ply_reader.h"
 #include "io/assimp_reader.h"
+#include "io/load_module.h"
 #include "io/column_reader.h"
 #include "io/obj_reader.h"
 #include "io/off_reader.h"
@@ -160,8 +161,11 @@ Shape shapeOf(const std::string& name, std::string text, const std::string& exte
     if (extension == ".off") return fromExact(name, readOFF(name, text));
     if (extension == ".obj") return fromExact(name, readOBJ(name, text));
     if (isColumnFile(extension)) return fromExact(name, readColumns(name, text));
-    if (extension == ".stl" || extension == ".glb")
-      return fromExact(name, readMesh(name, std::move(text), extension.substr(1)));
+    if (extension == ".stl" || extension == ".glb") {
+      ExactShape shape;
+      functionOf<decltype(readMesh)>("pcl_symmetry_mesh_files", "readMesh")(name, text, extension.substr(1), shape);
+      return fromExact(name, std::move(shape));
+    }
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "pictures/chart.h"
 #include "pictures/picture.h"
 #include "pictures/raster_image.h"
 #include "pictures/volume_image.h"
@@ -36,8 +35,6 @@ void requireDisplay(const std::string& name);
 extern "C" {
 /// \param scenes checked.
 void drawScenes(const std::vector<PictureScene>& scenes, const PictureTarget& target, int num_columns);
-/// \param chart both of its ranges are set.
-void drawChart(const Chart& chart, const PictureTarget& target);
 void decodeImage(const std::string& path, bool png, RasterImage& image);
 void encodeImage(const RasterImage& image, const std::string& path, const std::string& file);
 void encodeVolume(const VolumeImage& volume, const std::string& path, const std::string& file);

@@ -98,7 +98,7 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
        ply("binary_little_endian",
            std::string("element vertex 1\n") + kPLYVertex + "element face 1\nproperty list uint int vertex_indices\n",
            raw + "\xff\xff\xff\xff" + raw),
-       "face 0 is missing"},
+       "a corner of face 0 = 16843009"},
       {"index.ply",
        ply("ascii",
            std::string("element vertex 1\n") + kPLYVertex + "element face 1\nproperty list uchar int vertex_indices\n",
