@@ -8,6 +8,7 @@
 namespace pcl_symmetry::apps {
 
 bool hasDisplay() {
+  if (!std::getenv("DISPLAY")) return false;
   // Stays open: an X server starts anew when its last client leaves, and turns away who comes meanwhile.
   static Display* const display = ::XOpenDisplay(nullptr);
   int opcode = 0, event = 0, error = 0;
