@@ -28,7 +28,7 @@ using namespace pcl_symmetry::apps;
 
 struct SceneToolOptions {
   std::optional<std::string> input, output, database_path, png_path, html_path, watched;
-  bool no_filter = false, no_frames = false, no_completion = false;
+  bool no_frames = false, no_completion = false;
   SceneOptions scene;
   CommonOptions common;
 };
@@ -60,7 +60,7 @@ CommandLine commandLine(SceneToolOptions& o) {
               "with -database: least confidence of a name that is accepted")
       .number("min_confidence", o.scene.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
-      .flag("no_filter", o.no_filter, "leaves the errors of a depth camera in organized frames")
+      .flag("filter", o.scene.filter, "takes the errors of a depth camera out of organized frames first")
       .flag("no_frames", o.no_frames, "leaves the frames of the objects out")
       .flag("no_completion", o.no_completion, "leaves the completion of the objects out")
       .common(o.common, kAnalysisFlags);
@@ -73,7 +73,6 @@ SymmetryScene makeScene(const SceneToolOptions& options) {
   options.common.applyTo(used.detection);
   options.common.applyTo(used.frame);
   used.num_threads = used.recognition.num_threads = options.common.threads;
-  used.filter = !options.no_filter;
   used.frames = !options.no_frames;
   used.complete = !options.no_completion;
   scene.setOptions(used);

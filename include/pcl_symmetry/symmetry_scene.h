@@ -95,9 +95,10 @@ pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointClou
 /// Finds the objects of a scene and their symmetries.
 ///
 /// Supporting planes are found by PCL's sample consensus and left out; the rest falls into clusters by PCL's Euclidean
-/// clustering, with distances that follow from the points. What the sensor saw is made once of the whole scene
-/// (SeenSpace), so that an object in front does not count as seen empty space beside the one behind it. Space behind a
-/// supporting plane counts as free of the objects before it (SeenSpace::withSupport()).
+/// clustering, with distances that follow from the points, and clusters are cut where their surface bends inwards. What
+/// the sensor saw is made once of the whole scene (SeenSpace), so that an object in front does not count as seen empty
+/// space beside the one behind it. Space behind a supporting plane counts as free of the objects before it
+/// (SeenSpace::withSupport()).
 ///
 /// \code
 /// pcl_symmetry::SymmetryScene scene;
