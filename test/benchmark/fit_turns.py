@@ -18,7 +18,7 @@ KINDS, NUM_TERMS = ("by any angle", "half turns", "of order 3 and more"), (4, 7,
 TOLERANCE, MOST_OFF, MOST_FAR = 0.01, 0.10, 0.0125
 NUM_SAMPLES = 5000  # of the mesh: a share of 0.1 is known to 0.004
 PULL = 0.5  # cases; half and twice change no confidence by 0.05, and without any separable cases would be certain
-NUM_SCANS, NUM_SOLIDS = 4, 960
+NUM_SCANS, NUM_SOLIDS = 4, 1080
 
 
 def solid(i, random):

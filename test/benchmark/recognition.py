@@ -25,7 +25,7 @@ def build(path, clouds, jobs):
 
     part = pathlib.Path(f"{path}.part")
     part.unlink(missing_ok=True)
-    database = pcl_symmetry.Database(str(part), threads=jobs)
+    database = pcl_symmetry.Database(part, create=True, threads=jobs)
     report = database.build((name, points.astype(np.float32)) for name, points in clouds)
     del database
     part.replace(path)

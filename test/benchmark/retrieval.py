@@ -217,7 +217,7 @@ def by_database(clouds, seed):
 
     distances = np.full((len(clouds), len(clouds)), 1e6, np.float32)
     with tempfile.TemporaryDirectory() as folder:
-        database = pcl_symmetry.Database(f"{folder}/models.db", threads=1)
+        database = pcl_symmetry.Database(f"{folder}/models.db", create=True, threads=1)
         database.build((str(i), cloud) for i, cloud in enumerate(clouds))
         for i, cloud in enumerate(clouds):
             turned = cloud @ bench.random_rotation(bench.generator(seed, "query", i)).T
