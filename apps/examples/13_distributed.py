@@ -23,7 +23,7 @@ from pathlib import Path
 
 from dask.distributed import Client, LocalCluster, as_completed
 
-KINDS = {".pcd", ".ply", ".obj", ".stl", ".off", ".xyz", ".glb"}
+KINDS = {".pcd", ".ply", ".obj", ".stl", ".off", ".xyz", ".glb", ".txt", ".csv", ".pts", ".asc"}
 
 
 def describe(tool, files, part):

@@ -1,4 +1,4 @@
-/// What draws: VTK, in the module pcl_symmetry_drawing. The functions of common/pictures are what tools call; they
+/// What draws: VTK, in the module pcl_symmetry_drawing. The functions of pictures/picture.h are what tools call; they
 /// check, and come here through functionOf(). One thread at a time draws.
 #pragma once
 

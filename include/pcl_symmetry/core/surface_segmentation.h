@@ -63,7 +63,7 @@ struct MergingOptions {
 /// most max_share of it onto itself. This rule hardly ever ends the splitting, so that the depth decides.
 struct SplittingOptions {
   /// Splits in a row at most, in [0, 30]: the paper's "user-supplied depth". There are up to 2^depth parts.
-  /// measured: 1 - Rand index is 0.339, 0.295 and 0.284 at depths 2, 3 and 4 (`pcl_symmetry_evaluate segmentation`,
+  /// measured: 1 - Rand index is 0.339, 0.295 and 0.284 at depths 2, 3 and 4 (`segmentation.py`,
   /// models of the Princeton Segmentation Benchmark with ids 1 modulo 4).
   int depth = 3;
   double min_share = 0.1;  ///< of the area of a part, in [0, max_share]; the paper's 10 %

@@ -29,7 +29,7 @@ constexpr double kAngleOfFold = 3.0 * kDegree;  // chosen: planes of scans are o
 constexpr double kLeastPlaneAngle = 0.13;       // radians; chosen: lines of planes at less are too far off
 // The coarse transform: cells, bins, samples and folds. chosen: it takes a tenth of the time of a scan; half of the
 // bins misses axes, twice takes 16 times as long. measured: 64, 32 and 24 samples find 122, 123 and 122 of 124 axes
-// (pcl_symmetry_evaluate shapes turns, tuning half, 160 scans).
+// (scans of shapes made by code, tuning half, 160 scans).
 constexpr int kCoarseCells = 24, kCoarseTheta = 8, kCoarsePhi = 32, kCoarseOffset = 12, kCoarseSamples = 32;
 constexpr std::size_t kCoarseMaxima = 10;  // chosen: half misses axes of folds, twice takes twice the time
 constexpr double kCoarseAngle = 0.3, kCoarseDistance = 0.3;  // radians, radii; derived: one and a half bins

@@ -17,7 +17,7 @@ namespace {
 
 // Points that stand for a cloud at the usual tolerance. chosen: their spacing on a typical shape is below the
 // tolerance; at half, it is above, at twice, the time is twice as long. measured: 96 of 100 models of fold 1 are
-// decided alike at 20 000 and at 100 000 points (pcl_symmetry_evaluate shapes counts), 95 where all points decide.
+// decided alike at 20 000 and at 100 000 points (planes.py, rows of counts), 95 where all points decide.
 constexpr double kMostPoints = 20'000.0, kUsualTolerance = 0.01;
 // Points that are compared before and after one along the curve. measured: with 2, 4 and 8 the nearest is taken for 72,
 // 81 and 86 % of 100 000 points; with 4 the distance is 1.17 times the least on average.

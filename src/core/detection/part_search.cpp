@@ -44,7 +44,7 @@ constexpr PlaneTolerance kSamePlane{0.07, 0.04};
 // of the whole (evidence/README.md).
 constexpr double kLeastPart = 0.04, kLargestPart = 0.9;
 // Greatest edge of a part, edges of a disc: that of a small part, and by how much more a part of the whole cloud may
-// have, as chance matches little of a surface. measured: `pcl_symmetry_evaluate shapes composites`, 40 clouds of the
+// have, as chance matches little of a surface. measured: `shapes.py composites`, 40 clouds of the
 // tuning half: 262 of 288 planes and 0.10 wrong ones a cloud; with 0.45 for a small part 269 and 0.22.
 constexpr double kLeastEdge = 0.4, kEdgePerShare = 0.5;
 // By how much longer the edge may be of a part whose points no better one holds, and share of its points that better

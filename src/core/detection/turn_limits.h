@@ -7,7 +7,7 @@
 namespace pcl_symmetry {
 
 // Shares of the points seen that the worst turn may throw into empty space, and farther than ten tolerances there: of
-// folds and of round bodies. measured: pcl_symmetry_evaluate shapes turns, tuning half; 0.000 and 0.000 of round
+// folds and of round bodies. measured: scans of shapes made by code, tuning half; 0.000 and 0.000 of round
 // bodies, 0.024 and 0.009 of a mug whose handle is 2.5 % of what is seen. chosen: folds are given as much as features
 // of whole objects, halved; twice takes shallow features for symmetric.
 constexpr double kMostOff = 0.05, kMostFar = 0.0125, kMostRoundOff = 0.015, kMostRoundFar = 0.004;

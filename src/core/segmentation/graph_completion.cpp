@@ -15,7 +15,7 @@ namespace {
 
 /// chosen: the normal of a point is that of the plane through its neighbours, which spreads the angle of a crease over
 /// several rows of points, where a mesh has it in one edge. Measured on clouds of 33 meshes of the fit part
-/// (`pcl_symmetry_evaluate segmentation`, test/benchmark/README.md): Rand distance 0.128 with 1, 0.118 with 1.5.
+/// (`segmentation.py` of test/benchmark): Rand distance 0.128 with 1, 0.118 with 1.5.
 constexpr float kSharpened = 1.5f;
 
 /// Lists the edges of each element.
