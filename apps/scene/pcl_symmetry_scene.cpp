@@ -60,6 +60,7 @@ CommandLine commandLine(SceneToolOptions& o) {
               "with -database: least confidence of a name that is accepted")
       .number("min_confidence", o.scene.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
+      .flag("separate", o.scene.separate, "cuts objects that touch apart where their surface bends inwards")
       .flag("filter", o.scene.filter, "takes the errors of a depth camera out of organized frames first")
       .flag("no_frames", o.no_frames, "leaves the frames of the objects out")
       .flag("no_completion", o.no_completion, "leaves the completion of the objects out")

@@ -34,7 +34,9 @@ struct SceneOptions {
   double max_range = 0.0;
   /// Points of a cluster that are analysed, >= 100. chosen: time grows with them; half makes weak planes less certain.
   int max_points = 5'000;
-  bool separate = true;  ///< objects that touch are cut apart where their surface bends inwards
+  /// Cuts objects that touch apart where their surface bends inwards. In coarse frames, faces that are seen at a slant
+  /// may come off, too.
+  bool separate = false;
   /// Takes the errors of depth cameras out of organized frames, see withoutDepthErrors(): smoother completions, but the
   /// planes of boxes, whose edges it rounds, are decided less often.
   bool filter = false;
@@ -95,7 +97,7 @@ pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointClou
 /// Finds the objects of a scene and their symmetries.
 ///
 /// Supporting planes are found by PCL's sample consensus and left out; the rest falls into clusters by PCL's Euclidean
-/// clustering, with distances that follow from the points, and clusters are cut where their surface bends inwards. What
+/// clustering, with distances that follow from the points. What
 /// the sensor saw is made once of the whole scene (SeenSpace), so that an object in front does not count as seen empty
 /// space beside the one behind it. Space behind a supporting plane counts as free of the objects before it
 /// (SeenSpace::withSupport()).

@@ -170,18 +170,6 @@ TEST(SymmetryScene, DecidesPlanesOfBoxesThroughTheErrorsOfACamera) {
   }
 }
 
-TEST(SymmetryScene, SeparatesBoxesThatTouch) {
-  const test::Table table({{0.0, 0.0, 0.0}, {0.0, 0.17, 0.0}});  // the second one stands against the front of the first
-  const SceneAnalysis scene = analysed(organized(table.scan));
-  ASSERT_EQ(scene.objects.size(), 2u);
-  for (const SceneObject& object : scene.objects) {
-    std::size_t num_of_first = 0;
-    for (const pcl::index_t i : object.indices) num_of_first += table.ids[static_cast<std::size_t>(i)] == 1 ? 1 : 0;
-    const double share = static_cast<double>(num_of_first) / static_cast<double>(object.indices.size());
-    EXPECT_TRUE(share < 0.05 || share > 0.95) << "share of the points of the first box " << share;
-  }
-}
-
 /// The planes of a part of a frame.
 SymmetryMaximaRefinement<pcl::PointXYZ> ofBox(const Cloud::ConstPtr& frame, int box) {
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
