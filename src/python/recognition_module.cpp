@@ -127,7 +127,7 @@ void addRegistration(py::module_& module) {
           "(4, 4) from the frame of the source to that of the target")
       .def_property_readonly(
           "score", [](const CloudRegistration& r) { return r.score; }, "PoseScore of the transform")
-      .def_property_readonly("converged", &CloudRegistration::converged)
+      .def_property_readonly("converged", [](const CloudRegistration& r) { return r.converged(); })
       .def_property_readonly(
           "poses",
           [](const CloudRegistration& r) {
@@ -167,6 +167,7 @@ void addResults(py::module_& module) {
           "(4, 4) from the frame of the scan to that of the model");
   py::class_<BuildReport>(module, "BuildReport", "What Database.build() did.")
       .def_readonly("num_added", &BuildReport::num_added, "models that were stored")
+      .def_readonly("num_kept", &BuildReport::num_kept)
       .def_readonly("failures", &BuildReport::failures, "list of (name, reason), in the order of the models")
       .def_readonly("cancelled", &BuildReport::cancelled, "the progress function returned False");
 }

@@ -20,7 +20,7 @@ namespace {
 
 using Cloud = SymmetryScene::Cloud;
 
-Cloud::Ptr organized(const test::Scan& scan) {
+Cloud::Ptr pictureOf(const test::Scan& scan) {
   auto cloud = pcl::make_shared<Cloud>(scan.width, scan.height);
   for (std::size_t i = 0; i < cloud->size(); ++i)
     (*cloud)[i].getVector3fMap() = scan.pixels.col(static_cast<Eigen::Index>(i));
@@ -55,7 +55,7 @@ const test::Table& twoBoxes() {
 }
 
 TEST(SymmetryScene, TakesTheTableOutAndFindsWhatStandsOnIt) {
-  const SceneAnalysis scene = analysed(organized(twoBoxes().scan), true);
+  const SceneAnalysis scene = analysed(pictureOf(twoBoxes().scan), true);
   ASSERT_EQ(scene.supports.size(), 1u);
   EXPECT_LT((scene.supports[0].coefficients - Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)).norm(), 0.02)
       << "towards the viewer";
@@ -80,7 +80,7 @@ TEST(SymmetryScene, DecidesThePlanesOfBoxesWithAllTheirPoints) {
   SceneOptions options;
   options.frames = false;
   scene.setOptions(options);
-  scene.setInputCloud(organized(twoBoxes().scan));
+  scene.setInputCloud(pictureOf(twoBoxes().scan));
   const SceneAnalysis analysis = scene.compute();
   ASSERT_EQ(analysis.objects.size(), 2u);
   for (const SceneObject& object : analysis.objects) {
@@ -91,7 +91,7 @@ TEST(SymmetryScene, DecidesThePlanesOfBoxesWithAllTheirPoints) {
 }
 
 TEST(SymmetryScene, ObjectsStandOnTheTableWithTheirFeet) {
-  const Cloud::ConstPtr cloud = organized(twoBoxes().scan);
+  const Cloud::ConstPtr cloud = pictureOf(twoBoxes().scan);
   const SceneAnalysis scene = analysed(cloud);
   ASSERT_EQ(scene.supports.size(), 1u);
   EXPECT_LT((scene.supports[0].coefficients - Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)).norm(), 1e-5)
@@ -111,7 +111,7 @@ TEST(SymmetryScene, ObjectsStandOnTheTableWithTheirFeet) {
 /// The errors of structured light: 1.4 mm at 1 m, growing with the square of the depth.
 Cloud::Ptr withDepthErrors(const test::Scan& scan) {
   RandomStream random(5);
-  Cloud::Ptr cloud = organized(scan);
+  Cloud::Ptr cloud = pictureOf(scan);
   for (pcl::PointXYZ& point : *cloud) {
     double deviate = -6.0;  // normal, from twelve even ones
     for (int i = 0; i < 12; ++i) deviate += random.uniform();
@@ -134,7 +134,7 @@ double meanDistance(const Cloud& a, const Cloud& b) {
 }
 
 TEST(WithoutDepthErrors, BringsPointsBackToTheirSurfaces) {
-  const Cloud::ConstPtr truth = organized(twoBoxes().scan), noisy = withDepthErrors(twoBoxes().scan);
+  const Cloud::ConstPtr truth = pictureOf(twoBoxes().scan), noisy = withDepthErrors(twoBoxes().scan);
   const Cloud::ConstPtr filtered = withoutDepthErrors(noisy, SeenSpace(*noisy));
   ASSERT_EQ(filtered->width, noisy->width);
   ASSERT_EQ(filtered->height, noisy->height);
@@ -150,7 +150,7 @@ TEST(WithoutDepthErrors, BringsPointsBackToTheirSurfaces) {
 }
 
 TEST(WithoutDepthErrors, LeavesExactAndUnorganizedFramesAsTheyAre) {
-  const Cloud::ConstPtr exact = organized(twoBoxes().scan);
+  const Cloud::ConstPtr exact = pictureOf(twoBoxes().scan);
   EXPECT_EQ(withoutDepthErrors(exact, SeenSpace(*exact)), exact);
   auto row = pcl::make_shared<Cloud>(*withDepthErrors(twoBoxes().scan));
   row->width = static_cast<std::uint32_t>(row->size());
@@ -179,7 +179,7 @@ SymmetryMaximaRefinement<pcl::PointXYZ> ofBox(const Cloud::ConstPtr& frame, int 
 }
 
 TEST(SymmetryMaximaRefinement, APartOfAFrameKnowsTheTableThatItStandsOn) {
-  const Cloud::ConstPtr frame = organized(twoBoxes().scan);
+  const Cloud::ConstPtr frame = pictureOf(twoBoxes().scan);
   const SeenSpace seen = detail::seenOfPart(detail::ScannerOutput(*frame), twoBoxes().pixelsOf(1), Viewpoint(), 0.01);
   ASSERT_NE(seen.visibility(), nullptr);
   ASSERT_EQ(seen.visibility()->supports().size(), 1u);
@@ -187,7 +187,7 @@ TEST(SymmetryMaximaRefinement, APartOfAFrameKnowsTheTableThatItStandsOn) {
 }
 
 TEST(SymmetryMaximaRefinement, DecidesAtWhatTheSensorResolves) {
-  const Cloud::ConstPtr exact = organized(twoBoxes().scan), noisy = withDepthErrors(twoBoxes().scan);
+  const Cloud::ConstPtr exact = pictureOf(twoBoxes().scan), noisy = withDepthErrors(twoBoxes().scan);
   for (const int box : {1, 2}) {
     auto clean = ofBox(exact, box);
     clean.compute();
@@ -207,7 +207,7 @@ TEST(SymmetryMaximaRefinement, DecidesAtWhatTheSensorResolves) {
 }
 
 TEST(SymmetryScene, CompletesIntoSpaceThatWasNotSeen) {
-  const SceneAnalysis scene = analysed(organized(twoBoxes().scan));
+  const SceneAnalysis scene = analysed(pictureOf(twoBoxes().scan));
   const Visibility truth = twoBoxes().scan.visibility();
   for (const SceneObject& object : scene.objects) {
     EXPECT_EQ(object.completed_by.has_value(), !object.planes.empty() && object.planes[0].kind == PlaneKind::Symmetry);
@@ -220,7 +220,7 @@ TEST(SymmetryScene, CompletesIntoSpaceThatWasNotSeen) {
 
 TEST(SymmetryScene, AnUnorganizedSceneGivesTheSameObjects) {
   auto points = pcl::make_shared<Cloud>();
-  const Cloud::ConstPtr picture = organized(twoBoxes().scan);
+  const Cloud::ConstPtr picture = pictureOf(twoBoxes().scan);
   for (const pcl::PointXYZ& point : *picture)
     if (pcl::isXYZFinite(point)) points->push_back(point);
   points->sensor_origin_ << twoBoxes().scan.viewpoint.cast<float>(), 0.0f;
@@ -232,14 +232,14 @@ TEST(SymmetryScene, AnUnorganizedSceneGivesTheSameObjects) {
 
 TEST(SymmetryScene, TheTableAloneIsNoObject) {
   const test::Scan empty = test::scan({{{{0.0, 0.0, -0.02}, {0.7, 0.7, 0.02}}}, {}}, {0.1, -1.6, 1.0}, 0.0, 160, 120);
-  const SceneAnalysis scene = analysed(organized(empty));
+  const SceneAnalysis scene = analysed(pictureOf(empty));
   EXPECT_EQ(scene.supports.size(), 1u);
   EXPECT_TRUE(scene.objects.empty());
 }
 
 TEST(SymmetryScene, BulgesOfTheTableAreNoObjects) {
   // 45 mm high, as stereo cameras measure walls in waves; more than three times what belongs to the plane.
-  const Cloud::Ptr scene = organized(twoBoxes().scan);
+  const Cloud::Ptr scene = pictureOf(twoBoxes().scan);
   for (const int i : twoBoxes().pixelsOf(0)) {
     pcl::PointXYZ& point = (*scene)[static_cast<std::size_t>(i)];
     const double sq_distance = std::pow(point.x + 0.2, 2) + std::pow(point.y + 0.35, 2);
@@ -251,7 +251,7 @@ TEST(SymmetryScene, BulgesOfTheTableAreNoObjects) {
 }
 
 TEST(SymmetryScene, AnyNumberOfThreadsGivesTheSameObjects) {
-  const Cloud::Ptr picture = organized(twoBoxes().scan);
+  const Cloud::Ptr picture = pictureOf(twoBoxes().scan);
   const auto database = std::make_shared<SymmetryDatabase>(":memory:");
   for (int object = 1; object <= 2; ++object)
     database->add("box " + std::to_string(object), Cloud(*picture, twoBoxes().pixelsOf(object)));
@@ -294,7 +294,7 @@ TEST(SymmetryScene, AnyNumberOfThreadsGivesTheSameObjects) {
 TEST(SymmetryScene, ALargeBoxIsNoTable) {
   // Its front is more than half of the picture; what lies behind the front is the rest of the box.
   const test::Scan box = test::scan(test::blockBox(), {0.8, -2.5, 1.2}, 0.0, 160, 120);
-  const SceneAnalysis scene = analysed(organized(box));
+  const SceneAnalysis scene = analysed(pictureOf(box));
   ASSERT_EQ(scene.objects.size(), 1u);
   EXPECT_GT(scene.objects[0].indices.size(), 0.9 * static_cast<double>(box.cloud().cols()));
 }

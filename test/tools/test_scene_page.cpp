@@ -105,11 +105,11 @@ TEST(ScenePage, ShowsThePartsOfAMesh) {
   }
   scene.panels = {panel};
   writePage(scene, {"box", ""}, folder / "a.html");
-  const nlohmann::json json = sceneOf(contentOf(folder / "a.html"));
-  EXPECT_EQ(numBytes(json["mesh"]), 36 * num_triangles);
-  EXPECT_EQ(numBytes(json["panels"][0]["mesh_colors"]), 9 * num_triangles);
-  EXPECT_EQ(json["panels"][0]["show_points"], false);
-  EXPECT_EQ(json["panels"][0]["segments"].size(), 3u) << "a swatch for each";
+  const nlohmann::json page = sceneOf(contentOf(folder / "a.html"));
+  EXPECT_EQ(numBytes(page["mesh"]), 36 * num_triangles);
+  EXPECT_EQ(numBytes(page["panels"][0]["mesh_colors"]), 9 * num_triangles);
+  EXPECT_EQ(page["panels"][0]["show_points"], false);
+  EXPECT_EQ(page["panels"][0]["segments"].size(), 3u) << "a swatch for each";
 }
 
 }  // namespace

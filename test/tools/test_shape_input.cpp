@@ -142,18 +142,18 @@ TEST(LoadShape, RefusesWhatIsNoReadableFile) {
 
 /// Binary glTF: 12 bytes of header, a chunk of JSON, a chunk of values.
 std::string glb(const std::string& primitive, const std::string& values) {
-  std::string json =
+  std::string text =
       R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":[0,0,5]}],)"
       R"("meshes":[{"primitives":[)" +
       primitive + R"(]}],"buffers":[{"byteLength":)" + std::to_string(values.size()) + R"(}],)" +
       R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],)" +
       R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[2,1,0]}]})";
-  json.resize((json.size() + 3) / 4 * 4, ' ');
+  text.resize((text.size() + 3) / 4 * 4, ' ');
   const auto number = [](std::size_t value) {
     const auto narrow = static_cast<std::uint32_t>(value);
     return std::string(reinterpret_cast<const char*>(&narrow), 4);
   };
-  return "glTF" + number(2) + number(28 + json.size() + values.size()) + number(json.size()) + "JSON" + json +
+  return "glTF" + number(2) + number(28 + text.size() + values.size()) + number(text.size()) + "JSON" + text +
          number(values.size()) + std::string("BIN\0", 4) + values;
 }
 

@@ -140,7 +140,7 @@ class Database:
         models: dict of name to (N, 3) points, or pairs of both. progress: called with the share done, in [0, 1]; where it
         returns False the rest is left. A model that cannot be used does not stop the others.
         """
-        return BuildReport(**_fields(self._core.build(models, progress=progress), "num_added", "failures", "cancelled"))
+        return BuildReport(**_fields(self._core.build(models, progress=progress), "num_added", "num_kept", "failures", "cancelled"))
 
     def merge(self, files: Sequence[Path]) -> int:
         """Adds all models of other databases, such as parts that several machines built; all of them or none.

@@ -44,6 +44,8 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def _text(value: Any) -> str:
+    if isinstance(value, Result):
+        return repr(value)
     value = _plain(value)
     if isinstance(value, list):
         return "[" + ", ".join(map(_text, value)) + "]"
@@ -629,3 +631,11 @@ class BuildReport(Result):
     """What Database.build() did."""
 
     _in_repr = ("num_added", "failures", "cancelled")
+    num_added: int
+    """Models that were stored."""
+    num_kept: int
+    """Models that were stored before, unchanged."""
+    failures: List[Tuple[str, str]]
+    """(name, reason), in the order of the models."""
+    cancelled: bool
+    """The progress function returned False."""
