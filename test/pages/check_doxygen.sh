@@ -38,7 +38,7 @@ done
 for text in 'Which class do I need' 'From the paper to the command line'; do
   grep -q "$text" "$folder/html/index.html" || { echo "not on the main page: $text"; missing=1; }
 done
-for page in src/pages/*.md src/pages/algorithms/*.md; do
+for page in src/pages/*.md src/pages/{algorithms,tools}/*.md; do
   title=$(sed -n '1s/^# //p' "$page")
   [[ $page == */main_page.md ]] || grep -q ">$title<" "$folder/html/pages.html" || { echo "not among the pages: $title"; missing=1; }
 done
