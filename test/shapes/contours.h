@@ -46,14 +46,6 @@ inline Points2D rectangle(double width, double height, int num_points = 2400) {
   return polygon({{-x, -y}, {x, -y}, {x, y}, {-x, y}}, num_points);
 }
 
-/// A rectangle with a triangular bump of this base and height on the upper side, \p at from its middle.
-inline Points2D bumpedRectangle(double width, double height, double at, double base, double bump,
-                                int num_points = 2400) {
-  const double x = 0.5 * width, y = 0.5 * height;
-  return polygon({{-x, -y}, {x, -y}, {x, y}, {at + 0.5 * base, y}, {at, y + bump}, {at - 0.5 * base, y}, {-x, y}},
-                 num_points);
-}
-
 /// A star of five arms, smooth; each point moved along the radius by Gaussian noise of this deviation.
 inline Points2D starfish(double noise, std::uint64_t seed, int num_points = 2400) {
   RandomStream random(seed);

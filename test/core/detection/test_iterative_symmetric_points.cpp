@@ -68,18 +68,6 @@ Pairs noisyPairs(const ReflectionPlane& plane, double noise, std::uint64_t seed)
   return pairs;
 }
 
-TEST(FitReflectionPlane, RecoversAnExactReflection) {
-  RandomStream random(1);
-  for (int i = 0; i < 20; ++i) {
-    const ReflectionPlane plane = randomPlane(random);
-    const Pairs pairs = noisyPairs(plane, 0.0, i + 1);
-    const PlaneError error =
-        planeError(fitReflectionPlane(pairs.x, pairs.y, pairs.weights, {}), plane, Eigen::Vector3d::Zero());
-    EXPECT_LT(error.angle, 1e-6);  // coordinates are floats: 6e-8 each
-    EXPECT_LT(error.offset, 1e-6);
-  }
-}
-
 TEST(FitReflectionPlane, IsTheMinimumOfItsCost) {
   RandomStream random(2);
   for (int i = 0; i < 8; ++i) {
@@ -159,40 +147,6 @@ TEST(StepEquations, OfABlockAreThoseOfItsPairs) {
     EXPECT_LE((equations.h - single.h).norm(), rounding);
     EXPECT_LE((equations.g - single.g).norm(), rounding);
   }
-}
-
-TEST(StepEquations, PointToPointIsTheGradientOfTheDistances) {
-  RandomStream random(5);
-  PairBlock block;
-  block.size = 50;
-  for (int i = 0; i < block.size; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      block.x[k][i] = symmetric(random);
-      block.y[k][i] = symmetric(random);
-    }
-    block.weights[i] = random.uniform();
-  }
-  const ReflectionPlane plane = randomPlane(random);
-  StepEquations equations(plane, {0.1, -0.2, 0.3}, 0.7);
-  StepTerms terms;
-  equations.pointToPoint(block, terms);
-  equations.add(terms);
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g = Eigen::Vector3d::Zero();
-  for (int i = 0; i < block.size; ++i) {
-    const Eigen::Vector3d p = Eigen::Vector3d(block.x[0][i], block.x[1][i], block.x[2][i]) - equations.middle;
-    const Eigen::Vector3d q = Eigen::Vector3d(block.y[0][i], block.y[1][i], block.y[2][i]) - equations.middle;
-    const double height = equations.n.dot(p) - equations.offset;
-    Eigen::Matrix3d slopes;
-    slopes.col(0) = -2.0 * (equations.u.dot(p) * equations.n + height * equations.u);
-    slopes.col(1) = -2.0 * (equations.v.dot(p) * equations.n + height * equations.v);
-    slopes.col(2) = 2.0 * equations.extent * equations.n;
-    h += block.weights[i] * slopes.transpose() * slopes;
-    g += block.weights[i] * slopes.transpose() * (p - 2.0 * height * equations.n - q);
-  }
-  // Sums of 50 terms, rounded by as many units of their least digit.
-  EXPECT_LE((equations.h - h).norm(), 1e-14 * h.norm());
-  EXPECT_LE((equations.g - g).norm(), 1e-14 * (h.norm() + g.norm()));
 }
 
 /// A shape, its normals and its search.

@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <numeric>
 #include <optional>
 
-#include "core/transform/free_space.h"
-#include "core/evidence/plane_support.h"
 #include "pcl_symmetry/core/plane_detection.h"
 #include "shapes/scans.h"
 
@@ -15,50 +12,6 @@ namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
-
-double mean(const std::vector<float>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// Support and conflict of a plane of a scan, over all points.
-class Evidence {
-public:
-  Evidence(const Points& cloud, const Visibility& visibility)
-      : ball_(boundingBall(cloud)),
-        points_(normalizePoints(cloud, ball_.center, ball_.radius)),
-        search_(makeFlannSearch(points_)),
-        geometry_(localGeometry(points_, *search_, kNumSupportNeighbours, 0)),
-        visibility_(visibility.normalized(ball_.center, ball_.radius)) {}
-
-  struct Shares {
-    double support, conflict;
-    double symmetry() const { return seenSymmetry(support, conflict); }
-  };
-
-  Shares of(const ReflectionPlane& input) const {
-    const ReflectionPlane plane(input.normal(), input.signedDistance(ball_.center) / -ball_.radius);
-    const Eigen::Matrix3f R = plane.reflection().linear().cast<float>();
-    Points reflected(3, points_.cols());
-    for (Eigen::Index i = 0; i < points_.cols(); ++i)
-      reflected.col(i) = plane.reflect(points_.col(i).cast<double>()).cast<float>();
-    std::vector<int> closest;
-    std::vector<float> sq_distances;
-    search_->search(reflected, 1, closest, sq_distances);
-    const PointEvidence evidence =
-        pointEvidence(reflected, R * geometry_.normals, closest, {points_, geometry_}, &visibility_);
-    return {mean(evidence.support), mean(evidence.conflict)};
-  }
-
-  double radius() const { return ball_.radius; }
-  const Eigen::Vector3d& center() const { return ball_.center; }
-
-private:
-  BoundingBall ball_;
-  Points points_;
-  ClosestPointSearch::Ptr search_;
-  LocalGeometry geometry_;
-  Visibility visibility_;
-};
 
 /// The plane of the answers nearest to a true one: within 2 degrees and 2 % of the diagonal, or none.
 const SymmetryPlane* find(const Detection& detection, const ReflectionPlane& plane, const Points& cloud) {
@@ -84,54 +37,6 @@ std::vector<NamedScan> scans() {
          {Eigen::Vector3d(2.5, -3.0, 2.0), Eigen::Vector3d(1.5, 3.0, 2.5), Eigen::Vector3d(-2.0, 3.2, -1.8)})
       result.push_back({name, scan(object, from)});
   return result;
-}
-
-TEST(Scans, TruePlanesAreSupportedWhereSeenAndMeetNoConflict) {
-  for (const auto& [name, scan] : scans()) {
-    const Evidence evidence(scan.cloud(), scan.visibility());
-    for (const ReflectionPlane& plane : scan.planes) {
-      const auto shares = evidence.of(plane);
-      // Support from 0.485 (a face that is seen on one side only says nothing) to 0.942, conflict up to 0.007 measured.
-      EXPECT_GT(shares.support, 0.4) << name;
-      EXPECT_LT(shares.conflict, 0.02) << name;
-    }
-  }
-}
-
-TEST(Scans, ConflictRulesOutPlanesThroughTheVisiblePart) {
-  // A true plane moved by a fifth of the extent sends surface into space that was seen to be empty, in one of the two
-  // directions at least: towards the viewer.
-  for (const auto& [name, scan] : scans()) {
-    const Evidence evidence(scan.cloud(), scan.visibility());
-    for (const ReflectionPlane& plane : scan.planes) {
-      const double towards = plane.signedDistance(scan.viewpoint) > 0.0 ? 1.0 : -1.0;
-      const ReflectionPlane wrong(plane.normal(), plane.offset() + towards * 0.4 * evidence.radius());
-      const auto right_shares = evidence.of(plane), wrong_shares = evidence.of(wrong);
-      EXPECT_GT(wrong_shares.conflict, right_shares.conflict + 0.1) << name;
-      EXPECT_GT(right_shares.symmetry(), wrong_shares.symmetry()) << name;
-    }
-  }
-}
-
-TEST(Scans, APlaneToWhereNobodyLookedIsNoSymmetry) {
-  for (const auto& [name, scan] : scans()) {
-    const Points cloud = scan.cloud();
-    const Evidence evidence(cloud, scan.visibility());
-    // Behind all points as seen by the camera: reflections lie in the shadow of the object or far beyond it.
-    const Eigen::Vector3d forward = -scan.viewpoint.normalized();
-    const double farthest = (forward.transpose() * cloud.cast<double>()).maxCoeff();
-    const ReflectionPlane behind(forward, farthest + 0.02);
-    const auto shares = evidence.of(behind);
-    EXPECT_LT(shares.support, 0.05) << name;
-    const Visibility visibility = scan.visibility();
-    for (const SymmetryPlane& plane : detectPlanes(cloud, {}, nullptr, &visibility).planes) {
-      const PlaneError error = planeError(plane, behind, centerOfMass(cloud));
-      EXPECT_FALSE(plane.kind == PlaneKind::Symmetry && error.angle < 5.0 * kDegree && error.offset < 0.1) << name;
-      if (plane.kind == PlaneKind::Symmetry) {
-        EXPECT_GT(plane.seen, 0.05) << name;
-      }
-    }
-  }
 }
 
 TEST(Scans, TruePlanesAreAmongTheAnswers) {

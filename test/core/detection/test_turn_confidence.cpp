@@ -6,8 +6,6 @@
 #include <array>
 #include <utility>
 
-#include "core/detection/turn_confidence_fit.h"
-
 namespace {
 
 using namespace pcl_symmetry;
@@ -63,15 +61,6 @@ TEST(TurnConfidence, OfAHalfTurnFallsWithEachSignAgainstIt) {
       last = confidence;
     }
     EXPECT_LT(last, 0.95 * clear) << "sign " << k;
-  }
-}
-
-TEST(TurnConfidence, HasANumberForEachTerm) {
-  for (const int fold : {0, 2, 6}) {
-    const SymmetryTurn turn = turnOf(fold, 0.9, 0.01, 0.0, 0.2);
-    const std::vector<double> terms = turnOddsTerms(turn, clearSigns());
-    EXPECT_EQ(terms.size(), kTurnConfidenceFit[static_cast<std::size_t>(kindOf(turn))].size());
-    EXPECT_EQ(terms.front(), 1.0);
   }
 }
 

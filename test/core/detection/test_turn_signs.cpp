@@ -84,16 +84,6 @@ TEST(TurnSigns, AFlatSideHoldsNoLineAndABoxDoes) {
   EXPECT_GT(hold(Scanned(box(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
 }
 
-TEST(TurnSigns, OtherTurnsHaveTheDefaults) {
-  const Scanned scanned(box(), kCorner);
-  SymmetryTurn turn = scanned.turn(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
-  turn.fold = 4;
-  const TurnSigns signs = turnSigns(scanned.evidence, {turn})[0];
-  EXPECT_EQ(signs.grown, TurnSigns().grown);
-  EXPECT_EQ(signs.hold, TurnSigns().hold);
-  EXPECT_TRUE(turnSigns(scanned.evidence, {}).empty());
-}
-
 TEST(TurnEvidence, ALineBesideTheAxisComesBackToIt) {
   for (const Eigen::Vector3d& viewpoint : {kCorner, Eigen::Vector3d(5.0, 1.0, 3.0), Eigen::Vector3d(1.0, -2.0, 5.0)}) {
     const Scanned scanned(box(), viewpoint);

@@ -132,22 +132,4 @@ TEST(MissingCounterparts, DoNotExcuseWhatOneSideHasAndTheOtherHasNot) {
   EXPECT_LT(missing, 0.3 * (1.0 - matched));
 }
 
-TEST(MissingCounterparts, DoNotExcuseAWireThatOneSideHasAndTheOtherHasNot) {
-  // All of a wire lies near borders, so that its edge says nothing; and the edge is short.
-  constexpr Eigen::Index kWire = 400;
-  Points points = cap(2.0);
-  const Eigen::Index size = points.cols();
-  points.conservativeResize(3, size + kWire);
-  RandomStream random(5);
-  const Eigen::Vector3d along = Eigen::Vector3d(0.8, 0.0, 0.6), u = along.unitOrthogonal(), v = along.cross(u);
-  for (Eigen::Index i = 0; i < kWire; ++i) {
-    const double angle = 2.0 * kPi * random.uniform();
-    points.col(size + i) =
-        ((1.0 + random.uniform()) * along + 0.01 * (std::cos(angle) * u + std::sin(angle) * v)).cast<float>();
-  }
-  const auto [matched, missing] = matchedAndMissing(Surface(points), ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
-  EXPECT_LT(matched, 0.97);
-  EXPECT_LT(missing, 0.3 * (1.0 - matched));
-}
-
 }  // namespace

@@ -117,15 +117,6 @@ TEST(PlaneConfidence, WhatIsOffByCoarserPointsIsMoreOfTheSurface) {
   EXPECT_GT(logOddsTerms(coarse)[1], logOddsTerms(fine)[1]);
 }
 
-TEST(PlaneConfidence, APlaneThatNothingSpeaksForIsNoSymmetry) {
-  for (const auto& [name, good] : regimes()) {
-    PlaneEvidence evidence = good;
-    evidence.share = evidence.double_share = evidence.score = evidence.support = evidence.hold = 0.0;
-    EXPECT_EQ(seenSupport(evidence), 0.0) << name;
-    EXPECT_LT(planeConfidence(evidence), 0.02) << name;
-  }
-}
-
 TEST(PlaneConfidence, IsAProbabilityEverywhere) {
   for (const double support : {0.0, 1e-9, 0.5, 1.0, 1.1})
     for (const double share : {0.0, 1e-9, 0.5, 1.0})

@@ -45,17 +45,6 @@ TEST(SplitSurface, ATruePlaneReachesTheShareOfTheHalvesWhateverTheNoise) {
   }
 }
 
-TEST(SplitSurface, OwnScoreFallsWithNoise) {
-  const BoundingBall ball{Eigen::Vector3d::Zero(), 1.3};
-  double before = 1.0;
-  for (const double noise : {0.0, 0.03, 0.08}) {
-    const double score = SplitSurface(noisyBox(noise), 1, 1).ownScore(32, 0.08, ball, 1);
-    EXPECT_LT(score, before);
-    EXPECT_GT(score, 0.8);
-    before = score;
-  }
-}
-
 /// D of a true plane is what the halves and quarters of the cloud make expect.
 TEST(SplitSurface, OwnScoreIsThatOfATruePlane) {
   for (const double noise : {0.04, 0.08}) {

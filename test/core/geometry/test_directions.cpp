@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 #include "core/base/constants.h"
@@ -14,21 +13,6 @@ TEST(GoldenFraction, IsTheFractionalPartOfMultiples) {
   EXPECT_EQ(goldenFraction(0), 0.0);
   EXPECT_DOUBLE_EQ(kGoldenSection, 0.5 * (std::sqrt(5.0) - 1.0));
   for (int k = 1; k < 1000; ++k) EXPECT_NEAR(goldenFraction(k), std::fmod(k * kGoldenSection, 1.0), 1e-12);
-}
-
-TEST(GoldenFraction, GapsBetweenTermsAreOfAtMostThreeLengthsInTheGoldenRatio) {
-  // The three-gap theorem; for the golden ratio the largest gap is at most 1 / golden section^2 times the smallest.
-  for (const int count : {3, 8, 20, 100}) {
-    std::vector<double> terms;
-    for (int k = 0; k < count; ++k) terms.push_back(goldenFraction(k));
-    std::sort(terms.begin(), terms.end());
-    double least = 1.0 - terms.back(), greatest = least;
-    for (std::size_t i = 1; i < terms.size(); ++i) {
-      least = std::min(least, terms[i] - terms[i - 1]);
-      greatest = std::max(greatest, terms[i] - terms[i - 1]);
-    }
-    EXPECT_LT(greatest, least / (kGoldenSection * kGoldenSection) + 1e-9) << count;
-  }
 }
 
 TEST(SpiralDirection, CutsTheHalfSphereIntoRingsOfEqualArea) {

@@ -1,10 +1,8 @@
 /// Walks from neighbor to neighbor, against FLANN.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "core/geometry/flann_search.h"
 #include "shapes/shapes.h"
@@ -92,52 +90,6 @@ TEST(NeighborWalk, KeepsTheLimitAndTheExactSearch) {
   searches.flann.search(queries, 3, exact, sq_distances);
   walk.search(queries, 3, of_walk, sq_distances);
   EXPECT_EQ(exact, of_walk);
-}
-
-/// A walk as its description has it, one neighbor after the other.
-std::pair<int, float> walkedAlone(const Searches& searches, const Eigen::Vector3f& query, int at) {
-  constexpr int kCount = NeighborLists::kNeighbors + 1;
-  std::vector<int> nearest;
-  std::vector<float> sq_distances;
-  const auto sqDistance = [&](int i) {
-    const Eigen::Vector3f d = query - searches.points.col(i);
-    return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
-  };
-  while (true) {
-    searches.flann.search(searches.points.col(at), kCount, nearest, sq_distances);
-    const int closest =
-        *std::min_element(nearest.begin(), nearest.end(), [&](int a, int b) { return sqDistance(a) < sqDistance(b); });
-    if (closest == at) return {at, sqDistance(at)};
-    at = closest;
-  }
-}
-
-TEST(NeighborLists, QueriesWalkSideBySideAsEachWouldAlone) {
-  const Points points = box(1500, Sampling::Random, 8).cloud();
-  if (!NeighborLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
-  const Searches searches(points);
-  // More queries than walk at a time, in every second column of a matrix.
-  const Points queries = near(points, 0.1f);
-  Eigen::Matrix3Xf apart = Eigen::Matrix3Xf::Zero(3, 2 * queries.cols());
-  for (Eigen::Index i = 0; i < queries.cols(); ++i) apart.col(2 * i) = queries.col(i);
-  const Eigen::Map<const Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> spread(apart.data(), 3, queries.cols(),
-                                                                           Eigen::OuterStride<>(6));
-  std::vector<int> guesses(points.cols());
-  for (std::size_t i = 0; i < guesses.size(); ++i) guesses[i] = static_cast<int>((i + 3 * (i % 5)) % guesses.size());
-  std::vector<int> closest(guesses.size(), -1);
-  std::vector<float> sq_closest;
-  const std::vector<NeighborLists::Found> found = searches.lists.search(spread, guesses);
-  searches.flann.searchWithin(queries, 1e6f, closest, sq_closest);
-  int num_decided = 0;
-  for (std::size_t i = 0; i < guesses.size(); ++i) {
-    const auto [end, sq_end] = walkedAlone(searches, queries.col(static_cast<Eigen::Index>(i)), guesses[i]);
-    EXPECT_EQ(found[i].index, end) << i;
-    EXPECT_FLOAT_EQ(found[i].sq_distance, sq_end) << i;
-    if (!found[i].is_closest) continue;
-    ++num_decided;
-    EXPECT_EQ(found[i].index, closest[i]) << i;
-  }
-  EXPECT_GT(num_decided, 0);
 }
 
 }  // namespace

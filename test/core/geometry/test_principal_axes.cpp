@@ -44,16 +44,4 @@ TEST(PrincipalAxes, PlanesLieAcrossThemThroughTheCenter) {
   EXPECT_THROW(principalAxes(Points(3, 0)), std::invalid_argument);
 }
 
-TEST(SheetPose, KeepsTheAxesOfAFlatCloudAndFindsOthers) {
-  Points flat = Points::Random(3, 50);
-  flat.row(2).setConstant(4.0f);
-  const Eigen::Isometry3d kept = sheetPose(flat);
-  EXPECT_TRUE(kept.linear().isIdentity());
-  EXPECT_EQ(kept.translation(), Eigen::Vector3d(0, 0, 4));
-  const Eigen::Isometry3d pose = randomPose(3);
-  const Points tilted = (pose * flat.cast<double>()).cast<float>();
-  const Eigen::Matrix3Xd back = sheetPose(tilted).inverse() * tilted.cast<double>();
-  EXPECT_LT(back.row(2).cwiseAbs().maxCoeff(), 1e-5);
-}
-
 }  // namespace

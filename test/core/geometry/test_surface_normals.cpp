@@ -26,18 +26,6 @@ TEST(LocalGeometry, NormalsOfASphereAreRadial) {
   EXPECT_LT(mean, 0.5 * 0.09);
 }
 
-TEST(LocalGeometry, NormalsOfAPlaneAreExact) {
-  const ReflectionPlane plane(Eigen::Vector3d(1.0, 2.0, -0.5), 0.3);
-  const Eigen::Vector3d u = plane.normal().unitOrthogonal(), v = plane.normal().cross(u);
-  RandomStream random(5);
-  Points points(3, 500);
-  for (int i = 0; i < 500; ++i)
-    points.col(i) = (symmetric(random) * u + symmetric(random) * v + plane.offset() * plane.normal()).cast<float>();
-  const LocalGeometry geometry = localGeometry(points, *makeFlannSearch(points), 8, 1);
-  for (int i = 0; i < 500; ++i)
-    EXPECT_GT(std::abs(geometry.normals.col(i).cast<double>().dot(plane.normal())), 1.0 - 1e-4) << i;
-}
-
 TEST(LocalGeometry, SpacingMeasuresDensity) {
   // spacing^2 * density = pi r_k^2 density / k; the count within r is Poisson, so that pi r_k^2 density is Gamma(k)
   // with mean k: the mean of the ratio is 1, that of n samples of 8 neighbours each (every point counts in about 8

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "core/rotation/rotation_cover.h"
@@ -291,21 +290,6 @@ TEST(PoseSymmetry, MeanIsThatOfTheClass) {
     EXPECT_LT(group.distance(group.mean({poses[0]}), poses[0]).angle, 1e-7);
     EXPECT_THROW(group.mean({}), std::invalid_argument);
   }
-}
-
-/// For one axis of revolution the mean axis is the normalised sum of the axes.
-TEST(PoseSymmetry, MeanOfBodiesOfRevolutionIsThatOfTheirAxes) {
-  RandomStream random(10);
-  const ObjectSymmetries vase = placedGroupOf(RotationGroupKind::Revolution, 0, poseFrom(random));
-  const Eigen::Vector3d axis = vase.continuous[0].axis;
-  Poses poses;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int k = 0; k < 12; ++k) {
-    poses.push_back(turnAbout(poseFrom(random).linear().col(0), 0.8 * random.uniform(), vase.center) *
-                    symmetryFrom(vase, random));
-    sum += poses.back().linear() * axis;
-  }
-  EXPECT_LT((vase.mean(poses).linear() * axis - sum.normalized()).norm(), 1e-6);
 }
 
 TEST(PoseSymmetry, GroupsComeBackFromTheirMotions) {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,24 +22,6 @@ constexpr double kSame = 1e-9;
 bool holds(const Matrices& elements, const Eigen::Matrix3d& rotation) {
   return std::any_of(elements.begin(), elements.end(),
                      [&](const Eigen::Matrix3d& element) { return (element - rotation).norm() < kSame; });
-}
-
-/// The least n with R^n = 1.
-int orderOf(const Eigen::Matrix3d& rotation) {
-  Eigen::Matrix3d power = rotation;
-  int order = 1;
-  while (!power.isIdentity(kSame) && order < 100) {
-    power = rotation * power;
-    ++order;
-  }
-  return order;
-}
-
-/// How many elements there are of each order.
-std::map<int, int> ordersOf(const RotationGroup& group) {
-  std::map<int, int> orders;
-  for (const Eigen::Matrix3d& element : group.elements()) ++orders[orderOf(element)];
-  return orders;
 }
 
 /// All products of some rotations, by multiplying each pair until nothing new comes.
@@ -113,16 +94,6 @@ TEST(RotationGroup, GeneratorsGenerateTheGroupAndNoMore) {
     EXPECT_EQ(products.size(), size);
     for (const Eigen::Matrix3d& product : products) EXPECT_TRUE(holds(elements, product));
   }
-}
-
-/// The class equations: how many rotations of each order a solid has.
-TEST(RotationGroup, HasItsNumberOfRotationsOfEachOrder) {
-  using Orders = std::map<int, int>;
-  EXPECT_EQ(ordersOf({Kind::Tetrahedral, 3}), (Orders{{1, 1}, {2, 3}, {3, 8}}));
-  EXPECT_EQ(ordersOf({Kind::Octahedral, 4}), (Orders{{1, 1}, {2, 9}, {3, 8}, {4, 6}}));
-  EXPECT_EQ(ordersOf({Kind::Icosahedral, 5}), (Orders{{1, 1}, {2, 15}, {3, 20}, {5, 24}}));
-  EXPECT_EQ(ordersOf({Kind::Cyclic, 12}), (Orders{{1, 1}, {2, 1}, {3, 2}, {4, 2}, {6, 2}, {12, 4}}));
-  EXPECT_EQ(ordersOf({Kind::Dihedral, 5}), (Orders{{1, 1}, {2, 5}, {5, 4}}));
 }
 
 TEST(RotationGroup, HasTheAxesOfItsSolid) {

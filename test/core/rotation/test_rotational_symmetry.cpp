@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
 #include "shapes/turning_shapes.h"
 
@@ -96,26 +95,12 @@ TEST_P(KnownGroup, IsFoundInAnyPoseAndSize) {
   expectFound(GetParam(), randomPose(3), 1e-3, 4000, 3);
 }
 
-TEST_P(KnownGroup, IsFoundAsTheShapeStands) {
-  expectFound(GetParam(), Eigen::Isometry3d::Identity(), 1.0, 3000, 4);
-}
-
 INSTANTIATE_TEST_SUITE_P(Shapes, KnownGroup, testing::ValuesIn(turningShapes()), [](const auto& instance) {
   std::string name = instance.param.name;
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
 });
-
-class DenseGroup : public KnownGroup {};
-
-TEST_P(DenseGroup, IsFoundWithTenThousandPoints) {
-  expectFound(GetParam(), randomPose(1), 1.0, 10'000, 1);
-}
-
-INSTANTIATE_TEST_SUITE_P(Shapes, DenseGroup,
-                         testing::Values(boxShape("cube", {1.0, 1.0, 1.0}, RotationGroupKind::Octahedral, 4),
-                                         cupShape(true), propellerShape(2, true)));
 
 class NoisyGroup : public KnownGroup {};
 

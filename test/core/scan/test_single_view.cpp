@@ -37,11 +37,6 @@ TEST(SpaceSeenFrom, RefusesWholeObjectsFromAnywhere) {
   }
 }
 
-TEST(SpaceSeenFrom, RefusesAPlaceAmongThePointsOfAScan) {
-  const Points cloud = scan(blockChair(), {2.0, -3.0, 1.5}).cloud();
-  EXPECT_FALSE(spaceSeenFrom(cloud, Eigen::Vector3d(0.1, 0.1, 0.3)));
-}
-
 TEST(SpaceSeenFrom, RefusesThinObjectsFromAnywhere) {
   // 0.06 thick, a twentieth of the radius: less than hiddenShare() would notice. The points are 0.026 apart.
   const Points plate = box({1.0, 0.8, 0.03}, 10'000, Sampling::Random, 5).cloud();

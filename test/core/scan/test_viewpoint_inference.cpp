@@ -91,17 +91,6 @@ TEST(InferView, FindsNoneForTwoViewsPutTogether) {
   }
 }
 
-TEST(InferView, FindsNoneForAPieceOfAWholeObject) {
-  const Points whole = surfaceOf(blockChair(), 10'000);
-  for (const float height : {-0.5f, 0.0f, 0.5f}) {
-    Points piece(3, whole.cols());
-    Eigen::Index size = 0;
-    for (Eigen::Index i = 0; i < whole.cols(); ++i)
-      if (whole(2, i) < height) piece.col(size++) = whole.col(i);
-    EXPECT_FALSE(inferView(piece.leftCols(size), kElsewhere)) << height;
-  }
-}
-
 TEST(InferView, FewOrDegeneratePointsHaveNone) {
   EXPECT_FALSE(inferView(Points(3, 0), kElsewhere));
   EXPECT_FALSE(inferView(Points::Ones(3, 100), kElsewhere));

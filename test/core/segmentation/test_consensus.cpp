@@ -45,14 +45,6 @@ TEST(Consensus, MergesCellsThatAreLikelyOnePart) {
   EXPECT_EQ(consensus(stripOfSquares(6), {division}, 0), (std::vector<int>{0, 0, 0, 0, 1, 1}));
 }
 
-TEST(Consensus, EndsAtTheNumberOfPartsAskedFor) {
-  const MergedDivision division = divisionOf({0, 0, 1, 1, 2, 2});
-  for (const int num_parts : {1, 2, 3}) {
-    const std::vector<int> labels = consensus(stripOfSquares(6), {division}, num_parts);
-    EXPECT_EQ(std::set<int>(labels.begin(), labels.end()).size(), static_cast<std::size_t>(num_parts));
-  }
-}
-
 TEST(Consensus, WithTheMirrorImageIsSymmetric) {
   const SurfaceGraph graph = stripOfSquares(8);
   const std::vector<int> reflected = reflectedElements(graph, ReflectionPlane(Eigen::Vector3d::UnitX(), 4.0));

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -152,33 +151,6 @@ TEST(Merging, FindsThePartsOfADumbbellAndTheirImages) {
   EXPECT_TRUE(across_y);
 }
 
-TEST(Merging, LabelsAgreeAcrossAPlaneOfSymmetry) {
-  // A nearly symmetric body on two legs: one leg has a groove.
-  const Mesh mesh = test::voxelMesh(16, [](int x, int y, int z) {
-    if (y >= 4) return false;
-    if (z >= 10) return true;
-    if (x == 2 && y == 0 && z == 4) return false;
-    return x < 4 || x >= 12;
-  });
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
-  const Segmentation segmentation = segmentSurface(graph);
-  std::size_t next = 0;
-  bool found = false;
-  for (const PartPlane& plane : segmentation.tree[0].planes) {
-    if (plane.share < kMappedShare) continue;
-    const std::vector<int>& image = segmentation.images[next++];
-    if (std::abs(plane.plane.normal().x()) < 0.99) continue;
-    found = true;
-    double agreeing = 0.0;
-    for (int i = 0; i < graph.size(); ++i) {
-      const Eigen::Vector3f reflected = plane.plane.reflect(graph.centers.col(i).cast<double>()).cast<float>();
-      if (segmentAt(graph, segmentation, reflected) == image[segmentation.labels[i]]) agreeing += graph.areas[i];
-    }
-    EXPECT_GT(agreeing, 0.95 * graph.area());
-  }
-  EXPECT_TRUE(found);
-}
-
 TEST(Merging, GivesAsManyPartsAsAskedFor) {
   const Mesh mesh = test::dumbbell();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
@@ -230,21 +202,6 @@ TEST(Merging, BrokenMeshesAreCutToo) {
   expectTreeOf(segmentation);
   ASSERT_EQ(segmentation.labels.size(), mesh.polygons.size());
   EXPECT_NE(segmentAt(graph, segmentation, kLeftCube), segmentAt(graph, segmentation, kRightCube));
-}
-
-TEST(Merging, DustOfManyPiecesIsCutToo) {
-  RandomStream random(4);
-  Mesh dust;
-  for (int t = 0; t < 3000; ++t) {
-    Eigen::Vector3f at;
-    for (int k = 0; k < 3; ++k) at[k] = static_cast<float>(random.uniform());
-    const int a = dust.add(at), b = dust.add(at + Eigen::Vector3f(0.01f, 0, 0)),
-              c = dust.add(at + Eigen::Vector3f(0, 0.01f, 0));
-    dust.polygons.push_back({a, b, c});
-  }
-  const Segmentation segmentation = segmentSurface(meshGraph(dust.vertices, dust.polygons));
-  expectTreeOf(segmentation);
-  EXPECT_EQ(segmentation.labels.size(), dust.polygons.size());
 }
 
 TEST(Merging, ShapesWithoutAnInsideAreCutToo) {

@@ -139,17 +139,6 @@ TEST(PlaneGrid, StepsLeadAcrossTheSeamsAsDerived) {
   EXPECT_TRUE(*g.step({5, 6, 0}, 1, 1, 0) == (Bin{5, 3, 4}));
 }
 
-TEST(PlaneGrid, StepsBackReturn) {
-  const PlaneGrid g = grid(6, 8, 5);
-  for (std::size_t i = 0; i < g.size(); ++i) {
-    const Bin bin = g.bin(i);
-    const auto past_pole = g.step({0, bin.phi, bin.radius}, -1, 0, 0);
-    EXPECT_TRUE(*g.step(*past_pole, -1, 0, 0) == (Bin{0, bin.phi, bin.radius}));
-    const auto past_equator = g.step({5, bin.phi, bin.radius}, 1, 0, 0);
-    EXPECT_TRUE(*g.step(*past_equator, 1, 0, 0) == (Bin{5, bin.phi, bin.radius}));
-  }
-}
-
 /// Bins in phi that cover one step of theta in a row.
 int expectedReach(const PlaneGrid& g, int t) {
   return std::min(g.numPhi() / 2, static_cast<int>(std::ceil(g.thetaStep() / (g.phiStep() * std::sin(g.theta(t))))));

@@ -70,20 +70,6 @@ TEST(PointSymmetry, IsTheGreatestValueOfAPlaneThroughThePoint) {
     EXPECT_NEAR(values[i], greatest(map, probes.col(i).cast<double>()), 2e-4) << i;
 }
 
-TEST(PointSymmetry, IsGreatestOnThePlanesOfABox) {
-  const Shape shape = box(6'000, Sampling::Mirrored, 3);
-  const GaussianEdt edt(shape.cloud());
-  const SymmetryMap map = sampledTransform(edt, PlaneGrid(32, 128, 64, edt.center(), edt.radius()));
-  Points probes(3, 3);
-  probes.col(0) = Eigen::Vector3f(0.0f, 0.0f, 0.0f);    // on three
-  probes.col(1) = Eigen::Vector3f(0.0f, 0.4f, 0.25f);   // on one
-  probes.col(2) = Eigen::Vector3f(0.75f, 0.5f, 0.35f);  // on none
-  const std::vector<float> values = pointSymmetry(map, probes);
-  EXPECT_GT(values[0], 0.8f);
-  EXPECT_GT(values[1], 0.7f);
-  EXPECT_LT(values[2], 0.8f * values[1]);
-}
-
 TEST(PointSymmetry, EqualBitsForAnyNumberOfThreads) {
   Points cloud;
   const SymmetryMap map = boxMap(cloud);
