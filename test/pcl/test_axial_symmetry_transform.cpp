@@ -35,14 +35,6 @@ TEST(AxialSymmetryTransform, FindsTheAxisOfAPrism) {
   EXPECT_TRUE(transform.getAxes().empty());
 }
 
-TEST(AxialSymmetryTransform, FindsTheCenterOfABox) {
-  auto transform = small();
-  transform.setInputCloud(test::toCloud(test::box(3000, Sampling::Random, 2)));
-  const CenterMap map = transform.computeCenters(32);
-  ASSERT_EQ(map.values.size(), 32u * 32u * 32u);
-  EXPECT_LT(map.center(map.strongest()).norm(), 2.0 * map.step);
-}
-
 TEST(AxialSymmetryTransform, DataWithoutAnAnswerGiveNone) {
   auto transform = small();
   transform.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>());

@@ -37,17 +37,6 @@ TEST(CloudConversion, OptionsThatAreRefusedStayAsTheyWere) {
   EXPECT_EQ(options.size, 5);
 }
 
-TEST(CloudConversion, DrawsRisingPositionsOneOfEachRun) {
-  for (const std::size_t num_points : {11u, 15u, 1000u}) {
-    const std::vector<std::size_t> drawn = drawOneOfEachRun(num_points, 10, 3);
-    ASSERT_EQ(drawn.size(), 10u);
-    for (std::size_t i = 1; i < drawn.size(); ++i) EXPECT_LT(drawn[i - 1], drawn[i]);
-    EXPECT_LT(drawn.back(), num_points);
-  }
-  EXPECT_EQ(drawOneOfEachRun(1000, 10, 3), drawOneOfEachRun(1000, 10, 3));
-  EXPECT_NE(drawOneOfEachRun(1000, 10, 3), drawOneOfEachRun(1000, 10, 4));
-}
-
 TEST(CloudConversion, DrawsTheSameOfTheFinitePointsWhateverElseIsThere) {
   pcl::PointCloud<pcl::PointXYZ> finite, mixed;
   pcl::Indices place_in_mixed;

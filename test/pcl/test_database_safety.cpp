@@ -100,35 +100,6 @@ TEST_F(DatabaseSafety, DamagedBytesAreFoundOrHarmless) {
   EXPECT_GT(database.numFound(), 150);
 }
 
-TEST_F(DatabaseSafety, ANameThatIsListedIsNeverUnknown) {
-  const std::string name = "a name that stands nowhere else";
-  {
-    ModelStore store(file_, 1.0, "");
-    add(store, name);
-  }
-  const std::string whole = bytesOf(file_);
-  int num_places = 0, num_listed = 0;
-  // In the table and in its index: each is damaged alone.
-  for (std::size_t place = whole.find(name); place != std::string::npos; place = whole.find(name, place + 1)) {
-    ++num_places;
-    std::string damaged = whole;
-    damaged[place] = 'A';
-    std::ofstream(file_, std::ios::binary) << damaged;
-    try {
-      const SymmetryDatabase database(file_);
-      for (const std::string& listed : database.names()) {
-        ++num_listed;
-        database.info(listed);
-      }
-    } catch (const pcl::IOException& error) {
-      EXPECT_NE(std::string(error.what()).find("damaged"), std::string::npos) << error.what();
-    }
-    for (const char* ending : {"-wal", "-shm"}) fs::remove(file_ + ending);
-  }
-  EXPECT_GE(num_places, 2);
-  EXPECT_GE(num_listed, 1);
-}
-
 TEST_F(DatabaseSafety, FullDisksLeaveTheDatabaseAsItWas) {
   {
     ModelStore store(file_, 1.0, "");

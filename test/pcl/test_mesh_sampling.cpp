@@ -17,13 +17,6 @@ TEST(MeshSampling, SpreadsPointsByArea) {
   EXPECT_NEAR(top / 40'000.0, share, 0.001) << "stratified: far less scatter than sqrt(p (1 - p) / n) = 0.0025";
 }
 
-TEST(MeshSampling, DependsOnTheSeedAlone) {
-  const auto a = sampleMesh(test::boxMesh(), 100, 3), b = sampleMesh(test::boxMesh(), 100, 3);
-  const auto c = sampleMesh(test::boxMesh(), 100, 4);
-  EXPECT_EQ(a->getMatrixXfMap(), b->getMatrixXfMap());
-  EXPECT_NE(a->getMatrixXfMap(), c->getMatrixXfMap());
-}
-
 TEST(MeshSampling, AMeshWithoutAreaGivesNoPoints) {
   EXPECT_TRUE(sampleMesh(pcl::PolygonMesh(), 10)->empty());
   pcl::PolygonMesh flat = test::boxMesh();

@@ -31,31 +31,6 @@ TEST(PlanarSymmetryTransform, FindsThePlanesOfABoxWithEveryMethod) {
   }
 }
 
-TEST(PlanarSymmetryTransform, HonoursIndicesAndLeavesOutPointsThatAreNotFinite) {
-  const auto cloud = test::toCloud(test::box(2000, Sampling::Random, 2));
-  PlanarSymmetryTransform<pcl::PointXYZ> transform;
-  transform.setGridSize(16);
-  transform.setInputCloud(cloud);
-  const SymmetryMap expected = transform.compute();
-
-  PlanarSymmetryTransform<pcl::PointXYZ> holes;
-  holes.setGridSize(16);
-  holes.setInputCloud(test::withHoles(*cloud, 7));
-  EXPECT_EQ(holes.compute().values, expected.values);
-
-  auto crowded = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*cloud);
-  auto indices = pcl::make_shared<pcl::Indices>();
-  for (std::size_t i = 0; i < cloud->size(); ++i) indices->push_back(static_cast<pcl::index_t>(i));
-  for (int i = 0; i < 500; ++i) crowded->emplace_back(9.0f + 0.01f * i, 3.0f, -2.0f);
-  PlanarSymmetryTransform<pcl::PointXYZ> part;
-  part.setGridSize(16);
-  part.setInputCloud(crowded);
-  part.setIndices(indices);
-  const SymmetryMap map = part.compute();
-  EXPECT_EQ(map.values, expected.values);
-  EXPECT_EQ(map.grid.radius(), expected.grid.radius());
-}
-
 TEST(PlanarSymmetryTransform, TakesMeshesByArea) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setInputMesh(test::boxMesh(), 5000);
@@ -104,20 +79,6 @@ TEST(PlanarSymmetryTransform, GivesAnEmptyMapWhereThereIsNoAnswer) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setInputMesh(pcl::PolygonMesh());
   EXPECT_TRUE(transform.compute().empty());
-}
-
-TEST(PlanarSymmetryTransform, AUsedObjectIsAsGoodAsANewOne) {
-  const auto first = test::toCloud(test::cube(500, Sampling::Random, 5));
-  const auto second = test::toCloud(test::box(500, Sampling::Random, 6));
-  PlanarSymmetryTransform<pcl::PointXYZ> used, fresh;
-  for (auto* transform : {&used, &fresh}) transform->setGridSize(16);
-  used.setInputCloud(first);
-  used.compute();
-  used.setInputCloud(second);
-  EXPECT_EQ(used.getDistanceTransform(), nullptr);
-  fresh.setInputCloud(second);
-  EXPECT_EQ(used.compute().values, fresh.compute().values);
-  EXPECT_EQ(used.getDistanceTransform()->values(), fresh.getDistanceTransform()->values());
 }
 
 }  // namespace

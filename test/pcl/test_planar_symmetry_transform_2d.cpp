@@ -79,22 +79,5 @@ TEST(PlanarSymmetryTransform2D, GivesAnEmptyMapWhereThereIsNoAnswer) {
   }
 }
 
-TEST(PlanarSymmetryTransform2D, AUsedObjectIsAsGoodAsANewOne) {
-  const auto second = toSheet(rectangle(1.6, 0.9, 400), randomPose(5));
-  Transform used, fresh;
-  for (Transform* transform : {&used, &fresh}) transform->setGridSize(32);
-  used.setInputCloud(toSheet(regularPolygon(5), randomPose(6)));
-  used.compute();
-  used.setInputCloud(second);
-  EXPECT_TRUE(used.getLines().empty());
-  EXPECT_EQ(used.getSheetPoints().cols(), 0);
-  fresh.setInputCloud(second);
-  EXPECT_EQ(used.compute().values, fresh.compute().values);
-  EXPECT_EQ(used.getSheetPose().matrix(), fresh.getSheetPose().matrix());
-  ASSERT_EQ(used.getLines().size(), fresh.getLines().size());
-  for (std::size_t i = 0; i < fresh.getLines().size(); ++i)
-    EXPECT_EQ(used.getLines()[i].line.theta(), fresh.getLines()[i].line.theta());
-}
-
 }  // namespace
 }  // namespace pcl_symmetry

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "core/base/random.h"
-#include "core/matching/symmetry_descriptor.h"
 #include "pcl/error_message.h"
 #include "pcl_symmetry/prst.h"
 
@@ -46,22 +45,6 @@ float norm(const PRSTSignature32768& a) {
 }
 
 }  // namespace
-
-TEST(PRSTEstimation, GivesOneDescriptorThatPeaksAtTheSymmetries) {
-  const auto output = describe(boxCloud(), true);
-  ASSERT_EQ(output.size(), 1u);
-  EXPECT_EQ(output.width, 1u);
-  EXPECT_EQ(output.height, 1u);
-  float greatest = 0.0f;
-  int at = 0;
-  for (int i = 0; i < kPRSTSize; ++i) {
-    EXPECT_GE(output[0].prst[i], 0.0f);
-    if (output[0].prst[i] > greatest) greatest = output[0].prst[at = i];
-  }
-  EXPECT_GT(greatest, 0.9f);
-  // The planes of a box pass through its center: the bins of r on either side of 0.
-  EXPECT_TRUE(at % kDescriptorBins == 15 || at % kDescriptorBins == 16);
-}
 
 TEST(PRSTEstimation, DescribesInTheCanonicalFrame) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

@@ -36,20 +36,6 @@ TEST(SymmetryAlignment, IsSymmetryFrameOfTheFinitePoints) {
   EXPECT_EQ(frameOf(test::withHoles(*cloud, 7)).T_canonical_input.matrix(), expected.T_canonical_input.matrix());
 }
 
-TEST(SymmetryAlignment, HonoursIndices) {
-  const auto box = test::box(3000, Sampling::Random, 1);
-  auto cloud = test::toCloud(box);
-  const SymmetryFrame expected = frameOf(cloud);
-  const auto indices = pcl::make_shared<pcl::Indices>(cloud->size());
-  for (std::size_t i = 0; i < indices->size(); ++i) (*indices)[i] = static_cast<pcl::index_t>(i);
-  for (int i = 0; i < 500; ++i) cloud->push_back({5.0f, 0.01f * static_cast<float>(i), 2.0f});
-  SymmetryAlignment<pcl::PointXYZ> alignment;
-  alignment.setInputCloud(cloud);
-  alignment.setIndices(indices);
-  EXPECT_EQ(alignment.compute().T_canonical_input.matrix(), expected.T_canonical_input.matrix());
-  EXPECT_EQ(alignment.getUsedIndices(), *indices);
-}
-
 TEST(SymmetryAlignment, AsksTheSearchMethodForTheTurnsOfAScan) {
   const auto cloud = organizedCloud(test::scan(test::blockBox(), {3.5, 4.2, 2.9}));
   const auto search = pcl::make_shared<test::CountingKdTree>();
@@ -84,16 +70,6 @@ TEST(SymmetryAlignment, SeesTheViewpointOfAScan) {
   EXPECT_TRUE(alignment.usedViewpoint());
 }
 
-TEST(SymmetryAlignment, DrawsFromLargeClouds) {
-  const auto shape = test::moved(test::box(20'000, Sampling::Random, 2), test::randomPose(5));
-  SymmetryAlignment<pcl::PointXYZ> alignment;
-  alignment.setMaxPoints(4000);
-  alignment.setInputCloud(test::toCloud(shape));
-  const SymmetryFrame frame = alignment.compute();
-  EXPECT_EQ(alignment.getUsedIndices().size(), 4000u);
-  EXPECT_LT((frame.center - test::randomPose(5).translation()).norm(), 0.05);
-}
-
 TEST(SymmetryAlignment, GivesAnEmptyFrameWhereThereIsNoAnswer) {
   for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
     SymmetryAlignment<pcl::PointXYZ> alignment;
@@ -101,22 +77,6 @@ TEST(SymmetryAlignment, GivesAnEmptyFrameWhereThereIsNoAnswer) {
     EXPECT_TRUE(alignment.compute().equivalent.empty()) << name;
     EXPECT_NE(alignment.getReason(), "") << name;
   }
-}
-
-TEST(SymmetryAlignment, AUsedObjectIsAsGoodAsANewOne) {
-  const auto second = test::toCloud(test::box(1000, Sampling::Random, 6));
-  SymmetryAlignment<pcl::PointXYZ> used, fresh;
-  used.setInputCloud(organizedCloud(test::scan(test::blockBox(), {3.5, 4.2, 2.9})));
-  used.compute();
-  EXPECT_TRUE(used.usedViewpoint());
-  used.setInputCloud(second);
-  EXPECT_FALSE(used.usedViewpoint());
-  EXPECT_TRUE(used.getTiming().empty());
-  fresh.setInputCloud(second);
-  const SymmetryFrame a = used.compute(), b = fresh.compute();
-  EXPECT_EQ(a.T_canonical_input.matrix(), b.T_canonical_input.matrix());
-  EXPECT_EQ(a.scores, b.scores);
-  EXPECT_EQ(used.getUsedIndices(), fresh.getUsedIndices());
 }
 
 TEST(SymmetryAlignment, RefusesWrongParameters) {

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "pcl/error_message.h"
@@ -421,15 +419,6 @@ TEST_F(SymmetryDatabaseTest, TakesAllPointTypes) {
   database.add("cube", cloud);
   EXPECT_EQ(database.match(cloud, 1).at(0).name, "cube");
   EXPECT_FALSE(database.recognize(cloud, optionsForRandomPoints()).empty());
-}
-
-TEST_F(SymmetryDatabaseTest, CanBeMoved) {
-  SymmetryDatabase database(":memory:", quick());
-  database.add("cube", cube());
-  SymmetryDatabase moved = std::move(database);
-  EXPECT_TRUE(moved.contains("cube"));
-  database = std::move(moved);
-  EXPECT_EQ(database.cloud("cube").size(), 5000u);
 }
 
 TEST_F(SymmetryDatabaseTest, CloudsWithoutAnswerFindNothing) {

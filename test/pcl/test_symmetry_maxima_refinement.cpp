@@ -158,40 +158,6 @@ TEST(SymmetryMaximaRefinement, TakesAMapMadeBefore) {
   EXPECT_EQ(numFound(shape, planes, 0.001 * test::kDegree, 1e-5 * test::diagonal(shape.cloud())), 9);
 }
 
-TEST(SymmetryMaximaRefinement, GivesTheSameBytesForAnyNumberOfThreads) {
-  const auto cloud = test::toCloud(test::prism(5, 2500, Sampling::Random, 7));
-  std::vector<SymmetryPlane> expected;
-  for (const int num_threads : {1, 2, 8}) {
-    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-    refinement.setInputCloud(cloud);
-    refinement.setApproximate(true);
-    refinement.setNumberOfThreads(num_threads);
-    const auto planes = refinement.compute();
-    if (expected.empty()) expected = planes;
-    EXPECT_GE(planes.size(), 6u);
-    expectSamePlanes(planes, expected);
-  }
-}
-
-TEST(SymmetryMaximaRefinement, MarksApproximateSymmetries) {
-  auto shape = test::box(4000, Sampling::Random, 8);
-  for (Eigen::Index i = 0; i < shape.points.cols(); ++i)
-    if (shape.points(0, i) > 0.3 && shape.points(1, i) > 0.0) shape.points(2, i) *= 1.5;  // a raised quarter
-  const auto cloud = test::toCloud(shape);
-  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-  refinement.setInputCloud(cloud);
-  const auto trusted = refinement.compute();
-  refinement.setApproximate(true);
-  const auto all = refinement.compute();
-  EXPECT_GT(all.size(), trusted.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(all[i].kind == PlaneKind::Symmetry || all[i].kind == PlaneKind::Possible, i < trusted.size());
-    EXPECT_EQ(all[i].kind == PlaneKind::Symmetry, all[i].confidence >= 0.5);
-  }
-  refinement.setMaxPlanes(2);
-  EXPECT_EQ(refinement.compute().size(), 2u);
-}
-
 TEST(SymmetryMaximaRefinement, FindsNothingWhereThereIsNoAnswer) {
   for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
     SymmetryMaximaRefinement<pcl::PointXYZ> refinement;

@@ -11,7 +11,6 @@
 #include "pcl/clouds.h"
 #include "pcl/error_message.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
-#include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "shapes/scans.h"
 #include "shapes/table.h"
@@ -159,23 +158,6 @@ TEST(Viewpoint, ADefaultOriginIsNotBelievedByItself) {
   EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored);
 }
 
-TEST(Viewpoint, AWholeCloudIsNotTakenForAScan) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    RandomStream random(seed);
-    for (const auto& shape :
-         {test::box(5000, Sampling::Random, seed), test::cylinder(5000, seed), test::scaleneTetrahedron(5000, seed)}) {
-      auto cloud = test::toCloud(shape);
-      EXPECT_FALSE(recognised(cloud));
-      for (const double distance : {0.5, 1.5, 3.0, 10.0, 500.0}) {
-        setOrigin(*cloud, distance * test::randomDirection(random));
-        EXPECT_FALSE(recognised(cloud)) << distance;
-      }
-      auto away = test::toCloud(test::moved(shape, test::randomPose(seed, 10.0)));
-      EXPECT_FALSE(recognised(away)) << "origin outside";
-    }
-  }
-}
-
 TEST(SymmetryMaximaRefinement, UsesTheRaysOfAnOrganizedCloud) {
   const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
   for (const Eigen::Isometry3d& pose :
@@ -228,65 +210,6 @@ TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
   EXPECT_NE(messageOf([&] { refinement.compute(); }).find("viewpoint"), std::string::npos);
   refinement.setViewpoint(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   EXPECT_NE(messageOf([&] { refinement.compute(); }).find("viewpoint"), std::string::npos);
-}
-
-TEST(SymmetryMaximaRefinement, AScanWithSensorOriginIsOneWithItsViewpointGiven) {
-  const Scan scan = test::scan(test::blockL(), {2.5, -3.0, 2.0});
-  auto cloud = unorganized(scan);
-  SymmetryMaximaRefinement<pcl::PointXYZ> given;
-  given.setInputCloud(cloud);
-  given.setViewpoint(scan.viewpoint.cast<float>().cast<double>());
-  const auto expected = given.compute();
-  setOrigin(*cloud, scan.viewpoint);
-  SymmetryMaximaRefinement<pcl::PointXYZ> own;
-  own.setInputCloud(cloud);
-  const auto planes = own.compute();
-  EXPECT_TRUE(own.usedViewpoint());
-  ASSERT_EQ(planes.size(), expected.size());
-  for (std::size_t i = 0; i < planes.size(); ++i) EXPECT_EQ(planes[i].coefficients(), expected[i].coefficients());
-}
-
-TEST(SymmetryMaximaRefinement, ReportsAxesAndCenters) {
-  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-  refinement.setInputCloud(test::toCloud(test::cylinder(4000, 3)));
-  refinement.compute();
-  ASSERT_EQ(refinement.getAxes().size(), 1u);
-  EXPECT_GT(std::abs(refinement.getAxes()[0].direction.z()), std::cos(0.5 * test::kDegree));
-  EXPECT_TRUE(refinement.getCenters().empty());
-  refinement.setInputCloud(test::toCloud(test::sphere(4000, 3)));
-  EXPECT_TRUE(refinement.compute().empty());
-  EXPECT_TRUE(refinement.getAxes().empty()) << "those of the last input are gone";
-  ASSERT_EQ(refinement.getCenters().size(), 1u);
-  EXPECT_LT(refinement.getCenters()[0].point.norm(), 0.01);
-}
-
-TEST(PlanarSymmetryTransform, TakesAwayWhatFreeSpaceRulesOut) {
-  const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
-  PlanarSymmetryTransform<pcl::PointXYZ> transform;
-  transform.setGridSize(32);
-  transform.setInputCloud(unorganized(scan));
-  transform.setViewpointMode(Viewpoint::Mode::None);
-  const SymmetryMap without = transform.compute();
-  transform.setViewpoint(scan.viewpoint);
-  for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {
-    transform.setMethod(method);
-    const SymmetryMap with = transform.compute();
-    EXPECT_NE(with.values, without.values);
-    for (const float value : with.values) {
-      ASSERT_GE(value, -0.05f);
-      ASSERT_LE(value, 1.05f) << "1 but for the error of the estimate of D";
-    }
-  }
-  transform.setViewpointMode(Viewpoint::Mode::None);
-  transform.setMethod(TransformMethod::Sampled);
-  EXPECT_EQ(transform.compute().values, without.values);
-  transform.setViewpoint(Eigen::Vector3d::Zero());
-  EXPECT_NE(messageOf([&] { transform.compute(); }).find("viewpoint"), std::string::npos);
-  // The map of the organized cloud has its viewpoint without being told.
-  PlanarSymmetryTransform<pcl::PointXYZ> automatic;
-  automatic.setGridSize(32);
-  automatic.setInputCloud(organized(scan));
-  EXPECT_NE(automatic.compute().values, without.values);
 }
 
 /// The part of the first box's far side that the second box hides.

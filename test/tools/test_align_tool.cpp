@@ -81,18 +81,6 @@ T fieldOf(const pcl::PCLPointCloud2& cloud, const std::string& name, std::size_t
   return T();
 }
 
-TEST_F(AlignTool, WritesPagesOfFramesAndPoses) {
-  const std::string page = folder_ / "page.html", flags = " -quiet -points 2000 -html " + page;
-  ASSERT_EQ(run(chair_ + flags), 0) << error_;
-  EXPECT_NE(contentOf(page).find("center and axes: 1 red"), std::string::npos);
-  EXPECT_NE(contentOf(page).find("axis 1"), std::string::npos) << "what the tool prints";
-  Eigen::Isometry3d T_scan_model;
-  const std::string scan = scanOfChair(T_scan_model);
-  ASSERT_EQ(run(scan + " -target " + chair_ + flags), 0) << error_;
-  EXPECT_NE(contentOf(page).find("target (1) and the input in it (2)"), std::string::npos);
-  EXPECT_GT(contentOf(page).size(), 500'000u) << "with the library that draws";
-}
-
 TEST_F(AlignTool, TurnsAWholeIntoItsFrame) {
   ASSERT_EQ(run(box_ + " " + (folder_ / "out.pcd") + " -json " + (folder_ / "r.json")), 0) << error_;
   const nlohmann::json json = report();
@@ -190,33 +178,6 @@ TEST_F(AlignTool, CompletesAScanAndMarksWhatItAdds) {
     const auto p = (*after.points)[i].getVector3fMap(), q = (*after.points)[source].getVector3fMap();
     ASSERT_LT((Eigen::Vector3f(-q.x(), q.y(), q.z()) - p).norm(), 0.1) << "reflected at x = 0 of the model";
   }
-}
-
-TEST_F(AlignTool, GivesTheSameBytesForAnyNumberOfThreads) {
-  Eigen::Isometry3d T_scan_model;
-  const std::string scan = scanOfChair(T_scan_model);
-  std::string expected;
-  for (const char* threads : {"1", "3"}) {
-    ASSERT_EQ(run(scan + " -target " + chair_ + " -threads " + threads + " -json " + (folder_ / "r.json")), 0);
-    nlohmann::json json = report();
-    json.erase("timing_ms");
-    if (expected.empty()) expected = json.dump();
-    EXPECT_EQ(json.dump(), expected) << threads << " threads";
-  }
-}
-
-TEST_F(AlignTool, AnswersBadInputWithOneLineAndAnExitCode) {
-  const std::string one = folder_.write("one.pcd",
-                                        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
-                                        "HEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3\n1 2 3\n");
-  EXPECT_EQ(run(one + " -quiet"), 1);
-  EXPECT_NE(error_.find("one.pcd"), std::string::npos) << error_;
-  EXPECT_EQ(run(one + " -quiet -target " + box_), 1);
-  EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
-  EXPECT_EQ(run(box_ + " out.xyz"), 2) << "an unknown extension";
-  EXPECT_EQ(run(""), 2);
-  EXPECT_EQ(run("-h"), 0);
-  EXPECT_NE((output_ + error_).find("pcl_symmetry_align scan.pcd"), std::string::npos);
 }
 
 }  // namespace

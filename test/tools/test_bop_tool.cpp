@@ -98,12 +98,6 @@ TEST_F(BopTool, GivesASphereAnAxisAndTiltsAndAnAsymmetricModelNothing) {
   EXPECT_NE(output_.find("group C1"), std::string::npos) << output_;
 }
 
-TEST_F(BopTool, FindsPropellersThatNoPlaneShows) {
-  const json propeller = infoOf(folder_.write("fan.off", offOf(test::propellerShape(3, true)))).at("1");
-  EXPECT_EQ(propeller["symmetries_discrete"].size(), 2u);
-  EXPECT_NE(output_.find("fold 3"), std::string::npos) << output_;
-}
-
 TEST_F(BopTool, ExplainsWhatFails) {
   const std::string mug = folder_.write("mug.off", offOf(test::cupShape(true)));
   infoOf(mug + " -explain -failures " + (folder_ / "failures"));
@@ -128,26 +122,6 @@ TEST_F(BopTool, RefusesTwoModelsOfOneNumber) {
   const std::string other = folder_.write("copy_3.off", boxOFF());
   EXPECT_EQ(run(box_ + " " + other + " -json " + json_), 2);
   EXPECT_NE(error_.find("both model 3"), std::string::npos) << error_;
-}
-
-TEST_F(BopTool, TakesClouds) {
-  const test::Shape shape = test::prismShape(6, 0.8).sampled(3000, 1);
-  std::string pcd =
-      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3001\nHEIGHT 1\n"
-      "POINTS 3001\nDATA ascii\nnan nan nan\n";
-  for (Eigen::Index i = 0; i < shape.points.cols(); ++i) {
-    for (int k = 0; k < 3; ++k) pcd += std::to_string(shape.points(k, i)) + (k < 2 ? " " : "\n");
-  }
-  EXPECT_EQ(infoOf(folder_.write("obj_6.pcd", pcd)).at("6")["symmetries_discrete"].size(), 11u);
-}
-
-TEST_F(BopTool, GivesTheSameBytesForAnyNumberOfThreads) {
-  std::string expected;
-  for (const char* threads : {"1", "3"}) {
-    ASSERT_EQ(run(box_ + " " + vase_ + " -points 1000 -threads " + threads + " -json " + json_), 0) << error_;
-    if (expected.empty()) expected = contentOf(json_);
-    EXPECT_EQ(contentOf(json_), expected) << threads << " threads";
-  }
 }
 
 TEST_F(BopTool, TakesFolders) {
@@ -313,32 +287,6 @@ TEST_F(BopTool, ReadsTheTextureThatAModelOfTheBenchmarkNames) {
   EXPECT_NE(output_.find("obj_2.ply  group C1"), std::string::npos) << output_;
   EXPECT_EQ(run(folder_.write("obj_3.ply", texturedCube("missing.png", true)) + " -quiet -colour"), 1);
   EXPECT_NE(error_.find("missing.png"), std::string::npos) << error_;
-}
-
-TEST_F(BopTool, AnswersBadInputWithOneLineAndAnExitCodeAndDoesTheRest) {
-  const std::string point = folder_.write("point.pcd",
-                                          "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
-                                          "HEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3\n1 2 3\n");
-  EXPECT_EQ(run(point + " " + box_ + " -points 1000 -quiet -json " + json_), 1);
-  EXPECT_NE(error_.find("point.pcd: "), std::string::npos) << error_;
-  EXPECT_NE(error_.find("1 distinct point, at least 20 are needed"), std::string::npos) << error_;
-  EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
-  const json rest = json::parse(contentOf(json_));
-  EXPECT_EQ(rest.size(), 1u);
-  EXPECT_TRUE(rest.contains("3")) << "the box is written all the same";
-  boost::filesystem::remove(json_);
-  const std::string flat = folder_.write("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
-  EXPECT_EQ(run(flat + " -quiet -json " + json_), 1);
-  EXPECT_NE(error_.find("flat.off: "), std::string::npos) << error_;
-  EXPECT_EQ(run((folder_ / "missing.ply") + " -json " + json_), 1);
-  const auto names = folder_.names();
-  EXPECT_EQ(std::count(names.begin(), names.end(), "models_info.json"), 0);
-  EXPECT_EQ(run(""), 2);
-  EXPECT_EQ(run(box_ + " -jsn a.json"), 2);
-  EXPECT_NE(error_.find("did you mean -json?"), std::string::npos) << error_;
-  EXPECT_EQ(run(box_ + " -feature 2"), 2);
-  EXPECT_EQ(run("-h"), 0);
-  EXPECT_NE(output_.find("pcl_symmetry_bop models -json"), std::string::npos) << output_;
 }
 
 }  // namespace

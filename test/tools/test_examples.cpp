@@ -116,13 +116,4 @@ TEST_F(Example, Viewpoint) {
   EXPECT_NE(output_.find("worst "), std::string::npos) << output_;
 }
 
-TEST_F(Example, SaysHowItIsUsed) {
-  for (const std::string example : {"01_first_plane", "02_options", "03_visibility", "04_alignment", "05_registration",
-                                    "06_matching", "07_segmentation", "08_own_search_and_point_type",
-                                    "09_symmetric_poses", "10_scene", "11_completion", "12_viewpoint"}) {
-    EXPECT_EQ(run(example), 2);
-    EXPECT_NE(error_.find("usage: " + example), std::string::npos);
-  }
-}
-
 }  // namespace

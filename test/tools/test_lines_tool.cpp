@@ -75,28 +75,6 @@ TEST_F(LinesTool, RefusesWhatItCannotUse) {
   EXPECT_NE(error_.find("off a plane"), std::string::npos) << error_;
 }
 
-TEST(RasterImage, SmallDisksAreSeen) {
-  RasterImage image(4, 4);
-  image.drawDisk({2.4, 1.3}, 0.1, Eigen::Vector3d::Zero());
-  EXPECT_EQ(*image.at(2, 1), 0);
-  EXPECT_EQ(std::count(image.pixels.begin(), image.pixels.end(), 0), 3) << "one pixel";
-  image.drawDisk({40.0, 1.0}, 0.1, Eigen::Vector3d::Zero());
-}
-
-TEST(RasterImage, StandsSideBySideInRows) {
-  RasterImage black(3, 2);
-  std::fill(black.pixels.begin(), black.pixels.end(), std::uint8_t{0});
-  const RasterImage row = sideBySide({black, black, black}), rows = sideBySide({black, black, black}, 2);
-  EXPECT_EQ(row.width, 3 * 3 + 2 * 4);
-  EXPECT_EQ(row.height, 2);
-  EXPECT_EQ(rows.width, 2 * 3 + 4);
-  EXPECT_EQ(rows.height, 2 * 2 + 4);
-  EXPECT_EQ(*rows.at(9, 0), 0) << "second";
-  EXPECT_EQ(*rows.at(4, 0), 255) << "gap";
-  EXPECT_EQ(*rows.at(2, 7), 0) << "third";
-  EXPECT_EQ(*rows.at(9, 7), 255) << "nothing";
-}
-
 TEST(RasterImage, WrittenAndReadIsTheSame) {
   const TemporaryFolder folder;
   RasterImage image(5, 3);

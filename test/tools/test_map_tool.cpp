@@ -1,11 +1,9 @@
 #include <gtest/gtest.h>
-#include <pcl/common/io.h>
 #include <pcl/conversions.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "tools/tool_run.h"
 #include "pictures/raster_image.h"
@@ -45,37 +43,6 @@ TEST_F(MapTool, PointsOnThePlanesOfABoxAreTheMostSymmetric) {
   EXPECT_GT(near / num_near, 0.85);
   EXPECT_LT(far / num_far, 0.75);
   EXPECT_EQ(nlohmann::json::parse(contentOf(folder_ / "a.json"))["num_points"], 10000);
-}
-
-TEST_F(MapTool, Equation1LiesBetweenItsEnds) {
-  const std::string common = mesh_ + " -quiet -grid 32 -points 2000 -json " + (folder_ / "a.json");
-  const auto ends = [&](const std::string& measure) {
-    EXPECT_EQ(run(common + " -measure " + measure), 0) << error_;
-    const auto summary = nlohmann::json::parse(contentOf(folder_ / "a.json"));
-    return std::make_pair(summary["least"].get<double>(), summary["greatest"].get<double>());
-  };
-  const auto [least, greatest] = ends("D");
-  const auto [least_prst, greatest_prst] = ends("prst");
-  EXPECT_NEAR(least_prst, std::sqrt(0.5 * (1.0 + least)), 1e-5);
-  EXPECT_NEAR(greatest_prst, std::sqrt(0.5 * (1.0 + std::min(1.0, greatest))), 1e-5);
-  EXPECT_LE(greatest_prst, 1.0);
-  EXPECT_EQ(run(common + " -measure PRST"), 2);
-}
-
-TEST_F(MapTool, KeepsFieldsAndPointsThatAreNotFinite) {
-  std::string cloud =
-      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 40\n"
-      "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 40\nDATA ascii\nnan nan nan 7\n";
-  for (int i = 1; i < 40; ++i)
-    cloud += std::to_string(i % 5) + " " + std::to_string(i % 7) + " " + std::to_string(i % 3) + " 7\n";
-  ASSERT_EQ(run(folder_.write("a.pcd", cloud) + " " + (folder_ / "b.pcd") + " -quiet -viewpoint none"), 0) << error_;
-  const Shape shape = loadShape(folder_ / "b.pcd");
-  ASSERT_EQ(shape.points->size(), 40u);
-  EXPECT_GE(pcl::getFieldIndex(shape.cloud, "input_intensity"), 0);
-  pcl::PointCloud<pcl::PointXYZI> points;
-  pcl::fromPCLPointCloud2(shape.cloud, points);
-  EXPECT_TRUE(std::isnan(points[0].intensity));
-  EXPECT_TRUE(std::isfinite(points[1].intensity));
 }
 
 TEST_F(MapTool, WritesAVTKImageAndSlices) {

@@ -13,19 +13,6 @@ namespace {
 
 using namespace pcl_symmetry::apps;
 
-/// Points of many fields, one of them of several values; a few are not finite.
-pcl::PointCloud<pcl::PFHSignature125> signatures() {
-  pcl::PointCloud<pcl::PFHSignature125> cloud;
-  std::mt19937 generator(1);
-  std::normal_distribution<float> normal;
-  for (int i = 0; i < 7; ++i) {
-    pcl::PFHSignature125 point;
-    for (float& value : point.histogram) value = normal(generator);
-    cloud.push_back(point);
-  }
-  return cloud;
-}
-
 pcl::PointCloud<pcl::PointXYZRGBNormal> coloured() {
   pcl::PointCloud<pcl::PointXYZRGBNormal> cloud(4, 3);
   std::mt19937 generator(2);
@@ -113,28 +100,6 @@ TEST(ReadPCD, ReadsIntegersOfEverySizeAndSeveralValues) {
   std::memcpy(pair, at("pair"), 8);
   EXPECT_EQ(pair[0], 7u);
   EXPECT_EQ(pair[1], 4294967295u);
-}
-
-TEST(ReadPCD, KeepsFeaturesWithoutCoordinatesOut) {
-  const TemporaryFolder folder;
-  pcl::io::savePCDFileBinary(folder / "features.pcd", signatures());
-  EXPECT_THROW(readPCD("features.pcd", contentOf(folder / "features.pcd")), InputError);
-}
-
-/// Three bytes of a back reference stand for at most 264: a short file cannot ask for gigabytes.
-TEST(ReadPCD, RefusesSizesThatTheBytesCannotHold) {
-  const TemporaryFolder folder;
-  const std::string path =
-      folder.write("a.pcd",
-                   "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 300000000\nHEIGHT 1\nPOINTS "
-                   "300000000\nDATA binary_compressed\n" +
-                       std::string("\x04\0\0\0\0\xa4\x93\xd6....", 12));
-  try {
-    readPCD(path, contentOf(path));
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("damaged, too few bytes"), std::string::npos) << error.what();
-  }
 }
 
 /// Fields so many and so large that the size of all points does not fit into 64 bits: 8192 times 2^20 values of eight

@@ -24,9 +24,9 @@ std::string boxOfLength(double length) {
 }
 
 /// A tool with a folder "in" of two boxes and a file that is no shape.
-class Pipelines : public ToolTest {
+class PlanesPipelines : public ToolTest {
 protected:
-  explicit Pipelines(const std::string& tool) : ToolTest(toolPath(tool)) {
+  PlanesPipelines() : ToolTest(toolPath("planes")) {
     boost::filesystem::create_directory(folder_ / "in");
     folder_.write("in/a.off", boxOfLength(2));
     folder_.write("in/b.off", "no shape");
@@ -41,22 +41,6 @@ protected:
   }
 
   const std::string in_ = folder_ / "in";
-};
-
-struct PlanesPipelines : Pipelines {
-  PlanesPipelines() : Pipelines("planes") {}
-};
-struct SegmentPipelines : Pipelines {
-  SegmentPipelines() : Pipelines("segment") {}
-};
-struct ViewpointPipelines : Pipelines {
-  ViewpointPipelines() : Pipelines("viewpoint") {}
-};
-struct MapPipelines : Pipelines {
-  MapPipelines() : Pipelines("map") {}
-};
-struct AlignPipelines : Pipelines {
-  AlignPipelines() : Pipelines("align") {}
 };
 
 TEST_F(PlanesPipelines, TakeAFolder) {
@@ -143,36 +127,6 @@ TEST_F(PlanesPipelines, SayThatStandardOutputIsFull) {
     EXPECT_EQ(WEXITSTATUS(status), 1) << flags;
     EXPECT_NE(contentOf(folder_ / "stderr").find("standard output"), std::string::npos) << flags;
   }
-}
-
-TEST_F(SegmentPipelines, TakeAFolder) {
-  EXPECT_EQ(run(in_ + " '" + (folder_ / "{}.seg") + "' -quiet -json " + (folder_ / "t.jsonl")), 1);
-  const auto found = lines(contentOf(folder_ / "t.jsonl"));
-  ASSERT_EQ(found.size(), 3u);
-  EXPECT_GE(found[2]["segments"].size(), 1u);
-  EXPECT_NE(contentOf(folder_ / "a.seg"), "");
-  EXPECT_NE(contentOf(folder_ / "c.seg"), "");
-}
-
-TEST_F(ViewpointPipelines, TakeAFolder) {
-  EXPECT_EQ(run(in_ + " -quiet -points 2000 -csv -"), 1);
-  EXPECT_EQ(output_.rfind("file,view,x,y,z,score\n", 0), 0u) << output_;
-  EXPECT_NE(output_.find("c.off,worst,"), std::string::npos) << output_;
-}
-
-TEST_F(MapPipelines, TakeAFolder) {
-  EXPECT_EQ(run(in_ + " '" + (folder_ / "{}.pcd") + "' -quiet -points 1000"), 1);
-  EXPECT_EQ(lines(output_).size(), 3u);
-  EXPECT_EQ(loadShape(folder_ / "c.pcd").points->size(), 1000u);
-}
-
-TEST_F(AlignPipelines, TakeAFolder) {
-  EXPECT_EQ(run(in_ + " '" + (folder_ / "{}.ply") + "' -quiet -points 1000"), 1);
-  const auto found = lines(output_);
-  ASSERT_EQ(found.size(), 3u);
-  EXPECT_EQ(found[0]["file"], in_ + "/a.off");
-  EXPECT_EQ(found[2]["transform"].size(), 16u);
-  EXPECT_EQ(loadShape(folder_ / "a.ply").points->size(), 1000u);
 }
 
 }  // namespace

@@ -144,11 +144,6 @@ TEST_F(PlanesTool, WritesTheSupportOfEveryPointAndKeepsItsFields) {
   EXPECT_GT(sum, 0.9);
 }
 
-TEST_F(PlanesTool, DrawsAPicture) {
-  ASSERT_EQ(run(box_ + " -png " + (folder_ / "p.png")), 0) << error_;
-  EXPECT_EQ(contentOf(folder_ / "p.png").substr(1, 3), "PNG");
-}
-
 TEST_F(PlanesTool, GivesTheSameBytesForAnyNumberOfThreads) {
   std::string expected;
   for (const char* threads : {"1", "3"}) {
@@ -185,58 +180,6 @@ TEST_F(PlanesTool, ReportsAnAxisOfRevolution) {
   EXPECT_TRUE(round["planes"].empty());
   EXPECT_TRUE(round["axes"].empty());
   for (const double x : round["centers"][0]["point"].get<std::vector<double>>()) EXPECT_NEAR(x, 0.0, 0.01);
-}
-
-TEST_F(PlanesTool, TakesTheViewpoint) {
-  // The three faces of the box of half sizes 1, 1.5 and 2 that are seen from (8, 9, 10).
-  const std::string input = folder_.write("scan.pcd", [] {
-    std::string text =
-        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3000\nHEIGHT 1\n"
-        "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3000\nDATA ascii\n";
-    for (int i = 0; i < 3000; ++i) {
-      const double u = std::fmod(i * 0.754877666, 1.0), v = std::fmod(i * 0.569840291, 1.0);
-      const double p[3][3] = {{1, 3 * v - 1.5, 4 * u - 2}, {2 * u - 1, 1.5, 4 * v - 2}, {2 * u - 1, 3 * v - 1.5, 2}};
-      const auto* q = p[i % 3];
-      text += std::to_string(q[0]) + " " + std::to_string(q[1]) + " " + std::to_string(q[2]) + "\n";
-    }
-    return text;
-  }());
-  const auto report = [&](const std::string& viewpoint) {
-    EXPECT_EQ(run(input + viewpoint + " -json " + (folder_ / "v.json")), 0) << viewpoint << ": " << error_;
-    return nlohmann::json::parse(contentOf(folder_ / "v.json"));
-  };
-  // The origin is in the middle of the box. As many points on faces of 12, 8 and 6 units are those of a view from far
-  // away in the direction of (8, 12, 16).
-  const nlohmann::json own = report("");
-  EXPECT_EQ(own["viewpoint"]["from"], "inferred");
-  const auto position = own["viewpoint"]["position"].get<std::vector<double>>();
-  for (const double coordinate : position) EXPECT_GT(coordinate, 2.0);
-  EXPECT_EQ(report(" -viewpoint auto")["viewpoint"], own["viewpoint"]);
-  EXPECT_EQ(report(" -viewpoint none")["viewpoint"], (nlohmann::json{{"from", "none"}}));
-  const nlohmann::json seen = report(" -viewpoint 8,9,10");
-  EXPECT_EQ(seen["partial"], true);
-  EXPECT_EQ(seen["viewpoint"]["from"], "given");
-  const auto given = seen["viewpoint"]["position"].get<std::vector<double>>();
-  ASSERT_EQ(given.size(), 3u);
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(given[k], 8.0 + static_cast<double>(k), 1e-9);
-  ASSERT_FALSE(seen["planes"].empty());
-  std::array<int, 3> along{};
-  for (const auto& plane : seen["planes"]) {
-    EXPECT_TRUE(plane["kind"] == "symmetry" || plane["kind"] == "possible");
-    EXPECT_GE(plane["confidence"].get<double>(), 0.0);
-    EXPECT_LE(plane["confidence"].get<double>(), 1.0);
-    EXPECT_GT(plane["seen"].get<double>(), 0.0);
-    EXPECT_LE(plane["seen"].get<double>(), 1.0);
-    const auto c = plane["coefficients"].get<std::vector<double>>();
-    for (int axis = 0; axis < 3; ++axis) along[axis] += std::abs(c[axis]) > std::cos(0.03) && std::abs(c[3]) < 0.1;
-  }
-  EXPECT_EQ(along, (std::array<int, 3>{1, 1, 1}));
-  for (const char* wrong : {"never", "1,2", "1,2,3,4", "1,2,x", "\"\""}) {
-    EXPECT_EQ(run(input + " -viewpoint " + wrong), 2) << wrong;
-    EXPECT_NE(error_.find("-viewpoint"), std::string::npos) << wrong << ": " << error_;
-  }
-  EXPECT_EQ(run(input + " -viewpoint 0,0,0 -quiet"), 1) << "among the points";
-  EXPECT_NE(error_.find("viewpoint"), std::string::npos) << error_;
 }
 
 TEST_F(PlanesTool, AnswersBadInputWithOneLineAndAnExitCode) {

@@ -129,29 +129,6 @@ TEST_F(DatabaseTools, BuildAskAndChange) {
   EXPECT_EQ(output_, "unknown object\n");
 }
 
-TEST_F(DatabaseTools, SayWhatIsWrong) {
-  EXPECT_EQ(database("burn " + models_), 2);
-  EXPECT_EQ(database("add " + models_), 2);
-  EXPECT_EQ(database("list " + models_ + " more"), 2);
-  EXPECT_EQ(database("list " + models_), 1);
-  EXPECT_NE(error_.find("there is no such file"), std::string::npos) << error_;
-  EXPECT_EQ(match(models_ + " " + (folder_ / "box.off")), 1);
-  EXPECT_NE(error_.find("there is no such file"), std::string::npos) << error_;
-  EXPECT_EQ(database("build " + models_ + " " + (folder_ / "nothing.off")), 1);
-  EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
-  ASSERT_EQ(database("build " + models_ + " " + (folder_ / "box.off") + " -points 2000"), 0) << error_;
-  EXPECT_EQ(database("remove " + models_ + " nobody"), 1);
-  EXPECT_NE(error_.find("nobody"), std::string::npos) << error_;
-  EXPECT_EQ(database("build " + models_ + " '" + (folder_ / "*.xyz") + "'"), 1);
-  EXPECT_NE(error_.find("no file has such a name"), std::string::npos) << error_;
-  ASSERT_EQ(database("remove " + models_ + " box"), 0) << error_;
-  EXPECT_EQ(match(models_ + " " + (folder_ / "box.off")), 1);
-  EXPECT_NE(error_.find("holds no models"), std::string::npos) << error_;
-  EXPECT_EQ(database("list " + (folder_ / "box.off")), 1);
-  EXPECT_NE(error_.find("is no database of pcl_symmetry"), std::string::npos) << error_;
-  EXPECT_EQ(contentOf(folder_ / "box.off"), boxOFF());
-}
-
 TEST_F(DatabaseTools, GoOnTakeFoldersAndTellWhatTheyHold) {
   boost::filesystem::create_directories(folder_ / "shapes/more");
   folder_.write("shapes/a.off", boxOFF());

@@ -90,13 +90,6 @@ TEST_F(SegmentTool, ColoursTheFacesOfAMeshInPLY) {
   EXPECT_NE(ply.find("property int label"), std::string::npos);
 }
 
-TEST_F(SegmentTool, SameBytesForAnyNumberOfThreads) {
-  ASSERT_EQ(run(mesh_ + " " + seg_ + " -threads 1"), 0) << error_;
-  const std::string one = contentOf(seg_);
-  ASSERT_EQ(run(mesh_ + " " + seg_ + " -threads 3"), 0) << error_;
-  EXPECT_EQ(contentOf(seg_), one);
-}
-
 TEST_F(SegmentTool, RefusesWhatDoesNotFitTogether) {
   EXPECT_EQ(run(mesh_ + " out.obj"), 2);
   EXPECT_EQ(run(mesh_ + " -depth 2"), 2) << "needs the paper's method";

@@ -43,25 +43,4 @@ TEST_F(ViewpointTool, DrawsTheScoreAndTheViews) {
   EXPECT_EQ(readImage(folder_ / "b.png").width, 120);
 }
 
-TEST_F(ViewpointTool, ComputesWithoutADisplayAndSaysWhyAPictureIsMissing) {
-  const std::string environment = "env -u DISPLAY PATH=/nowhere ";
-  ASSERT_EQ(
-      std::system(
-          (environment + toolPath("viewpoint") + " " + mesh_ + " -quiet >" + (folder_ / "out") + " 2>&1").c_str()),
-      0);
-  EXPECT_NE(std::system((environment + toolPath("viewpoint") + " " + mesh_ + " -quiet -png " + (folder_ / "a.png") +
-                         " >" + (folder_ / "out") + " 2>&1")
-                            .c_str()),
-            0);
-  const std::string output = contentOf(folder_ / "out");
-  EXPECT_NE(output.find("best"), std::string::npos) << "what was computed is printed all the same";
-  EXPECT_NE(output.find("there is no display, and xvfb-run is missing"), std::string::npos);
-}
-
-TEST_F(ViewpointTool, RefusesWhatMakesNoSense) {
-  EXPECT_EQ(run(mesh_ + " -up 0,0,0"), 2);
-  EXPECT_EQ(run(mesh_ + " -views 0"), 2);
-  EXPECT_EQ(run(folder_ / "missing.off"), 1);
-}
-
 }  // namespace
