@@ -5,8 +5,6 @@
 
 #include "io/file_text.h"
 #include "io/json_values.h"
-#include "core/base/check.h"
-#include "core/base/constants.h"
 #include "core/rotation/rotation_cover.h"
 
 namespace pcl_symmetry::apps {
@@ -19,13 +17,6 @@ constexpr double kRotationError = 0.02;
 
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-Eigen::Isometry3d turnAbout(const ContinuousSymmetry& symmetry, double angle) {
-  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
-  turn.linear() = rotationAbout(symmetry.axis, angle);
-  turn.translation() = symmetry.offset - turn.linear() * symmetry.offset;
-  return turn;
-}
 
 std::vector<double> finiteNumbers(const json& value, std::size_t size, const std::string& where) {
   const std::string rule = where + ", must be " + std::to_string(size) + " finite numbers";
@@ -95,19 +86,6 @@ bool isOneModel(const json& file) {
 }
 
 }  // namespace
-
-std::vector<Eigen::Isometry3d> bopTransforms(const ListedSymmetries& listed, double max_step) {
-  check(max_step > 0.0, "max_step", max_step, "> 0");
-  std::vector<Eigen::Isometry3d> discrete{Eigen::Isometry3d::Identity()};
-  discrete.insert(discrete.end(), listed.discrete.begin(), listed.discrete.end());
-  if (listed.continuous.empty()) return discrete;
-  std::vector<Eigen::Isometry3d> transforms;
-  const int num_turns = static_cast<int>(std::ceil(kPi / max_step));
-  for (const Eigen::Isometry3d& first : discrete)
-    for (const ContinuousSymmetry& symmetry : listed.continuous)
-      for (int k = 0; k < num_turns; ++k) transforms.push_back(turnAbout(symmetry, 2.0 * kPi * k / num_turns) * first);
-  return transforms;
-}
 
 ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle) {
   if (symmetries.kind != RotationGroupKind::Spherical) return {symmetries.discrete, symmetries.continuous, false};

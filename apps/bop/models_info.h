@@ -19,12 +19,6 @@ struct ListedSymmetries {
   bool is_composed = false;                    ///< whether whoever reads the file composes all that it lists
 };
 
-/// The transforms that bop_toolkit makes of an entry: each discrete one, the identity among them, followed by each turn
-/// about each axis of revolution. Turns about two axes are never composed.
-/// \param max_step greatest part of half a turn between neighbouring turns, as bop_toolkit's max_sym_disc_step, > 0: an
-/// axis has ceil(pi / max_step) turns.
-std::vector<Eigen::Isometry3d> bopTransforms(const ListedSymmetries& listed, double max_step = 0.01);
-
 /// Symmetries as BOP's files list them. A sphere becomes one axis and as many tilts of it as reach any rotation.
 /// \param sphere_angle radians, in (0, pi]: every rotation is within it of a composition of a turn and a tilt.
 ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle);

@@ -178,10 +178,6 @@ Shape shapeOf(const std::string& name, std::string text, const std::string& exte
 
 }  // namespace
 
-Shape shapeFromMesh(const pcl::PolygonMesh& mesh) {
-  return fromMesh("mesh", pcl::PolygonMesh(mesh));
-}
-
 Shape loadShape(const std::string& path) {
   const bool is_stdin = isStandardStream(path);
   const std::string name = is_stdin ? "standard input" : path;

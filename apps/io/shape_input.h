@@ -34,9 +34,6 @@ struct Shape {
 /// \throws InputError naming the file, what is wrong and the rule
 Shape loadShape(const std::string& path);
 
-/// \return a shape made of a mesh, as if it had been loaded.
-Shape shapeFromMesh(const pcl::PolygonMesh& mesh);
-
 /// \return 3 x N, the finite points of a cloud, same order.
 Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud);
 

@@ -173,10 +173,6 @@ bool SQLiteConnection::inTransaction() const {
   return sqlite3_get_autocommit(database_.get()) == 0;
 }
 
-std::int64_t SQLiteConnection::lastId() const {
-  return sqlite3_last_insert_rowid(database_.get());
-}
-
 SQLiteTransaction::SQLiteTransaction(const SQLiteConnection& connection) : connection_(connection) {
   connection_.run("BEGIN IMMEDIATE");
 }

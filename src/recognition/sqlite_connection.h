@@ -61,7 +61,6 @@ public:
   std::int64_t integer(const std::string& sql) const;
   /// True between BEGIN and COMMIT or ROLLBACK.
   bool inTransaction() const;
-  std::int64_t lastId() const;
 
 private:
   struct Closer {

@@ -3,13 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 #include "tools/temporary_folder.h"
 #include "bop/isaac_axes.h"
 #include "bop/models_info.h"
 #include "core/base/constants.h"
-#include "core/base/random.h"
 
 namespace {
 
@@ -25,55 +23,8 @@ Eigen::Isometry3d turn(const Eigen::Vector3d& axis, double angle, const Eigen::V
   return motion;
 }
 
-Eigen::Matrix3d randomRotation(RandomStream& random) {
-  Eigen::Vector4d q;
-  do {
-    for (int k = 0; k < 4; ++k) q[k] = 2.0 * random.uniform() - 1.0;
-  } while (q.norm() > 1.0);
-  return Eigen::Quaterniond(q.normalized()).toRotationMatrix();
-}
-
 double angleBetween(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return Eigen::AngleAxisd(a.transpose() * b).angle();
-}
-
-TEST(ModelsInfo, BopComposesDiscreteTransformsWithTurnsAboutOneAxis) {
-  const ListedSymmetries can{{turn(kX, kPi)}, {{kZ, kCenter}}};
-  const std::vector<Eigen::Isometry3d> transforms = bopTransforms(can, 0.1);
-  ASSERT_EQ(transforms.size(), 2u * 32u) << "pi / 0.1, rounded up";
-  const ObjectSymmetries group = ObjectSymmetries::from(can.discrete, can.continuous);
-  for (const Eigen::Isometry3d& transform : transforms) {
-    EXPECT_LT(group.distance(transform, Eigen::Isometry3d::Identity()).angle, 1e-7);
-    EXPECT_LT((transform * kCenter - kCenter).norm(), 1e-12);
-  }
-  EXPECT_EQ(bopTransforms({}, 0.1).size(), 1u) << "the identity";
-  EXPECT_EQ(bopTransforms({{turn(kX, kPi)}, {}}, 0.1).size(), 2u);
-  // Two axes stand beside each other: no turn about one follows a turn about the other.
-  for (const Eigen::Isometry3d& transform : bopTransforms({{}, {{kZ, kCenter}, {kX, kCenter}}}, 0.1))
-    EXPECT_GT(std::max(std::abs(transform.linear()(0, 0)), std::abs(transform.linear()(2, 2))), 1.0 - 1e-9);
-}
-
-/// By bop_toolkit's rule one axis and the tilts reach every rotation within the angle, up to half a step of its turns.
-TEST(ModelsInfo, SpheresReachEveryRotationWithinTheAngle) {
-  const ObjectSymmetries ball = ObjectSymmetries::from({}, {{kZ, kCenter}, {kX, kCenter}});
-  RandomStream random(1);
-  for (const double degrees : {10.0, 30.0, 60.0}) {
-    const ListedSymmetries listed = bopSymmetries(ball, degrees * kDegree);
-    ASSERT_EQ(listed.continuous.size(), 1u);
-    constexpr double kStep = 0.1;
-    const std::vector<Eigen::Isometry3d> transforms = bopTransforms(listed, kStep);
-    double farthest = 0.0;
-    for (int k = 0; k < 300; ++k) {
-      const Eigen::Matrix3d rotation = randomRotation(random);
-      double greatest = -1.0;
-      for (const Eigen::Isometry3d& transform : transforms)
-        greatest = std::max(greatest, transform.linear().cwiseProduct(rotation).sum());
-      farthest = std::max(farthest, std::acos(std::min(1.0, 0.5 * (greatest - 1.0))));
-    }
-    EXPECT_LE(farthest, std::hypot(degrees * kDegree, 0.5 * 2.0 * kPi / 32.0)) << degrees;
-    EXPECT_GE(farthest, 0.6 * degrees * kDegree) << "no more tilts than needed";
-    EXPECT_EQ(ObjectSymmetries::from(listed.discrete, listed.continuous).name(), "SO3") << "and is read as a sphere";
-  }
 }
 
 TEST(ModelsInfo, ComesBackAsItWasWritten) {
@@ -107,24 +58,6 @@ TEST(ModelsInfo, OfDopeIsAFileOfOneModel) {
   const auto rows = readModelsInfo(folder.write(
       "rows.json", R"({"symmetries_discrete": [[[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]]})"));
   EXPECT_EQ(rows.at("").discrete.size(), 1u) << "a matrix as rows";
-}
-
-TEST(ModelsInfo, NamesModelsOnOneShortLine) {
-  const TemporaryFolder folder;
-  const auto messageOf = [&](const std::string& name) -> std::string {
-    try {
-      readModelsInfo(folder.write("names.json", "{\"" + name + "\": []}"));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "a list was read as a model";
-  };
-  EXPECT_NE(messageOf("a\\nb").find("model a\\nb must be an object"), std::string::npos) << messageOf("a\\nb");
-  const std::string of_long = messageOf("x" + std::string(39, 'y') + std::string(1000, 'z'));
-  EXPECT_NE(of_long.find("model x" + std::string(39, 'y') + "... must be"), std::string::npos) << of_long;
-  std::string letters = "x";
-  for (int i = 0; i < 40; ++i) letters += "\xc3\xa4";  // the 40th byte begins a letter of two
-  EXPECT_NE(messageOf(letters).find("... must be an object"), std::string::npos) << messageOf(letters);
 }
 
 TEST(ModelsInfo, RefusesWhatIsNoMotion) {

@@ -5,8 +5,6 @@
 #include "tools/box_mesh.h"
 #include "tools/tool_run.h"
 #include "pictures/raster_image.h"
-#include "core/base/random.h"
-#include "viewer/isp_frames.h"
 #include "viewer/viewer_model.h"
 #include "viewer/viewer_state.h"
 
@@ -67,51 +65,20 @@ TEST(ViewerKeys, DoWhatTheHelpSays) {
   EXPECT_FALSE(pressKey(state, "F7"));
 }
 
-TEST(ViewerKeys, AreEachNamedOnceInTheHelp) {
-  std::set<std::string> symbols;
-  for (const ViewerKey& key : viewerKeys()) {
-    for (const std::string& symbol : key.symbols) EXPECT_TRUE(symbols.insert(symbol).second) << symbol;
-    EXPECT_NE(viewerHelp().find(key.symbols[0] + "  " + key.help), std::string::npos);
-  }
-}
-
-TEST(ViewerKeys, WithoutPlanesNothingIsSteppedThrough) {
-  ViewerState state = stateWith(0);
-  for (const ViewerKey& key : viewerKeys()) pressKey(state, key.symbols[0]);
-  EXPECT_EQ(state.plane, 0);
-  EXPECT_EQ(state.step, -1);
-}
-
-TEST(IspFrames, LeadBackToThePlane) {
-  RandomStream random(3);
-  Points box(3, 4'000);
-  const Eigen::Vector3f half(0.8f, 0.5f, 0.3f);
-  for (Eigen::Index i = 0; i < box.cols(); ++i) {
-    for (int k = 0; k < 3; ++k) box(k, i) = half[k] * static_cast<float>(2.0 * random.uniform() - 1.0);
-    const int face = static_cast<int>(random.below(3));
-    box(face, i) = random.uniform() < 0.5 ? -half[face] : half[face];
-  }
-  const ReflectionPlane plane(Eigen::Vector3d::UnitX(), 0.0);
-  const std::vector<IspFrame> frames = ispFrames(box, plane);
-  ASSERT_GE(frames.size(), 2u);
-  EXPECT_NEAR(frames.front().plane.angleTo(plane), 12.0 * M_PI / 180.0, 1e-9);
-  EXPECT_LT(frames.back().plane.angleTo(plane), 0.01);
-  EXPECT_LT(std::abs(frames.back().plane.offset()), 0.01);
-  EXPECT_LT(frames.back().residual, frames.front().residual);
-  for (const IspFrame& frame : frames) {
-    ASSERT_EQ(frame.samples.cols(), frame.reflections.cols());
-    ASSERT_EQ(frame.samples.cols(), frame.closest.cols());
-    for (Eigen::Index i = 0; i < frame.samples.cols(); ++i)
-      EXPECT_LT(
-          (frame.plane.reflect(frame.samples.col(i).cast<double>()) - frame.reflections.col(i).cast<double>()).norm(),
-          1e-6);
-  }
+/// The box as loadShape() gives it.
+Shape loadedBox(const Eigen::Vector3f& center) {
+  Shape shape;
+  shape.mesh = boxMesh({2.0f, 3.0f, 4.0f}, center);
+  shape.cloud = shape.mesh->cloud;
+  shape.points.reset(new pcl::PointCloud<pcl::PointXYZ>);
+  pcl::fromPCLPointCloud2(shape.cloud, *shape.points);
+  return shape;
 }
 
 TEST(ViewerModel, IsOfUnitSizeAboutTheOriginWithItsPlanes) {
   ViewerModelOptions options;
   const Eigen::Vector3f center(40, -30, 20);
-  const ViewerModel model = makeViewerModel(shapeFromMesh(boxMesh({2.0f, 3.0f, 4.0f}, center)), options);
+  const ViewerModel model = makeViewerModel(loadedBox(center), options);
   ASSERT_EQ(model.planes.size(), 3u);
   EXPECT_EQ(model.labels.size(), 3u);
   Eigen::AlignedBox3d box;
@@ -128,7 +95,7 @@ TEST(ViewerModel, IsOfUnitSizeAboutTheOriginWithItsPlanes) {
 TEST(ViewerModel, IsCutIntoPartsOfTheMeshOrOfTheCloud) {
   ViewerModelOptions options;
   options.num_parts = 2;
-  Shape shape = shapeFromMesh(boxMesh({2.0f, 3.0f, 4.0f}, Eigen::Vector3f::Zero()));
+  Shape shape = loadedBox(Eigen::Vector3f::Zero());
   ViewerModel model = makeViewerModel(shape, options);
   EXPECT_EQ(findParts(model).size(), model.mesh->polygons.size());
   shape.points = model.points;

@@ -43,8 +43,8 @@ public:
 
   /// \param rotations K x 24 M, all rotations of the query's compact forms, see SignatureProjection::rotations().
   /// \param num_nearest >= 0.
-  /// \return shapes and their signatureDistance(), scaled, nearest first, at most \p num_nearest. Exact where the index holds
-  /// no more than num_candidates forms.
+  /// \return shapes and their least distances over all forms and rotations, in [0, 2], scaled, nearest first, at most
+  /// \p num_nearest. Exact where the index holds no more than num_candidates forms.
   /// \throws std::invalid_argument for another K or a negative \p num_nearest.
   std::vector<std::pair<int, float>> nearest(const Eigen::MatrixXf& rotations, int num_nearest) const;
 

@@ -205,9 +205,4 @@ SignatureProjection SignatureProjection::fromValues(const std::vector<float>& va
   return result;
 }
 
-float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::Ref<const Eigen::MatrixXf>& compact) {
-  const float cosine = (rotations.transpose() * compact).maxCoeff();
-  return std::sqrt(std::max(0.0f, 2.0f - 2.0f * cosine));
-}
-
 }  // namespace pcl_symmetry

@@ -69,10 +69,4 @@ private:
   std::vector<Eigen::MatrixXf> turns_;  // 24, K x K
 };
 
-/// The least distance of two shapes over all of their frames and all rotations of axes.
-/// \param rotations of the one shape, see SignatureProjection::rotations().
-/// \param compact forms of the other shape.
-/// \return in [0, 2].
-float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::Ref<const Eigen::MatrixXf>& compact);
-
 }  // namespace pcl_symmetry

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/base/random.h"
 #include "core/matching/compact_index.h"
-#include "core/matching/signature_projection.h"
 
 namespace pcl_symmetry {
 
@@ -20,6 +20,11 @@ Eigen::MatrixXf syntheticForms(int dimensions, int count, std::uint64_t seed) {
   for (int d = 0; d < dimensions; ++d) forms.row(d) *= static_cast<float>(std::pow(1.0 + d, -0.5));
   forms.colwise().normalize();
   return forms;
+}
+
+/// The least distance of two shapes over all of their forms.
+float signatureDistance(const Eigen::MatrixXf& rotations, const Eigen::Ref<const Eigen::MatrixXf>& compact) {
+  return std::sqrt(std::max(0.0f, 2.0f - 2.0f * (rotations.transpose() * compact).maxCoeff()));
 }
 
 }  // namespace

@@ -39,9 +39,7 @@ TEST(SignatureProjection, RotatesAsSignaturesDo) {
   for (int r = 0; r < kNumAxisRotations; ++r) {
     rotateSignature(signatures.col(3).data(), r, rotated.data());
     EXPECT_LT((projection.project(rotated) - rotations.col(r)).norm(), 0.05) << "rotation " << r;
-    EXPECT_LT(signatureDistance(rotations, projection.project(rotated)), 0.05);
   }
-  EXPECT_GT(signatureDistance(rotations, projection.project(signatures.col(4))), 0.1);
 }
 
 TEST(SignatureProjection, IsTheSameWithAnyNumberOfThreadsAndAfterStorage) {
