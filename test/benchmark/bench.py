@@ -1,6 +1,7 @@
 """What the programs of this folder share: models, clouds, virtual scanners, rates, tables, and runs over many items."""
 import argparse
 import concurrent.futures
+import contextlib
 import dataclasses
 import functools
 import hashlib
@@ -19,6 +20,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")  # items are spread over processes
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial.transform import Rotation
 
 MESH_FORMATS = (".off", ".ply", ".obj", ".stl")
 
@@ -241,11 +243,8 @@ def random_directions(random, count):
 
 def random_rotation(random):
     """(3, 3) uniform among all rotations."""
-    q = random.normal(size=4)
-    w, x, y, z = q / np.linalg.norm(q)
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])  # fmt: skip
+    w, x, y, z = random.normal(size=4)
+    return Rotation.from_quat([x, y, z, w]).as_matrix()
 
 
 def random_pose(random, mesh):
@@ -258,9 +257,8 @@ def random_pose(random, mesh):
 
 def rotation_about(point, direction, angle):
     """(4, 4) by an angle in radians about a line of unit direction."""
-    c, s, k = math.cos(angle), math.sin(angle), np.asarray(direction, float)
     motion = np.eye(4)
-    motion[:3, :3] = c * np.eye(3) + (1 - c) * np.outer(k, k) + s * np.cross(np.eye(3), k)
+    motion[:3, :3] = Rotation.from_rotvec(angle * np.asarray(direction, float)).as_matrix()
     motion[:3, 3] = point - motion[:3, :3] @ point
     return motion
 
@@ -431,8 +429,6 @@ def write_cloud(path, points, T_cloud_sensor=None, **fields):
     height, width = points.shape[:2] if points.ndim == 3 else (1, len(points))
     viewpoint = [0, 0, 0, 1, 0, 0, 0]
     if T_cloud_sensor is not None:
-        from scipy.spatial.transform import Rotation
-
         x, y, z, w = Rotation.from_matrix(T_cloud_sensor[:3, :3]).as_quat()
         viewpoint = [*T_cloud_sensor[:3, 3], w, x, y, z]
     names, values = ["x", "y", "z", *fields], [points, *(np.asarray(f)[..., None] for f in fields.values())]
@@ -477,6 +473,15 @@ def detect(points, sensor=None, seed=1, tool=None, **options):
     except ValueError:
         return NO_ANSWERS
     return answers_of(found, 1000 * (time.perf_counter() - start))
+
+
+def ask(name, points, sensor, arguments, **options):
+    """Answers for one cloud, written for --export: those of --judge, of the tool or of the Python module."""
+    if arguments.export:
+        write_cloud(f"{arguments.export}/{name}.pcd", points, sensor)
+    if arguments.judge:
+        return read_answers(arguments.judge, name)
+    return detect(points, sensor, arguments.seed + 1, arguments.tool, **options)
 
 
 def _detect_by_tool(points, sensor, seed, tool, options):
@@ -538,12 +543,9 @@ def read_answer(folder, name, **shapes):
 
 def wilson(count, total):
     """95 % interval of a rate (Wilson 1927), in [0, 1]; it treats the cases as independent."""
-    if total == 0:
-        return 0.0, 1.0
-    z, p = 1.959963984540054, count / total
-    middle = (p + z * z / (2 * total)) / (1 + z * z / total)
-    half = z / (1 + z * z / total) * math.sqrt(p * (1 - p) / total + z * z / (4 * total * total))
-    return max(0.0, middle - half), min(1.0, middle + half)
+    from scipy.stats import binomtest
+
+    return tuple(binomtest(count, total).proportion_ci(method="wilson")) if total else (0.0, 1.0)
 
 
 class Rate:
@@ -584,15 +586,6 @@ def calibration(confidences, right):
     return {"answers": len(p), "error": error(y), "by_chance": by_chance, "brier": float(np.mean((p - y) ** 2)), "bins": rows}
 
 
-def plain(value):
-    """The same with rates as JSON has them."""
-    if isinstance(value, Rate):
-        return value.json
-    if isinstance(value, dict):
-        return {key: plain(v) for key, v in value.items()}
-    return [plain(v) for v in value] if isinstance(value, (list, tuple)) else value
-
-
 def median(values, digits=2):
     values = [v for v in values if v is not None]
     return f"{np.median(values):.{digits}f}" if values else "-"
@@ -605,13 +598,6 @@ def print_table(title, header, rows):
     lines = ["| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths)) + " |" for row in rows]
     lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
     print(f"{title}\n\n" + "\n".join(lines) + "\n", flush=True)
-
-
-def draw_rates(axes, x, counts, total, label):
-    """A curve of rates, in per cent, with the band of their 95 % intervals."""
-    low, high = np.transpose([wilson(int(count), total) for count in counts])
-    line = axes.plot(x, 100 * np.asarray(counts) / total, label=label)[0]
-    axes.fill_between(x, 100 * low, 100 * high, alpha=0.2, color=line.get_color(), linewidth=0)
 
 
 def save_figure(path, draw):
@@ -652,7 +638,6 @@ def make_parser(description, models=True):
     add("--jobs", type=natural, default=os.cpu_count(), help="number of processes, all cores by default")
     add("--scheduler", metavar="ADDRESS", help="Dask scheduler that spreads the work in place of --jobs")
     add("--json", metavar="FILE", help="write the results; an interrupted run goes on from FILE.journal")
-    add("--figure", metavar="FILE", help="draw a figure")
     add("--seed", type=int, default=0, help="of all random numbers")
     add("--export", metavar="DIR", help="write each cloud as PCD, and truth.json")
     add("--judge", metavar="DIR", help="judge what another program answered: a file NAME.json or NAME.txt a cloud")
@@ -675,7 +660,7 @@ def main(program, arguments):
     """Runs program(arguments); input that cannot be used costs one sentence and exit code 1."""
     try:
         program(arguments)
-    except (BadInput, ImportError) as error:
+    except (BadInput, ImportError, OSError) as error:
         hint = ", set PYTHONPATH=build/src/python" if isinstance(error, ImportError) and "pcl_symmetry" in str(error) else ""
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}{hint}")
     except KeyboardInterrupt:
@@ -683,9 +668,9 @@ def main(program, arguments):
 
 
 def write_json(arguments, content):
-    """Writes the results of --json, whole or not at all; then the journal is not needed any more."""
+    """Writes the results of --json, rates as numbers, whole or not at all; then the journal is not needed any more."""
     if arguments.json:
-        write_whole(arguments.json, json.dumps(content, indent=1) + "\n")
+        write_whole(arguments.json, json.dumps(content, indent=1, default=lambda rate: rate.json) + "\n")
         for path in pathlib.Path(arguments.json).parent.glob(pathlib.Path(arguments.json).name + "*.journal"):
             path.unlink()
         for folder in pathlib.Path(arguments.json).parent.glob(pathlib.Path(arguments.json).name + ".*.work"):
@@ -698,21 +683,11 @@ def write_truth(arguments, truths):
         write_whole(pathlib.Path(arguments.export) / "truth.json", json.dumps(truths, indent=1) + "\n")
 
 
-def make_folder(path):
-    try:
-        pathlib.Path(path).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be made, {error.strerror}") from None
-
-
 def write_whole(path, text):
     """Writes a file whole or not at all."""
-    try:
-        part = pathlib.Path(f"{path}.part")
-        part.write_text(text)
-        part.replace(path)
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be written, {error.strerror}") from None
+    part = pathlib.Path(f"{path}.part")
+    part.write_text(text)
+    part.replace(path)
 
 
 def _asked(arguments):
@@ -738,19 +713,18 @@ def run(items, function, arguments, stage=""):
     """
     named = {getattr(item, "name", str(item)): item for item in items}
     if arguments.export:
-        make_folder(arguments.export)
-    journal = _Journal(arguments, stage)
-    results = {name: result for name, result in journal.read().items() if name in named}
-    waiting = {name: item for name, item in named.items() if name not in results}
-    left_out, start, first = [], time.monotonic(), len(results)
-    with journal:
+        pathlib.Path(arguments.export).mkdir(parents=True, exist_ok=True)
+    with _journal(arguments, stage) as (finished, keep):
+        results = {name: result for name, result in finished.items() if name in named}
+        waiting = {name: item for name, item in named.items() if name not in results}
+        left_out, start, first = [], time.monotonic(), len(results)
         for name, result, failure in _spread(waiting, function, arguments):
             if failure:
                 left_out.append(failure)
                 print(f"{chr(13) * sys.stderr.isatty()}{failure}", file=sys.stderr)
             else:
                 results[name] = result
-                journal.append(name, result)
+                keep(name, result)
             num_done = len(results) + len(left_out)
             if sys.stderr.isatty():
                 rest = (time.monotonic() - start) * (len(named) - num_done) / max(1, num_done - first)
@@ -809,11 +783,7 @@ def _spread_over_processes(waiting, function, arguments, jobs, lost):
 def _spread_by_dask(waiting, function, arguments):
     import distributed
 
-    try:
-        client = distributed.Client(arguments.scheduler)
-    except OSError as error:
-        raise BadInput(f"--scheduler {arguments.scheduler}: {error}") from None
-    with client:
+    with distributed.Client(arguments.scheduler) as client:
         here = pathlib.Path(__file__).parent
         for module in list(sys.modules.values()):
             path = getattr(module, "__file__", None)
@@ -827,39 +797,22 @@ def _spread_by_dask(waiting, function, arguments):
                 yield (futures[future], *future.result())
 
 
-class _Journal:
-    """Finished items of a run, a line of JSON each, behind a line of what was asked for."""
+@contextlib.contextmanager
+def _journal(arguments, stage):
+    """Yields {name: result} of the items that were finished when a run was interrupted, and a function that keeps one more.
 
-    def __init__(self, arguments, stage):
-        self.path = pathlib.Path(f"{arguments.json}{'.' * bool(stage)}{stage}.journal") if arguments.json else None
-        self.asked = _asked(arguments)
-        self.file = None
-
-    def read(self):
-        if not self.path:
-            return {}
-        results = {}
-        if self.path.exists():
-            lines = self.path.read_text().splitlines(keepends=True)
-            rows = [json.loads(line) for line in lines if line.endswith("\n")]  # the last one may be cut off
-            if rows and rows[0] == json.loads(json.dumps(self.asked)):
-                results = dict(rows[1:])
-        try:
-            self.file = open(self.path, "w")
-        except OSError as error:
-            raise BadInput(f"{self.path}: cannot be written, {error.strerror}") from None
-        print(json.dumps(self.asked), file=self.file, flush=True)
-        for name, result in results.items():
-            self.append(name, result)
-        return results
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        if self.file:
-            self.file.close()
-
-    def append(self, name, result):
-        if self.file:
-            print(json.dumps([name, result]), file=self.file, flush=True)
+    The journal has a line of what was asked for, and one for each item.
+    """
+    if not arguments.json:
+        yield {}, lambda name, result: None
+        return
+    path, asked = pathlib.Path(f"{arguments.json}{'.' * bool(stage)}{stage}.journal"), json.dumps(_asked(arguments))
+    lines = path.read_text().splitlines(keepends=True) if path.exists() else []
+    finished = lines[1:] if lines[:1] == [asked + "\n"] else []
+    results = dict(json.loads(line) for line in finished if line.endswith("\n"))  # the last one may be cut off
+    with open(path, "w") as file:
+        keep = lambda *row: print(json.dumps(row), file=file, flush=True)
+        print(asked, file=file, flush=True)
+        for row in results.items():
+            keep(*row)
+        yield results, keep

@@ -62,7 +62,7 @@ def main():
             kilobytes = database.stat().st_size / 1000 / num
             print(f"{workers:>7} {num:7} {wall:8.1f} {100 * busy:12.1f} {used:20.1f} {total - merging - used:12.1f} "
                   f"{1000 * used / num:11.1f} {1000 * alone / num:13.1f} {1000 * merging / num:9.1f} {kilobytes:3.0f}", flush=True)
-    hours, gigabytes = (used + 0.004 * num) / num * 1e6 / 3600, (kilobytes * num - 14000) / num  # 4 ms to merge, see apps/README.md
+    hours, gigabytes = (used + 0.004 * num) / num * 1e6 / 3600, (kilobytes * num - 14000) / num  # 4 ms to merge
     print(f"a million models, without what does not grow with them (start, fit, 14 MB): {hours:.1f} hours of a core, "
           f"{0.04 * hours:.2f} $ at 0.04 $ an hour; {gigabytes:.0f} GB, {0.08 * gigabytes:.2f} $ a month at 0.08 $ a GB")
 

@@ -8,7 +8,6 @@ The probability of a frame is exp(w.x) / (1 + the sum of exp(w.x) over all frame
 whose 1 counts for "none of them" (McFadden 1974); w maximizes the likelihood that one of the right frames is right.
 """
 import argparse
-import itertools
 
 import numpy as np
 from scipy.optimize import minimize
@@ -16,32 +15,16 @@ from scipy.special import logsumexp
 
 import bench
 import fits
+import frames
 
 OUTPUT = "src/core/frame/frame_fit.h"
-RIGHT = 5.0  # degrees
 PULL = 0.3  # of each weight to 0, clouds; at half of it no weight moves by a tenth
 VIEWS = 2
-SIGNED_ORDERS = [np.eye(3)[list(order)].T * signs for order in itertools.permutations(range(3))
-                 for signs in itertools.product((1, -1), repeat=3)]  # fmt: skip
 
 
-def angle_of_axes(own, axes, revolution):
-    """Least angle between two frames over all orders and signs, degrees; a column of axes may turn freely."""
-    if revolution == 3:
-        return 0.0
-    greatest = -1.0
-    for order in SIGNED_ORDERS:
-        turned = axes @ order
-        if np.linalg.det(turned) < 0:
-            continue
-        relative = turned.T @ own
-        trace = np.trace(relative)
-        if revolution >= 0:
-            k = int(np.argmax(np.abs(order[revolution])))
-            i, j = (k + 1) % 3, (k + 2) % 3
-            trace = relative[k, k] + np.hypot(relative[i, i] + relative[j, j], relative[i, j] - relative[j, i])
-        greatest = max(greatest, trace)
-    return float(np.degrees(np.arccos(np.clip(0.5 * (greatest - 1), -1, 1))))
+def is_right(found, own):
+    about = found.axes[:, found.revolution_axis] if 0 <= found.revolution_axis < 3 else None
+    return found.revolution_axis == 3 or frames.angle_of_axes(found.axes, own, about) < frames.RIGHT_ANGLE
 
 
 def sample_item(item, arguments):
@@ -58,7 +41,7 @@ def sample_item(item, arguments):
             scan = bench.scan(mesh, bench.CUBE_CORNERS[view - 1], random, pose=pose)
             points, viewpoint = scan.rows, tuple(scan.viewpoint)
         frame = pcl_symmetry.frame(points.astype(np.float32), viewpoint=viewpoint, threads=1)
-        right = [angle_of_axes(pose[:3, :3], p.axes, p.revolution_axis) < RIGHT for p in frame.probable]
+        right = [is_right(p, pose[:3, :3]) for p in frame.probable]
         rows.append([view > 0, right, [list(map(float, row)) for row in frame.evidence.tolist()]])
     return rows
 

@@ -15,6 +15,7 @@ import numpy as np
 import bench
 import fits
 import references
+import solids
 
 OUTPUT = "src/core/evidence/confidence_fit.h"
 KINDS, NUM_TERMS = ("surface", "scan", "volume"), (7, 6, 5)
@@ -57,9 +58,9 @@ def clouds_of(mesh, key, seed):
 def shape_clouds(i, seed):
     """(mesh, [(name, points, viewpoint, T_cloud_model)]) of a shape with folds, or of a round one."""
     random = bench.generator(seed, "folds", i)
-    body, noise, thinned = [*fits.PROFILES, "round"][i % 6], i // 6 % 3, i // 18 % 2
+    body, noise, thinned = [*solids.FOLDED, "round"][i % 6], i // 6 % 3, i // 18 % 2
     folds, count = int(random.integers(2, 25)), (10_000, 3000, 30_000)[i // 36 % 3]
-    mesh = fits.round_shape(fits.ROUND[random.integers(4)], random) if body == "round" else fits.folded_shape(body, folds, random)
+    mesh = solids.round_body(fits.ROUND[random.integers(4)], random) if body == "round" else fits.folded_shape(body, folds, random)
     points, pose = bench.sample(mesh, count, random), bench.random_pose(random, mesh)
     if thinned:
         along = (points - mesh.center) @ bench.random_directions(random, 1)[0] / mesh.diagonal

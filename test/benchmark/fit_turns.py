@@ -12,10 +12,11 @@ import numpy as np
 import bench
 import fits
 import references
+import rotations
+import solids
 
 OUTPUT = "src/core/detection/turn_confidence_fit.h"
 KINDS, NUM_TERMS = ("by any angle", "half turns", "of order 3 and more"), (4, 7, 6)
-TOLERANCE, MOST_OFF, MOST_FAR = 0.01, 0.10, 0.0125
 NUM_SAMPLES = 5000  # of the mesh: a share of 0.1 is known to 0.004
 PULL = 0.5  # cases; half and twice change no confidence by 0.05, and without any separable cases would be certain
 NUM_SCANS, NUM_SOLIDS = 4, 1080
@@ -24,23 +25,9 @@ NUM_SCANS, NUM_SOLIDS = 4, 1080
 def solid(i, random):
     """A round body, one with 3 to 8 folds, or a round one with a handle."""
     if i % 3 == 1:
-        return fits.folded_shape(list(fits.PROFILES)[i // 3 % 5], int(random.integers(3, 9)), random)
-    mesh = fits.round_shape(fits.ROUND[i // 3 % 4], random)
+        return fits.folded_shape(list(solids.FOLDED)[i // 3 % 5], int(random.integers(3, 9)), random)
+    mesh = solids.round_body(fits.ROUND[i // 3 % 4], random)
     return fits.with_handle(mesh) if i % 3 == 2 else mesh
-
-
-def excess(surface, point, direction, fold):
-    """The greater of the shares that the turns map off the mesh, over what is allowed of each."""
-    angles = 2 * np.pi * (np.arange(1, 17) / 17 if fold == 0 else np.arange(1, fold // 2 + 1) / fold)
-    worst = 0.0
-    for angle in angles:
-        x = surface.samples - point  # Rodrigues
-        along = x @ direction
-        rotated = x * np.cos(angle) + np.cross(direction, x) * np.sin(angle) + np.outer(along, direction) * (1 - np.cos(angle))
-        distances = surface.mesh.distances(rotated + point)
-        off, far = (distances > surface.tolerance).mean(), (distances > 10 * surface.tolerance).mean()
-        worst = max(worst, off / MOST_OFF, far / MOST_FAR)
-    return worst
 
 
 def sample_item(item, arguments):
@@ -52,15 +39,16 @@ def sample_item(item, arguments):
         mesh, num_scans = solid(int(item.split()[1]), bench.generator(arguments.seed, item)), 1
     else:
         mesh, num_scans = bench.read_mesh(item.path), NUM_SCANS
-    surface, rows = references.Surface(mesh, TOLERANCE, NUM_SAMPLES), []
+    surface, rows = references.Surface(mesh, rotations.TOLERANCE, NUM_SAMPLES), []
+    on_mesh = mesh.center + mesh.diagonal * surface.samples
     for view in range(num_scans):
         random = bench.generator(arguments.seed, name, "turns", view)
         scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=bench.random_pose(random, mesh))
         found = pcl_symmetry.planes(scan.rows.astype(np.float32), viewpoint=tuple(scan.viewpoint), evidence=True, threads=1)
         T_model_cloud = np.linalg.inv(scan.T_cloud_model)
         for e in found.turn_evidence:
-            point = (bench.moved(T_model_cloud, e["point"]) - mesh.center) / mesh.diagonal
-            right = excess(surface, point, T_model_cloud[:3, :3] @ e["direction"], e["fold"])
+            line = bench.moved(T_model_cloud, e["point"]), T_model_cloud[:3, :3] @ e["direction"]
+            right = rotations.excess(mesh, on_mesh, rotations.about(*line, e["fold"]))
             rows.append([name, int(e["kind"]), round(right, 4), *map(float, e["terms"])])
     return rows
 

@@ -8,6 +8,7 @@ import numpy as np
 from sklearn.linear_model import LogisticRegression
 
 import bench
+import solids
 
 LEAST_EXAMPLES = 100  # of either kind, weights counted; with fewer a decision is a rule, not a fit
 
@@ -78,21 +79,9 @@ def write_header(arguments, body, includes=()):
     bench.write_whole(arguments.output, text + body.strip("\n") + "\n\n}  // namespace pcl_symmetry\n")
 
 
-# Shapes made by code: a closed curve of radius 1 at most, swept along a profile of (radius, height)
+# Shapes that fits are made with
 
-PROFILES = {"prism": [(0, 0), (1, 0), (1, 1), (0, 1)], "tube": [(1, 0), (1, 1)], "cone": [(0, 0), (1, 0), (0, 1)],
-            "rim": [(1, 0), (1, 1), (0.75, 1), (0.75, 0), (1, 0)], "open cone": [(1, 0), (0, 1)]}  # fmt: skip
 ROUND = ("bottle", "vase", "cup", "pin")
-
-
-def swept(curve, profile):
-    """Mesh of a closed curve, complex numbers, swept along a profile."""
-    radius, height = np.transpose(profile)[..., None]
-    rings = np.stack(np.broadcast_arrays(radius * curve.real, radius * curve.imag, height), -1)
-    i, k = np.meshgrid(np.arange(len(profile) - 1), np.arange(len(curve)), indexing="ij")
-    corner = lambda di, dk: (i + di) * len(curve) + (k + dk) % len(curve)
-    quads = np.stack([corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)], -1).reshape(-1, 4)
-    return bench.make_mesh(rings.reshape(-1, 3), quads.tolist())
 
 
 def folded_curve(folds, random):
@@ -107,27 +96,7 @@ def folded_curve(folds, random):
 
 
 def folded_shape(body, folds, random):
-    """A body of PROFILES with folds, without those whose sizes make more symmetries than the folds have."""
-    curve = folded_curve(folds, random)
-    while True:
-        height = random.uniform(0.5, 2.5)
-        special = [2 * abs(curve[0].real), 2 * abs(curve[0].imag), 2**0.5] if folds in (2, 4) else [2**0.5]
-        if "cone" in body and folds != 3 or "cone" not in body and folds not in (2, 4):
-            special = []
-        if all(abs(height / length - 1) > 0.15 for length in special if length):
-            return swept(curve, [(r, height * z) for r, z in PROFILES[body]])
-
-
-def round_shape(body, random):
-    h, r, s = random.uniform(1.6, 3.2), random.uniform(0.25, 0.45), random.uniform(0.5, 0.8)
-    profile = {
-        "bottle": [(0, 0), (1, 0), (1, s * h), (r, 0.85 * h), (r, h), (0, h)],
-        "vase": [(0, 0), (s, 0), (1, 0.3 * h), (0.9, 0.5 * h), (r, 0.8 * h), (s, h), (s - 0.06, h), (r - 0.06, 0.8 * h),
-                 (0.84, 0.5 * h), (0.94, 0.3 * h), (s, 0.06), (0, 0.06)],
-        "cup": [(0, 0), (s, 0), (1, 0.6 * h), (0.94, 0.6 * h), (s - 0.05, 0.08), (0, 0.08)],
-        "pin": [(0, 0), (s, 0), (1, 0.35 * h), (s, 0.6 * h), (r, 0.75 * h), (r + 0.12, 0.88 * h), (r, 0.97 * h), (0, h)],
-    }[body]  # fmt: skip
-    return swept(np.exp(2j * np.pi * np.arange(192) / 192), profile)
+    return solids.folded_body(body, folded_curve(folds, random), folds, random)
 
 
 def with_handle(mesh):
@@ -139,8 +108,7 @@ def with_handle(mesh):
     reach = 0.09 * radius * np.cos(around)
     points = np.stack(np.broadcast_arrays(0.9 * radius + (0.55 * radius + reach) * np.cos(along), 0.09 * radius * np.sin(around),
                                           0.5 * (low + high) + (rise + reach) * np.sin(along)), -1)  # fmt: skip
-    i, k = np.meshgrid(np.arange(24), np.arange(12), indexing="ij")
-    quads = np.stack([12 * i + k, 12 * i + (k + 1) % 12, 12 * i + 12 + (k + 1) % 12, 12 * i + 12 + k], -1).reshape(-1, 4)
+    vertices, quads = solids.tube(points)
     first = len(mesh.vertices)
-    return bench.make_mesh(np.concatenate([mesh.vertices, points.reshape(-1, 3)]),
+    return bench.make_mesh(np.concatenate([mesh.vertices, vertices]),
                            mesh.triangles.tolist() + (quads + first).tolist())  # fmt: skip

@@ -235,7 +235,10 @@ def draw(rows, methods, key, scale, bins, label):
         for method in methods:
             values = [scale * r[key] for r in rows if r["method"] == method and r["view"] >= 0]
             counts = np.histogram(np.minimum(values, bins[-1] - 1e-9), bins)[0]
-            bench.draw_rates(axes, 0.5 * (bins[1:] + bins[:-1]), counts, len(values), method)
+            low, high = np.transpose([bench.wilson(int(count), len(values)) for count in counts])
+            middles = 0.5 * (bins[1:] + bins[:-1])
+            (line,) = axes.plot(middles, 100 * counts / len(values), label=method)
+            axes.fill_between(middles, 100 * low, 100 * high, alpha=0.2, color=line.get_color(), linewidth=0)
         axes.set(xlabel=f"{label} (last bin: and more)", ylabel="share of the scans, %")
         axes.set(xlim=(0, bins[-1]), ylim=(0, None))
         axes.legend()
@@ -259,7 +262,7 @@ def main(arguments):
     )  # fmt: skip
     print("Closer: to the center of the whole than the center of mass is. Own axes: those that the model was made in,")
     print("in any order and sign. Like for like: those that the method gives the whole, up to symmetries of the mesh.")
-    bench.write_json(arguments, {"methods": bench.plain(results), "left_out": left_out, "rows": rows})
+    bench.write_json(arguments, {"methods": results, "left_out": left_out, "rows": rows})
     if arguments.figure:
         drawn = [m for m in ("symmetry", "exact map ISP", "mass", "pushed mass") if m in results]
         stem, dot, ending = arguments.figure.rpartition(".")
@@ -284,6 +287,8 @@ def make_parser(description, methods):
 
 
 if __name__ == "__main__":
-    asked = make_parser(__doc__, METHODS).parse_args()
+    parser = make_parser(__doc__, METHODS)
+    parser.add_argument("--figure", metavar="FILE", help="draw Figure 12 as FILE_translation and FILE_rotation")
+    asked = parser.parse_args()
     asked.methods = [m for m in METHODS if m in {*asked.methods, "mass"}] if not asked.judge else ["judged", "mass"]
     bench.main(main, asked)

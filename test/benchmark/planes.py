@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How well planes of symmetry are found in clouds of models, and how well the detector refuses.
 
-planes.py PSB --classes train.cla --fold 2 --json planes.json --figure planes.png
+planes.py PSB --classes train.cla --fold 2 --json planes.json
 
 Each model gives whole clouds, scans from a random side, the same scans moved and without viewpoint, and clouds of which
 a random plane cuts off a part. An answer is right within 3 degrees and 2 % of the diagonal of a reference plane, or of
@@ -186,13 +186,8 @@ def evaluate(model, arguments):
         name = f"{model.name}_{suffix}"
         here = references.moved(truth, pose)
         sensor = None if scan is None or scan.points is None else scan.T_cloud_sensor
-        if arguments.export:
-            bench.write_cloud(f"{arguments.export}/{name}.pcd", points, sensor)
-            truths[name] = {**here, "model": model.name, "group": group}
-        if arguments.judge:
-            answers = bench.read_answers(arguments.judge, name)
-        else:
-            answers = bench.detect(points, sensor, arguments.seed + 1, arguments.tool, tolerance=arguments.tolerance)
+        truths[name] = {**here, "model": model.name, "group": group}
+        answers = bench.ask(name, points, sensor, arguments, tolerance=arguments.tolerance)
         row = judge(answers, here)
         row["contradicted"] = 0
         if scan is not None and row["false"]:
@@ -202,7 +197,7 @@ def evaluate(model, arguments):
         row.update(model=model.name, cloud=name, group=group, kind=truth["kind"], best_share=truth["best_share"],
                    scan=scan is not None, failed=answers["failed"], milliseconds=answers["milliseconds"])  # fmt: skip
         rows.append(row)
-    return {"rows": rows, "truths": truths}
+    return {"rows": rows, "truths": truths if arguments.export else {}}
 
 
 # Tables
@@ -267,24 +262,12 @@ def report(rows, arguments):
     return sums
 
 
-def draw(axes, sums):
-    """Reliability of each row: how often answers are at a reference, by their confidence."""
-    axes.plot([0, 1], [0, 1], color="0.7")
-    for group, sum_ in sums.items():
-        bins = [b for b in sum_.get("calibration", {}).get("bins", []) if b["right"]["total"] >= 5]
-        axes.plot([b["low"] + 0.05 for b in bins], [b["right"]["rate"] for b in bins], marker="o", ms=3, label=group)
-    axes.set(xlabel="confidence", ylabel="answers at a reference", title="Reliability of planes")
-    axes.legend(fontsize="small")
-
-
 def program(arguments):
     results, left_out = bench.run(bench.list_models(arguments), evaluate, arguments)
     rows = [row for result in results for row in result["rows"]]
     bench.write_truth(arguments, {name: truth for result in results for name, truth in result["truths"].items()})
     sums = report(rows, arguments)
-    if arguments.figure:
-        bench.save_figure(arguments.figure, lambda axes: draw(axes, sums))
-    bench.write_json(arguments, {"groups": bench.plain(sums), "left_out": left_out, "clouds": rows})
+    bench.write_json(arguments, {"groups": sums, "left_out": left_out, "clouds": rows})
 
 
 if __name__ == "__main__":

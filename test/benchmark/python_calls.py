@@ -11,7 +11,7 @@ import resource
 import statistics
 import subprocess
 import sys
-import time
+import timeit
 
 import numpy
 import pcl_symmetry
@@ -24,23 +24,14 @@ def surface(num_points):
     return (points * (1.0, 0.8, 0.5)).astype(numpy.float32)
 
 
-def median_milliseconds(call, num_calls=101):
-    call()  # starts the threads
-    times = []
-    for _ in range(num_calls):
-        start = time.perf_counter()
-        call()
-        times.append(1e3 * (time.perf_counter() - start))
-    return statistics.median(times)
-
-
 def main():
     if len(sys.argv) != 1:
         sys.exit(__doc__)
     box = surface(10_000)
     line = box * numpy.float32([1, 0, 0])
     for words, points in (("points", box), ("points on a line", line)):
-        milliseconds = median_milliseconds(lambda points=points: pcl_symmetry.planes(points, viewpoint=None))
+        times = timeit.repeat(lambda points=points: pcl_symmetry.planes(points, viewpoint=None), number=1, repeat=102)
+        milliseconds = 1e3 * statistics.median(times[1:])  # the first one starts the threads
         print(f"planes of 10 000 {words}: {milliseconds:.2f} ms")
     many = numpy.tile(box, (1000, 1))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -22,12 +22,12 @@ import subprocess
 import tempfile
 
 import numpy as np
-from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 import bench
 import planes
 import references
+import scenes
 
 LEARN_BOXES, LEARN_CYLINDERS = range(25), range(33, 45)  # 25 to 32 show parts of objects
 VEHICLE_FRAMES = ("000950", "000965")
@@ -199,12 +199,8 @@ def is_right(kind, answer, truth, max_offset):
         angles, offsets = references.offsets_and_angles(rows, planes.plane_row(answer), center)
         return bool(((angles < limit[0]) & (offsets < limit[1])).any())
     if kind == "axis" and truth["shape"] == "cylinder":
-        point, direction = planes.line_of(truth["axis"])
-        at = point + direction * ((center - point) @ direction)
-        answer_point, answer_direction = planes.line_of(answer)
-        level = answer_point + answer_direction * ((center - answer_point) @ answer_direction)
-        angle, _ = references.line_from_line(point, direction, answer_point, answer_direction)
-        return angle < limit[0] and np.linalg.norm(level - at) < limit[1]
+        errors = references.line_from_line(*planes.line_of(truth["axis"]), *planes.line_of(answer), center)
+        return np.less(errors, limit).all()
     return False
 
 
@@ -222,16 +218,6 @@ def judge(answers, truth, max_offset=0.03):
             "wrong": decided[:1] == [False] or (center and not decided)}  # fmt: skip
 
 
-def answers_for(name, points, sensor, arguments):
-    """Answers for one cloud: of another program, of the tool, or of the Python module."""
-    if arguments.export:
-        bench.write_cloud(f"{arguments.export}/{name}.pcd", points, sensor)
-    if arguments.judge:
-        return bench.read_answers(arguments.judge, name)
-    tool = arguments.tools and str(pathlib.Path(arguments.tools).resolve() / "pcl_symmetry_planes")
-    return bench.detect(points, sensor, arguments.seed, tool)
-
-
 def objects_found(name, points, arguments):
     """Objects of a whole frame with their planes and pixels; None where nobody answers for frames."""
     if arguments.export:
@@ -241,24 +227,15 @@ def objects_found(name, points, arguments):
         return json.loads(path.read_text())["objects"] if path.exists() else None
     if not arguments.tools:
         return None
-    import open3d
-
     with tempfile.TemporaryDirectory() as folder:
         bench.write_cloud(f"{folder}/frame.pcd", points)
-        command = [str(pathlib.Path(arguments.tools).resolve() / "pcl_symmetry_scene"), "frame.pcd", "out.pcd"]
-        command += ["-quiet", "-json", "found.json", "-threads", "1", "-seed", str(arguments.seed)]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-        if done.returncode:
-            raise bench.BadInput(f"{name}: {done.stderr.strip()}")
+        bench.run_tool(arguments.tools, "pcl_symmetry_scene", f"{folder}/frame.pcd", f"{folder}/out.pcd", "-quiet",
+                       "-json", f"{folder}/found.json", "-threads", "1", "-seed", str(arguments.seed + 1))  # fmt: skip
         objects = json.loads(pathlib.Path(folder, "found.json").read_text())["objects"]
-        out = open3d.t.io.read_point_cloud(f"{folder}/out.pcd", remove_nan_points=False, remove_infinite_points=False).point
-    measured = (out["completed"].numpy().ravel() == 0) & np.isfinite(out["positions"].numpy()).all(1)
-    number = out["object"].numpy().ravel()[measured].astype(int)
-    rows = points.reshape(-1, 3)
-    pixels = np.flatnonzero(np.isfinite(rows).all(1))
-    distance, nearest = cKDTree(out["positions"].numpy()[measured]).query(rows[pixels], distance_upper_bound=0.004)
-    of_pixel = np.where(np.isfinite(distance), number[np.minimum(nearest, len(number) - 1)], 0)
-    return [{**o, "pixels": pixels[of_pixel == i + 1].tolist()} for i, o in enumerate(objects)]
+        labels = scenes.read_frame(f"{folder}/out.pcd")[1]
+    pixels = np.flatnonzero(np.isfinite(points.reshape(-1, 3)).all(1))
+    labels = labels[: len(pixels)]  # points that the completion adds come behind
+    return [{**o, "pixels": pixels[labels == i + 1].tolist()} for i, o in enumerate(objects)]
 
 
 def kinect_frame(frame, arguments):
@@ -270,7 +247,7 @@ def kinect_frame(frame, arguments):
         name, mask = f"learn_{frame}_{label}", labels == label
         exported[name] = truth
         if truth["shape"]:
-            answers = answers_for(name, np.where(mask[..., None], points, np.nan), None, arguments)
+            answers = bench.ask(name, np.where(mask[..., None], points, np.nan), None, arguments)
             rows.append({"cloud": name, "way": "alone", "shape": truth["shape"], **judge(answers, truth)})
         if objects is None:
             continue
@@ -303,7 +280,7 @@ def lidar_frame(frame, arguments):
         for way, sensor in (("with viewpoint", np.eye(4)), ("without", None)):
             name = f"{frame}_{number}_{way.split()[0]}"
             exported[name] = truth
-            answers = answers_for(name, p, sensor, arguments)
+            answers = bench.ask(name, p, sensor, arguments)
             rows.append({"cloud": name, "way": way, "shape": "vehicle", **judge(answers, truth, 0.04)})
     return {"rows": rows, "truths": exported}
 
@@ -322,12 +299,13 @@ def report(rows):
 
 
 def program(arguments):
+    arguments.tool = arguments.tools and str(pathlib.Path(arguments.tools).resolve() / "pcl_symmetry_planes")
     frames = [*LEARN_BOXES, *LEARN_CYLINDERS] if arguments.kind == "kinect" else VEHICLE_FRAMES
     evaluate = kinect_frame if arguments.kind == "kinect" else lidar_frame
     results, left_out = bench.run(frames, evaluate, arguments)
     rows = [row for result in results for row in result["rows"]]
     bench.write_truth(arguments, functools.reduce(lambda a, b: {**a, **b["truths"]}, results, {}))
-    bench.write_json(arguments, {"rates": bench.plain(report(rows)), "left_out": left_out, "clouds": rows})
+    bench.write_json(arguments, {"rates": report(rows), "left_out": left_out, "clouds": rows})
 
 
 if __name__ == "__main__":

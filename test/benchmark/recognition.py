@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Which model a scan shows (Section 5.2): pcl_symmetry.Database on scans from one side.
 
-recognition.py PSB --classes train.cla --fold 1 --query-every 8 --json recognition.json --figure recognition.png
+recognition.py PSB --classes train.cla --fold 1 --query-every 8 --json recognition.json
 
 Scans each model from a random direction in a random pose, and asks a database of all models but some which of them it
 is. --export writes the scans; --judge reads the answer of another program to each, NAME.json as
@@ -81,19 +81,6 @@ def judge(results, known, class_of):
             "unknown objects found to be unknown": bench.Rate(r["answer"] is None for r in outside)}  # fmt: skip
 
 
-def draw(results, known, accept, axes):
-    """Rates at every greater least confidence that could be asked for."""
-    confidence = lambda r: -1 if r["answer"] is None else r["confidence"]
-    least = np.linspace(accept, 1, 101)
-    inside, outside = ([r for r in results if (r["model"] in known) == yes] for yes in (True, False))
-    share = lambda rows, yes: [np.mean([yes(r, x) for r in rows]) if rows else np.nan for x in least]
-    first = lambda r, x: r["answer"] == r["model"] and confidence(r) >= x
-    axes.plot(least, share(inside, first), label="the scanned model first")
-    axes.plot(least, share(outside, lambda r, x: confidence(r) < x), label="unknown objects found to be unknown")
-    axes.set(xlabel="least confidence of an answer", ylabel="share of the scans", ylim=(0, 1.02), title="Recognition of scans")
-    axes.legend()
-
-
 def main(arguments):
     models = bench.list_models(arguments)
     leaves = bench.read_classes(arguments.classes) if arguments.classes else {}
@@ -110,11 +97,7 @@ def main(arguments):
     times = [r["milliseconds"] for r in results]
     title = f"{len(results)} scans, {len(inside) - len(failures)} models; median {bench.median(times, 0)} ms"
     bench.print_table(title, ["", "rate"], [[name, rate.text] for name, rate in rates.items()])
-    if arguments.figure:
-        known = {model.name for model in inside}
-        bench.save_figure(arguments.figure, lambda axes: draw(results, known, arguments.accept, axes))
     bench.write_truth(arguments, {model.name: {"model": model.name, "known": model in inside} for model in asked})
-    rates = {name: rate.json for name, rate in rates.items()}
     bench.write_json(arguments, {"rates": rates, "scans": results, "left_out": failures + left_out})
 
 

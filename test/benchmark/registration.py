@@ -32,10 +32,7 @@ VOXEL = 0.015  # of ICP and features, diagonals of the target
 
 def reflection(plane):
     """(4, 4) of coefficients a, b, c, d."""
-    normal, matrix = np.array(plane[:3]), np.eye(4)
-    matrix[:3, :3] -= 2 * np.outer(normal, normal)
-    matrix[:3, 3] = -2 * plane[3] * normal
-    return matrix
+    return np.eye(4) - 2 * np.outer([*plane[:3], 0], plane)
 
 
 def pose_error(T_model_scan, T_model_scan_true, symmetries):
@@ -231,22 +228,6 @@ def summarize(rows):
     }
 
 
-def draw(rows, methods):
-    def curves(axes):
-        limits = np.linspace(0, 4, 401)  # of 5 degrees and 2 % alike
-        for method in methods:
-            own = [row for row in rows if row["method"] == method and row["impostor"] is None]
-            errors = np.array([max(row["degrees"] / RIGHT_ANGLE, row["distance"] / RIGHT_DISTANCE) for row in own])
-            counts = (errors[:, None] <= limits).sum(axis=0)
-            bench.draw_rates(axes, RIGHT_ANGLE * limits, counts, len(own), method)
-        axes.axvline(RIGHT_ANGLE, color="black", linewidth=0.8, linestyle=":")
-        axes.set(xlabel="limit, degrees (per cent of the diagonal: 0.4 times it)", ylabel="scans within the limit, %")
-        axes.set(xlim=(0, 20), ylim=(0, 100))
-        axes.legend(loc="lower right")
-
-    return curves
-
-
 def main(arguments):
     models = bench.list_models(arguments)
     for model, before in zip(models, [None, *map(dataclasses.replace, models)]):
@@ -263,9 +244,7 @@ def main(arguments):
           number(r["distance"], 4), number(r["median_ms"], 0)] for m, r in results.items()],
     )  # fmt: skip
     print("Degrees, diagonals: median errors of those that are right. ms: median processor time.")
-    bench.write_json(arguments, {"methods": bench.plain(results), "left_out": left_out, "rows": rows})
-    if arguments.figure:
-        bench.save_figure(arguments.figure, draw(rows, results))
+    bench.write_json(arguments, {"methods": results, "left_out": left_out, "rows": rows})
 
 
 if __name__ == "__main__":

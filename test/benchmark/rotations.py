@@ -6,7 +6,7 @@ are found. With a folder: groups of clouds of meshes, judged by exact distances 
 that are found in this number of scans of each mesh, judged alike. A rotation is right where it maps at most 10 % of the
 area further off the surface than 1 % of the diameter, and at most 1.25 % further than ten times that.
 
-rotations.py --seeds 5 --figure rotations.png
+rotations.py --seeds 5
 rotations.py PSB --classes train.cla --fold 1
 rotations.py PSB --classes train.cla --fold 1 --every 4 --views 2
 """
@@ -27,27 +27,18 @@ NUM_ANGLES = 16  # of an axis of revolution, of 1/17 of a turn: no fold divides 
 NUM_POSES = 20  # pairs that distances of poses are tried on
 
 
-def draw_rates(axes, rates):
-    """Rates with their intervals, one below the other."""
-    rates = {name: rate for name, rate in rates.items() if rate.total}
-    middle = np.array([100 * rate.count / rate.total for rate in rates.values()])
-    ends = 100 * np.array([bench.wilson(rate.count, rate.total) for rate in rates.values()]).T
-    axes.errorbar(middle, range(len(rates)), xerr=np.abs(ends - middle), fmt="o")
-    axes.set_yticks(range(len(rates)), [f"{name} ({rate.total})" for name, rate in rates.items()])
-    axes.set(xlabel="rate, % (95 % intervals)", xlim=(0, 101))
-    axes.invert_yaxis()
-
-
 # Judging on the mesh
 
 
-def by_any_angle(point, direction):
-    return [bench.rotation_about(point, direction, 2 * np.pi * k / (NUM_ANGLES + 1)) for k in range(1, NUM_ANGLES + 1)]
+def about(point, direction, fold=0):
+    """Rotations of a fold about a line, up to half a turn; of fold 0 by any angle."""
+    angles = np.arange(1, fold // 2 + 1) / fold if fold else np.arange(1, NUM_ANGLES + 1) / (NUM_ANGLES + 1)
+    return [bench.rotation_about(point, direction, 2 * np.pi * angle) for angle in angles]
 
 
 def motions_of(group):
     """The rotations that pcl_symmetry.Rotations says the shape has."""
-    return list(group.discrete) + [motion for axis in group.continuous for motion in by_any_angle(*axis)]
+    return list(group.discrete) + [motion for axis in group.continuous for motion in about(*axis)]
 
 
 def excess(mesh, points, motions):
@@ -179,11 +170,7 @@ def measure_solids(arguments):
     cells = [[group, *(f"{value:.0e}" for value in errors.values())] for group, errors in worst.items()]
     names = list(next(iter(worst.values()), []))
     bench.print_table("Poses that symmetry makes equal: worst errors, distances in diameters", ["group", *names], cells)
-    bench.write_json(arguments, {"rates": bench.plain(rates), "poses": worst, "left_out": left_out, "rows": rows})
-    if arguments.figure:
-        kinds = dict.fromkeys(row["kind"] for row in rows)
-        by_kind = {kind: bench.Rate(is_right(row) for row in rows if row["kind"] == kind) for kind in kinds}
-        bench.save_figure(arguments.figure, lambda axes: draw_rates(axes, by_kind))
+    bench.write_json(arguments, {"rates": rates, "poses": worst, "left_out": left_out, "rows": rows})
 
 
 # Meshes
@@ -214,9 +201,7 @@ def judge_scans(model, arguments):
         scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=pose)
         found = pcl_symmetry.planes(scan.rows.astype("f"), viewpoint=tuple(scan.viewpoint), threads=1)
         for turn in found.turns:
-            angles = 2 * np.pi * np.arange(1, turn.fold // 2 + 1) / max(turn.fold, 1)  # none: by any angle
-            motions = [bench.rotation_about(turn.point, turn.direction, a) for a in angles]
-            motions = motions or by_any_angle(turn.point, turn.direction)
+            motions = about(turn.point, turn.direction, turn.fold)
             worst = excess(mesh, points, [in_frame_of(pose, motion) for motion in motions])
             row = {"mesh": model.name, "view": view, "fold": turn.fold}
             rows.append({**row, "confidence": turn.confidence, "excess": worst})
@@ -242,14 +227,7 @@ def measure_meshes(arguments):
     bench.print_table(what, ["", "rate"], [[k, rate.text] for k, rate in rates.items()])
     text = "{answers} answers: calibration error {error:.3f} ({by_chance:.3f} by chance), Brier score {brier:.3f}"
     print(text.format(**reliability))
-    found = {"rates": bench.plain(rates), "reliability": bench.plain(reliability)}
-    bench.write_json(arguments, {**found, "left_out": left_out, "rows": rows})
-    if arguments.figure:
-        bench.save_figure(arguments.figure, lambda axes: draw_rates(axes, rates))
-
-
-def main(arguments):
-    (measure_meshes if arguments.models else measure_solids)(arguments)
+    bench.write_json(arguments, {"rates": rates, "reliability": reliability, "left_out": left_out, "rows": rows})
 
 
 if __name__ == "__main__":
@@ -262,4 +240,4 @@ if __name__ == "__main__":
     asked = parser.parse_args()
     if asked.export or asked.judge:
         parser.error("--export and --judge: frames.py, registration.py and planes.py have them")
-    bench.main(main, asked)
+    bench.main(measure_meshes if asked.models else measure_solids, asked)

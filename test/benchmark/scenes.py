@@ -366,18 +366,6 @@ def report(summary, milliseconds, arguments):
                           [cells(s, ("right_model", "right_pose", "unknown_of_others")) for s in summary])  # fmt: skip
 
 
-def draw(summary, axes):
-    for i, (noise, seen) in enumerate(sorted({(s["noise"], s["seen"]) for s in summary})):
-        own = [s for s in summary if (s["noise"], s["seen"]) == (noise, seen) and s["rates"]["decided_right"].total]
-        rates = [s["rates"]["decided_right"].json for s in own]
-        y = np.array([r["rate"] for r in rates])
-        ends = np.abs(np.array([[r["low"], r["high"]] for r in rates]).T - y)
-        axes.errorbar([s["band"] + 0.06 * (i - 1.5) for s in own], y, ends, fmt="o-", capsize=3, label=f"{seen}, noise {noise:g}")
-    axes.set_xticks(range(4), [f"{100 * a:.0f} to {100 * b:.0f} %" for a, b in zip(BANDS, BANDS[1:])])
-    axes.set(xlabel="hidden by others", ylabel="symmetric objects decided right", ylim=(0, 1), title="Planes of objects in scenes")
-    axes.legend(fontsize="small")
-
-
 def make_frames(arguments):
     """Writes models.json, models.db, the frames, and truth.json last."""
     folder = pathlib.Path(arguments.frames)
@@ -404,9 +392,6 @@ def program(arguments):
     rows = [row for frame in judged for row in frame["rows"]]
     summary = summarize(rows, arguments)
     report(summary, [frame["milliseconds"] for frame in judged if frame["milliseconds"]], arguments)
-    if arguments.figure:
-        bench.save_figure(arguments.figure, lambda axes: draw(summary, axes))
-    summary = [{**s, "rates": {name: rate.json for name, rate in s["rates"].items()}} for s in summary]
     bench.write_json(arguments, {"rows": summary, "objects": rows, "left_out": left_out + failures})
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How close segmentations come to those that people made (Section 5.3): Princeton Segmentation Benchmark.
 
-segmentation.py PSEG/off --people PSEG/seg/Benchmark --remainders 2 --json parts.json --figure parts.png
+segmentation.py PSEG/off --people PSEG/seg/Benchmark --remainders 2 --json parts.json
 
 Takes meshes whose name is an odd number; those with even numbers are kept apart. The measures are those of Chen,
 Golovinskiy and Funkhouser (A Benchmark for 3D Mesh Segmentation, 2009): means over all people and models, 0 for equal
@@ -230,14 +230,6 @@ def report(summary):
     bench.print_table("Rand distance by category", ["", *summary], rows)
 
 
-def draw(summary, axes):
-    names = list(summary)
-    means, halves = zip(*(summary[name]["rand"] for name in names))
-    axes.barh(names, means, xerr=[half or 0 for half in halves], capsize=3, color="#4c78a8")
-    axes.invert_yaxis()
-    axes.set(xlabel="1 - Rand index against people, 95 % intervals over models", title="Parts of meshes")
-
-
 def main(arguments):
     if not pathlib.Path(arguments.people).is_dir():
         raise bench.BadInput(f"{arguments.people}: must be a folder")
@@ -249,8 +241,6 @@ def main(arguments):
     results, left_out = bench.run(models, evaluate, arguments)
     summary = summarize(results)
     report(summary)
-    if arguments.figure:
-        bench.save_figure(arguments.figure, lambda axes: draw(summary, axes))
     bench.write_json(arguments, {"methods": summary, "models": results, "left_out": left_out})
 
 

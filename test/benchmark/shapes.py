@@ -16,33 +16,10 @@ import numpy as np
 import bench
 import planes
 import references
+import solids
 
-FOLDED_BODIES = {  # radius and height of the profile of a body of height h
-    "prism": lambda h: [(0, 0), (1, 0), (1, h), (0, h)],
-    "tube": lambda h: [(1, 0), (1, h)],
-    "rim": lambda h: [(1, 0), (1, h), (0.75, h), (0.75, 0), (1, 0)],
-    "cone": lambda h: [(0, 0), (1, 0), (0, h)],
-    "open cone": lambda h: [(1, 0), (0, h)],
-}
-BALL = {"ball": lambda h, r, s: [(math.sin(t), -math.cos(t)) for t in np.linspace(0, math.pi, 49)]}
-ROUND_BODIES = {
-    "tuning": {
-        "bottle": lambda h, r, s: [(0, 0), (1, 0), (1, s * h), (r, 0.85 * h), (r, h), (0, h)],
-        "vase": lambda h, r, s: [(0, 0), (s, 0), (1, 0.3 * h), (0.9, 0.5 * h), (r, 0.8 * h), (s, h), (s - 0.06, h),
-                                 (r - 0.06, 0.8 * h), (0.84, 0.5 * h), (0.94, 0.3 * h), (s, 0.06), (0, 0.06)],
-        "cup": lambda h, r, s: [(0, 0), (s, 0), (1, 0.6 * h), (0.94, 0.6 * h), (s - 0.05, 0.08), (0, 0.08)],
-        "pin": lambda h, r, s: [(0, 0), (s, 0), (1, 0.35 * h), (s, 0.6 * h), (r, 0.75 * h), (r + 0.12, 0.88 * h),
-                                (r, 0.97 * h), (0, h)],
-    },
-    "report": {
-        "jar": lambda h, r, s: [(0, 0), (0.9, 0), (1, 0.1 * h), (1, 0.6 * h), (s, 0.75 * h), (s, 0.8 * h), (0, 0.8 * h)],
-        "goblet": lambda h, r, s: [(0, 0), (s, 0), (0.1, 0.1 * h), (0.1, 0.4 * h), (0.8, 0.6 * h), (1, 0.9 * h),
-                                   (0.95, 0.9 * h), (0.75, 0.62 * h), (0, 0.45 * h)],
-        "bowl": lambda h, r, s: [(0, 0), (r, 0), (0.8, 0.15 * h), (1, 0.35 * h), (0.95, 0.35 * h), (0.75, 0.17 * h),
-                                 (r, 0.04), (0, 0.04)],
-        "can": lambda h, r, s: [(0, 0), (1, 0), (1, s * h), (0.9, s * h + 0.1), (0, s * h + 0.1)],
-    },
-}  # fmt: skip
+FOLDED_BODIES = ("prism", "tube", "rim", "cone", "open cone")
+ROUND_BODIES = {"tuning": ("bottle", "vase", "cup", "pin"), "report": ("jar", "goblet", "bowl", "can")}
 
 
 @dataclasses.dataclass
@@ -70,27 +47,16 @@ class Shape:
         return rows, pose[:3, 3], pose[:3, 2], bench.moved(pose, self.mesh.center)
 
 
-def sweep(curve, profile):
-    """Mesh of a closed curve (K, 2), scaled and lifted by each row (radius, height) of the profile."""
-    rings = np.array([np.c_[radius * curve, np.full(len(curve), height)] for radius, height in profile])
-    k, faces = len(curve), []
-    for i in range(len(profile) - 1):
-        for j in range(k):
-            a, b = i * k + j, i * k + (j + 1) % k
-            faces += [(a, b, b + k), (a, b + k, a + k)]
-    return bench.make_mesh(rings.reshape(-1, 3), faces)
-
-
 def along(angle):
     return [-math.sin(angle), math.cos(angle), 0.0, 0.0]
 
 
 def folded_curve(folds, half, random):
-    """A polygon, or a flower (tuning), or a star or a gear (report); (K, 2), radius at most 1, one fold at angle 0."""
+    """A polygon, or a flower (tuning), or a star or a gear (report); complex, up to modulus 1, one fold at angle 0."""
     if random.uniform() < 0.4:
         if folds == 2:
             aspect = random.uniform(0.5, 0.8)
-            return np.array([(1, aspect), (-1, aspect), (-1, -aspect), (1, -aspect)]) / math.hypot(1, aspect)
+            return np.array([1 + aspect * 1j, -1 + aspect * 1j, -1 - aspect * 1j, 1 - aspect * 1j]) / math.hypot(1, aspect)
         radius, at = np.ones(1), np.zeros(1)
     elif half == "tuning":
         at = np.arange(max(8, 192 // folds)) / max(8, 192 // folds)
@@ -103,29 +69,18 @@ def folded_curve(folds, half, random):
             steps = np.linspace(-0.2, 0.2, max(2, 192 // (4 * folds)))
             radius, at = np.repeat([1, inner], len(steps)), np.r_[steps, steps + 0.5]
     angle = (2 * math.pi * (np.arange(folds)[:, None] + at) / folds).ravel()
-    return np.tile(radius, folds)[:, None] * np.c_[np.cos(angle), np.sin(angle)]
+    return np.tile(radius, folds) * np.exp(1j * angle)
 
 
 def folded_shape(body, folds, half, random):
-    curve = folded_curve(folds, half, random)
-    is_like = lambda length, height: abs(height / length - 1) < 0.15  # cubes and tetrahedra have more symmetries
-    while True:
-        height = random.uniform(0.5, 2.5)
-        if "cone" in body and not (folds == 3 and is_like(math.sqrt(2), height)):
-            break
-        sides = (2 * abs(curve[0][0]), 2 * abs(curve[0][1]) or 1e9, math.sqrt(2)) if folds in (2, 4) else ()
-        if "cone" not in body and not any(is_like(length, height) for length in sides):
-            break
-    mesh = sweep(curve, FOLDED_BODIES[body](height))
+    mesh = solids.folded_body(body, folded_curve(folds, half, random), folds, random)
     rows = [along(math.pi * k / folds) for k in range(folds)]
-    rows += [] if "cone" in body else [[0, 0, 1, 0.5 * height]]
+    rows += [] if "cone" in body else [[0, 0, 1, mesh.center[2]]]
     return Shape(body, mesh, folds, np.array(rows), share(mesh, along(0.5 * math.pi / folds)))
 
 
-def round_shape(body, profiles, random):
-    sizes = random.uniform(1.6, 3.2), random.uniform(0.25, 0.45), random.uniform(0.5, 0.8)
-    circle = 2 * math.pi * np.arange(192) / 192
-    mesh = sweep(np.c_[np.cos(circle), np.sin(circle)], profiles[body](*sizes))
+def round_shape(body, random):
+    mesh = solids.round_body(body, random)
     across = [0, 0, 1, mesh.center[2]]
     return Shape(body, mesh, 0, np.array([across] if share(mesh, across) >= references.MIN_SHARE else []).reshape(-1, 4))
 
@@ -160,7 +115,7 @@ def folds(i, arguments, random):
     body, noise, thinned = bodies[i % 6], i // 6 % 3, i // 18 % 2 == 1
     num_folds = random.integers(2, 25)
     if body == "round":
-        shape = round_shape(random.choice(list(ROUND_BODIES[arguments.half])), ROUND_BODIES[arguments.half], random)
+        shape = round_shape(random.choice(ROUND_BODIES[arguments.half]), random)
     else:
         shape = folded_shape(body, num_folds, arguments.half, random)
     points, mesh = bench.sample(shape.mesh, arguments.points, random), shape.mesh
@@ -170,7 +125,7 @@ def folds(i, arguments, random):
     pose = bench.random_pose(random, mesh)
     points = bench.moved(pose, points)
     points += noise * math.sqrt(mesh.areas.sum() / arguments.points) * random.normal(size=points.shape)
-    answers = ask(f"folds_{i}", points, None, arguments, max_planes=64)
+    answers = bench.ask(f"folds_{i}", points, None, arguments, max_planes=64)
     size = next(name for most, name in FOLD_RANGES.items() if shape.folds <= most)
     rows = ["all", f"noise of {noise} spacings", size, *["thinned"] * thinned]
     cases = [case for angle in (1, 5) for case in judge_folds(shape, pose, answers, angle)]
@@ -203,16 +158,15 @@ def judge_folds(shape, pose, answers, angle):
 
 
 def views(i, arguments, random):
-    profiles = ROUND_BODIES[arguments.half] | BALL
-    bodies = [*profiles, "prism"]
+    bodies = [*ROUND_BODIES[arguments.half], "ball", "prism"]
     body = bodies[i % len(bodies)]
     if body == "prism":
         shape = folded_shape(body, random.integers(2, 7), arguments.half, random)
     else:
-        shape = round_shape(body, profiles, random)
+        shape = round_shape(body, random)
     view, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, shape.mesh)
     scan = bench.scan(shape.mesh, view, random, arguments.points, pose=pose)
-    answers = ask(f"views_{i}", scan.points, scan.T_cloud_sensor, arguments, max_planes=64)
+    answers = bench.ask(f"views_{i}", scan.points, scan.T_cloud_sensor, arguments, max_planes=64)
     family = bool(answers["axes"] or answers["centers"])
     if body == "prism":
         return [("prism", "family of a prism, which has none", family and not shape.is_nearly_round)]
@@ -309,7 +263,7 @@ def random_clouds(i, arguments, random):
     make, low, high = RANDOM_KINDS[kind]
     points = make(round(low * (high / low) ** random.uniform()), arguments.half, random)
     rotation = bench.random_rotation(random)
-    answers = ask(f"random_{i}", points @ rotation.T + random.uniform(-1, 1, 3), None, arguments)
+    answers = bench.ask(f"random_{i}", points @ rotation.T + random.uniform(-1, 1, 3), None, arguments)
     axes, found = [planes.line_of(axis)[1] for axis in answers["axes"]], symmetries(answers)
     is_line = kind == "line" and arguments.half == "tuning" and axes and not found and not answers["centers"]
     is_line = is_line and all(abs(a @ rotation[:, 0]) > math.cos(math.radians(3)) for a in axes)  # its axis is true
@@ -335,7 +289,7 @@ def composites(i, arguments, random):
         true.append(np.c_[normals, scale * rows[:, 3] + normals @ place])
     points = np.concatenate(clouds)
     center, diagonal = 0.5 * (points.min(0) + points.max(0)), np.linalg.norm(np.ptp(points, axis=0))
-    answers = ask(f"composites_{i}", points, None, arguments, approximate=True, max_planes=64)
+    answers = bench.ask(f"composites_{i}", points, None, arguments, approximate=True, max_planes=64)
     same = lambda a, b: is_near([v[0] for v in references.offsets_and_angles(a, b, center)], 3, 0.02, diagonal)
     found = [planes.plane_row(p) for p in answers["planes"]]
     local = [planes.plane_row(p) for p in answers["planes"] if p["kind"] not in ("approximate", "possible")]
@@ -369,14 +323,6 @@ def unit_part(mesh, rows, arguments, random):
     return points, np.c_[rows[:, :3], (rows[:, 3] - rows[:, :3] @ mesh.center) / mesh.diagonal]
 
 
-def ask(name, points, sensor, arguments, **options):
-    if arguments.export:
-        bench.write_cloud(f"{arguments.export}/{name}.pcd", points, sensor)
-    if arguments.judge:
-        return bench.read_answers(arguments.judge, name)
-    return bench.detect(points, sensor, arguments.seed + 1, arguments.tool, **options)
-
-
 KINDS = {"folds": (folds, 144), "views": (views, 180), "random": (random_clouds, 700), "composites": (composites, 40)}
 
 
@@ -396,7 +342,7 @@ def program(arguments):
     table_rows = [[row, *(rates[row].get(column, bench.Rate()).text for column in columns)] for row in order]
     title = f"{arguments.kind}, {arguments.half} half, {len(results)} clouds; 95 % Wilson intervals"
     bench.print_table(title, ["", *columns], table_rows)
-    bench.write_json(arguments, {"rates": bench.plain(rates), "left_out": left_out})
+    bench.write_json(arguments, {"rates": rates, "left_out": left_out})
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
-"""Solids made by code whose groups of rotations are known: what rotations.py counts by."""
+"""Shapes made by code: solids whose groups of rotations are known, and bodies of random sizes."""
 
 import dataclasses
 
 import numpy as np
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
+
+import bench
 
 AROUND = 144  # sides of a body of revolution: divides by 2, 3, 4, 6 and 8; off by 2.4e-4 radii
 GOLDEN = (1 + 5**0.5) / 2
@@ -213,3 +215,53 @@ def solids(kind=None):
         ],
     }  # fmt: skip
     return [Solid(name, k, group, *part) for k, some in made.items() if kind in (None, k) for name, group, part in some]
+
+
+# Bodies of random sizes: a closed curve, complex numbers up to modulus 1, swept along a profile of (radius, height)
+
+FOLDED = {"prism": [(0, 0), (1, 0), (1, 1), (0, 1)], "tube": [(1, 0), (1, 1)], "cone": [(0, 0), (1, 0), (0, 1)],
+          "rim": [(1, 0), (1, 1), (0.75, 1), (0.75, 0), (1, 0)], "open cone": [(1, 0), (0, 1)]}  # fmt: skip
+
+
+def tube(rings):
+    """Vertices and quads between closed rings, (N, K, 3)."""
+    i, k = np.meshgrid(np.arange(len(rings) - 1), np.arange(rings.shape[1]), indexing="ij")
+    corner = lambda di, dk: (i + di) * rings.shape[1] + (k + dk) % rings.shape[1]
+    quads = np.stack([corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)], -1).reshape(-1, 4)
+    return rings.reshape(-1, 3), quads
+
+
+def sweep(curve, profile):
+    """Mesh of a closed curve swept along a profile."""
+    radius, height = np.transpose(profile)[..., None]
+    vertices, quads = tube(np.stack(np.broadcast_arrays(radius * curve.real, radius * curve.imag, height), -1))
+    return bench.make_mesh(vertices, quads.tolist())
+
+
+def folded_body(body, curve, folds, random):
+    """A body of FOLDED, without those whose sizes make more symmetries than the folds have: cubes and tetrahedra."""
+    while True:
+        height = random.uniform(0.5, 2.5)
+        special = [2 * abs(curve[0].real), 2 * abs(curve[0].imag), 2**0.5] if folds in (2, 4) else [2**0.5]
+        if "cone" in body and folds != 3 or "cone" not in body and folds not in (2, 4):
+            special = []
+        if all(abs(height / length - 1) > 0.15 for length in special if length):
+            return sweep(curve, [(r, height * z) for r, z in FOLDED[body]])
+
+
+def round_body(body, random):
+    h, r, s = random.uniform(1.6, 3.2), random.uniform(0.25, 0.45), random.uniform(0.5, 0.8)
+    profile = {
+        "bottle": [(0, 0), (1, 0), (1, s * h), (r, 0.85 * h), (r, h), (0, h)],
+        "vase": [(0, 0), (s, 0), (1, 0.3 * h), (0.9, 0.5 * h), (r, 0.8 * h), (s, h), (s - 0.06, h), (r - 0.06, 0.8 * h),
+                 (0.84, 0.5 * h), (0.94, 0.3 * h), (s, 0.06), (0, 0.06)],
+        "cup": [(0, 0), (s, 0), (1, 0.6 * h), (0.94, 0.6 * h), (s - 0.05, 0.08), (0, 0.08)],
+        "pin": [(0, 0), (s, 0), (1, 0.35 * h), (s, 0.6 * h), (r, 0.75 * h), (r + 0.12, 0.88 * h), (r, 0.97 * h), (0, h)],
+        "jar": [(0, 0), (0.9, 0), (1, 0.1 * h), (1, 0.6 * h), (s, 0.75 * h), (s, 0.8 * h), (0, 0.8 * h)],
+        "goblet": [(0, 0), (s, 0), (0.1, 0.1 * h), (0.1, 0.4 * h), (0.8, 0.6 * h), (1, 0.9 * h), (0.95, 0.9 * h),
+                   (0.75, 0.62 * h), (0, 0.45 * h)],
+        "bowl": [(0, 0), (r, 0), (0.8, 0.15 * h), (1, 0.35 * h), (0.95, 0.35 * h), (0.75, 0.17 * h), (r, 0.04), (0, 0.04)],
+        "can": [(0, 0), (1, 0), (1, s * h), (0.9, s * h + 0.1), (0, s * h + 0.1)],
+        "ball": [(np.sin(t), -np.cos(t)) for t in np.linspace(0, np.pi, 49)],
+    }[body]  # fmt: skip
+    return sweep(np.exp(2j * np.pi * np.arange(192) / 192), profile)

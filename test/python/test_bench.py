@@ -107,7 +107,7 @@ class References(unittest.TestCase):
         self.assertEqual(references.find_references(beast(True))["kind"], "asymmetric")
 
     def test_a_bottle_has_an_axis(self):
-        shape = shapes.round_shape("bottle", shapes.ROUND_BODIES["tuning"], np.random.default_rng(0))
+        shape = shapes.round_shape("bottle", np.random.default_rng(0))
         found = references.find_references(shape.mesh)
         self.assertEqual((len(found["axes"]), len(found["planes"])), (1, 0))
         self.assertGreater(abs(found["axes"][0]["direction"][2]), 0.999)

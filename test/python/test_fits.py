@@ -5,6 +5,7 @@ import io
 import pathlib
 import sys
 import tempfile
+import types
 import unittest
 
 try:
@@ -78,12 +79,12 @@ class Fits(unittest.TestCase):
         gaps = np.linalg.norm(rotated[:, None] - mesh.vertices[None], axis=2).min(1)
         self.assertLess(gaps.max(), 1e-9)
 
-    def test_angle_of_axes_knows_orders_and_revolution(self):
+    def test_frames_are_right_in_any_order_and_about_an_axis_of_revolution(self):
         own = bench.random_rotation(np.random.default_rng(4))
-        self.assertAlmostEqual(fit_frames.angle_of_axes(own, own[:, [2, 0, 1]] * (-1, 1, -1), -1), 0, places=4)
         about = np.array([[np.cos(0.4), -np.sin(0.4), 0], [np.sin(0.4), np.cos(0.4), 0], [0, 0, 1]])
-        self.assertAlmostEqual(fit_frames.angle_of_axes(own, own @ about, -1), np.degrees(0.4), places=4)
-        self.assertAlmostEqual(fit_frames.angle_of_axes(own, own @ about, 2), 0, places=4)
+        right = lambda axes, axis: fit_frames.is_right(types.SimpleNamespace(axes=axes, revolution_axis=axis), own)
+        self.assertTrue(right(own[:, [2, 0, 1]] * (-1, 1, -1), -1))
+        self.assertEqual([right(own @ about, axis) for axis in (-1, 0, 2, 3)], [False, False, True, True])
 
     def test_frames_find_the_weights(self):
         random, rows, weights = np.random.default_rng(5), [], np.array([-1.0, 2.0])

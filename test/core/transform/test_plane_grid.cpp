@@ -17,12 +17,12 @@ using Bin = PlaneGrid::Bin;
 const Eigen::Vector3d kCenter(1.0, -2.0, 0.5);
 constexpr double kRadius = 1.7;
 
-PlaneGrid grid(int num_theta, int num_phi, int num_radius) {
+PlaneGrid planeGrid(int num_theta, int num_phi, int num_radius) {
   return PlaneGrid(num_theta, num_phi, num_radius, kCenter, kRadius);
 }
 
 std::vector<PlaneGrid> someGrids() {
-  return {grid(1, 2, 1), grid(3, 4, 5), grid(16, 16, 16), grid(7, 10, 9), grid(32, 128, 6), grid(12, 2, 3)};
+  return {planeGrid(1, 2, 1), planeGrid(3, 4, 5), planeGrid(16, 16, 16), planeGrid(7, 10, 9), planeGrid(32, 128, 6), planeGrid(12, 2, 3)};
 }
 
 bool operator==(const Bin& a, const Bin& b) {
@@ -42,7 +42,7 @@ TEST(PlaneGrid, IndexBinAndPlaneRoundTripForEveryBin) {
 }
 
 TEST(PlaneGrid, PlaneOfABinHasItsAnglesAndOffset) {
-  const PlaneGrid g = grid(5, 8, 7);
+  const PlaneGrid g = planeGrid(5, 8, 7);
   const ReflectionPlane plane = g.plane({1, 3, 5});
   const double theta = 1.5 * (0.5 * kPi / 5), phi = 3.5 * (2.0 * kPi / 8);
   const Eigen::Vector3d n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
@@ -51,7 +51,7 @@ TEST(PlaneGrid, PlaneOfABinHasItsAnglesAndOffset) {
 }
 
 TEST(PlaneGrid, FindsTheBinOfEitherForm) {
-  const PlaneGrid g = grid(16, 16, 16);
+  const PlaneGrid g = planeGrid(16, 16, 16);
   RandomStream random(1);
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Vector3d n = randomDirection(random);
@@ -63,7 +63,7 @@ TEST(PlaneGrid, FindsTheBinOfEitherForm) {
 }
 
 TEST(PlaneGrid, FindsTheBinWhoseRangesHoldThePlane) {
-  const PlaneGrid g = grid(9, 14, 11);
+  const PlaneGrid g = planeGrid(9, 14, 11);
   RandomStream random(2);
   for (int i = 0; i < 1000; ++i) {
     const double theta = 0.5 * kPi * random.uniform(), phi = 2.0 * kPi * random.uniform();
@@ -78,7 +78,7 @@ TEST(PlaneGrid, FindsTheBinWhoseRangesHoldThePlane) {
 }
 
 TEST(PlaneGrid, HasNoBinBeyondItsRadius) {
-  const PlaneGrid g = grid(8, 8, 8);
+  const PlaneGrid g = planeGrid(8, 8, 8);
   const Eigen::Vector3d n = Eigen::Vector3d(1.0, 2.0, 3.0).normalized();
   EXPECT_TRUE(g.find(ReflectionPlane(n, n.dot(kCenter) + 0.999 * kRadius)));
   EXPECT_FALSE(g.find(ReflectionPlane(n, n.dot(kCenter) + 1.001 * kRadius)));
@@ -86,7 +86,7 @@ TEST(PlaneGrid, HasNoBinBeyondItsRadius) {
 }
 
 TEST(PlaneGrid, PolesAndSeamsBelongToABin) {
-  const PlaneGrid g = grid(8, 8, 8);
+  const PlaneGrid g = planeGrid(8, 8, 8);
   for (const Eigen::Vector3d& n :
        {Eigen::Vector3d(0.0, 0.0, 1.0), Eigen::Vector3d(0.0, 0.0, -1.0), Eigen::Vector3d(1.0, 0.0, 0.0),
         Eigen::Vector3d(-1.0, 0.0, 0.0), Eigen::Vector3d(0.0, -1.0, 0.0), Eigen::Vector3d(1.0, -1e-17, 0.0)}) {
@@ -102,7 +102,7 @@ TEST(PlaneGrid, PolesAndSeamsBelongToABin) {
 
 /// A step moves the plane by one bin at most: the angle by the diagonal of a bin, the offset by one step of r.
 TEST(PlaneGrid, EveryStepLandsNextDoor) {
-  for (const PlaneGrid& g : {grid(6, 8, 5), grid(16, 16, 16), grid(5, 24, 4)}) {
+  for (const PlaneGrid& g : {planeGrid(6, 8, 5), planeGrid(16, 16, 16), planeGrid(5, 24, 4)}) {
     for (std::size_t i = 0; i < g.size(); ++i) {
       const Bin bin = g.bin(i);
       const ReflectionPlane from = g.plane(bin);
@@ -131,7 +131,7 @@ TEST(PlaneGrid, EveryStepLandsNextDoor) {
 }
 
 TEST(PlaneGrid, StepsLeadAcrossTheSeamsAsDerived) {
-  const PlaneGrid g = grid(6, 8, 5);
+  const PlaneGrid g = planeGrid(6, 8, 5);
   EXPECT_TRUE(*g.step({2, 7, 1}, 0, 1, 0) == (Bin{2, 0, 1}));  // phi wraps at equal r
   EXPECT_TRUE(*g.step({2, 0, 1}, 0, -1, 0) == (Bin{2, 7, 1}));
   EXPECT_TRUE(*g.step({0, 1, 1}, -1, 0, 0) == (Bin{0, 5, 1}));  // past the pole: (-theta, phi + pi, r)
@@ -145,7 +145,7 @@ int expectedReach(const PlaneGrid& g, int t) {
 }
 
 TEST(PlaneGrid, TwentySixNeighboursWhereBinsAreNoSlivers) {
-  const PlaneGrid g = grid(16, 16, 16);  // phi steps are four theta steps wide: no slivers where sin(theta) > 1/4
+  const PlaneGrid g = planeGrid(16, 16, 16);  // phi steps are four theta steps wide: no slivers where sin(theta) > 1/4
   int num_checked = 0;
   for (std::size_t i = 0; i < g.size(); ++i) {
     const Bin bin = g.bin(i);
@@ -167,7 +167,7 @@ TEST(PlaneGrid, TwentySixNeighboursWhereBinsAreNoSlivers) {
 
 TEST(PlaneGrid, NeighboursCoverAStepOfThetaAllAround) {
   // Near the pole too: every bin of the same r whose normal lies within a step of theta along a circle of latitude.
-  const PlaneGrid g = grid(32, 128, 3);
+  const PlaneGrid g = planeGrid(32, 128, 3);
   for (int t = 0; t < g.numTheta(); ++t) {
     const Bin bin{t, 5, 1};
     const auto neighbours = g.neighbours(bin);
@@ -181,7 +181,7 @@ TEST(PlaneGrid, NeighboursCoverAStepOfThetaAllAround) {
 }
 
 TEST(PlaneGrid, VisitsItsNeighboursAndStopsWhenTold) {
-  const PlaneGrid g = grid(8, 8, 8);
+  const PlaneGrid g = planeGrid(8, 8, 8);
   for (const Bin& bin : {Bin{0, 0, 0}, Bin{7, 3, 7}, Bin{4, 7, 3}}) {
     std::vector<std::size_t> visited;
     EXPECT_TRUE(g.visitNeighbours(bin, [&](std::size_t i) {
@@ -198,7 +198,7 @@ TEST(PlaneGrid, VisitsItsNeighboursAndStopsWhenTold) {
 }
 
 TEST(PlaneGrid, RefusesBadSizes) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(PlaneGrid(0, 8, 8, kCenter, 1.0), std::invalid_argument);
   EXPECT_THROW(PlaneGrid(8, 0, 8, kCenter, 1.0), std::invalid_argument);
   EXPECT_THROW(PlaneGrid(8, 7, 8, kCenter, 1.0), std::invalid_argument);
@@ -206,8 +206,8 @@ TEST(PlaneGrid, RefusesBadSizes) {
   EXPECT_THROW(PlaneGrid(5000, 8, 8, kCenter, 1.0), std::invalid_argument);
   EXPECT_THROW(PlaneGrid(8, 8, 8, kCenter, 0.0), std::invalid_argument);
   EXPECT_THROW(PlaneGrid(8, 8, 8, kCenter, -1.0), std::invalid_argument);
-  EXPECT_THROW(PlaneGrid(8, 8, 8, kCenter, kNaN), std::invalid_argument);
-  EXPECT_THROW(PlaneGrid(8, 8, 8, {0.0, kNaN, 0.0}, 1.0), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 8, 8, kCenter, kNotANumber), std::invalid_argument);
+  EXPECT_THROW(PlaneGrid(8, 8, 8, {0.0, kNotANumber, 0.0}, 1.0), std::invalid_argument);
   try {
     PlaneGrid(8, 7, 8, kCenter, 1.0);
   } catch (const std::invalid_argument& error) {
