@@ -607,11 +607,27 @@ def save_figure(path, draw):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
+    figure, axes = pyplot.subplots(figsize=(8, 5), layout="constrained")
     draw(axes)
     axes.grid(alpha=0.3)
     figure.savefig(path, dpi=150)
     pyplot.close(figure)
+
+
+def rates_in(content, label=""):
+    """(label, Rate) of all rates in nested dicts, which are labels of their own."""
+    if isinstance(content, Rate):
+        return [(label.strip(), content)] if content.total else []
+    return [rate for key, value in content.items() for rate in rates_in(value, f"{label} {key}")] if isinstance(content, dict) else []
+
+
+def draw_rates(axes, rates):
+    """Dots with their intervals, one row a rate."""
+    for row, (label, rate) in enumerate(rates):
+        low, high = wilson(rate.count, rate.total)
+        axes.plot([100 * low, 100 * high], [-row, -row], "C0")
+        axes.plot(100 * rate.count / rate.total, -row, "C0o")
+    axes.set(yticks=range(0, -len(rates), -1), yticklabels=[label for label, _ in rates], xlim=(0, 100), xlabel="%")
 
 
 # Programs and runs
@@ -638,6 +654,7 @@ def make_parser(description, models=True):
     add("--jobs", type=natural, default=os.cpu_count(), help="number of processes, all cores by default")
     add("--scheduler", metavar="ADDRESS", help="Dask scheduler that spreads the work in place of --jobs")
     add("--json", metavar="FILE", help="write the results; an interrupted run goes on from FILE.journal")
+    add("--figure", metavar="FILE", help="draw the rates with their intervals")
     add("--seed", type=int, default=0, help="of all random numbers")
     add("--export", metavar="DIR", help="write each cloud as PCD, and truth.json")
     add("--judge", metavar="DIR", help="judge what another program answered: a file NAME.json or NAME.txt a cloud")
@@ -669,6 +686,8 @@ def main(program, arguments):
 
 def write_json(arguments, content):
     """Writes the results of --json, rates as numbers, whole or not at all; then the journal is not needed any more."""
+    if arguments.figure and rates_in(content):
+        save_figure(arguments.figure, lambda axes: draw_rates(axes, rates_in(content)))
     if arguments.json:
         write_whole(arguments.json, json.dumps(content, indent=1, default=lambda rate: rate.json) + "\n")
         for path in pathlib.Path(arguments.json).parent.glob(pathlib.Path(arguments.json).name + "*.journal"):

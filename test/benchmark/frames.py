@@ -288,7 +288,6 @@ def make_parser(description, methods):
 
 if __name__ == "__main__":
     parser = make_parser(__doc__, METHODS)
-    parser.add_argument("--figure", metavar="FILE", help="draw Figure 12 as FILE_translation and FILE_rotation")
     asked = parser.parse_args()
     asked.methods = [m for m in METHODS if m in {*asked.methods, "mass"}] if not asked.judge else ["judged", "mass"]
     bench.main(main, asked)

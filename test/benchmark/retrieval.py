@@ -395,5 +395,4 @@ def evaluate(arguments):
 if __name__ == "__main__":
     parser = bench.make_parser(__doc__)
     parser.add_argument("--descriptors", metavar="DIR", help="folder that keeps descriptors, 1 MB a model")
-    parser.add_argument("--figure", metavar="FILE", help="draw Figures 13 and 14 as FILE_files, FILE_turned and FILE_classes")
     bench.main(main, parser.parse_args())
