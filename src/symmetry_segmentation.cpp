@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
-#include "core/geometry/point_samples.h"
 #include "core/geometry/curve_order.h"
+#include "core/geometry/point_samples.h"
 #include "mesh_conversion.h"
 
 namespace pcl_symmetry {

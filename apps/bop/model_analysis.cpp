@@ -7,9 +7,9 @@
 
 #include "bop/rejections.h"
 #include "command_line/file_errors.h"
-#include "io/json_values.h"
-#include "io/exact_coordinates.h"
 #include "core/geometry/diameter.h"
+#include "io/exact_coordinates.h"
+#include "io/json_values.h"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {

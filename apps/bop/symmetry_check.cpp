@@ -6,9 +6,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "io/json_values.h"
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
+#include "io/json_values.h"
 
 namespace pcl_symmetry::apps {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bop/surface_evidence.h"
 #include "bop/models_info.h"
+#include "bop/surface_evidence.h"
 
 namespace pcl_symmetry::apps {
 

@@ -11,15 +11,15 @@
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
-#include "io/file_text.h"
-#include "io/json_values.h"
-#include "pictures/scene_page.h"
 #include "io/exact_coordinates.h"
+#include "io/file_text.h"
 #include "io/input_shape.h"
+#include "io/json_values.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_scene.h"
-#include "scene/scene_report.h"
+#include "pictures/scene_page.h"
 #include "scene/folder_watch.h"
+#include "scene/scene_report.h"
 
 namespace {
 

@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
+#include "bop/isaac_axes.h"
 #include "bop/model_analysis.h"
 #include "bop/model_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/run_tool.h"
-#include "io/json_values.h"
-#include "io/shape_output.h"
-#include "bop/isaac_axes.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "io/json_values.h"
+#include "io/shape_output.h"
 
 namespace {
 

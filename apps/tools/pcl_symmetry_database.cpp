@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "command_line/input_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
+#include "command_line/input_files.h"
 #include "command_line/run_tool.h"
 #include "io/json_values.h"
 #include "io/shape_output.h"

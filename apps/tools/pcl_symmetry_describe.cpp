@@ -15,21 +15,21 @@
 #include <vector>
 
 #include "command_line/batch_options.h"
-#include "command_line/csv.h"
-#include "command_line/input_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/csv.h"
 #include "command_line/file_errors.h"
+#include "command_line/input_files.h"
 #include "command_line/run_tool.h"
-#include "io/file_text.h"
+#include "core/base/parallel.h"
+#include "core/matching/shape_description.h"
+#include "core/matching/symmetry_descriptor.h"
 #include "io/exact_coordinates.h"
+#include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
-#include "core/base/parallel.h"
-#include "core/matching/symmetry_descriptor.h"
-#include "core/matching/shape_description.h"
-#include "pcl_symmetry/point_types.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
+#include "pcl_symmetry/point_types.h"
 
 namespace {
 

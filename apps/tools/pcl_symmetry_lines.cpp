@@ -13,11 +13,11 @@
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
 #include "io/json_values.h"
-#include "pictures/contour_input.h"
-#include "pictures/raster_image.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/core/symmetry_map.h"
 #include "pcl_symmetry/planar_symmetry_transform_2d.h"
+#include "pictures/contour_input.h"
+#include "pictures/raster_image.h"
 
 namespace {
 

@@ -8,17 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "command_line/run_on_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
+#include "io/cloud_fields.h"
+#include "io/exact_coordinates.h"
+#include "io/input_shape.h"
+#include "io/shape_output.h"
 #include "pictures/picture.h"
 #include "pictures/raster_image.h"
 #include "pictures/volume_image.h"
-#include "io/exact_coordinates.h"
-#include "io/input_shape.h"
-#include "io/cloud_fields.h"
-#include "io/shape_output.h"
 #include "tools/symmetry_measure.h"
 
 namespace {

@@ -6,21 +6,21 @@
 #include <utility>
 #include <vector>
 
-#include "command_line/run_on_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
+#include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
-#include "io/json_values.h"
-#include "pictures/scene_page.h"
-#include "pictures/picture.h"
-#include "io/exact_coordinates.h"
-#include "io/input_shape.h"
 #include "io/answer_words.h"
 #include "io/cloud_fields.h"
+#include "io/exact_coordinates.h"
+#include "io/input_shape.h"
+#include "io/json_values.h"
 #include "io/shape_output.h"
 #include "io/turn_values.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "pictures/picture.h"
+#include "pictures/scene_page.h"
 
 namespace {
 

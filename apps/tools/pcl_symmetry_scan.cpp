@@ -9,12 +9,12 @@
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
-#include "io/json_values.h"
-#include "scanner/virtual_scanner.h"
+#include "core/base/constants.h"
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
+#include "io/json_values.h"
 #include "io/shape_output.h"
-#include "core/base/constants.h"
+#include "scanner/virtual_scanner.h"
 
 namespace {
 

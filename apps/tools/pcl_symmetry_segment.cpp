@@ -8,19 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "command_line/run_on_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
+#include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
-#include "pictures/scene_page.h"
-#include "pictures/picture.h"
 #include "io/exact_coordinates.h"
-#include "io/input_shape.h"
 #include "io/face_labels.h"
+#include "io/input_shape.h"
 #include "io/labelled_shape.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_segmentation.h"
+#include "pictures/picture.h"
+#include "pictures/scene_page.h"
 
 namespace {
 

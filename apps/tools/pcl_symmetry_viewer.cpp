@@ -8,10 +8,10 @@
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
-#include "pictures/drawing.h"
-#include "io/input_shape.h"
 #include "io/exact_coordinates.h"
+#include "io/input_shape.h"
 #include "io/shape_input.h"
+#include "pictures/drawing.h"
 #include "viewer/viewer_window.h"
 
 namespace {

@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "command_line/run_on_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
+#include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
-#include "io/json_values.h"
-#include "pictures/picture.h"
+#include "core/base/constants.h"
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
+#include "io/json_values.h"
 #include "io/shape_output.h"
-#include "core/base/constants.h"
 #include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pcl_symmetry/viewpoint_selection.h"
+#include "pictures/picture.h"
 
 namespace {
 

@@ -15,10 +15,10 @@
 
 #include <algorithm>
 
-#include "pictures/picture_actors.h"
-#include "pictures/patch_geometry.h"
-#include "io/shape_output.h"
 #include "core/base/constants.h"
+#include "io/shape_output.h"
+#include "pictures/patch_geometry.h"
+#include "pictures/picture_actors.h"
 
 namespace pcl_symmetry::apps {
 

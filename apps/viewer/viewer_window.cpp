@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
-#include "pictures/picture_actors.h"
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pictures/picture_actors.h"
 #include "viewer/isp_frames.h"
 #include "viewer/viewer_canvas.h"
 #include "viewer/viewer_texts.h"

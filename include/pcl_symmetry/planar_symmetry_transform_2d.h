@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "pcl_symmetry/core/reflection_plane.h"
 #include "pcl_symmetry/core/line_transform.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

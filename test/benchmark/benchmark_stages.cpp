@@ -19,13 +19,13 @@
 #include "core/geometry/axis_rotations.h"
 #include "core/matching/compact_index.h"
 #include "core/matching/shape_description.h"
-#include "core/registration/ranked_poses.h"
 #include "core/matching/view_code_index.h"
+#include "core/registration/ranked_poses.h"
 #include "models.h"
+#include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/plane_detection.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
-#include "pcl_symmetry/core/planar_transform.h"
 
 namespace {
 

@@ -6,14 +6,14 @@
 #include <functional>
 #include <map>
 
-#include "command_line/tool_errors.h"
-#include "io/assimp_reader.h"
-#include "io/load_module.h"
-#include "io/shape_input.h"
-#include "io/face_labels.h"
 #include "bop/isaac_axes.h"
 #include "bop/models_info.h"
+#include "command_line/tool_errors.h"
 #include "fuzz/byte_source.h"
+#include "io/assimp_reader.h"
+#include "io/face_labels.h"
+#include "io/load_module.h"
+#include "io/shape_input.h"
 
 // The module is linked, not loaded.
 void* pcl_symmetry::apps::addressInModule(const std::string&, const char*) {

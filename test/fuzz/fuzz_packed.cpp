@@ -3,9 +3,9 @@
 
 #include "core/matching/view_code_index.h"
 #include "fuzz/byte_source.h"
+#include "recognition/compact_forms.h"
 #include "recognition/packed_bytes.h"
 #include "recognition/packed_model.h"
-#include "recognition/compact_forms.h"
 
 namespace {
 

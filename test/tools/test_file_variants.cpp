@@ -5,8 +5,8 @@
 #include <cstring>
 #include <thread>
 
-#include "tools/temporary_folder.h"
 #include "io/shape_input.h"
+#include "tools/temporary_folder.h"
 
 namespace {
 

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/tool_run.h"
 #include "io/shape_input.h"
+#include "tools/tool_run.h"
 
 namespace {
 

@@ -9,11 +9,11 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/detection/fold_spectrum.h"
+#include "core/detection/plane_tolerance.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
 #include "core/geometry/revolution_of_normals.h"
-#include "core/detection/plane_tolerance.h"
 
 namespace pcl_symmetry {
 

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/plane_judge.h"
 #include "core/detection/plane_fit.h"
+#include "core/detection/plane_judge.h"
+#include "pcl_symmetry/core/axial_transform.h"
 #include "pcl_symmetry/core/plane_detection.h"
 #include "pcl_symmetry/core/reflection_plane.h"
-#include "pcl_symmetry/core/axial_transform.h"
 
 namespace pcl_symmetry {
 

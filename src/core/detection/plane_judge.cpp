@@ -8,12 +8,12 @@
 #include "core/detection/candidates.h"
 #include "core/detection/part_search.h"
 #include "core/evidence/missing_surface.h"
-#include "core/evidence/plane_support.h"
 #include "core/evidence/plane_stiffness.h"
+#include "core/evidence/plane_support.h"
 #include "core/evidence/surface_distance.h"
+#include "core/geometry/open_borders.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
-#include "core/geometry/open_borders.h"
 #include "core/scan/sensor_noise.h"
 
 namespace pcl_symmetry {

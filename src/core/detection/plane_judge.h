@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/detection/plane_fit.h"
 #include "core/detection/turn_signs.h"
 #include "core/evidence/cut_planes.h"
 #include "core/evidence/outermost_points.h"
 #include "core/evidence/split_surface.h"
 #include "core/geometry/thin_shape.h"
-#include "core/detection/plane_fit.h"
 #include "pcl_symmetry/core/plane_detection.h"
 
 namespace pcl_symmetry {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/geometry/point_samples.h"
 #include "core/detection/plane_tolerance.h"
+#include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/plane_lattice.h"
 #include "core/detection/plane_fit.h"
+#include "core/detection/plane_lattice.h"
 #include "pcl_symmetry/core/plane_detection.h"
 
 namespace pcl_symmetry {

@@ -8,8 +8,8 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/matching/shape_signature.h"
 #include "core/geometry/axis_rotations.h"
+#include "core/matching/shape_signature.h"
 
 namespace pcl_symmetry {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/geometry/closest_point_grid.h"
-#include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {

@@ -17,9 +17,9 @@ namespace {
 constexpr double kHiddenMargin = 0.1;
 // share of the points; chosen: between 0.1 for scans (the rim of a sphere) and 0.3 or more for whole objects
 constexpr double kMostHidden = 0.18;
-// share of the points; chosen: a scan has one layer but at its silhouettes, which a quarter of the points leave room for.
-// Of 100 models of the training half of the Princeton Shape Benchmark, 200 of 200 scans of 10 000 and of 1000 points
-// have less, 99 % of those with noise of 0.5 % of the diagonal, and 6 % of the whole clouds.
+// share of the points; chosen: a scan has one layer but at its silhouettes, which a quarter of the points leave room
+// for. Of 100 models of the training half of the Princeton Shape Benchmark, 200 of 200 scans of 10 000 and of 1000
+// points have less, 99 % of those with noise of 0.5 % of the diagonal, and 6 % of the whole clouds.
 constexpr double kMostLayered = 0.25;
 // depth over width of one surface; chosen: it slants by up to 76 degrees. Half takes steep surfaces for layers, twice
 // misses layers that lie close behind each other.

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/point_samples.h"
 #include "core/geometry/open_borders.h"
+#include "core/geometry/point_samples.h"
 #include "core/scan/scan_density.h"
 #include "core/scan/single_view.h"
 

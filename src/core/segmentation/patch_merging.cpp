@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/segmentation/consensus.h"
-#include "core/segmentation/part_evidence.h"
 #include "core/segmentation/border_smoothing.h"
+#include "core/segmentation/consensus.h"
 #include "core/segmentation/fragments.h"
 #include "core/segmentation/mirrored_labels.h"
+#include "core/segmentation/part_evidence.h"
 #include "core/segmentation/segment_tree.h"
 
 namespace pcl_symmetry {

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
-#include "core/segmentation/symmetry_features.h"
 #include "core/segmentation/segment_tree.h"
+#include "core/segmentation/symmetry_features.h"
 #include "core/segmentation/two_means_split.h"
 
 namespace pcl_symmetry {

@@ -4,9 +4,9 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/transform/lookup_table.h"
 #include "core/transform/bundle_lattice.h"
 #include "core/transform/lane_sums.h"
+#include "core/transform/lookup_table.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {

@@ -6,10 +6,10 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/transform/edt_samples.h"
-#include "core/transform/free_space.h"
-#include "core/transform/lookup_table.h"
 #include "core/transform/filled_slabs.h"
+#include "core/transform/free_space.h"
 #include "core/transform/line_kernel.h"
+#include "core/transform/lookup_table.h"
 
 namespace pcl_symmetry {
 

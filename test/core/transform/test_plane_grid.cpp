@@ -22,7 +22,8 @@ PlaneGrid planeGrid(int num_theta, int num_phi, int num_radius) {
 }
 
 std::vector<PlaneGrid> someGrids() {
-  return {planeGrid(1, 2, 1), planeGrid(3, 4, 5), planeGrid(16, 16, 16), planeGrid(7, 10, 9), planeGrid(32, 128, 6), planeGrid(12, 2, 3)};
+  return {planeGrid(1, 2, 1),  planeGrid(3, 4, 5),    planeGrid(16, 16, 16),
+          planeGrid(7, 10, 9), planeGrid(32, 128, 6), planeGrid(12, 2, 3)};
 }
 
 bool operator==(const Bin& a, const Bin& b) {
