@@ -133,13 +133,13 @@ def frames(out):
     sheet = Sheet(2, len(clouds), (0.9, -1.6, 0.7), size=2.6)
     colors = (VERMILION, GREEN, BLUE)
     for k, cloud in enumerate(clouds):
-        axes = sheet.panel("" if k else "center of mass, PCA", cloud)
+        axes = sheet.panel("" if k else "mass, PCA", cloud)
         sheet.dots(axes, cloud, GRAY, 0.5)
         length = 0.5 * np.linalg.norm(np.ptp(cloud, axis=0))
         sheet.cross(axes, cloud.mean(axis=0), np.linalg.svd(cloud - cloud.mean(axis=0), full_matrices=False)[2].T, length, colors)
     for k, cloud in enumerate(clouds):
         frame = pcl_symmetry.frame(cloud)
-        axes = sheet.panel("" if k else "center of symmetry, principal symmetry axes", cloud)
+        axes = sheet.panel("" if k else "symmetry", cloud)
         sheet.dots(axes, cloud, GRAY, 0.5)
         sheet.cross(axes, frame.center, frame.axes, 0.5 * np.linalg.norm(np.ptp(cloud, axis=0)), colors)
         print(f"distance of the two centers {np.linalg.norm(frame.center - cloud.mean(axis=0)):.3f}")
