@@ -16,7 +16,7 @@ using Columns = std::array<std::size_t, 3>;
 using Cells = std::vector<std::string_view>;
 
 /// Cuts a line into cells without quotes.
-void split(std::string_view line, Cells& cells) {
+void splitRow(std::string_view line, Cells& cells) {
   const auto has = [&](char c) { return line.find(c) != std::string_view::npos; };
   const char separator = has(';') ? ';' : has(',') ? ',' : ' ';
   const auto ends = [&](char c) { return separator == ' ' ? c == ' ' || c == '\t' : c == separator; };
@@ -84,12 +84,12 @@ ExactShape readColumns(const std::string& path, std::string_view text) {
   for (std::size_t number = 1; lines.next(line); ++number) {
     const std::size_t comment = std::min(line.find('#'), line.find("//"));
     if (!columns && !named) {  // names may stand in a comment
-      split(line.substr(std::min(line.find_first_not_of("#/ \t"), line.size())), cells);
+      splitRow(line.substr(std::min(line.find_first_not_of("#/ \t"), line.size())), cells);
       named = namedColumns(cells);
       if (comment <= line.find_first_not_of(" \t")) num_names = cells.size();
       if (named) continue;
     }
-    split(line.substr(0, comment), cells);
+    splitRow(line.substr(0, comment), cells);
     if (cells.empty()) continue;
     std::uint64_t count = 0;
     if (!columns && !num_points && cells.size() == 1 && spellsCount(cells[0], &count)) {
