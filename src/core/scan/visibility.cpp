@@ -131,8 +131,8 @@ void leaveOutBeyond(const double* side, int size, Images& images) {
 Visibility::Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside) {
   if (width < 1 || height < 1 || depths.size() != static_cast<std::size_t>(width) * height)
     throw std::invalid_argument("depths: size " + std::to_string(depths.size()) + ", must be width * height > 0");
-  pictures_.push_back(
-      {projection, width, height, std::make_shared<const std::vector<float>>(std::move(depths)), outside, 1.0, {}});
+  auto picture = std::make_shared<const std::vector<float>>(std::move(depths));
+  pictures_.push_back({projection, width, height, std::move(picture), outside, 1.0, 0.0, {}});
 }
 
 std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint) {

@@ -38,7 +38,8 @@ TEST(SampleTriangles, SpreadsPointsByArea) {
 }
 
 TEST(SampleTriangles, LeavesOutWhatIsNotFinite) {
-  Points vertices = (Points(3, 4) << 0, 2, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1).finished();
+  Points vertices(3, 4);
+  vertices << 0, 2, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1;
   vertices(0, 3) = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(sampleTriangles(vertices, {{0, 1, 2}, {0, 1, 3}}, 100).allFinite());
 }
