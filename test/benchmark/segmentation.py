@@ -11,7 +11,7 @@ segmentations. Methods:
   one, k-means one segment; six clusters of the centers of the faces
   segment      pcl_symmetry.segment() on the mesh
   points       the same on 30 000 points; a face takes the label of the nearest one
-  concavity, symmetry       pcl_symmetry_segment with less evidence
+  concavity    pcl_symmetry_segment with less evidence
   paper-1 to paper-4        pcl_symmetry_segment by splitting as in the paper, by depth
 """
 import pathlib

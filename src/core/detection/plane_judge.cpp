@@ -52,7 +52,8 @@ constexpr double kStillShare = 0.5;
 constexpr double kStill = 2.0;
 // Share of the samples of a scan that a plane moves to where something is known, below which its confidence falls: a
 // table lies on itself, and what stands on it lands below, where nothing was seen. chosen: no right plane of 100
-// labelled objects in frames of a Kinect is lost, and a table with a carton and bottles is no symmetry.
+// labelled objects in frames of a Kinect is lost, and a table with a carton and bottles is no symmetry. Of 160 planes
+// of virtual scans three are lost.
 constexpr double kLeastTold = 0.1;
 // Tolerances within which points that resolve no surface are a sheet or a line. chosen: noise of 1 % of the length of a
 // line holds 97 % of the points within 2.7; at half, such lines have axes, at twice, thick noisy plates lose a plane.

@@ -37,7 +37,8 @@ def register(
     guess: (4, 4), tried beside many other poses; None: the identity.
     around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.
     source_viewpoint, target_viewpoint: as in planes().
-    Poses of a wrong object have a merit below 0.32, those of the right one 0.5 or more.
+    With thousands of points, poses of a wrong object have a merit below 0.32, those of the right one 0.5 or more. Clouds of
+    a few hundred points reach 0.4 on wrong objects, too; fewer than 100 do not converge.
     """
     import numpy as np
 

@@ -573,7 +573,7 @@ class Registration(Result):
     score: PoseScore
     """Of the transform."""
     converged: bool
-    """Whether a pose was found that the clouds bear out."""
+    """Whether both clouds have 100 points and the merit is at least 0.4."""
     poses: List[Tuple["Doubles", PoseScore]]
     """(transform, score), best first: poses that symmetry makes equal have like merits."""
     covariance: Optional["Doubles"]
