@@ -18,7 +18,7 @@ if(PCL_SYMMETRY_SANITIZE)
   if(PCL_SYMMETRY_SANITIZE MATCHES undefined)
     # Null addresses end in a signal anyway, those beyond an array in the address sanitizer; unaligned ones and wrong dynamic
     # types are not looked for. measured: checking each access for null, alignment and type takes half as much time again to
-    # compile (core/refinement: 74 s in place of 50 s), checking the arithmetic of pointers a tenth.
+    # compile (core/detection: half as long again), checking the arithmetic of pointers a tenth.
     add_compile_options(-fno-sanitize=null,alignment,vptr,pointer-overflow)
   endif()
   # The address sanitizer opens the modules of the tools in their place: only the older form of the path in the program

@@ -35,7 +35,7 @@ std::vector<float> detail::describePRST(const Points& points, const PRSTParamete
     frame.probabilities = false;
     frame.seed = parameters.seed;
     frame.turns = false;
-    frame.num_threads = frame.edt.num_threads = parameters.num_threads;
+    frame.num_threads = parameters.num_threads;
     T_frame_input = symmetryFrame(points, frame, seen).T_canonical_input;
   }
   return symmetryDescriptors(points, T_frame_input, options).prst;

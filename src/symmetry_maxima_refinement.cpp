@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/detection/standing_object.h"
 #include "core/evidence/plane_support.h"
 
 namespace pcl_symmetry::detail {
@@ -14,12 +13,15 @@ namespace pcl_symmetry::detail {
 DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const SymmetryMap& map,
                            const DetectionOptions& options, const MakeSearch& search,
                            const std::optional<Visibility>& seen, const std::optional<Points>& normals) {
-  const Visibility* visibility = seen ? &*seen : nullptr;
-  const Points* given = normals ? &*normals : nullptr;
+  PlaneInput input(points, seen ? &*seen : nullptr);
+  if (normals) input.normals = &*normals;
+  if (edt) {
+    input.edt = edt;
+    input.map = &map;
+  }
+  input.make_search = search;
   DetectedPlanes found;
-  static_cast<Detection&>(found) = edt ? refineMaxima(points, *edt, map, options, search, visibility, given)
-                                       : detectPlanes(points, options, search, visibility, given);
-  if (visibility && !visibility->supports().empty()) doubtSlantedPlanes(found.planes, points, *visibility, options);
+  static_cast<Detection&>(found) = detectPlanes(input, options);
   found.points = std::move(points);
   return found;
 }

@@ -27,9 +27,9 @@ struct CommonOptions {
   template <typename Options>
   void applyTo(Options& options) const {
     options.seed = librarySeed();
-    options.num_threads = options.edt.num_threads = threads;
-    options.edt.num_cells = grid;
-    options.edt.sigma = sigma.value_or(0.0);
+    options.num_threads = threads;
+    options.num_cells = grid;
+    options.sigma = sigma.value_or(0.0);
   }
 };
 

@@ -1,7 +1,7 @@
 /// The words of answers, in tables, JSON and pictures.
 #pragma once
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry::apps {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry::apps {
 

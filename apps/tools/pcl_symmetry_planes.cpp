@@ -298,7 +298,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   namingFile(input.path, [&] {
     DetectionOptions detection = options.detection;
     options.common.applyTo(detection);
-    detection.num_threads = detection.edt.num_threads = job.numThreads();
+    detection.num_threads = job.numThreads();
     refinement.setOptions(detection);
     if (options.tolerance) refinement.setTolerance(*options.tolerance);
     refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));

@@ -128,7 +128,7 @@ double choose(ViewpointSelection& selection, const InputShape& input, const View
   DetectionOptions detection;
   detection.approximate = true;
   options.common.applyTo(detection);
-  detection.num_threads = detection.edt.num_threads = job.numThreads();
+  detection.num_threads = job.numThreads();
   Step searching(job.console(), "Searching planes");
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   const std::vector<SymmetryPlane> planes = namingFile(input.path, [&] {
@@ -139,7 +139,8 @@ double choose(ViewpointSelection& selection, const InputShape& input, const View
     if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
     return found;
   });
-  selection.setPlanes(planes, refinement.getAxes(), findLocalMaxima(refinement.getSymmetryMap(), detection.maxima));
+  selection.setPlanes(planes, refinement.getAxes(),
+                      findLocalMaxima(refinement.getSymmetryMap(), detection.expert.maxima));
   selection.setInputCloud(input.points);
   if (options.up) selection.setUp(*options.up);
   selection.setSeparation(options.separation * kPi / 180.0);

@@ -52,7 +52,7 @@ struct ToUnitBall {
 
 SymmetryFrame frameOf(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const ViewerModelOptions& options) {
   SymmetryAlignment<pcl::PointXYZ> alignment;
-  alignment.setGridSize(options.detection.edt.num_cells);
+  alignment.setGridSize(options.detection.num_cells);
   alignment.setRandomSeed(options.detection.seed);
   alignment.setNumberOfThreads(options.detection.num_threads);
   alignment.setViewpoint(options.viewpoint);
@@ -136,7 +136,7 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
   for (SymmetryCenter& center : model.centers) center.point = normalize(center.point);
 
   model.views.setPlanes(model.planes, model.axes,
-                        findLocalMaxima(refinement.getSymmetryMap(), options.detection.maxima));
+                        findLocalMaxima(refinement.getSymmetryMap(), options.detection.expert.maxima));
   model.views.setInputCloud(model.points);
   if (options.up) model.views.setUp(*options.up);
   model.segmentation = segmentationOf(options, refinement.usedViewpoint());

@@ -11,7 +11,7 @@
 
 #include "command_line/command_line.h"
 #include "io/shape_input.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/viewpoint_selection.h"

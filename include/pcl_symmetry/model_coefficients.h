@@ -3,7 +3,7 @@
 #include <pcl/ModelCoefficients.h>
 
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 /// Planes and axes of symmetry as models of PCL's segmentation, and back. The header of the coefficients is left empty.
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

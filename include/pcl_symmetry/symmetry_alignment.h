@@ -38,12 +38,12 @@ public:
   }
   /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
   void setGridSize(int num_cells) {
-    change([&](FrameOptions& changed) { changed.edt.num_cells = num_cells; });
+    change([&](FrameOptions& changed) { changed.num_cells = num_cells; });
   }
   void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
-    change([&](FrameOptions& changed) { changed.num_threads = changed.edt.num_threads = num_threads; });
+    change([&](FrameOptions& changed) { changed.num_threads = num_threads; });
   }
 
   /// Finds the closest points by a search of PCL in place of FLANN's k-d tree. Only the axes of turns of a scan need

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -74,17 +74,17 @@ public:
   }
   /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
   void setGridSize(int num_cells) {
-    change([&](DetectionOptions& changed) { changed.edt.num_cells = num_cells; });
+    change([&](DetectionOptions& changed) { changed.num_cells = num_cells; });
   }
   /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
   /// that is more.
   void setSigma(double sigma) {
-    change([&](DetectionOptions& changed) { changed.edt.sigma = sigma; });
+    change([&](DetectionOptions& changed) { changed.sigma = sigma; });
   }
   void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
-    change([&](DetectionOptions& changed) { changed.num_threads = changed.edt.num_threads = num_threads; });
+    change([&](DetectionOptions& changed) { changed.num_threads = num_threads; });
   }
 
   /// Finds the closest points of Iterative Symmetric Points by a search of PCL in place of FLANN's k-d tree.

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "pcl_symmetry/completion.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/symmetry_database.h"

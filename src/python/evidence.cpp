@@ -63,7 +63,7 @@ PlaneRow rowOf(const JudgedPlane& judged) {
   PlaneRow row{};
   const Eigen::Vector4d coefficients = judged.plane.coefficients();
   std::copy(coefficients.data(), coefficients.data() + 4, row.coefficients);
-  row.kind = static_cast<std::int32_t>(kindOf(e));
+  row.kind = static_cast<std::int32_t>(e.kind);
   row.flat = e.flat;
   row.confidence = judged.plane.confidence;
   row.share = e.share;

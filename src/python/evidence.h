@@ -3,7 +3,7 @@
 
 #include <pybind11/numpy.h>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace pcl_symmetry::python {

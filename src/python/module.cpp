@@ -61,15 +61,17 @@ py::array_t<float> sampleMesh(const AnyArray& vertices, const AnyArray& faces, i
 PlaneSearch planes(const py::array& points, const py::object& viewpoint, DetectionOptions options,
                    std::size_t max_points, const py::object& normals) {
   const InputPoints input("points", points, max_points, options.seed);
-  options.edt.num_threads = options.num_threads;
   std::optional<Points> given;
   if (!normals.is_none()) given = input.atPoints("normals", arrayOf("normals", normals));
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+  const PointsRef used = input.points();
+  PlaneInput cloud(used, seen ? &*seen : nullptr);
+  if (given) cloud.normals = &*given;
   PlaneSearch search;
   if (seen) search.viewpoint = seen->viewpoint();
   {
     const py::gil_scoped_release release;
-    search.found = detectPlanes(input.points(), options, nullptr, seen ? &*seen : nullptr, given ? &*given : nullptr);
+    search.found = detectPlanes(cloud, options);
   }
   search.num_rows = input.numRows();
   search.rows = input.rows();
@@ -83,7 +85,7 @@ SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::si
   const py::gil_scoped_release release;
   FrameOptions options;
   options.seed = seed;
-  options.num_threads = options.edt.num_threads = threads;
+  options.num_threads = threads;
   return symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
 }
 

@@ -44,7 +44,7 @@ std::shared_ptr<const SymmetryFrame> PreparedCloud::frame(double unit) const {
   if (frame_) return frame_;
   FrameOptions options = options_.frame;
   options.probabilities = false;
-  options.num_threads = options.edt.num_threads = options_.num_threads;
+  options.num_threads = options_.num_threads;
   options.seed = options_.seed;
   options.turns = false;
   const Visibility* seen = surface.seen ? &*surface.seen : nullptr;

@@ -23,7 +23,7 @@
 #include "core/registration/ranked_poses.h"
 #include "models.h"
 #include "pcl_symmetry/core/planar_transform.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 
@@ -71,7 +71,7 @@ GaussianEdtOptions edtOptions(int num_threads, int num_cells = kCells) {
 
 DetectionOptions detectionOptions(int num_threads) {
   DetectionOptions options;
-  options.edt = edtOptions(num_threads);
+  options.num_cells = kCells;
   options.num_threads = num_threads;
   return options;
 }
@@ -103,9 +103,9 @@ void needsMap(benchmark::State& state, const Points& points, const GaussianEdt& 
 void needsDetection(benchmark::State& state, const Points& points, std::size_t num_planes, int num_maps = 1) {
   const DetectionOptions options;
   const GaussianEdt edt(points, edtOptions(1));
-  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
+  const PlaneGrid grid(options.expert.num_theta, options.expert.num_phi, options.expert.num_radius, edt.center(), edt.radius());
   needsTransform(state, edt);
-  for (int i = 0; i < num_maps; ++i) needsMap(state, points, edt, grid, options.num_samples);
+  for (int i = 0; i < num_maps; ++i) needsMap(state, points, edt, grid, options.expert.num_samples);
   needs(state, "nine_nearest", static_cast<double>(points.cols()));
   needs(state, "nearest", static_cast<double>(num_planes) * static_cast<double>(points.cols()));
   needs(state, "trilinear", static_cast<double>(num_planes) * state.counters["needs_exponential"]);
@@ -146,7 +146,7 @@ void detect(benchmark::State& state, const Points& points, const DetectionOption
   std::map<std::string, double> stages;
   std::size_t num_planes = 0;
   for (auto _ : state) {
-    const Detection detection = detectPlanes(points, options, nullptr, seen);
+    const Detection detection = detectPlanes({points, seen}, options);
     for (const auto& [stage, milliseconds] : detection.timing_ms)
       stages[stage] = std::min(stages.emplace(stage, milliseconds).first->second, milliseconds);
     num_planes = detection.planes.size();

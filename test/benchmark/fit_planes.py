@@ -209,7 +209,7 @@ def header(table, fit, errors):
     intervals = ["{%.3g, %.3g}" % share_errors(table, kind) for kind in range(3)]
     counts = [f"{table.right[table.kind == k].sum()} of {(table.kind == k).sum()}" for k in range(3)]
     return f"""
-/// The fitted numbers of the decision, by EvidenceKind.
+/// The fitted numbers of the decision, by CloudKind.
 struct ConfidenceFit {{
   std::array<std::vector<double>, 3> log_odds;  ///< coefficients of logOddsTerms()
   std::array<ShareInterval, 3> share_errors;    ///< of the share, units of shareUnit()

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "fuzz/byte_source.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace {
@@ -12,15 +12,15 @@ using namespace pcl_symmetry;
 /// A coarse search: what is looked for are wrong accesses, not exact planes.
 DetectionOptions quickOptions(fuzz::ByteSource& source) {
   DetectionOptions options;
-  options.edt.num_cells = 8 + source.below(9);
-  options.num_theta = 1 + source.below(8);
-  options.num_phi = 2 + 2 * source.below(8);
-  options.num_radius = 1 + source.below(8);
-  options.num_samples = 1 + source.below(16);
-  options.max_candidates = 1 + source.below(4);
-  options.num_coarse_samples = 10;
-  options.num_refine_samples = 10 + source.below(90);
-  options.max_iterations = 1 + source.below(4);
+  options.num_cells = 8 + source.below(9);
+  options.expert.num_theta = 1 + source.below(8);
+  options.expert.num_phi = 2 + 2 * source.below(8);
+  options.expert.num_radius = 1 + source.below(8);
+  options.expert.num_samples = 1 + source.below(16);
+  options.expert.max_candidates = 1 + source.below(4);
+  options.expert.num_coarse_samples = 10;
+  options.expert.num_refine_samples = 10 + source.below(90);
+  options.expert.max_iterations = 1 + source.below(4);
   options.approximate = source.flag();
   options.families = source.flag();
   options.turns = source.flag();
@@ -47,7 +47,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Points points = fuzz::takePoints(source, 300);
   try {
     const std::optional<Visibility> seen = is_scan ? Visibility::fromPoints(points, viewpoint) : std::nullopt;
-    const Detection detection = detectPlanes(points, options, nullptr, seen ? &*seen : nullptr);
+    const Detection detection = detectPlanes({points, seen ? &*seen : nullptr}, options);
     FUZZ_CHECK(points.allFinite());
     FUZZ_CHECK(static_cast<int>(detection.planes.size()) <= options.max_planes);
     for (const SymmetryPlane& plane : detection.planes)

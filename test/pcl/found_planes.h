@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry::test {

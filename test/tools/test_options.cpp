@@ -7,7 +7,7 @@
 #include "command_line/command_line.h"
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace {
 
@@ -115,9 +115,8 @@ TEST(Options, CommonFlagsReachTheOptionsOfTheLibrary) {
   values.common.applyTo(options);
   EXPECT_EQ(options.seed, 5u) << "the library starts at 1, the flag at 0";
   EXPECT_EQ(options.num_threads, 3);
-  EXPECT_EQ(options.edt.num_threads, 3);
-  EXPECT_EQ(options.edt.num_cells, 32);
-  EXPECT_EQ(options.edt.sigma, 0.5);
+  EXPECT_EQ(options.num_cells, 32);
+  EXPECT_EQ(options.sigma, 0.5);
   EXPECT_EQ(values.common.mesh_points, 500);
 }
 

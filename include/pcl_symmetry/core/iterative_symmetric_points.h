@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/reflection_plane.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

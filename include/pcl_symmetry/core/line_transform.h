@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/gaussian_edt_2d.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/reflection_plane.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/surface_graph.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

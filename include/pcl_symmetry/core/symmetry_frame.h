@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/point_set.h"
@@ -17,11 +17,13 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Options of symmetryFrame().
 struct FrameOptions {
-  GaussianEdtOptions edt;  ///< sigma = 0: 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more
-  int num_theta = 32;      ///< bins of the map that candidates for the first plane come from, >= 1
-  int num_phi = 128;       ///< even, >= 2
-  int num_radius = 64;     ///< >= 1
-  int num_samples = 64;    ///< samples of that map's transform, >= 1
+  int num_cells = 64;  ///< cells of the distance transform along each side, in [8, 512]
+  /// Its width, input units, >= 0; 0 = 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more.
+  double sigma = 0.0;
+  int num_theta = 32;    ///< bins of the map that candidates for the first plane come from, >= 1
+  int num_phi = 128;     ///< even, >= 2
+  int num_radius = 64;   ///< >= 1
+  int num_samples = 64;  ///< samples of that map's transform, >= 1
   /// Scores that differ by no more than this are equal, >= 0. The scores are D of whole clouds. measured: the sampled D
   /// of a symmetry varies by 0.02 to 0.03 with the angle of the plane; half separates equal planes, twice makes planes
   /// of different symmetry equal.

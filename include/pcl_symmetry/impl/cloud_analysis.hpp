@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

@@ -23,15 +23,15 @@ PlaneTolerance basinTolerance() {
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options) {
   std::vector<Candidate> candidates;
-  LocalMaximaOptions maxima = options.maxima;
+  LocalMaximaOptions maxima = options.expert.maxima;
   maxima.num_threads = options.num_threads;
   for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
-    if (static_cast<int>(candidates.size()) >= options.max_candidates) break;
+    if (static_cast<int>(candidates.size()) >= options.expert.max_candidates) break;
     const ReflectionPlane plane = cloud.toNormalized(maximum.plane);
     if (kBasin.anySame(candidates, plane, [](const Candidate& candidate) { return candidate.plane; })) continue;
     candidates.push_back({plane, true});
   }
-  if (options.principal_planes)
+  if (options.expert.principal_planes)
     for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane, false});
   return candidates;
 }
@@ -41,7 +41,7 @@ std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& plan
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud_.toNormalized(plane));
   std::vector<Candidate> found;
-  if (cloud_.isScan()) return found;
+  if (!cloud_.rules().completes_groups) return found;
   tried_.insert(tried_.end(), symmetries.begin(), symmetries.end());
   const auto add = [&](const ReflectionPlane& plane) {
     if (tolerance_.anySame(tried_, plane)) return;

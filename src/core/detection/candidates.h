@@ -4,7 +4,7 @@
 
 #include "core/detection/plane_fit.h"
 #include "core/detection/plane_tolerance.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
 
@@ -14,6 +14,11 @@ namespace pcl_symmetry {
 /// \param map over planes in the input frame.
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options);
+
+/// Limits within which two planes are one.
+inline PlaneTolerance mergeTolerance(const DetectionOptions& options) {
+  return {options.expert.merge_angle, options.expert.merge_offset};
+}
 
 /// Limits within which two maxima share one basin of refinement, normalised frame.
 PlaneTolerance basinTolerance();

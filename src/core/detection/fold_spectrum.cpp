@@ -133,8 +133,7 @@ std::optional<double> phaseByReflections(const NormalizedCloud& cloud, const Lin
   std::vector<double> mean(kAngles, 0.0);
   parallelBlocks(kAngles, num_threads, [&](std::size_t k) {
     const ReflectionPlane plane = cloud.toInput(fan.plane(static_cast<double>(k)));
-    for (const int i : samples)
-      mean[k] += cloud.edt(plane.reflect(cloud.points.col(i).cast<double>() * cloud.scale + cloud.center));
+    for (const int i : samples) mean[k] += cloud.edt(plane.reflect(cloud.toInput(cloud.points.col(i).cast<double>())));
   });
   const auto coefficient = [&](int m) {
     std::complex<double> sum = 0.0;
@@ -228,7 +227,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
 
 PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
                              const PlaneJudge& judge, const DetectionOptions& options) {
-  if (!cloud.isVolume()) return {std::move(planes), std::nullopt};
+  if (!cloud.rules().has_polygons) return {std::move(planes), std::nullopt};
   std::stable_sort(planes.begin(), planes.end(),
                    [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.confidence > b.confidence; });
   const std::optional<PlaneLattice> lattice = bestLattice(planes, cloud, all, options.num_threads);
@@ -246,7 +245,7 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
                               }),
                planes.end());
   for (JudgedPlane& one : judged) {
-    judge.decide(one.plane, std::max(one.plane.confidence, together));
+    judge.decision.decideBy(std::max(one.plane.confidence, together), one.plane);
     planes.push_back(std::move(one.plane));
   }
   return {std::move(planes), lattice};

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/plane_lattice.h"
 #include "core/detection/plane_judge.h"
+#include "core/detection/plane_lattice.h"
 
 namespace pcl_symmetry {
 

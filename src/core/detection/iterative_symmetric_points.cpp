@@ -10,10 +10,10 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "core/geometry/point_samples.h"
 #include "core/detection/far_test.h"
 #include "core/detection/step_equations.h"
 #include "core/detection/surface_fit.h"
+#include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {

@@ -76,17 +76,16 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       roughness(measures_.roughness / std::max(spacing, kLeastSpacing)),
       baseline(std::max(meanSupport(ownSupport(samples, num_threads)), kLeastBaseline)),
       sigma(edt.sigma() / scale),
-      final_sigma(std::min(sigma, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing))) {}
+      final_sigma(std::min(sigma, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing))),
+      kind_(visibility                     ? CloudKind::Scan
+            : roughness > kVolumeRoughness ? CloudKind::Volume
+                                           : CloudKind::Surface) {}
 
 NormalizedCloud::Measures::Measures(const Points& points, const LocalGeometry& geometry, int num_threads) {
   const std::array<std::function<void()>, 4> measurements{
       [&] { extent = farthestPair(points); }, [&] { principal_axes = principalAxes(points); },
       [&] { spacing = median(geometry.spacing); }, [&] { roughness = median(geometry.roughness); }};
   parallelBlocks(measurements.size(), num_threads, [&](std::size_t i) { measurements[i](); });
-}
-
-bool NormalizedCloud::isVolume() const {
-  return roughness > kVolumeRoughness && !isScan();
 }
 
 ReflectionPlane NormalizedCloud::toNormalized(const ReflectionPlane& input_plane) const {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <optional>
 
+#include "core/detection/far_test.h"
+#include "core/detection/kind_rules.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/principal_axes.h"
-#include "core/detection/far_test.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/visibility.h"
 
@@ -61,18 +63,28 @@ public:
   const double sigma;        ///< width of the weights when refinement starts: that of the edt
   const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma
 
-  bool isScan() const { return visibility.has_value(); }
+  CloudKind kind() const { return kind_; }
+  const KindRules& rules() const { return rulesOf(kind_); }
+  const Visibility* seen() const { return visibility ? &*visibility : nullptr; }  ///< null: from all sides
 
-  /// Whether the points have neighbours on all sides: noise beyond their spacing leaves no surface.
-  bool isVolume() const;
-
+  /// From the input frame to the normalized one and back. Lengths: times scale.
+  Eigen::Vector3d toNormalized(const Eigen::Vector3d& input_point) const { return (input_point - center) / scale; }
+  Eigen::Vector3d toInput(const Eigen::Vector3d& point) const { return point * scale + center; }
   ReflectionPlane toNormalized(const ReflectionPlane& input_plane) const;
   ReflectionPlane toInput(const ReflectionPlane& plane) const;
+  /// \param input_axis with a point and a direction, such as SymmetryAxis.
+  template <typename Axis>
+  Eigen::ParametrizedLine<double, 3> lineOf(const Axis& input_axis) const {
+    return {toNormalized(input_axis.point), input_axis.direction};
+  }
 
   /// D(f, gamma) of equation 2 for a normalised f: the full sum over the cells of the edt.
   /// \param input_plane in the input frame.
   /// \return in [0, 1].
   double score(const ReflectionPlane& input_plane) const;
+
+private:
+  const CloudKind kind_;
 };
 
 }  // namespace pcl_symmetry

@@ -11,12 +11,12 @@
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
 #include "core/detection/matched_region.h"
+#include "core/detection/plane_tolerance.h"
+#include "core/detection/surface_fit.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
 #include "core/geometry/flann_search.h"
-#include "core/detection/plane_tolerance.h"
-#include "core/detection/surface_fit.h"
 
 namespace pcl_symmetry {
 

@@ -1,4 +1,5 @@
 #include "core/detection/plane_families.h"
+#include "core/detection/candidates.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -37,14 +38,6 @@ constexpr double kCoplanar = 0.05;
 // one axis with their errors have less, and planes of a sphere more.
 constexpr double kLeastSpread = 0.02;
 
-// Share of the surface seen. chosen: lower values let prisms with many sides pass for round, higher ones break up
-// families with a handle, a spout or a base. Half a shape fits almost any plane, so that scans need more.
-constexpr double kFamilyShare = 0.92, kSeenFamilyShare = 0.98;
-// Points that judge a family. chosen: 1500 have a standard error of 0.5 % at a share of 0.96; more cost time.
-constexpr int kFamilySamples = 1500;
-// The same where points resolve no surface. chosen: a look-up in the density costs a tenth of a search; with a tenth of
-// them, sampling noise breaks up round bodies.
-constexpr int kVolumeFamilySamples = 15'000;
 constexpr int kRoughSampleShare = 5;  // chosen: one sample in this many screens a family
 // Confidence of the worst plane of a family, shares of that of a symmetry. chosen: one, and chance breaks up families
 // of few points; a quarter, and cones with five petals pass for round.
@@ -198,7 +191,7 @@ namespace {
 FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const std::vector<int>& samples,
                       std::uint64_t seed) {
   // A plane that maps most of a scan to what was not seen says little: only what contradicts counts.
-  const auto share_of = [&fit, is_scan = cloud.isScan()](const std::vector<int>& used) {
+  const auto share_of = [&fit, is_scan = cloud.seen() != nullptr](const std::vector<int>& used) {
     return [&fit, used, is_scan](const ReflectionPlane& plane) {
       const PlaneShares shares = fit.shares(plane, used);
       const double support = fit.relativeSupport(shares);
@@ -216,7 +209,7 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   test.refine = [&fit, samples](const ReflectionPlane& plane) {
     return fit.refined(plane, samples, kRefineIterations);
   };
-  test.min_share = cloud.isScan() ? kSeenFamilyShare : kFamilyShare;
+  test.min_share = cloud.rules().family_share;
   test.allowance = fit.familyAllowance();
   test.tolerance = kContainedOffset;
   return test;
@@ -229,7 +222,7 @@ struct FamilyGuesses {
 };
 
 FamilyGuesses guessFamilies(const NormalizedCloud& cloud, const std::vector<int>& samples, int num_threads) {
-  if (cloud.isVolume()) return {};  // normals mean nothing
+  if (!cloud.rules().normals_tell) return {};
   const Points& normals = cloud.geometry.normals;
   FamilyGuesses guesses{std::vector<Line3d>(1), std::vector<Eigen::Vector3d>(1)};
   parallelBlocks(2, num_threads, [&](std::size_t part) {
@@ -269,19 +262,18 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
                                   const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options) {
   PlanesAndFamilies found;
   found.planes = std::move(planes);
-  const std::vector<ReflectionPlane> symmetries =
-      symmetriesOf(found.planes, cloud, {options.merge_angle, options.merge_offset});
-  if (symmetries.empty() && !judge.isLine()) return found;
-  const std::vector<int> samples =
-      drawSamples(cloud.points.cols(), cloud.isVolume() ? kVolumeFamilySamples : kFamilySamples, options.seed);
-  if (judge.isLine()) {
+  const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud, mergeTolerance(options));
+  const bool is_line = judge.measure.thinness() == Thinness::Line;
+  if (symmetries.empty() && !is_line) return found;
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), cloud.rules().family_samples, options.seed);
+  if (is_line) {
     const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
     for (int k = 0; k < kTested; ++k) through.push_back(planeThrough(line, k));
     const JudgedFamily judged = judge.judgeFamily(through, samples);
     if (judged.confidence >= options.min_confidence)
-      found.axes.push_back({line.origin() * cloud.scale + cloud.center, line.direction(), judged.confidence,
-                            judged.score, judged.support});
+      found.axes.push_back(
+          {cloud.toInput(line.origin()), line.direction(), judged.confidence, judged.score, judged.support});
     return found;
   }
   const FamilyTest test = familyTest(cloud, fit, samples, options.seed);
@@ -295,13 +287,12 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   // planes too badly for that.
   const auto isFamily = [&](const JudgedFamily& judged) {
     return judged.confidence >= options.min_confidence &&
-           (cloud.isScan() || judged.least_confidence >= kWorstShare * options.min_confidence);
+           (!cloud.rules().family_needs_all || judged.least_confidence >= kWorstShare * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, guesses.centers)) {
     const JudgedFamily judged = judge.judgeFamily(center->planes, samples);
     if (isFamily(judged)) {
-      found.centers.push_back(
-          {center->point * cloud.scale + cloud.center, judged.confidence, judged.score, judged.support});
+      found.centers.push_back({cloud.toInput(center->point), judged.confidence, judged.score, judged.support});
       drop([&](const ReflectionPlane& plane) {
         return std::abs(plane.signedDistance(center->point)) <= test.tolerance;
       });
@@ -310,7 +301,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   }
   for (const AxisFamily& family : findAxes(symmetries, test, guesses.axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
-    if (cloud.isVolume() && latticeBySpectrum(cloud, all, family.line, options.num_threads)) continue;
+    if (cloud.rules().has_polygons && latticeBySpectrum(cloud, all, family.line, options.num_threads)) continue;
     const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
     // Nothing bounded turns about two parallel lines, but a thin disc seems to within the tolerance: the best is the
@@ -319,8 +310,8 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
       return std::abs(axis.direction.dot(family.line.direction())) > std::cos(kContainedAngle);
     });
     if (!is_known)
-      found.axes.push_back({family.line.origin() * cloud.scale + cloud.center, family.line.direction(),
-                            judged.confidence, judged.score, judged.support});
+      found.axes.push_back({cloud.toInput(family.line.origin()), family.line.direction(), judged.confidence,
+                            judged.score, judged.support});
     drop([&](const ReflectionPlane& plane) { return contains(plane, family.line, test.tolerance); });
   }
   return found;
@@ -330,8 +321,7 @@ std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, co
                                            const NormalizedCloud& cloud) {
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      const Line3d line((axis.point - cloud.center) / cloud.scale, axis.direction);
-      return contains(cloud.toNormalized(plane), line, kContainedOffset);
+      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), kContainedOffset);
     });
   };
   planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());

@@ -8,7 +8,7 @@
 #include "core/detection/plane_fit.h"
 #include "core/detection/plane_judge.h"
 #include "pcl_symmetry/core/axial_transform.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {

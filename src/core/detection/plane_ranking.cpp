@@ -1,4 +1,6 @@
 #include "core/detection/plane_ranking.h"
+#include "core/detection/candidates.h"
+#include "core/detection/plane_decision.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,24 +19,6 @@ constexpr PlaneTolerance kSlope{0.2, 0.15};
 // Difference of D. chosen: what rounding and cells make of a level slope; larger values drop shallow maxima of their
 // own.
 constexpr double kSlopeDip = 0.005;
-
-int rankOf(const SymmetryPlane& plane) {
-  switch (plane.kind) {
-    case PlaneKind::Symmetry:
-      return 0;
-    case PlaneKind::Possible:
-      return 1;
-    default:
-      return 2;
-  }
-}
-
-bool isBefore(const SymmetryPlane& a, const SymmetryPlane& b) {
-  const int rank = rankOf(a);
-  if (rank != rankOf(b)) return rank < rankOf(b);
-  if (rank < 2 && a.confidence != b.confidence) return a.confidence > b.confidence;
-  return a.support > b.support;
-}
 
 /// Refinement can come to rest on the way to a maximum, where few points say how to go on (on flat pieces, for
 /// instance). A plane is a maximum of its own only if D falls on the way to a better plane nearby.
@@ -76,9 +60,9 @@ std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> plane
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options) {
-  const PlaneTolerance tolerance{options.merge_angle, options.merge_offset};
+  const PlaneTolerance tolerance = mergeTolerance(options);
   planes = withoutPlanesOfParts(std::move(planes), cloud, tolerance);
-  std::stable_sort(planes.begin(), planes.end(), isBefore);
+  std::stable_sort(planes.begin(), planes.end(), isBetter);
   std::vector<SymmetryPlane> ranked;
   for (SymmetryPlane& plane : planes) {
     if (static_cast<int>(ranked.size()) >= options.max_planes) break;
@@ -95,6 +79,12 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
   }
   parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) { completeSupport(ranked[i], cloud, fit); });
   return ranked;
+}
+
+std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness) {
+  if (thinness != Thinness::Sheet) return std::nullopt;
+  const PrincipalAxes& axes = cloud.principal_axes;
+  return cloud.toInput(ReflectionPlane(axes.axes.col(2), axes.axes.col(2).dot(axes.center)));
 }
 
 std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,

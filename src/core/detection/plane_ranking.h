@@ -5,7 +5,7 @@
 
 #include "core/detection/plane_fit.h"
 #include "core/detection/plane_lattice.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
 
@@ -19,6 +19,9 @@ namespace pcl_symmetry {
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options);
+
+/// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.
+std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness);
 
 /// The answer where nothing is a symmetry: of the planes of the whole, the one with the greatest share.
 /// \param planes input frame.

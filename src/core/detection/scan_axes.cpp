@@ -154,8 +154,7 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
   const auto append = [&](const std::vector<AxisStart>& more) {
     starts.insert(starts.end(), more.begin(), more.end());
   };
-  for (const SymmetryAxis& axis : axes)
-    starts.push_back({Line3d((axis.point - cloud.center) / cloud.scale, axis.direction), 0});
+  for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
   append(startsFromPlanes(planesOfAxes(planes, cloud), kMostTurnFold));
   append(startsFromTransform(cloud, options.seed, options.num_threads));
   const AxisJudge judge(evidence);
@@ -178,7 +177,7 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
   }
   std::vector<SymmetryTurn> result;
   for (JudgedTurns& turns : found) {
-    turns.turn.point = turns.line.projection(Eigen::Vector3d::Zero()) * cloud.scale + cloud.center;
+    turns.turn.point = cloud.toInput(turns.line.projection(Eigen::Vector3d::Zero()));
     result.push_back(turns.turn);
   }
   const double least = evidence_of_all ? 0.0 : options.min_possible;
@@ -209,13 +208,10 @@ std::vector<SymmetryTurn> turnsOfScan(const PointsRef& points, const GaussianEdt
 std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vector<SymmetryAxis> axes,
                                          const std::vector<SymmetryTurn>& turns, const DetectionOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
-  const auto lineOf = [&](const auto& axis) {
-    return Line3d((axis.point - cloud.center) / cloud.scale, axis.direction);
-  };
   axes.erase(std::remove_if(axes.begin(), axes.end(),
                             [&](const SymmetryAxis& axis) {
                               const TurnsTogether all = roundTurns([&](double angle) {
-                                return evidence.exactly(Eigen::Affine3d(turnAbout(lineOf(axis), angle)));
+                                return evidence.exactly(Eigen::Affine3d(turnAbout(cloud.lineOf(axis), angle)));
                               });
                               return all.far > kMostRoundFar;
                             }),
@@ -224,8 +220,9 @@ std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vect
     // However probable: a handle that was seen contradicts.
     const bool is_contradicted = turn.off > kMostRoundOff || turn.far > kMostRoundFar;
     if (turn.fold != 0 || is_contradicted || turn.confidence < options.min_confidence) continue;
-    const auto known = std::find_if(axes.begin(), axes.end(),
-                                    [&](const SymmetryAxis& axis) { return isSameLine(lineOf(axis), lineOf(turn)); });
+    const auto known = std::find_if(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
+      return isSameLine(cloud.lineOf(axis), cloud.lineOf(turn));
+    });
     if (known != axes.end()) {
       known->point = turn.point;
       known->direction = turn.direction;

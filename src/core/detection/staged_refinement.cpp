@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/detection/candidates.h"
+
 namespace pcl_symmetry {
 
 namespace {
@@ -13,11 +15,8 @@ namespace {
 constexpr int kCoarseIterations = 5, kCloseIterations = 6, kFullIterations = 8;
 constexpr int kRoughIterations = 4;  // chosen: as above, for candidates that never settle
 
-// Merit of a symmetry of a whole cloud. chosen: a symmetry of 97 % support and 3 % conflict has 0.97; higher values
-// lose symmetries where samples are few, lower ones refine hopeless candidates in full.
-constexpr double kLeastMerit = 0.93;
-// How far below that a candidate may be after the second stage. chosen: few samples blur the merit; smaller values lose
-// symmetries early, larger ones cost time.
+// How far below the merit of a symmetry a candidate may be after the second stage. chosen: few samples blur the merit;
+// smaller values lose symmetries early, larger ones cost time.
 constexpr double kCloseSlack = 0.1;
 // The same after the first stage, of candidates that are refined beside a symmetry. chosen: a hundred samples blur the
 // merit by up to 0.1; at half, a plane that rose from 0.77 to 0.86 would be left out, at twice, twice as many are
@@ -38,22 +37,6 @@ constexpr double kNarrowestCoarsely = 0.5;
 // points leaves the errors of boxes and prisms, exact and sampled, where they are.
 constexpr double kSettledErrorShare = 3.0;
 
-/// What differs between whole clouds and scans. A scan is limited by what was not seen, not by the number of samples;
-/// the merit of its symmetries is low, so that all candidates settle that may.
-struct StageRules {
-  int full_share;        ///< the last stage reflects one sample in this many
-  int rough_share;       ///< candidates that never settle reflect one sample in this many
-  double settled_merit;  ///< candidates with less never settle
-};
-// chosen: twice the samples cost twice the time and leave the planes where they are; half of them make planes of scans
-// and of approximate symmetries noisier.
-constexpr StageRules kWholeRules{1, 10, kLeastMerit - kCloseSlack};
-constexpr StageRules kScanRules{4, 20, kLeastMerit};  // chosen: see above
-
-StageRules rulesOf(const NormalizedCloud& cloud) {
-  return cloud.isScan() ? kScanRules : kWholeRules;
-}
-
 }  // namespace
 
 StagedRefinement::StagedRefinement(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
@@ -62,16 +45,16 @@ StagedRefinement::StagedRefinement(const NormalizedCloud& cloud, const PlaneFit&
 std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const {
   const double narrow = std::clamp(cloud_.final_sigma, kNarrowestCoarsely * cloud_.sigma, cloud_.sigma);
   const std::vector<Candidate> moved =
-      refined(candidates, stage(options_.num_coarse_samples, cloud_.sigma, narrow, kCoarseIterations));
+      refined(candidates, stage(options_.expert.num_coarse_samples, cloud_.sigma, narrow, kCoarseIterations));
   return distinct(withinCells(moved, candidates, grid), -1.0, kKeptCoarsely);
 }
 
 std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
-  const auto isSymmetry = [](const Candidate& candidate) { return candidate.merit >= kLeastMerit; };
-  const bool all = cloud_.isScan() || options_.approximate;
+  const auto isSymmetry = [](const Candidate& candidate) { return candidate.merit >= kSymmetricMerit; };
+  const bool all = cloud_.rules().keeps_unlikely || options_.approximate;
   const auto likely = all ? candidates.end()
                           : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
-                              return candidate.merit >= kLeastMerit - kCoarseSlack;
+                              return candidate.merit >= kSymmetricMerit - kCoarseSlack;
                             });
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
   // Beside a symmetry of a whole cloud, the others are of no use.
@@ -82,7 +65,7 @@ std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates
 }
 
 std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
-  return distinct(refined(std::move(candidates), closeStage()), kLeastMerit - kCloseSlack, kKeptClosely);
+  return distinct(refined(std::move(candidates), closeStage()), kSymmetricMerit - kCloseSlack, kKeptClosely);
 }
 
 std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates) const {
@@ -91,7 +74,7 @@ std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates)
 
 std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) const {
   std::vector<bool> moved(candidates.size(), false);
-  if (cloud_.isScan()) return moved;
+  if (!cloud_.rules().climbs) return moved;
   const std::vector<Candidate> before = candidates;
   fit_.climb(candidates, fullStage());
   for (std::size_t i = 0; i < candidates.size(); ++i) moved[i] = candidates[i].merit != before[i].merit;
@@ -99,32 +82,32 @@ std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) co
 }
 
 RefinementStage StagedRefinement::fullStage() const {
-  return stage(options_.num_refine_samples / rulesOf(cloud_).full_share, cloud_.final_sigma, cloud_.final_sigma,
+  return stage(options_.expert.num_refine_samples / cloud_.rules().full_share, cloud_.final_sigma, cloud_.final_sigma,
                kFullIterations);
 }
 
 RefinementStage StagedRefinement::closeStage() const {
-  return stage(std::min(kCloseSampleFactor * options_.num_coarse_samples, options_.num_refine_samples),
+  return stage(std::min(kCloseSampleFactor * options_.expert.num_coarse_samples, options_.expert.num_refine_samples),
                std::clamp(cloud_.final_sigma, kNarrowestCoarsely * cloud_.sigma, cloud_.sigma), cloud_.final_sigma,
                kCloseIterations);
 }
 
 RefinementStage StagedRefinement::stage(int num_samples, double sigma, double final_sigma, int max_iterations) const {
-  const StageRules rules = rulesOf(cloud_);
+  const KindRules& rules = cloud_.rules();
   RefinementStage stage;
   stage.num_samples = num_samples;
-  stage.num_rough_samples = std::min(num_samples, options_.num_refine_samples / rules.rough_share);
+  stage.num_rough_samples = std::min(num_samples, options_.expert.num_refine_samples / rules.rough_share);
   stage.least_merit = rules.settled_merit;
-  stage.undo_slides = cloud_.isScan() && final_sigma == sigma;
+  stage.undo_slides = rules.slides && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
-  const bool slides = cloud_.isScan() && num_samples > options_.num_coarse_samples && final_sigma < sigma;
-  stage.isp.update = slides ? IspUpdate::PointToPoint : options_.update;
+  const bool slides = rules.slides && num_samples > options_.expert.num_coarse_samples && final_sigma < sigma;
+  stage.isp.update = slides ? IspUpdate::PointToPoint : options_.expert.update;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
-  stage.isp.max_iterations = std::min(max_iterations, options_.max_iterations);
+  stage.isp.max_iterations = std::min(max_iterations, options_.expert.max_iterations);
   stage.rough_isp = stage.isp;
   stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kRoughIterations);
-  if (options_.update == IspUpdate::PointToPlane) stage.isp.error_share = kSettledErrorShare;
+  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = kSettledErrorShare;
   return stage;
 }
 
@@ -139,7 +122,7 @@ std::vector<Candidate> StagedRefinement::refined(std::vector<Candidate> candidat
 std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate>& candidates,
                                                      const std::vector<Candidate>& starts,
                                                      const PlaneGrid& grid) const {
-  const double reach = 0.5 + options_.max_drift;
+  const double reach = 0.5 + options_.expert.max_drift;
   const PlaneTolerance cell{std::sqrt(2.0) * reach * std::max(grid.thetaStep(), grid.phiStep()),
                             reach * grid.radiusStep() / cloud_.scale};
   std::vector<Candidate> kept;
@@ -152,13 +135,13 @@ std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate
 /// \p most.
 std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candidates, double least_merit,
                                                   std::size_t most) const {
-  const PlaneTolerance tolerance{options_.merge_angle, options_.merge_offset};
+  const PlaneTolerance tolerance = mergeTolerance(options_);
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
   std::vector<Candidate> kept;
   for (Candidate& candidate : candidates) {
     if (candidate.merit < least_merit) break;
-    if (candidate.merit < kLeastMerit - kCloseSlack && kept.size() >= most) break;
+    if (candidate.merit < kSymmetricMerit - kCloseSlack && kept.size() >= most) break;
     if (!tolerance.anySame(kept, candidate.plane, [](const Candidate& other) { return other.plane; }))
       kept.push_back(std::move(candidate));
   }

@@ -4,7 +4,7 @@
 
 #include "core/detection/plane_fit.h"
 #include "core/detection/plane_tolerance.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
 

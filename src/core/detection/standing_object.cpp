@@ -15,17 +15,9 @@ constexpr double kUpright = 5.0 * kPi / 180.0;
 // Diameters farther from the points than the nearest support that others carry the object, too: a box stands on a table
 // and touches a wall. chosen: half takes noise for a gap, twice takes in walls behind an object.
 constexpr double kTouching = 0.05;
-// Odds of a plane that slants over those of one that does not, where both have the same confidence. chosen: one in ten.
-// Of the planes called in scenes of fold 0, 7 of 228 right ones slant and 27 of 85 wrong ones: too few for a fit.
-constexpr double kSlantedOdds = 0.1;
-
 /// The least signed distance of the points from a support.
 double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
   return (support.head<3>().transpose().cast<float>() * points).minCoeff() + support[3];
-}
-
-double withOdds(double confidence, double factor) {
-  return factor * confidence / (1.0 - confidence + factor * confidence);
 }
 
 }  // namespace
@@ -48,31 +40,6 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
     return angle <= kUpright || angle >= 0.5 * kPi - kUpright;
   };
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
-}
-
-void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const PointsRef& points, const Visibility& seen,
-                        const DetectionOptions& options) {
-  const auto is_decided = [](const SymmetryPlane& plane) {
-    return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
-  };
-  const std::vector<Eigen::Vector3d> normals = carryingNormals(points, seen);
-  for (SymmetryPlane& plane : planes) {
-    if (!is_decided(plane) || !slants(plane, normals)) continue;
-    plane.confidence = withOdds(plane.confidence, kSlantedOdds);
-    plane.kind = plane.confidence >= options.min_confidence ? PlaneKind::Symmetry
-                 : plane.confidence >= options.min_possible ? PlaneKind::Possible
-                                                            : PlaneKind::Approximate;
-  }
-  if (!options.approximate)
-    planes.erase(std::remove_if(planes.begin(), planes.end(),
-                                [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Approximate; }),
-                 planes.end());
-  const auto rank = [](const SymmetryPlane& plane) {
-    return plane.kind == PlaneKind::Symmetry ? 0 : plane.kind == PlaneKind::Possible ? 1 : 2;
-  };
-  std::stable_sort(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
-    return rank(a) != rank(b) ? rank(a) < rank(b) : rank(a) < 2 && a.confidence > b.confidence;
-  });
 }
 
 }  // namespace pcl_symmetry

@@ -2,7 +2,9 @@
 
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 
@@ -13,13 +15,5 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
 
 /// True where a plane is neither upright nor level on any of these supports; false without one.
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
-
-/// Lowers the confidence of planes that slant (not in the paper): what stands on a table was made to stand there, or
-/// lies on one of its sides, and then its planes are upright or level, but for few. A plane that maps noise or a part
-/// of an object onto itself slants as it likes.
-/// \param planes of one detection, see Detection::planes: symmetries that become doubtful go behind the others.
-/// \param options of that detection.
-void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const PointsRef& points, const Visibility& seen,
-                        const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

@@ -27,15 +27,12 @@ constexpr int kClimbSamples = 500;
 // by 0.1 degrees, at twice, some planes stay beside their place.
 constexpr double kLeastGain = 0.005;
 // Merit of planes that climb. chosen: planes with less are no symmetries; at half, the climbs take longer.
-constexpr double kLeastClimbing = 0.5;
+constexpr double kClimbingMerit = 0.5;
 // Roughness, spacings, from which planes of scans climb: where depths are noisy, half of the points lie behind the
 // surface by the noise alone and look hidden. chosen: a Kinect's scan of a carton has more, flat pieces of exact scans
 // have 0; where curved ones have more, they climb without need. With a climb for all, of 441 exact scans 401 in place
 // of 398 are right, but 67 in place of 56 have a false plane, too. Other values were not tried.
 constexpr double kNoisyDepth = 0.1;
-// Merit of planes of whole clouds that nothing pulls at. chosen: that of a symmetry; planes of clouds that lack a
-// piece, and approximate ones, have less.
-constexpr double kAtRest = 0.93;
 constexpr std::size_t kSharesBlock = 1024;  // samples. chosen: large enough that threads start seldom
 
 }  // namespace
@@ -54,7 +51,7 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
     candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
     if (!stage.undo_slides) return;
     undoSlide(candidate, start, used, stage.isp.final_sigma);
-    if (cloud_.roughness > kNoisyDepth && candidate.merit >= kLeastClimbing) climbOne(candidate, used, fewer);
+    if (cloud_.roughness > kNoisyDepth && candidate.merit >= kClimbingMerit) climbOne(candidate, used, fewer);
   });
 }
 
@@ -64,8 +61,8 @@ void SurfaceFit::climb(std::vector<Candidate>& candidates, const RefinementStage
       drawSamples(cloud_.points.cols(), std::min(stage.num_rough_samples, kClimbSamples), options_.seed);
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
-    const bool is_at_rest = !cloud_.isScan() && candidate.merit >= kAtRest;
-    if (candidate.merit >= kLeastClimbing && !is_at_rest) climbOne(candidate, samples, fewer);
+    const bool is_at_rest = candidate.merit >= kSymmetricMerit;  // nothing pulls at it
+    if (candidate.merit >= kClimbingMerit && !is_at_rest) climbOne(candidate, samples, fewer);
   });
 }
 
@@ -142,8 +139,7 @@ PlaneShares SurfaceFit::shares(const ReflectionPlane& plane, const std::vector<i
       normals.col(i) = sample.normal - 2.0f * n.dot(sample.normal) * n;
     }
     const std::vector<int> closest(step.closest.begin() + first, step.closest.begin() + first + size);
-    const PointEvidence some =
-        pointEvidence(reflected, normals, closest, cloud_.samples, cloud_.isScan() ? &*cloud_.visibility : nullptr);
+    const PointEvidence some = pointEvidence(reflected, normals, closest, cloud_.samples, cloud_.seen());
     std::copy(some.support.begin(), some.support.end(), evidence.support.begin() + first);
     std::copy(some.conflict.begin(), some.conflict.end(), evidence.conflict.begin() + first);
   });
@@ -170,7 +166,7 @@ PlaneEvidence SurfaceFit::evidence(double support, double conflict, double score
   evidence.baseline = cloud_.baseline;
   evidence.spacing = cloud_.spacing;
   evidence.roughness = cloud_.roughness;
-  evidence.partial = cloud_.isScan();
+  evidence.kind = cloud_.kind();
   return evidence;
 }
 

@@ -104,7 +104,7 @@ TurnShares TurnEvidence::roughly(const Eigen::Affine3d& motion, double slack, do
   for (const int sample : few_samples_) {
     if (shares.off > most_off || shares.far > most_far) break;
     const Eigen::Vector3d x = motion * cloud_.points.col(sample).cast<double>();
-    const double f = std::max(kLeastTurnF, cloud_.edt(x * cloud_.scale + cloud_.center));
+    const double f = std::max(kLeastTurnF, cloud_.edt(cloud_.toInput(x)));
     if (f >= near_f) {
       shares.on += one;
     } else if (isSeenEmpty(x)) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
 

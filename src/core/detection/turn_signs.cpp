@@ -81,20 +81,17 @@ bool crossesUpright(const Line3d& a, const Line3d& b) {
 std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector<SymmetryTurn>& turns,
                                  double min_confidence, int num_threads) {
   const NormalizedCloud& cloud = evidence.cloud();
-  const auto lineOf = [&](const SymmetryTurn& turn) {
-    return Line3d((turn.point - cloud.center) / cloud.scale, turn.direction);
-  };
   std::vector<TurnSigns> signs(turns.size());
   const auto best = std::max_element(turns.begin(), turns.end(), [](const SymmetryTurn& a, const SymmetryTurn& b) {
     return marginOf(a) < marginOf(b);
   });
   parallelBlocks(turns.size(), num_threads, [&](std::size_t i) {
     if (turns[i].fold != 2) return;
-    const Line3d line = lineOf(turns[i]);
+    const Line3d line = cloud.lineOf(turns[i]);
     signs[i].grown = grownBy(cloud, Eigen::Affine3d(turnAbout(line, kPi)));
     signs[i].hold = evidence.hold(line, kPi);
     const bool is_best = marginOf(turns[i]) >= marginOf(*best);
-    signs[i].beside = is_best || crossesUpright(line, lineOf(*best)) ? 0.0 : 1.0;
+    signs[i].beside = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;
     // Planes only speak against a turn, and take most of the time.
     if (turnConfidence(turns[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
   });

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/detection/turn_evidence.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
 

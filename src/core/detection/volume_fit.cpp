@@ -73,12 +73,11 @@ double VolumeFit::familyAllowance() const {
 PlaneEvidence VolumeFit::evidence(double support, double conflict, double score) const {
   PlaneEvidence evidence = surface_.evidence(support, conflict, score);
   evidence.baseline = 1.0;
-  evidence.volume = true;
   return evidence;
 }
 
 std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const PlaneFitOptions& options) {
-  if (cloud.isVolume()) return std::make_unique<VolumeFit>(cloud, options);
+  if (cloud.kind() == CloudKind::Volume) return std::make_unique<VolumeFit>(cloud, options);
   return std::make_unique<SurfaceFit>(cloud, options);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/evidence/point_density.h"
 #include "core/detection/surface_fit.h"
+#include "core/evidence/point_density.h"
 
 namespace pcl_symmetry {
 

@@ -8,7 +8,7 @@
 
 namespace pcl_symmetry {
 
-/// The fitted numbers of the decision, by EvidenceKind.
+/// The fitted numbers of the decision, by CloudKind.
 struct ConfidenceFit {
   std::array<std::vector<double>, 3> log_odds;  ///< coefficients of logOddsTerms()
   std::array<ShareInterval, 3> share_errors;    ///< of the share, units of shareUnit()

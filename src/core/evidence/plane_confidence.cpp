@@ -5,13 +5,12 @@
 #include <numeric>
 
 #include "core/evidence/confidence_fit.h"
+#include "core/geometry/symmetric_share.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Share of the surface that is off, at which the log odds by the share are 0. derived: the definition of a symmetry.
-constexpr double kOffAtEvenOdds = 0.03;
 constexpr double kLeastTolerance = 1e-6;  // radii. derived: rounding of coordinates about 1; avoids a division by 0
 // Spacing, tolerances, beyond which points do not resolve the tolerance, and log odds lost per tolerance beyond.
 // chosen: 1000 points of a typical shape have 3, 500 have 4.5, 300 have 5.8. At half of the first, clouds of 5000
@@ -33,9 +32,9 @@ double coarseness(const PlaneEvidence& evidence) {
   return evidence.spacing / std::max(evidence.tolerance, kLeastTolerance);
 }
 
-/// \return log odds by a share of the surface that is off.
+/// \return log odds by a share of the surface that is off: 0 at that of a symmetry.
 double byOff(double off, double unit) {
-  return std::log((off + unit) / (kOffAtEvenOdds + unit));
+  return std::log((off + unit) / (kOffShare + unit));
 }
 
 double byShare(const PlaneEvidence& evidence, double unit) {
@@ -56,7 +55,7 @@ double byPrecision(const PlaneEvidence& evidence, const EvidenceUnits& units) {
 
 /// \return log odds by the share of the surface that is off at twice the tolerance.
 double byDoubleShare(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  return std::log((1.0 - evidence.double_share + units.double_off) / (kOffAtEvenOdds + units.double_off));
+  return std::log((1.0 - evidence.double_share + units.double_off) / (kOffShare + units.double_off));
 }
 
 /// \return log odds by how easily the plane slips along what it matches, more where much is hidden, >= 0.
@@ -82,8 +81,8 @@ double byLostOverlap(const PlaneEvidence& evidence, const EvidenceUnits& units) 
 }
 
 /// \return how far a plane beside the best one is less probable; chance has a part in what is not known.
-double byFurther(EvidenceKind kind, double unknown) {
-  return kind == EvidenceKind::Scan ? 1.0 : kind == EvidenceKind::Surface ? std::sqrt(unknown) : 0.0;
+double byFurther(CloudKind kind, double unknown) {
+  return kind == CloudKind::Scan ? 1.0 : kind == CloudKind::Surface ? std::sqrt(unknown) : 0.0;
 }
 
 double noiseOf(const PlaneEvidence& evidence) {
@@ -98,22 +97,18 @@ double seenSupport(const PlaneEvidence& evidence) {
   return std::min(1.0, evidence.support / (seen * evidence.baseline));
 }
 
-EvidenceKind kindOf(const PlaneEvidence& evidence) {
-  return evidence.partial ? EvidenceKind::Scan : evidence.volume ? EvidenceKind::Volume : EvidenceKind::Surface;
-}
-
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
   const EvidenceUnits units;
-  const double further = evidence.further ? byFurther(kindOf(evidence), evidence.unknown) : 0.0;
-  switch (kindOf(evidence)) {
-    case EvidenceKind::Scan:
+  const double further = evidence.further ? byFurther(evidence.kind, evidence.unknown) : 0.0;
+  switch (evidence.kind) {
+    case CloudKind::Scan:
       return {1.0,
               byShare(evidence, units.scan_off),
               byDoubleShare(evidence, units),
               byUnexplainedLoss(evidence, units),
               bySlipping(evidence, units),
               further};
-    case EvidenceKind::Volume:
+    case CloudKind::Volume:
       return {1.0, byShare(evidence, units.volume_off), byExcess(evidence, units), byLostOverlap(evidence, units),
               std::log((1.0 - evidence.own_score) / units.noise + 1.0)};
     default:
@@ -134,7 +129,7 @@ double shareUnit(const PlaneEvidence& evidence) {
 }
 
 ShareInterval shareInterval(const PlaneEvidence& evidence) {
-  const ShareInterval& error = kConfidenceFit.share_errors[static_cast<int>(kindOf(evidence))];
+  const ShareInterval& error = kConfidenceFit.share_errors[static_cast<int>(evidence.kind)];
   const double unit = shareUnit(evidence);
   return {std::clamp(evidence.share + error.low * unit, 0.0, evidence.share),
           std::clamp(evidence.share + error.high * unit, evidence.share, 1.0)};
@@ -142,16 +137,16 @@ ShareInterval shareInterval(const PlaneEvidence& evidence) {
 
 double planeConfidence(const PlaneEvidence& evidence) {
   const std::vector<double> terms = logOddsTerms(evidence);
-  const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(kindOf(evidence))];
-  const double coarsest = evidence.flat                              ? kCoarsestFlat
-                          : kindOf(evidence) == EvidenceKind::Volume ? kCoarsestVolume
-                                                                     : kCoarsest;
+  const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(evidence.kind)];
+  const double coarsest = evidence.flat                        ? kCoarsestFlat
+                          : evidence.kind == CloudKind::Volume ? kCoarsestVolume
+                                                               : kCoarsest;
   const double unresolved = kLostPerCoarseness * std::max(0.0, coarseness(evidence) - coarsest);
   const double log_odds = std::inner_product(terms.begin(), terms.end(), coefficients.begin(), 0.0) - unresolved;
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
-double furtherConfidence(double confidence, EvidenceKind kind, double unknown) {
+double furtherConfidence(double confidence, CloudKind kind, double unknown) {
   const double odds = std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back());
   return confidence * odds / (confidence * odds + (1.0 - confidence));
 }

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "core/evidence/cloud_kind.h"
+
 namespace pcl_symmetry {
 
 /// What the points say about one plane, and how finely they sample the surface.
@@ -13,8 +15,7 @@ struct PlaneEvidence {
   double baseline = 1.0;   ///< support of the points on the surface of all others: < 1 by sampling and noise
   double spacing = 0.0;    ///< median distance of the samples, divided by the radius of the points
   double roughness = 0.0;  ///< median distance of the samples from their tangent planes, divided by the spacing
-  bool partial = false;    ///< seen from one viewpoint
-  bool volume = false;     ///< the points resolve no surface; support is the overlap of their density
+  CloudKind kind = CloudKind::Surface;  ///< of the cloud; support of a volume is the overlap of its density
   /// Share of the surface mapped to within the tolerance of the surface, of that which says something, in [0, 1].
   double share = 1.0;
   double double_share = 1.0;  ///< the same within twice the tolerance, >= share
@@ -28,15 +29,6 @@ struct PlaneEvidence {
 /// Share of the surface seen that the plane maps onto the surface, relative to what sampling allows.
 /// \return min(1, support / ((support + conflict) * baseline)), in [0, 1]; 0 where nothing was seen.
 double seenSupport(const PlaneEvidence& evidence);
-
-/// Each kind of evidence has coefficients of its own.
-enum class EvidenceKind {
-  Surface,  ///< a cloud that may lack a piece
-  Scan,     ///< seen from one viewpoint
-  Volume    ///< the points resolve no surface
-};
-
-EvidenceKind kindOf(const PlaneEvidence& evidence);
 
 /// What the evidence is divided by before it counts: how exactly it is known. The values were chosen by
 /// cross-validation over the models of the fit; half and twice of each hardly change a decision, but for
@@ -91,6 +83,6 @@ double planeConfidence(const PlaneEvidence& evidence);
 /// What PlaneEvidence::further makes of a confidence: less for a scan, and for a cloud that may lack a piece.
 /// \param confidence of the plane by itself, in [0, 1].
 /// \param unknown as PlaneEvidence::unknown.
-double furtherConfidence(double confidence, EvidenceKind kind, double unknown);
+double furtherConfidence(double confidence, CloudKind kind, double unknown);
 
 }  // namespace pcl_symmetry

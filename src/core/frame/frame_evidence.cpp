@@ -31,6 +31,14 @@ constexpr float kPush = 0.05f;
 
 }  // namespace
 
+GaussianEdtOptions edtOptionsOf(const FrameOptions& options) {
+  GaussianEdtOptions edt;
+  edt.num_cells = options.num_cells;
+  edt.sigma = options.sigma;
+  edt.num_threads = options.num_threads;
+  return edt;
+}
+
 SymmetryMap coarseMap(const GaussianEdt& edt, const std::vector<float>& free_space, const FrameOptions& options) {
   const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
   SampledTransformOptions sampling;
@@ -44,7 +52,7 @@ FrameEvidence::FrameEvidence(const PointsRef& points, const FrameOptions& option
     : points_(points),
       scanned_(visibility != nullptr),
       weights_(weightsOf(scanned_)),
-      edt_(points, edtOptions(points, options.edt, scanned_)),
+      edt_(points, edtOptions(points, edtOptionsOf(options), scanned_)),
       free_space_(visibility ? pcl_symmetry::freeSpace(edt_, *visibility, options.num_threads) : std::vector<float>()),
       profiles_(edt_, free_space_, kNumProfileSamples, options.seed, options.num_threads),
       directions_(points, edt_),

@@ -15,6 +15,9 @@ namespace pcl_symmetry {
 /// sqrt(2), twice takes twice the time.
 constexpr int kNumProfileSamples = 256;
 
+/// \return those of the distance transform; sigma is 0 where the width is not given.
+GaussianEdtOptions edtOptionsOf(const FrameOptions& options);
+
 /// The coarse map over all planes that candidates for the first plane come from (Section 4.3).
 /// \param free_space from freeSpace(), one value per cell; empty: the points show the object from all sides.
 SymmetryMap coarseMap(const GaussianEdt& edt, const std::vector<float>& free_space, const FrameOptions& options);

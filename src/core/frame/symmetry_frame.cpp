@@ -27,7 +27,7 @@ struct OffsetAndScore {
 
 /// Section 5.1 as it stands: each axis is the normal of the plane of greatest D among those that are left.
 SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& options) {
-  const GaussianEdt edt(points, options.edt);
+  const GaussianEdt edt(points, edtOptionsOf(options));
   const SymmetryMap map = coarseMap(edt, {}, options);
   const PlaneGrid& grid = map.grid;
   const PlaneProfiles profiles(edt, {}, kNumProfileSamples, options.seed, options.num_threads);
@@ -120,7 +120,7 @@ std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const S
 }  // namespace
 
 void FrameOptions::validate() const {
-  edt.validate();
+  edtOptionsOf(*this).validate();
   check(num_theta >= 1, "num_theta", num_theta, ">= 1");
   check(num_phi >= 2 && num_phi % 2 == 0, "num_phi", num_phi, "even and >= 2");
   check(num_radius >= 1, "num_radius", num_radius, ">= 1");

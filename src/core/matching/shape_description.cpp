@@ -27,7 +27,7 @@ ShapeDescription describeShape(const PointsRef& points, const DescriptionOptions
   options.validate();
   FrameOptions frame_options = signatureFrameOptions();
   frame_options.seed = options.seed;
-  frame_options.num_threads = frame_options.edt.num_threads = options.num_threads;
+  frame_options.num_threads = options.num_threads;
   ShapeDescription result;
   result.frame = symmetryFrame(thinned(points, options.max_frame_points), frame_options, visibility);
   const Points used = thinned(points, options.max_points);

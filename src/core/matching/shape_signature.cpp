@@ -174,7 +174,7 @@ std::vector<Eigen::Matrix3d> signatureFrames(const PointsRef& points, const Symm
 
 FrameOptions signatureFrameOptions() {
   FrameOptions options;  // chosen: half the default resolution along theta, phi and r
-  options.edt.num_cells = 32;
+  options.num_cells = 32;
   options.num_theta = 16;
   options.num_phi = 64;
   options.num_radius = 32;

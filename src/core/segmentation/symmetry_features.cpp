@@ -6,9 +6,9 @@
 #include "core/base/parallel.h"
 #include "core/geometry/mesh_sampling.h"
 #include "core/geometry/surface_normals.h"
-#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
+#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {

@@ -1,5 +1,5 @@
 /// A user's program without PCL: points in an Eigen matrix.
-#include <pcl_symmetry/core/plane_detection.h>
+#include <pcl_symmetry/core/detect_planes.h>
 
 #include <cmath>
 #include <cstdio>

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
 #include "shapes/shapes.h"
 
@@ -30,7 +30,9 @@ TEST(DetectionInput, AGivenSearchIsAskedForEveryKindOfCloud) {
   twice << one, one;
   for (const auto& [points, num_used] : {std::pair(one, 3000), std::pair(twice, 3000), std::pair(large, 20'000)}) {
     AskedSearch asked;
-    const Detection expected = detectPlanes(points), found = detectPlanes(points, {}, asked.make());
+    PlaneInput input(points);
+    input.make_search = asked.make();
+    const Detection expected = detectPlanes(points), found = detectPlanes(input);
     EXPECT_EQ(asked.num_made, 1);
     EXPECT_EQ(asked.num_points, num_used);
     EXPECT_GT(asked.num_queries, 2 * num_used) << "more than the neighbors of each point";
@@ -40,7 +42,11 @@ TEST(DetectionInput, AGivenSearchIsAskedForEveryKindOfCloud) {
       EXPECT_EQ(found.planes[i].point_support.size(), static_cast<std::size_t>(points.cols()));
     }
     AskedSearch asked_with_map;
-    refineMaxima(points, GaussianEdt(points), expected.map, {}, asked_with_map.make());
+    const GaussianEdt edt(points);
+    input.make_search = asked_with_map.make();
+    input.edt = &edt;
+    input.map = &expected.map;
+    detectPlanes(input);
     EXPECT_GT(asked_with_map.num_queries, 2 * num_used);
   }
 }
@@ -161,18 +167,18 @@ TEST(DetectionOptions, RefusesBadOnes) {
     change(options);
     EXPECT_THROW(detectPlanes(cloud, options), std::invalid_argument);
   };
-  refused([](auto& o) { o.edt.num_cells = 1; });
-  refused([](auto& o) { o.maxima.strength = 2.0; });
-  refused([](auto& o) { o.num_theta = 0; });
-  refused([](auto& o) { o.num_phi = 3; });
-  refused([](auto& o) { o.num_radius = 0; });
-  refused([](auto& o) { o.max_candidates = 0; });
-  refused([](auto& o) { o.max_drift = -1.0; });
-  refused([](auto& o) { o.num_coarse_samples = 9; });
-  refused([](auto& o) { o.num_refine_samples = 9; });
-  refused([](auto& o) { o.max_iterations = 0; });
-  refused([](auto& o) { o.merge_angle = -1.0; });
-  refused([](auto& o) { o.merge_offset = -1.0; });
+  refused([](auto& o) { o.num_cells = 1; });
+  refused([](auto& o) { o.expert.maxima.strength = 2.0; });
+  refused([](auto& o) { o.expert.num_theta = 0; });
+  refused([](auto& o) { o.expert.num_phi = 3; });
+  refused([](auto& o) { o.expert.num_radius = 0; });
+  refused([](auto& o) { o.expert.max_candidates = 0; });
+  refused([](auto& o) { o.expert.max_drift = -1.0; });
+  refused([](auto& o) { o.expert.num_coarse_samples = 9; });
+  refused([](auto& o) { o.expert.num_refine_samples = 9; });
+  refused([](auto& o) { o.expert.max_iterations = 0; });
+  refused([](auto& o) { o.expert.merge_angle = -1.0; });
+  refused([](auto& o) { o.expert.merge_offset = -1.0; });
   refused([](auto& o) { o.min_confidence = 1.5; });
   refused([](auto& o) { o.min_confidence = -0.1; });
   refused([](auto& o) { o.min_possible = -0.1; });

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -18,9 +18,9 @@ using namespace pcl_symmetry::test;
 /// Fewer candidates and samples than by default: the same steps in a third of the time.
 DetectionOptions sweepOptions() {
   DetectionOptions options;
-  options.num_phi = 64;
-  options.max_candidates = 16;
-  options.num_refine_samples = 3000;
+  options.expert.num_phi = 64;
+  options.expert.max_candidates = 16;
+  options.expert.num_refine_samples = 3000;
   return options;
 }
 

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "core/geometry/surface_normals.h"
 #include "core/detection/step_equations.h"
+#include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/shapes.h"
 

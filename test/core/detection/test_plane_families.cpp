@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -150,8 +150,9 @@ TEST(PlaneJudge, OfAScanWhatStaysInPlaceSaysNothing) {
   const DetectionOptions options;
   const GaussianEdt edt(points, options.edt);
   const NormalizedCloud cloud(points, edt, nullptr, &*seen, 1);
-  const std::unique_ptr<PlaneFit> fit = makePlaneFit(
-      cloud, {options.update, options.num_refine_samples, options.max_iterations, options.seed, options.num_threads});
+  const std::unique_ptr<PlaneFit> fit =
+      makePlaneFit(cloud, {options.expert.update, options.expert.num_refine_samples, options.expert.max_iterations,
+                           options.seed, options.num_threads});
   std::vector<Candidate> candidates(2);
   candidates[0].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
   candidates[1].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));

@@ -8,7 +8,7 @@
 #include "core/detection/even_density.h"
 #include "core/detection/fold_spectrum.h"
 #include "core/detection/plane_lattice.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
 #include "shapes/shapes.h"
 
@@ -62,7 +62,7 @@ std::size_t numRight(const Detection& detection, int num_teeth) {
 DetectionOptions manyPlanes() {
   DetectionOptions options;
   options.max_planes = 64;
-  options.num_threads = options.edt.num_threads = 1;
+  options.num_threads = 1;
   return options;
 }
 
@@ -128,7 +128,10 @@ TEST(Polygons, ARoundWallHasAnAxisInNoiseAndUnevenDensity) {
 /// Of a noisy cloud that is thinner on one side, fewer points decide: the search of the user finds these among all.
 TEST(Polygons, AGivenSearchIsAskedWhereTheDensityIsUneven) {
   AskedSearch asked;
-  const Detection found = detectPlanes(wheel(12, 0.12, 0.03, true, 2), manyPlanes(), asked.make());
+  const Points points = wheel(12, 0.12, 0.03, true, 2);
+  PlaneInput input(points);
+  input.make_search = asked.make();
+  const Detection found = detectPlanes(input, manyPlanes());
   EXPECT_EQ(numRight(found, 12), 13u);
   EXPECT_EQ(asked.num_made, 1);
   EXPECT_GT(asked.num_queries, 100'000);

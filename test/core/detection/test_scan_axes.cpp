@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/one_side.h"
 
 namespace {
@@ -17,7 +17,7 @@ using namespace pcl_symmetry::test;
 
 Detection detected(const TurningShape& shape, const Eigen::Vector3d& viewpoint) {
   const SeenFromOneSide scan = seenFrom(shape, viewpoint);
-  return detectPlanes(scan.points, {}, nullptr, &*scan.seen);
+  return detectPlanes({scan.points, &*scan.seen});
 }
 
 TurningShape cup(bool with_handle) {
@@ -69,16 +69,16 @@ TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {
   const SeenFromOneSide scan = seenFrom(prismShape(5, 0.4), {2.0, 3.0, 5.0});
   DetectionOptions options;
   options.num_threads = 1;
-  const Detection one = detectPlanes(scan.points, options, nullptr, &*scan.seen);
+  const Detection one = detectPlanes({scan.points, &*scan.seen}, options);
   options.num_threads = 3;
-  const Detection three = detectPlanes(scan.points, options, nullptr, &*scan.seen);
+  const Detection three = detectPlanes({scan.points, &*scan.seen}, options);
   ASSERT_EQ(one.turns.size(), three.turns.size());
   for (std::size_t i = 0; i < one.turns.size(); ++i) {
     EXPECT_EQ(one.turns[i].point, three.turns[i].point);
     EXPECT_EQ(one.turns[i].confidence, three.turns[i].confidence);
   }
   options.turns = false;
-  EXPECT_TRUE(detectPlanes(scan.points, options, nullptr, &*scan.seen).turns.empty());
+  EXPECT_TRUE(detectPlanes({scan.points, &*scan.seen}, options).turns.empty());
   EXPECT_TRUE(detectPlanes(scan.points, options).turns.empty()) << "whole objects have objectSymmetries()";
 }
 

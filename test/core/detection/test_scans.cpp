@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/scans.h"
 
 namespace {
@@ -44,7 +44,7 @@ TEST(Scans, TruePlanesAreAmongTheAnswers) {
   for (const auto& [name, scan] : scans()) {
     const Points cloud = scan.cloud();
     const Visibility visibility = scan.visibility();
-    const Detection detection = detectPlanes(cloud, {}, nullptr, &visibility), blind = detectPlanes(cloud);
+    const Detection detection = detectPlanes({cloud, &visibility}), blind = detectPlanes(cloud);
     int found_here = 0;
     for (const ReflectionPlane& plane : scan.planes) {
       const SymmetryPlane* found = find(detection, plane, cloud);
@@ -86,8 +86,8 @@ TEST(Scans, SameBytesForAnyNumberOfThreads) {
   std::optional<Detection> one;
   for (const int num_threads : {1, 2, 8}) {
     DetectionOptions options;
-    options.num_threads = options.edt.num_threads = num_threads;
-    const Detection detection = detectPlanes(cloud, options, nullptr, &visibility);
+    options.num_threads = num_threads;
+    const Detection detection = detectPlanes({cloud, &visibility}, options);
     if (!one) one = detection;
     EXPECT_EQ(detection.map.values, one->map.values);
     ASSERT_EQ(detection.planes.size(), one->planes.size());

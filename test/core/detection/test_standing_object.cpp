@@ -8,6 +8,8 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
+#include "core/detection/plane_fit.h"
+#include "core/detection/plane_judge.h"
 
 namespace pcl_symmetry {
 
@@ -69,26 +71,28 @@ TEST(StandingObject, ItStandsOnTheNearestSupport) {
 
 TEST(StandingObject, SlantedPlanesAreDoubtedAndGoBehind) {
   const Points points = cubeAt(0.0);
-  const Visibility seen = seenFromAbove(points).withSupport(kTable, 0.0);
-  const std::vector<SymmetryPlane> found = {planeAt(40.0, 0.0, 0.95), planeAt(90.0, 0.0, 0.7),
-                                            planeAt(30.0, 0.0, 0.55)};
+  const GaussianEdt edt(points);
   DetectionOptions options;
-  std::vector<SymmetryPlane> planes = found;
-  doubtSlantedPlanes(planes, points, seen, options);
+  const auto doubted = [&](const Visibility& seen) {
+    const NormalizedCloud cloud(points, edt, nullptr, &seen, 1);
+    const auto fit = makePlaneFit(cloud, {IspUpdate::PointToPlane, 100, 1, 1, 1});
+    std::vector<SymmetryPlane> planes = {planeAt(40.0, 0.0, 0.95), planeAt(90.0, 0.0, 0.7), planeAt(30.0, 0.0, 0.55)};
+    PlaneJudge(cloud, *fit, options).decision.doubtSlanted(planes);
+    return planes;
+  };
+  const Visibility on_table = seenFromAbove(points).withSupport(kTable, 0.0);
+  std::vector<SymmetryPlane> planes = doubted(on_table);
   ASSERT_EQ(planes.size(), 2u) << "the last one is not even possible";
   EXPECT_EQ(planes[0].confidence, 0.7);
   EXPECT_EQ(planes[0].kind, PlaneKind::Symmetry);
   EXPECT_NEAR(planes[1].normal().z(), std::cos(40.0 * kPi / 180.0), 1e-6);
   EXPECT_EQ(planes[1].kind, PlaneKind::Symmetry) << "0.95 is sure enough";
   EXPECT_LT(planes[1].confidence, 0.7);
+  EXPECT_EQ(doubted(seenFromAbove(points))[0].confidence, 0.95) << "nothing carries it";
   options.approximate = true;
-  planes = found;
-  doubtSlantedPlanes(planes, points, seen, options);
+  planes = doubted(on_table);
   ASSERT_EQ(planes.size(), 3u);
   EXPECT_EQ(planes[2].kind, PlaneKind::Approximate);
-  planes = found;
-  doubtSlantedPlanes(planes, points, seenFromAbove(points), options);
-  EXPECT_EQ(planes[0].confidence, 0.95) << "nothing carries it";
 }
 
 }  // namespace pcl_symmetry

@@ -6,7 +6,7 @@
 
 #include "core/detection/matched_region.h"
 #include "core/detection/part_search.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -17,25 +17,24 @@ struct Regime {
   PlaneEvidence good;  ///< of a symmetry that is well sampled
 };
 
-PlaneEvidence evidenceOf(double score, double spacing, double roughness, bool partial, bool volume) {
+PlaneEvidence evidenceOf(double score, double spacing, double roughness, CloudKind kind) {
   PlaneEvidence evidence;
   evidence.support = 0.99;
   evidence.conflict = 0.01;
   evidence.score = score;
   evidence.spacing = spacing;
   evidence.roughness = roughness;
-  evidence.partial = partial;
-  evidence.volume = volume;
+  evidence.kind = kind;
   evidence.share = 0.999;
-  if (volume) evidence.own_score = 0.985;
+  if (kind == CloudKind::Volume) evidence.own_score = 0.985;
   return evidence;
 }
 
 std::vector<Regime> regimes() {
-  return {{"whole", evidenceOf(0.98, 0.02, 0.05, false, false)},
-          {"sparse", evidenceOf(0.97, 0.05, 0.20, false, false)},
-          {"volume", evidenceOf(0.98, 0.02, 0.40, false, true)},
-          {"scan", evidenceOf(0.95, 0.02, 0.05, true, false)}};
+  return {{"whole", evidenceOf(0.98, 0.02, 0.05, CloudKind::Surface)},
+          {"sparse", evidenceOf(0.97, 0.05, 0.20, CloudKind::Surface)},
+          {"volume", evidenceOf(0.98, 0.02, 0.40, CloudKind::Volume)},
+          {"scan", evidenceOf(0.95, 0.02, 0.05, CloudKind::Scan)}};
 }
 
 /// Confidence must not rise while a value goes from good to bad in 40 steps.
@@ -59,14 +58,14 @@ TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("unknown", [](PlaneEvidence& e, double t) {
     e.unknown = t;
     // What is hidden or missing has its part in D: where D is the same although more is, what is seen agrees better.
-    if (!e.volume) e.score -= EvidenceUnits().hidden_loss * t;
+    if (e.kind != CloudKind::Volume) e.score -= EvidenceUnits().hidden_loss * t;
   });
   expectFalls("score", [](PlaneEvidence& e, double t) { e.score = 1.0 - t; });
   expectFalls("support", [](PlaneEvidence& e, double t) { e.support = 1.0 - t; });
   expectFalls("further", [](PlaneEvidence& e, double t) { e.further = t > 0.5; });
   expectFalls("noise", [](PlaneEvidence& e, double t) {
     e.score = std::max(0.0, e.score - 0.5 * t);
-    if (e.volume) e.own_score -= 0.4 * t;
+    if (e.kind == CloudKind::Volume) e.own_score -= 0.4 * t;
   });
 }
 
@@ -78,13 +77,13 @@ TEST(PlaneConfidence, OfFurtherPlanesIsLessWhereSomethingIsHidden) {
       const double alone = planeConfidence(evidence);
       evidence.further = true;
       const double further = planeConfidence(evidence);
-      const bool hidden = evidence.partial || (!evidence.volume && unknown > 0.0);
+      const bool hidden = evidence.kind == CloudKind::Scan || (evidence.kind == CloudKind::Surface && unknown > 0.0);
       EXPECT_EQ(further < alone, hidden) << name << ", " << unknown;
       EXPECT_LE(further, alone) << name << ", " << unknown;
-      EXPECT_NEAR(furtherConfidence(alone, kindOf(evidence), unknown), further, 1e-12) << name << ", " << unknown;
+      EXPECT_NEAR(furtherConfidence(alone, evidence.kind, unknown), further, 1e-12) << name << ", " << unknown;
     }
-    EXPECT_EQ(furtherConfidence(0.0, kindOf(good), 0.5), 0.0);
-    EXPECT_EQ(furtherConfidence(1.0, kindOf(good), 0.5), 1.0);
+    EXPECT_EQ(furtherConfidence(0.0, good.kind, 0.5), 0.0);
+    EXPECT_EQ(furtherConfidence(1.0, good.kind, 0.5), 1.0);
   }
 }
 
@@ -110,7 +109,7 @@ TEST(PlaneConfidence, OfAWholeCloudFollowsTheDefinition) {
 }
 
 TEST(PlaneConfidence, WhatIsOffByCoarserPointsIsMoreOfTheSurface) {
-  PlaneEvidence fine = evidenceOf(0.98, 0.01, 0.05, false, false), coarse = fine;
+  PlaneEvidence fine = evidenceOf(0.98, 0.01, 0.05, CloudKind::Surface), coarse = fine;
   fine.share = fine.double_share = coarse.share = coarse.double_share = 0.97;
   coarse.spacing = 0.04;
   EXPECT_LT(planeConfidence(coarse), planeConfidence(fine));

@@ -206,11 +206,11 @@ TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
   const Points cloud = scan.cloud();
   const Visibility visibility = scan.visibility();
   FrameOptions options;
-  options.num_threads = options.edt.num_threads = 1;
+  options.num_threads = 1;
   const SymmetryFrame expected = symmetryFrame(cloud, options, &visibility);
   const SymmetryFrame expected_whole = symmetryFrame(cloud, options);
   for (const int num_threads : {2, 8}) {
-    options.num_threads = options.edt.num_threads = num_threads;
+    options.num_threads = num_threads;
     const SymmetryFrame frame = symmetryFrame(cloud, options, &visibility);
     expectSame(frame, expected);
     expectSameTurns(frame, expected);

@@ -1,5 +1,5 @@
 /// From points to planes: shapes whose planes are known, moved, scaled, disturbed and flat.
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 #include <gtest/gtest.h>
 
@@ -289,7 +289,7 @@ TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {
   const Points cloud = moved(prism(5, 4000, Sampling::Random, 13), randomPose(13)).cloud();
   const auto detect = [&](int num_threads) {
     DetectionOptions options;
-    options.num_threads = options.edt.num_threads = num_threads;
+    options.num_threads = num_threads;
     return detectPlanes(cloud, options);
   };
   const Detection one = detect(1);
@@ -312,8 +312,8 @@ TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {
 TEST(DetectPlanes, PointToPointFindsThemToo) {
   const Shape shape = moved(box(6000, Sampling::Mirrored, 14), randomPose(14));
   DetectionOptions options;
-  options.update = IspUpdate::PointToPoint;
-  options.max_iterations = 100;
+  options.expert.update = IspUpdate::PointToPoint;
+  options.expert.max_iterations = 100;
   const Detection detection = detectPlanes(shape.cloud(), options);
   const Comparison comparison = compare(detection, shape);
   EXPECT_EQ(detection.planes.size(), 3u);
@@ -325,7 +325,7 @@ TEST(DetectPlanes, PointToPointFindsThemToo) {
 TEST(DetectPlanes, NeedsNoPrincipalAxes) {
   const Shape shape = moved(box(10'000, Sampling::Mirrored, 15), randomPose(15));
   DetectionOptions options;
-  options.principal_planes = false;
+  options.expert.principal_planes = false;
   EXPECT_EQ(compare(detectPlanes(shape.cloud(), options), shape).num_matched, 3u);
 }
 
@@ -343,7 +343,11 @@ TEST(DetectPlanes, MaxPlanesKeepsTheBest) {
 TEST(RefineMaxima, IsTheSecondHalfOfDetection) {
   const Points cloud = moved(box(3000, Sampling::Random, 18), randomPose(18)).cloud();
   const Detection whole = detectPlanes(cloud);
-  const Detection half = refineMaxima(cloud, GaussianEdt(cloud), whole.map);
+  const GaussianEdt edt(cloud);
+  PlaneInput input(cloud);
+  input.edt = &edt;
+  input.map = &whole.map;
+  const Detection half = detectPlanes(input);
   ASSERT_EQ(half.planes.size(), whole.planes.size());
   for (std::size_t i = 0; i < whole.planes.size(); ++i)
     EXPECT_EQ(half.planes[i].coefficients(), whole.planes[i].coefficients());

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
+#include "pcl_symmetry/core/local_maxima.h"
+#include "pcl_symmetry/core/plane_types.h"
+#include "pcl_symmetry/core/symmetry_map.h"
+#include "pcl_symmetry/core/visibility.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// What planes are looked for in. It refers to what it is made of, which must outlive it.
+struct PlaneInput {
+  /// \param points_of_cloud 3 x N, finite, input units.
+  /// \param seen_space see visibility.
+  PlaneInput(const PointsRef& points_of_cloud, const Visibility* seen_space = nullptr)
+      : points(points_of_cloud.data(), 3, points_of_cloud.cols(), points_of_cloud.outerStride()),
+        visibility(seen_space) {}
+  PlaneInput(const Points& points_of_cloud, const Visibility* seen_space = nullptr)
+      : points(points_of_cloud.data(), 3, points_of_cloud.cols(), points_of_cloud.outerStride()),
+        visibility(seen_space) {}
+
+  /// 3 x N, finite, input units. Fewer than 20 distinct points, at one place or on one line give an empty result with a
+  /// reason. Of more than 20 000, as many decide as the tolerance needs.
+  Eigen::Map<const Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> points;
+  /// What a scanner saw, input frame; null = the points show the object from all sides.
+  const Visibility* visibility = nullptr;
+  /// 3 x N, of any length and sign; one that is zero or not finite is estimated from the neighbors, as are all where
+  /// this is null.
+  const Points* normals = nullptr;
+  /// A transform of the points that was made before, and the distance transform that it was made from; both or neither.
+  const SymmetryMap* map = nullptr;
+  const GaussianEdt* edt = nullptr;  ///< see map
+  MakeSearch make_search;            ///< makes the search for the points that are used, once; empty = FLANN's
+};
+
+/// Options of detectPlanes(); the defaults suit any shape and unit.
+struct DetectionOptions {
+  /// How far a symmetric surface may be off, as a share of the greatest distance between two points, in (0, 0.1]: a
+  /// symmetry maps 97 % of the surface to within this of the surface.
+  double tolerance = 0.01;
+  /// Where the errors of a depth camera hide a tolerance, planes are decided at what the camera resolves, up to this
+  /// share, in (0, 0.1]; at most `tolerance`: that one decides, and where the camera does not resolve it, symmetries
+  /// are possible ones.
+  double most_tolerance = 0.03;
+  double absolute_tolerance = 0.0;  ///< a tolerance in input units in place of both, >= 0; 0 = they decide
+  double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
+  double min_possible = 0.2;        ///< a plane is reported as possible if confidence >= min_possible; in [0, 1]
+  /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
+  bool approximate = false;
+  bool evidence = false;  ///< fills Detection::evidence; takes about as long again as the detection
+  bool families = true;  ///< planes through one axis or one center are reported as such in place of single planes
+  bool turns = true;     ///< axes of turns of scans are searched too; false saves about a third of the time
+  int max_planes = 64;   ///< >= 1; folds of rotations go up to 60
+  int max_possible = 5;  ///< symmetries and possible planes together, where there are possible ones, >= 1
+  int num_cells = 64;    ///< cells of the distance transform along each side, in [8, 512]
+  double sigma = 0.0;    ///< its width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
+  std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
+  int num_threads = 0;     ///< >= 0; 0 = one per core; the answer does not depend on it
+
+  /// What only experiments turn.
+  struct Expert {
+    /// Bins of the map that candidates come from. chosen: as many as the paper's 64 x 64 directions, but as fine in phi
+    /// at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
+    int num_theta = 32;   ///< >= 1
+    int num_phi = 128;    ///< even, >= 2
+    int num_radius = 64;  ///< >= 1
+    int num_samples =
+        64;  ///< samples of the transform, >= 1. measured: the error is 1 % of PRST, enough to find maxima
+    LocalMaximaOptions maxima;     ///< of the maxima of the map that become candidates
+    int max_candidates = 24;       ///< strongest maxima that are refined, >= 1
+    bool principal_planes = true;  ///< planes across the principal axes are candidates too
+    /// A candidate that refinement moves by more than this many bins beyond its own is unstable and dropped, >= 0.
+    /// Departure from the paper, which has 0: one bin leaves room for the noise of the sampled map.
+    double max_drift = 1.0;
+    IspUpdate update = IspUpdate::PointToPlane;  ///< what a step of the refinement makes least
+    int num_coarse_samples = 100;                ///< points reflected in early iterations, >= 10
+    int num_refine_samples = 10'000;             ///< points reflected in late iterations (the paper's figure), >= 10
+    int max_iterations = 30;                     ///< of each stage, >= 1
+    double merge_angle = 0.035;  ///< radians, >= 0: planes that differ by no more than this in angle ...
+    double merge_offset = 0.02;  ///< ... and by this share of the radius in offset are one, >= 0
+  };
+  Expert expert;
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// From points to planes: transform, maxima, refinement, decision (Sections 4.1 to 4.4).
+/// \throws std::invalid_argument for bad options, coordinates that are not finite, or another number of normals.
+Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options = {});
+
+/// The planes of many clouds: each thread takes the next cloud and works on it alone. This keeps all cores busy, where
+/// threads that share one cloud wait for each other between its stages.
+/// \param num_clouds number of clouds.
+/// \param cloud gives the points of cloud i in [0, num_clouds). Called once for each i, from several threads at once.
+/// \param found takes what detectPlanes() returns for cloud i. Called once for each i, by one thread at a time, in the
+/// order in which the clouds are done.
+/// \param options num_threads is the number of clouds that are worked on at once; 0 = one per core.
+/// \throws std::invalid_argument as detectPlanes() does, and whatever cloud() and found() throw: the first exception,
+/// when no thread works any more. Which of the other clouds are done then is not said.
+void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
+                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options = {});
+
+}  // namespace pcl_symmetry

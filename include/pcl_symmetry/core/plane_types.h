@@ -1,0 +1,118 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/symmetry_map.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// What a plane is to the shape.
+enum class PlaneKind {
+  Symmetry,     ///< of the whole object: confidence >= min_confidence
+  Possible,     ///< confidence >= min_possible: the data do not decide
+  Approximate,  ///< less than that: a local maximum of the transform
+  Local         ///< a symmetry of a part: of the points that support it
+};
+
+/// A refined local maximum of the transform. Canonical: theta of the normal in [0, pi/2].
+struct SymmetryPlane : ReflectionPlane {
+  SymmetryPlane() = default;
+  explicit SymmetryPlane(const ReflectionPlane& plane) : ReflectionPlane(plane.canonical()) {}  ///< in canonical form
+
+  PlaneKind kind = PlaneKind::Approximate;  ///< what the decision is
+  /// Probability that this is a symmetry of the object, in [0, 1]; comparable between objects, densities, noise levels,
+  /// whole and partial clouds. src/core/evidence/README.md has the formula, its calibration and its limits.
+  double confidence = 0.0;
+  /// D(f, gamma) of equation 2 at this very plane: the correlation of the GEDT with its reflection, in [0, 1].
+  double score = 0.0;
+  /// Share of the surface seen that the plane maps onto the surface, relative to what sampling and noise allow, [0, 1].
+  double support = 0.0;
+  /// Estimate of the share of the surface that the plane maps to within the tolerance of the surface, in [0, 1]: of the
+  /// part of the surface that says something. A plane is a symmetry of the object if that share is at least 0.97.
+  double share = 0.0;
+  /// Lower limit of that share for the whole object: it lies between the limits in 95 of 100 cases, in [0, 1].
+  double share_low = 0.0;
+  double share_high = 1.0;  ///< upper limit
+  /// Distance that 97 % of the reflected points stay within from the surface, input units: the least tolerance at which
+  /// the plane would be a symmetry.
+  double deviation = 0.0;
+  /// Share of the points whose reflection falls where the cloud could show it, in [0, 1]: less than 1 for planes of
+  /// scans and where a piece of the surface is missing.
+  double seen = 1.0;
+  /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
+  /// of a surface are to each other, falling to 0 beyond. Of large clouds, points take that of one near them.
+  std::vector<float> point_support;
+  int iterations = 0;      ///< of Iterative Symmetric Points, in all stages
+  bool converged = false;  ///< the plane stood still
+  double residual = 0.0;   ///< weighted root mean square distance of the reflected points from the surface, input units
+};
+
+/// All planes through a line are symmetries: a body of revolution.
+struct SymmetryAxis {
+  Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
+  Eigen::Vector3d direction;  ///< unit
+  /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only turns show that of
+  /// SymmetryTurn.
+  double confidence = 0.0;
+  double score = 0.0;    ///< mean D of these planes
+  double support = 0.0;  ///< mean support of these planes
+};
+
+/// Turns about a line map what a scanner saw onto itself or to unseen places: the axis of a nut, a wheel, a bottle seen
+/// from one side. Beyond the paper (Section 6).
+struct SymmetryTurn {
+  Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
+  Eigen::Vector3d direction;  ///< unit
+  int fold = 0;               ///< order of the turns; 0: by any angle
+  /// Probability that these turns are symmetries of the whole object at the limits of ObjectSymmetryOptions.
+  double confidence = 0.0;
+  // Shares of the points seen, in [0, 1].
+  double support = 0.0;  ///< that the best turn maps onto the surface seen; a small turn for any angle
+  double off = 0.0;      ///< that the worst turn maps to where the scanner saw that there is nothing
+  double far = 0.0;      ///< the same, beyond ten tolerances of the surface
+  double halfway = 0.0;  ///< off of turns halfway between those of the fold: these speak against other folds
+};
+
+/// What the decisions of one detection were taken from (core/detection/plane_judge.h); the Python module gives it as
+/// arrays.
+struct DetectionEvidence;
+
+/// All planes through a point are symmetries: a sphere.
+struct SymmetryCenter {
+  Eigen::Vector3d point;    ///< input frame
+  double confidence = 0.0;  ///< as that of SymmetryAxis
+  double score = 0.0;       ///< as that of SymmetryAxis
+  double support = 0.0;     ///< as that of SymmetryAxis
+};
+
+/// What detectPlanes() found.
+struct Detection {
+  /// Why there is no answer, one sentence such as "12 distinct points, at least 20 are needed"; empty where the search
+  /// ran, whatever it found.
+  std::string reason;
+  std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
+  /// Where there is no symmetry and no possible one: the plane that maps the greatest share of the surface; else empty.
+  std::optional<SymmetryPlane> best;
+  /// Where 97 % of the points lie within the tolerance of one plane (three tolerances where noise hides the surface),
+  /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and say
+  /// nothing.
+  std::optional<ReflectionPlane> flat;
+  double tolerance = 0.0;                       ///< that was decided at, input units
+  double resolution = 0.0;                      ///< least tolerance that the sensor resolves, input units; 0 = unknown
+  double diameter = 0.0;                        ///< greatest distance between two points, input units
+  std::vector<SymmetryAxis> axes;               ///< best first; their planes are not among planes
+  std::vector<SymmetryCenter> centers;          ///< of spheres
+  std::vector<SymmetryTurn> turns;              ///< of scans: axes of rotations, most confident first
+  SymmetryMap map;                              ///< that was made; empty where one was given
+  std::shared_ptr<DetectionEvidence> evidence;  ///< with DetectionOptions::evidence; else null
+  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+};
+
+}  // namespace pcl_symmetry

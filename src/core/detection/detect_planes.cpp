@@ -1,0 +1,304 @@
+#include "pcl_symmetry/core/detect_planes.h"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
+#include "core/detection/candidates.h"
+#include "core/detection/cloud_subset.h"
+#include "core/detection/even_density.h"
+#include "core/detection/fold_spectrum.h"
+#include "core/detection/local_planes.h"
+#include "core/detection/plane_families.h"
+#include "core/detection/plane_judge.h"
+#include "core/detection/plane_ranking.h"
+#include "core/detection/plane_settler.h"
+#include "core/detection/scan_axes.h"
+#include "core/detection/staged_refinement.h"
+#include "core/detection/surface_fit.h"
+#include "core/transform/free_space.h"
+#include "core/geometry/point_samples.h"
+#include "core/geometry/answerable_points.h"
+#include "core/geometry/distinct_points.h"
+#include "core/geometry/search_views.h"
+#include "pcl_symmetry/core/planar_transform.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+using Timing = std::vector<std::pair<std::string, double>>;
+
+Detection unanswered(std::string reason) {
+  Detection detection;
+  detection.reason = std::move(reason);
+  return detection;
+}
+
+void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(planes));
+}
+
+PlaneFitOptions fitOptions(const DetectionOptions& options) {
+  const DetectionOptions::Expert& expert = options.expert;
+  return {expert.update, expert.num_refine_samples, expert.max_iterations, options.seed, options.num_threads};
+}
+
+/// The evidence of all candidates, also of those that the detection leaves out early.
+/// \param candidates after the second stage.
+std::vector<JudgedPlane> evidenceOf(std::vector<Candidate> candidates, const StagedRefinement& refinement,
+                                    const PlaneJudge& judge, const DetectionOptions& options) {
+  candidates = refinement.full(std::move(candidates));
+  refinement.climb(candidates);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
+  const PlaneTolerance same = mergeTolerance(options);
+  std::vector<Candidate> distinct;
+  for (Candidate& candidate : candidates)
+    if (!same.anySame(distinct, candidate.plane, [](const Candidate& other) { return other.plane; }))
+      distinct.push_back(std::move(candidate));
+  return judge.judgeWithEvidence(distinct);
+}
+
+/// Finds the axes of turns of a scan, and brings axes of revolution and planes in line with them.
+std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
+                                        double tolerance, const DetectionOptions& options, Detection& detection) {
+  // A ball turns about every line through its center.
+  if (!options.turns || !cloud.rules().has_turns || !detection.centers.empty()) return planes;
+  const TurnEvidence turns(cloud, tolerance, options.seed);
+  detection.turns =
+      scanAxes(turns, planes, detection.axes, options, detection.evidence ? &detection.evidence->turns : nullptr);
+  detection.axes = withRoundTurns(turns, std::move(detection.axes), detection.turns, options);
+  return withoutPlanesOf(std::move(planes), detection.axes, cloud);
+}
+
+/// Section 4.4: the planes of a cloud, from the maxima of its map to the list.
+/// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
+Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const SymmetryMap& map,
+                        const DetectionOptions& options, Stopwatch& watch) {
+  Detection detection;
+  const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
+  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, fitOptions(options));
+  const StagedRefinement refinement(cloud, *fit, options);
+  const PlaneJudge judge(cloud, *fit, options);
+  const PlaneDecision& decision = judge.decision;
+  timed("surface");
+
+  // Candidates: local maxima of the transform and the planes across the principal axes.
+  std::vector<Candidate> candidates = gatherCandidates(cloud, map, options);
+  timed("maxima");
+
+  // Iterative Symmetric Points, with more samples and narrower weights in each stage; the last one with the decision.
+  candidates = refinement.coarse(std::move(candidates), map.grid);
+  timed("coarse_refinement");
+  candidates = refinement.close(std::move(candidates));
+  timed("close_refinement");
+  if (options.evidence) {
+    detection.evidence = std::make_shared<DetectionEvidence>();
+    detection.evidence->planes = evidenceOf(candidates, refinement, judge, options);
+    timed("evidence");
+  }
+  PlaneSettler settler(refinement, judge, !options.approximate && cloud.rules().may_lack_piece);
+  std::vector<SymmetryPlane> planes = settler.planes(std::move(candidates));
+  timed("full_refinement");
+
+  // Planes that follow from others: reflections of one symmetry in another, and those of a polygon.
+  GroupClosure closure(cloud, mergeTolerance(options));
+  while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
+    append(planes, settler.planes(std::move(candidates)));
+  decision.preferWhole(planes);
+  PlanesAndPolygon completed = withPolygon(std::move(planes), cloud, all, judge, options);
+  planes = std::move(completed.planes);
+  timed("closure");
+
+  // Families: bodies of revolution, spheres, and what only turns of a scan show.
+  if (options.families) {
+    PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, judge, options);
+    planes = std::move(found.planes);
+    detection.axes = std::move(found.axes);
+    detection.centers = std::move(found.centers);
+  }
+  timed("families");
+  planes = withScanAxes(std::move(planes), cloud, judge.measure.tolerance(), options, detection);
+  const bool has_family = !detection.axes.empty() || !detection.centers.empty();
+  decision.preferBest(planes, has_family);
+  timed("turns");
+
+  if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, judge, options));
+  timed("parts");
+
+  // The answer.
+  if (!has_family) detection.best = bestApproximate(planes, cloud, *fit);
+  if (detection.best)
+    detection.best->deviation = judge.measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
+  detection.flat = flatPlane(cloud, judge.measure.thinness());
+  detection.tolerance = judge.measure.tolerance() * cloud.scale;
+  detection.resolution = judge.measure.resolution() * cloud.scale;
+  detection.diameter = cloud.extent * cloud.scale;
+  detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
+  decision.doubtSlanted(detection.planes);
+  timed("report");
+  return detection;
+}
+
+/// The same where one side of the cloud is thinner than the other, by points as dense on both; the support of all
+/// points.
+/// \param input the points of the cloud in the input frame.
+/// \param kept indices of the points to judge by.
+Detection planesOfEvenCloud(const NormalizedCloud& cloud, const Points& input, const std::vector<int>& kept,
+                            const SymmetryMap& map, const DetectionOptions& options, Stopwatch& watch) {
+  GaussianEdtOptions edt_options;
+  edt_options.num_cells = cloud.edt.numCells();
+  edt_options.sigma = cloud.edt.sigma();
+  edt_options.center = cloud.edt.center();
+  edt_options.radius = cloud.edt.radius();
+  edt_options.num_threads = options.num_threads;
+  const Points even_points = pointsAt(input, kept);
+  const GaussianEdt edt(even_points, edt_options);
+  const ClosestPointSearch::Ptr search =
+      cloud.flann ? nullptr : among(cloud.search, static_cast<std::size_t>(cloud.points.cols()), kept);
+  const NormalizedCloud even(even_points, edt, search, nullptr, options.num_threads);
+  Detection detection = planesOfCloud(even, cloud.points, map, options, watch);
+  const SurfaceFit all(cloud, fitOptions(options));
+  const auto complete = [&](SymmetryPlane& plane) {
+    plane.point_support = all.PlaneFit::shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).point_support;
+  };
+  for (SymmetryPlane& plane : detection.planes) complete(plane);
+  if (detection.best) complete(*detection.best);
+  return detection;
+}
+
+/// The normals of the distinct points: where copies differ, that of the last copy.
+Points normalsOf(const DistinctPoints& distinct, const Points& normals) {
+  Points result(3, distinct.points.cols());
+  for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
+    result.col(distinct.index_of[i]) = normals.col(static_cast<Eigen::Index>(i));
+  return result;
+}
+
+/// Each position counts once, and volumes of points are made evenly dense.
+Detection planesOfMap(const PlaneInput& input, const GaussianEdt& edt, const SymmetryMap& map,
+                      const DetectionOptions& options) {
+  Stopwatch watch;
+  const DistinctPoints distinct(input.points);
+  const Points normals = input.normals ? normalsOf(distinct, *input.normals) : Points();
+  ClosestPointSearch::Ptr search;
+  if (input.make_search) search = inFrame(input.make_search(distinct.points), edt.center(), edt.radius());
+  const NormalizedCloud cloud(distinct.points, edt, std::move(search), input.visibility, options.num_threads,
+                              input.normals ? &normals : nullptr);
+  const std::vector<int> kept =
+      cloud.rules().evens_density ? evenlyDense(cloud, options.seed) : allOf(cloud.points.cols());
+  Detection detection = static_cast<Eigen::Index>(kept.size()) < cloud.points.cols()
+                            ? planesOfEvenCloud(cloud, distinct.points, kept, map, options, watch)
+                            : planesOfCloud(cloud, cloud.points, map, options, watch);
+  if (distinct.points.cols() < input.points.cols()) spreadSupport(detection, distinct.index_of);
+  return detection;
+}
+
+/// Sections 4.1 to 4.3, then the rest.
+Detection planesOfPoints(const PlaneInput& input, const DetectionOptions& options) {
+  Stopwatch watch;
+  Timing timing;
+  GaussianEdtOptions edt_options;
+  edt_options.num_cells = options.num_cells;
+  edt_options.sigma = options.sigma;
+  edt_options.num_threads = options.num_threads;
+  const GaussianEdt edt(input.points, edt_options);
+  timing.emplace_back("distance_transform", watch.lap());
+  std::vector<float> free_space;
+  if (input.visibility) free_space = freeSpace(edt, *input.visibility, options.num_threads);
+  timing.emplace_back("free_space", watch.lap());
+  const DetectionOptions::Expert& expert = options.expert;
+  const PlaneGrid grid(expert.num_theta, expert.num_phi, expert.num_radius, edt.center(), edt.radius());
+  SampledTransformOptions sampling;
+  sampling.num_samples = expert.num_samples;
+  sampling.seed = options.seed;
+  sampling.num_threads = options.num_threads;
+  SymmetryMap map = sampledTransform(edt, grid, sampling, free_space);
+  map.center_of_mass = centerOfMass(input.points);
+  timing.emplace_back("transform", watch.lap());
+  Detection detection = planesOfMap(input, edt, map, options);
+  detection.map = std::move(map);
+  detection.timing_ms.insert(detection.timing_ms.begin(), timing.begin(), timing.end());
+  return detection;
+}
+
+/// What the points that decide for a large cloud say, as the answer of the whole cloud.
+Detection planesOfSubset(const PlaneInput& input, const CloudSubset& subset, const DetectionOptions& options) {
+  const Points normals = input.normals ? pointsAt(*input.normals, subset.kept) : Points();
+  PlaneInput kept(subset.points, input.visibility);
+  kept.normals = input.normals ? &normals : nullptr;
+  kept.make_search = input.make_search;
+  Detection detection = input.map ? planesOfMap(kept, *input.edt, *input.map, options) : planesOfPoints(kept, options);
+  if (!input.map) detection.map.center_of_mass = centerOfMass(input.points);
+  Stopwatch watch;
+  if (!detection.planes.empty() || detection.best)
+    spreadSupport(detection, subset.nearTo(input.points, options.num_threads));
+  detection.timing_ms.emplace_back("support_of_all", watch.lap());
+  return detection;
+}
+
+}  // namespace
+
+void DetectionOptions::validate() const {
+  check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");
+  check(most_tolerance > 0.0 && most_tolerance <= 0.1, "most_tolerance", most_tolerance, "in (0, 0.1]");
+  check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
+  check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
+  check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
+  check(max_planes >= 1, "max_planes", max_planes, ">= 1");
+  check(max_possible >= 1, "max_possible", max_possible, ">= 1");
+  GaussianEdtOptions edt;
+  edt.num_cells = num_cells;
+  edt.sigma = sigma;
+  edt.validate();
+  checkNumThreads(num_threads);
+  expert.maxima.validate();
+  check(expert.num_theta >= 1, "num_theta", expert.num_theta, ">= 1");
+  check(expert.num_phi >= 2 && expert.num_phi % 2 == 0, "num_phi", expert.num_phi, "even and >= 2");
+  check(expert.num_radius >= 1, "num_radius", expert.num_radius, ">= 1");
+  check(expert.num_samples >= 1, "num_samples", expert.num_samples, ">= 1");
+  check(expert.max_candidates >= 1, "max_candidates", expert.max_candidates, ">= 1");
+  check(expert.max_drift >= 0.0, "max_drift", expert.max_drift, ">= 0");
+  check(expert.num_coarse_samples >= 10, "num_coarse_samples", expert.num_coarse_samples, ">= 10");
+  check(expert.num_refine_samples >= 10, "num_refine_samples", expert.num_refine_samples, ">= 10");
+  check(expert.max_iterations >= 1, "max_iterations", expert.max_iterations, ">= 1");
+  check(expert.merge_angle >= 0.0, "merge_angle", expert.merge_angle, ">= 0");
+  check(expert.merge_offset >= 0.0, "merge_offset", expert.merge_offset, ">= 0");
+}
+
+Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options) {
+  options.validate();
+  if (input.normals)
+    check(input.normals->cols() == input.points.cols(), "number of normals", input.normals->cols(),
+          "the number of points");
+  if (std::string reason = whyUnanswerable(input.points); !reason.empty()) return unanswered(std::move(reason));
+  Stopwatch watch;
+  if (const std::optional<CloudSubset> subset = subsetOf(input.points, options)) {
+    const double subset_ms = watch.lap();
+    Detection detection = planesOfSubset(input, *subset, options);
+    detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
+    return detection;
+  }
+  return input.map ? planesOfMap(input, *input.edt, *input.map, options) : planesOfPoints(input, options);
+}
+
+void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
+                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options) {
+  options.validate();
+  DetectionOptions alone = options;
+  alone.num_threads = 1;
+  std::mutex one_at_a_time;
+  parallelBlocks(num_clouds, options.num_threads, [&](std::size_t i) {
+    Detection detection = detectPlanes(cloud(i), alone);
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    found(i, std::move(detection));
+  });
+}
+
+}  // namespace pcl_symmetry
