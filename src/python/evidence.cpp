@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/detection/plane_judge.h"
+#include "core/detection/plane_decision.h"
 #include "core/detection/turn_confidence.h"
 #include "core/segmentation/region_merging.h"
 #include "python/input_points.h"

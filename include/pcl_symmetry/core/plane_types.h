@@ -80,7 +80,7 @@ struct SymmetryTurn {
   double halfway = 0.0;  ///< off of turns halfway between those of the fold: these speak against other folds
 };
 
-/// What the decisions of one detection were taken from (core/detection/plane_judge.h); the Python module gives it as
+/// What the decisions of one detection were taken from (core/detection/plane_decision.h); the Python module gives it as
 /// arrays.
 struct DetectionEvidence;
 

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "core/detection/plane_fit.h"
-#include "core/detection/plane_tolerance.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {

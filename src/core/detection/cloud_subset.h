@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "core/detection/normalized_cloud.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
@@ -28,5 +30,13 @@ std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOpti
 /// Gives each point of a cloud the support of the point that stands for it.
 /// \param place_of of each point of the cloud, the place of its support.
 void spreadSupport(Detection& detection, const std::vector<int>& place_of);
+
+/// Points of a cloud such that they lie about equally dense on one side and on the other.
+///
+/// Where noise leaves no surface, density is what planes are judged by, and a cloud that is thinner on one side is no
+/// more symmetric than a shape that ends there. The logarithm of the density is fitted by a linear function of the
+/// place: what the shape itself varies by is the same on both sides of a symmetry, and stays.
+/// \return indices in increasing order; all where the density is even.
+std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed);
 
 }  // namespace pcl_symmetry

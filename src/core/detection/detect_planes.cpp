@@ -5,32 +5,104 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/candidates.h"
 #include "core/detection/cloud_subset.h"
-#include "core/detection/even_density.h"
 #include "core/detection/fold_spectrum.h"
-#include "core/detection/local_planes.h"
+#include "core/detection/part_search.h"
+#include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
-#include "core/detection/plane_judge.h"
-#include "core/detection/plane_ranking.h"
-#include "core/detection/plane_settler.h"
+#include "core/detection/plane_fit.h"
 #include "core/detection/scan_axes.h"
 #include "core/detection/staged_refinement.h"
-#include "core/detection/surface_fit.h"
-#include "core/transform/free_space.h"
-#include "core/geometry/point_samples.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/distinct_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/search_views.h"
+#include "core/transform/free_space.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
 
 namespace {
+
+// Confidence of planes of whole clouds that climb. measured: cut clouds of 89 models of fold 0 are decided alike with
+// 0, 0.005 and 0.02; a true plane had 0.0105 before its climb and 0.81 after it. With 0, climbs of planes that are none
+// take a fifth of the time of a cloud without a symmetry.
+constexpr double kClimbingConfidence = 0.01;
+
+/// The last stage of refinement and the judgement, with as little work as the answer needs: planes that cannot be
+/// symmetries beside the ones that were found are left out after a look at some points, and planes climb only where
+/// that may decide.
+class PlaneSettler {
+public:
+  /// \param refinement,judge must outlive this object.
+  /// \param looks the cloud is a whole surface, and planes that are no symmetries are not asked for where there are any.
+  PlaneSettler(const StagedRefinement& refinement, const PlaneJudge& judge, bool looks)
+      : refinement_(refinement), judge_(judge), looks_(looks) {}
+
+  /// \param candidates after the second stage, best first.
+  /// \return the planes that may be symmetries, and where there are none, the others too; input frame.
+  std::vector<SymmetryPlane> planes(std::vector<Candidate> candidates);
+
+private:
+  std::vector<SymmetryPlane> judged(std::vector<Candidate> candidates) const;
+  void note(const std::vector<SymmetryPlane>& planes);
+
+  const StagedRefinement& refinement_;
+  const PlaneJudge& judge_;
+  bool looks_;
+  bool explained_ = false;  ///< a plane explains all of the cloud, so that nothing is missing
+};
+
+std::vector<SymmetryPlane> PlaneSettler::planes(std::vector<Candidate> candidates) {
+  std::vector<SymmetryPlane> found;
+  if (looks_ && !explained_ && candidates.size() > 1) {
+    found = judged({candidates.front()});
+    candidates.erase(candidates.begin());
+    note(found);
+  }
+  // Nothing is missing then that could excuse what others leave off.
+  if (looks_ && explained_)
+    candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                    [&](const Candidate& other) { return judge_.decision.isHopeless(other); }),
+                     candidates.end());
+  std::vector<SymmetryPlane> others = judged(std::move(candidates));
+  note(others);
+  std::move(others.begin(), others.end(), std::back_inserter(found));
+  return found;
+}
+
+void PlaneSettler::note(const std::vector<SymmetryPlane>& planes) {
+  explained_ = explained_ || std::any_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) {
+                 return judge_.decision.explainsAll(plane);
+               });
+}
+
+/// Refines candidates in full and judges them.
+std::vector<SymmetryPlane> PlaneSettler::judged(std::vector<Candidate> candidates) const {
+  candidates = refinement_.full(std::move(candidates));
+  std::vector<SymmetryPlane> planes = judge_.judge(candidates);
+  std::vector<Candidate> climbing;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (planes[i].confidence < kClimbingConfidence) continue;
+    climbing.push_back(std::move(candidates[i]));
+    places.push_back(i);
+  }
+  const std::vector<bool> moved = refinement_.climb(climbing);
+  std::vector<Candidate> again;
+  for (std::size_t k = 0; k < moved.size(); ++k)
+    if (moved[k]) again.push_back(std::move(climbing[k]));
+  std::vector<SymmetryPlane> judged_again = judge_.judge(again);
+  for (std::size_t k = 0, next = 0; k < moved.size(); ++k)
+    if (moved[k]) planes[places[k]] = std::move(judged_again[next++]);
+  return planes;
+}
 
 using Timing = std::vector<std::pair<std::string, double>>;
 
@@ -164,9 +236,8 @@ Detection planesOfEvenCloud(const NormalizedCloud& cloud, const Points& input, c
       cloud.flann ? nullptr : among(cloud.search, static_cast<std::size_t>(cloud.points.cols()), kept);
   const NormalizedCloud even(even_points, edt, search, nullptr, options.num_threads);
   Detection detection = planesOfCloud(even, cloud.points, map, options, watch);
-  const SurfaceFit all(cloud, fitOptions(options));
   const auto complete = [&](SymmetryPlane& plane) {
-    plane.point_support = all.PlaneFit::shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).point_support;
+    plane.point_support = surfaceSupport(cloud, cloud.toNormalized(plane), fitOptions(options));
   };
   for (SymmetryPlane& plane : detection.planes) complete(plane);
   if (detection.best) complete(*detection.best);

@@ -11,6 +11,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
+#include "core/detection/plane_families.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {

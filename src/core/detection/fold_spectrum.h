@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/plane_judge.h"
+#include "core/detection/plane_decision.h"
 #include "core/detection/plane_lattice.h"
 
 namespace pcl_symmetry {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/evidence/cloud_kind.h"
+#include "core/evidence/plane_confidence.h"
 
 namespace pcl_symmetry {
 

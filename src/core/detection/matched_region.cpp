@@ -8,7 +8,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
-#include "core/detection/surface_fit.h"
+#include "core/detection/plane_fit.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {

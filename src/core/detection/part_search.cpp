@@ -6,17 +6,18 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
+#include "core/detection/candidates.h"
 #include "core/detection/matched_region.h"
-#include "core/detection/plane_tolerance.h"
-#include "core/detection/surface_fit.h"
+#include "core/detection/plane_fit.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/flann_search.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
-#include "core/geometry/flann_search.h"
 
 namespace pcl_symmetry {
 
@@ -314,6 +315,29 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
   for (std::optional<SymmetricPart>& part : on_regions)
     if (part) parts.push_back(std::move(*part));
   return withoutFamilies(distinct(withoutRemains(std::move(parts), cloud.points.cols())));
+}
+
+std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, const NormalizedCloud& cloud,
+                                       const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options) {
+  std::vector<SymmetryPlane> decided;
+  std::copy_if(known.begin(), known.end(), std::back_inserter(decided), isDecided);
+  const std::vector<SymmetricPart> parts =
+      findSymmetricParts(cloud, fit, {options.expert.update, options.seed, options.num_threads});
+  const std::vector<int> all = allOf(cloud.points.cols());
+  std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
+  parallelBlocks(parts.size(), options.num_threads, [&](std::size_t i) {
+    const auto normalized = [&](const SymmetryPlane& plane) { return cloud.toNormalized(plane); };
+    if (basinTolerance().anySame(decided, parts[i].plane, normalized)) return;
+    SymmetryPlane plane = judge.decision.decide(judge.measure.of(parts[i].plane, all));
+    if (plane.kind == PlaneKind::Symmetry) return;  // one of a family, which is known as its axis or center
+    plane.kind = PlaneKind::Local;
+    plane.iterations = parts[i].iterations;
+    of_parts[i] = std::move(plane);
+  });
+  std::vector<SymmetryPlane> planes;
+  for (std::optional<SymmetryPlane>& plane : of_parts)
+    if (plane) planes.push_back(std::move(*plane));
+  return planes;
 }
 
 }  // namespace pcl_symmetry

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/detection/plane_decision.h"
 #include "core/detection/plane_fit.h"
 
 namespace pcl_symmetry {
@@ -33,5 +34,11 @@ struct PartSearchOptions {
 /// \return large and well supported parts first; no two with the same plane.
 std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, const PlaneFit& fit,
                                               const PartSearchOptions& options);
+
+/// Symmetries of parts of the surface.
+/// \param known planes that have been found, input frame.
+/// \return planes of PlaneKind::Local, input frame, unlike the symmetries and possible symmetries among those known.
+std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, const NormalizedCloud& cloud,
+                                       const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

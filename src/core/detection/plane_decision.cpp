@@ -1,11 +1,51 @@
 #include "core/detection/plane_decision.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "core/detection/standing_object.h"
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
+#include "core/detection/candidates.h"
+#include "core/detection/plane_fit.h"
+#include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
+
+namespace {
+
+// Radians from upright or level within which a plane does not slant. chosen: planes of noisy scans are off by three
+// degrees; half doubts some of them, twice lets a third of the slanting ones pass.
+constexpr double kUpright = 5.0 * kPi / 180.0;
+// Diameters farther from the points than the nearest support that others carry the object, too: a box stands on a table
+// and touches a wall. chosen: half takes noise for a gap, twice takes in walls behind an object.
+constexpr double kTouching = 0.05;
+/// The least signed distance of the points from a support.
+double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
+  return (support.head<3>().transpose().cast<float>() * points).minCoeff() + support[3];
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen) {
+  std::vector<double> heights;
+  for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
+  if (heights.empty()) return {};
+  const double reach =
+      *std::min_element(heights.begin(), heights.end()) + kTouching * 2.0 * boundingBall(points).radius;
+  std::vector<Eigen::Vector3d> normals;
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    if (heights[i] <= reach) normals.push_back(seen.supports()[i].head<3>().normalized());
+  return normals;
+}
+
+bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals) {
+  const auto is_along = [&](const Eigen::Vector3d& normal) {
+    const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
+    return angle <= kUpright || angle >= 0.5 * kPi - kUpright;
+  };
+  return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
+}
 
 namespace {
 
@@ -123,6 +163,147 @@ bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
   if (rank != rankOf(b)) return rank < rankOf(b);
   if (rank < 2 && a.confidence != b.confidence) return a.confidence > b.confidence;
   return a.support > b.support;
+}
+
+std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {
+  std::vector<SymmetryPlane> planes;
+  for (JudgedPlane& judged : judgeWithEvidence(candidates)) planes.push_back(std::move(judged.plane));
+  return planes;
+}
+
+std::vector<JudgedPlane> PlaneJudge::judgeWithEvidence(const std::vector<Candidate>& candidates) const {
+  const std::vector<int> samples = measure.samples();
+  std::vector<JudgedPlane> planes(candidates.size());
+  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
+    PlaneRecord record = measure.of(candidates[i], samples);
+    planes[i].evidence = record.evidence;
+    planes[i].plane = decision.decide(std::move(record));
+  });
+  return planes;
+}
+
+JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
+                                     const std::vector<int>& samples) const {
+  const double count = static_cast<double>(planes.size());
+  const bool is_scan = cloud_.seen() != nullptr;
+  JudgedFamily family;
+  PlaneEvidence together;
+  together.share = together.double_share = together.hold = 0.0;
+  double telling = 0.0, best_score = 0.0;
+  for (const ReflectionPlane& plane : planes) {
+    const PlaneEvidence one = measure.of(plane, samples, is_scan ? measure.tolerance() : 0.0).evidence;
+    together.support += one.support / count;
+    together.conflict += one.conflict / count;
+    const double told = (1.0 - one.unknown) / count;
+    telling += told;
+    together.share += told * one.share;
+    together.double_share += told * one.double_share;
+    together.hold += one.hold / count;
+    best_score = std::max(best_score, one.score);
+    family.score += one.score / count;
+    family.least_confidence = std::min(family.least_confidence, planeConfidence(one));
+  }
+  // Planes of a family say as much as the scan shows of them, and D falls with what it does not show: the plane that
+  // is shown best represents it.
+  constexpr double kLeastTelling = 1e-3;  // avoids a division by 0
+  PlaneEvidence all = measure.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);
+  all.share = together.share / std::max(kLeastTelling, telling);
+  all.double_share = together.double_share / std::max(kLeastTelling, telling);
+  all.hold = together.hold;
+  all.unknown = 1.0 - telling;
+  family.confidence = planeConfidence(all);
+  family.support = seenSupport(all);
+  return family;
+}
+
+namespace {
+
+// Radians, and radii: how far the slope of a maximum may reach. chosen: twice the limits of a basin of refinement;
+// smaller values report planes that came to rest on a slope, larger ones only cost a value of D each.
+constexpr PlaneTolerance kSlope{0.2, 0.15};
+// Difference of D. chosen: what rounding and cells make of a level slope; larger values drop shallow maxima of their
+// own.
+constexpr double kSlopeDip = 0.005;
+
+/// Refinement can come to rest on the way to a maximum, where few points say how to go on (on flat pieces, for
+/// instance). A plane is a maximum of its own only if D falls on the way to a better plane nearby.
+bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
+  const ReflectionPlane a = cloud.toNormalized(better), b = cloud.toNormalized(plane);
+  if (!kSlope.same(a, b)) return false;
+  const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
+  const Eigen::Vector3d normal = a.normal() + sign * b.normal();
+  const ReflectionPlane between(normal, 0.5 * normal.norm() * (a.offset() + sign * b.offset()));
+  return cloud.score(cloud.toInput(between)) > plane.score - kSlopeDip;
+}
+
+/// Whether a plane is of a polygon, between whose planes noise may leave no dip.
+bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
+  return polygon && contains(cloud.toNormalized(plane), polygon->line, kContainedOffset);
+}
+
+/// Judges every point, where the plane was judged by some of them.
+void completeSupport(SymmetryPlane& plane, const NormalizedCloud& cloud, const PlaneFit& fit) {
+  if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
+  plane.point_support = fit.shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).point_support;
+}
+
+/// An approximate plane that is a symmetry of a part is reported as that.
+std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
+                                                const PlaneTolerance& tolerance) {
+  std::vector<ReflectionPlane> local;
+  for (const SymmetryPlane& plane : planes)
+    if (plane.kind == PlaneKind::Local) local.push_back(cloud.toNormalized(plane));
+  const auto is_of_part = [&](const SymmetryPlane& plane) {
+    return plane.kind == PlaneKind::Approximate && tolerance.anySame(local, cloud.toNormalized(plane));
+  };
+  planes.erase(std::remove_if(planes.begin(), planes.end(), is_of_part), planes.end());
+  return planes;
+}
+
+}  // namespace
+
+std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
+                                        const NormalizedCloud& cloud, const PlaneFit& fit,
+                                        const DetectionOptions& options) {
+  const PlaneTolerance tolerance = mergeTolerance(options);
+  planes = withoutPlanesOfParts(std::move(planes), cloud, tolerance);
+  std::stable_sort(planes.begin(), planes.end(), isBetter);
+  std::vector<SymmetryPlane> ranked;
+  for (SymmetryPlane& plane : planes) {
+    if (static_cast<int>(ranked.size()) >= options.max_planes) break;
+    if (rankOf(plane) == 2 && !options.approximate) continue;
+    if (rankOf(plane) == 1 && static_cast<int>(ranked.size()) >= options.max_possible) continue;
+    const bool of_polygon = isOf(polygon, plane, cloud);
+    const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
+      if (tolerance.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
+      // D is of the whole shape: planes of a part need not be maxima of it.
+      if (plane.kind == PlaneKind::Local) return false;
+      return !(of_polygon && isOf(polygon, other, cloud)) && isOnSlopeOf(other, plane, cloud);
+    });
+    if (!is_known) ranked.push_back(std::move(plane));
+  }
+  parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) { completeSupport(ranked[i], cloud, fit); });
+  return ranked;
+}
+
+std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness) {
+  if (thinness != Thinness::Sheet) return std::nullopt;
+  const PrincipalAxes& axes = cloud.principal_axes;
+  return cloud.toInput(ReflectionPlane(axes.axes.col(2), axes.axes.col(2).dot(axes.center)));
+}
+
+std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                             const PlaneFit& fit) {
+  const SymmetryPlane* best = nullptr;
+  for (const SymmetryPlane& plane : planes) {
+    if (rankOf(plane) < 2) return std::nullopt;
+    if (plane.kind == PlaneKind::Approximate && (!best || plane.share * plane.seen > best->share * best->seen))
+      best = &plane;
+  }
+  if (!best) return std::nullopt;
+  SymmetryPlane answer = *best;
+  completeSupport(answer, cloud, fit);
+  return answer;
 }
 
 }  // namespace pcl_symmetry

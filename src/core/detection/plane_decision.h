@@ -1,11 +1,26 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "core/detection/plane_fit.h"
+#include "core/detection/plane_lattice.h"
 #include "core/detection/plane_measure.h"
+#include "core/detection/turn_confidence.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
+
+/// The supports that carry an object, see Visibility::withSupport(): the nearest one and those that it touches, too.
+/// \param points of the object, 3 x N, finite, N >= 1.
+/// \return their unit normals.
+std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen);
+
+/// True where a plane is neither upright nor level on any of these supports; false without one.
+bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
 
 /// From evidence to answers: the one place that says what is a symmetry, what is possible, and what comes first
 /// (core/evidence/README.md).
@@ -62,5 +77,74 @@ bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b);
 inline bool isDecided(const SymmetryPlane& plane) {
   return rankOf(plane) < 2;
 }
+
+/// A plane, and what the decision was taken from.
+struct JudgedPlane {
+  SymmetryPlane plane;  ///< input frame
+  PlaneEvidence evidence;
+};
+
+/// What the decisions of one detection were taken from: what fits are made to.
+struct DetectionEvidence {
+  /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
+  std::vector<JudgedPlane> planes;
+  std::vector<JudgedTurn> turns;  ///< of scans
+};
+
+/// What the planes of a family say together.
+struct JudgedFamily {
+  double confidence = 0.0;        ///< of the mean evidence
+  double least_confidence = 1.0;  ///< of a single plane
+  double score = 0.0, support = 0.0;
+};
+
+/// From refined planes to answers: measures, then decides.
+class PlaneJudge {
+public:
+  /// \param cloud,fit,options must outlive this object.
+  PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
+      : measure(cloud, fit, options), decision(cloud, measure, options), cloud_(cloud), options_(options) {}
+  PlaneJudge(const PlaneJudge&) = delete;  // parts refer to each other
+  PlaneJudge& operator=(const PlaneJudge&) = delete;
+
+  const PlaneMeasure measure;
+  const PlaneDecision decision;
+
+  /// \param candidates after the last stage of refinement.
+  /// \return one plane each, input frame, in the same order.
+  std::vector<SymmetryPlane> judge(const std::vector<Candidate>& candidates) const;
+
+  /// The same with the evidence.
+  std::vector<JudgedPlane> judgeWithEvidence(const std::vector<Candidate>& candidates) const;
+
+  /// Planes of a family together.
+  /// \param planes normalized frame, at least one.
+  /// \param samples indices of the points that judge them.
+  JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
+
+private:
+  const NormalizedCloud& cloud_;
+  const DetectionOptions& options_;
+};
+
+/// The planes that are reported: best first, each maximum once, as many as the options ask for.
+///
+/// Order: symmetries, then possible ones, both by falling confidence, then approximate and local ones by falling
+/// support.
+/// \param planes input frame.
+/// \param polygon whose planes are all of them maxima, normalised frame.
+/// \return with the support of every point.
+std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
+                                        const NormalizedCloud& cloud, const PlaneFit& fit,
+                                        const DetectionOptions& options);
+
+/// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.
+std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness);
+
+/// The answer where nothing is a symmetry: of the planes of the whole, the one with the greatest share.
+/// \param planes input frame.
+/// \return with the support of every point; empty where a plane is a symmetry or a possible one, or there is none.
+std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                             const PlaneFit& fit);
 
 }  // namespace pcl_symmetry

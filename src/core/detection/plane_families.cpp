@@ -10,7 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/detection/fold_spectrum.h"
-#include "core/detection/plane_tolerance.h"
+#include "core/detection/plane_fit.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
@@ -26,7 +26,6 @@ constexpr std::size_t kMostPlanes = 8;
 // Radians between two planes that define their common line. chosen: at smaller angles the errors of the planes move the
 // line too far; at larger ones the planes of some families are too close to each other.
 constexpr double kLeastAngle = 0.17;
-constexpr double kContainedAngle = 0.0524;  // radians. chosen: 3 degrees, the limit of a plane that counts as found
 // Planes of a family that are screened, that its line is fitted to, and that test it. chosen: a regular polygon fails
 // at one of the first three already; more planes cost time, fewer let prisms with many sides pass.
 constexpr int kScreening = 3, kFitted = 6, kTested = 8;
@@ -133,11 +132,6 @@ Line3d commonLine(const std::vector<ReflectionPlane>& planes) {
   const Eigen::Vector3d direction = solver.eigenvectors().col(0);
   const Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
   return Line3d(point - direction.dot(point) * direction, direction);
-}
-
-bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
-  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kContainedAngle) &&
-         std::abs(plane.signedDistance(line.origin())) <= tolerance;
 }
 
 std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,

@@ -5,11 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/plane_fit.h"
-#include "core/detection/plane_judge.h"
-#include "pcl_symmetry/core/axial_transform.h"
-#include "pcl_symmetry/core/detect_planes.h"
-#include "pcl_symmetry/core/reflection_plane.h"
+#include "core/detection/plane_decision.h"
 
 namespace pcl_symmetry {
 
@@ -57,13 +53,6 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 /// \return best first.
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<Line3d>& guesses = {});
-
-/// Radii by which a plane may miss a line, or a point, that it contains. chosen: smaller values leave planes of a
-/// family beside it as single planes, larger ones take planes that have nothing to do with it.
-constexpr double kContainedOffset = 0.03;
-
-/// Whether a plane contains a line, within 3 degrees and \p tolerance.
-bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance);
 
 /// Planes, and the families that some of them belonged to.
 struct PlanesAndFamilies {

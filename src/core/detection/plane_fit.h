@@ -1,13 +1,38 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "core/detection/normalized_cloud.h"
 #include "core/evidence/plane_confidence.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
+
+/// Two planes within both limits are one plane.
+struct PlaneTolerance {
+  double angle;   ///< between the normals, radians
+  double offset;  ///< between the offsets from the origin of the planes' frame, its units
+
+  bool same(const ReflectionPlane& a, const ReflectionPlane& b) const {
+    const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
+    return a.angleTo(b) <= angle && std::abs(a.offset() - sign * b.offset()) <= offset;
+  }
+
+  /// \param plane_of takes an entry of the list to its plane.
+  /// \return whether an entry of the list has the same plane.
+  template <typename List, typename PlaneOf>
+  bool anySame(const List& list, const ReflectionPlane& plane, const PlaneOf& plane_of) const {
+    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return same(plane_of(entry), plane); });
+  }
+
+  bool anySame(const std::vector<ReflectionPlane>& list, const ReflectionPlane& plane) const {
+    return anySame(list, plane, [](const ReflectionPlane& entry) { return entry; });
+  }
+};
 
 /// Merit of a symmetry of a whole cloud, and its share of the surface less what few samples blur. chosen: a symmetry of
 /// 97 % support and 3 % conflict has 0.97; higher values lose symmetries where samples are few, lower ones refine
@@ -104,6 +129,15 @@ struct PlaneFitOptions {
   std::uint64_t seed;  ///< of the samples
   int num_threads;     ///< 0 = one per core
 };
+
+/// Support of each point by the surface, also where the points resolve none.
+std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
+                                  const PlaneFitOptions& options);
+
+/// What matchSymmetricPoints() finds, without weights: closest points and their distances only.
+/// \param guesses IspStep::closest of a plane nearby; null = not known.
+IspStep matchReflectionsOnly(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
+                             double sigma, const std::vector<int>* guesses);
 
 /// \param cloud must outlive the result.
 /// \return the form that fits the cloud.

@@ -1,5 +1,7 @@
 #include "core/detection/plane_lattice.h"
 
+#include "core/detection/plane_families.h"
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -51,6 +53,11 @@ std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<R
 }
 
 }  // namespace
+
+bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
+  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kContainedAngle) &&
+         std::abs(plane.signedDistance(line.origin())) <= tolerance;
+}
 
 ReflectionPlane PlaneLattice::plane(double k) const {
   const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);

@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/evidence/plane_stiffness.h"
 #include "core/evidence/plane_support.h"
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/symmetric_share.h"
 #include "core/scan/sensor_noise.h"
@@ -259,7 +259,10 @@ double PlaneMeasure::movedShare(const ReflectionPlane& plane) const {
 }
 
 const SurfaceEnds& PlaneMeasure::ends() const {
-  std::call_once(ends_found_, [this] { ends_.emplace(cloud_, options_.seed, options_.num_threads); });
+  std::call_once(ends_found_, [this] {
+    ends_.emplace(cloud_.points, cloud_.geometry, *cloud_.search, cloud_.neighbours, cloud_.spacing, options_.seed,
+                  options_.num_threads);
+  });
   return *ends_;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/detection/plane_fit.h"
-#include "core/detection/surface_ends.h"
+#include "core/evidence/missing_surface.h"
 #include "core/evidence/split_surface.h"
 #include "core/geometry/thin_shape.h"
 #include "pcl_symmetry/core/detect_planes.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {

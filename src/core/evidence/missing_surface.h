@@ -1,12 +1,76 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
-#include "core/evidence/outermost_points.h"
+#include "core/evidence/cut_planes.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
+
+/// Points that are asked again and again which of them are the last ones along a direction.
+///
+/// The points are kept by cells. Cells whose boxes end before what was found are passed over, so that most questions
+/// look at a few cells alone.
+class OutermostPoints {
+public:
+  /// \param points 3 x N, finite, N > 0; copied.
+  explicit OutermostPoints(const Points& points);
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(index_of_.size()); }
+  const Eigen::Vector3f& mean() const { return mean_; }
+
+  /// The point that is farthest along a direction; of several the first one.
+  Eigen::Vector3f last(const Eigen::Vector3f& direction) const;
+
+  /// Calls visit(index of the point, its distance along the direction) for the points of which this distance is at
+  /// least \p from.
+  template <typename Visit>
+  void visitFrom(const Eigen::Vector3f& direction, float from, const Visit& visit) const {
+    for (const Cell& cell : cells_) {
+      if (cell.bound(direction) < from) continue;
+      for (std::size_t i = cell.begin; i < cell.end; ++i)
+        if (const float value = along(direction, i); value >= from) visit(index_of_[i], value);
+    }
+  }
+
+private:
+  struct Cell {
+    Eigen::Vector3f least, most;  ///< corners of the box of its points
+    std::size_t begin, end;       ///< places of its points
+
+    /// No point of the cell is farther along the direction. As along() is computed, so that rounding keeps the order.
+    float bound(const Eigen::Vector3f& direction) const {
+      const auto corner = [&](int k) { return direction[k] > 0.0f ? most[k] : least[k]; };
+      return direction.x() * corner(0) + direction.y() * corner(1) + direction.z() * corner(2);
+    }
+  };
+
+  float along(const Eigen::Vector3f& direction, std::size_t i) const {
+    return direction.x() * coordinates_[0][i] + direction.y() * coordinates_[1][i] + direction.z() * coordinates_[2][i];
+  }
+
+  std::vector<Cell> cells_;
+  std::array<std::vector<float>, 3> coordinates_;  ///< of the points, cell after cell
+  std::vector<Eigen::Index> index_of_;             ///< of these points, among those that were given
+  Eigen::Vector3f mean_;
+};
+
+/// How well the end of a cloud explains that a piece of its reflection has no counterpart.
+///
+/// Not in the paper. Where a piece of an object was cut off, the reflection goes on beyond a plane, and the surface
+/// runs into that plane: its normals lie along it. A part that an object has on one side alone has its reflection
+/// beyond the surface, too, but there the surface closes: its normals stand on the plane. No open border is needed, so
+/// that parts as thin as the spacing, whose borders are not seen, and parts without any edge to what is matched are
+/// told as well.
+/// \param cloud the N points of the cloud.
+/// \param normals 3 x N, unit, of arbitrary sign.
+/// \param piece reflections of neighbouring points without counterpart.
+/// \param spacing median distance of the points.
+/// \return in [0, 1]: 1 where the cloud was cut off before the piece, 0 where a counterpart should be there.
+float beyondEnd(const OutermostPoints& cloud, const Points& normals, const OutermostPoints& piece, double spacing);
 
 /// Where a cloud ends although the object goes on: a cut, a hole, a side that no scan saw.
 ///
@@ -34,5 +98,32 @@ struct SampledSurface {
 /// cloud.
 std::vector<float> missingCounterparts(const SampledSurface& surface, const std::vector<char>& matched,
                                        const std::vector<int>& closest, const Points& reflected);
+
+/// Where a cloud ends although the object may go on: its open borders and the planes that it was cut by.
+class SurfaceEnds {
+public:
+  /// \param points,geometry must outlive this object.
+  /// \param found the neighbors of the points.
+  /// \param spacing median distance of the points.
+  /// \param num_threads 0 = one per core.
+  SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
+              const FoundNeighbours& found, double spacing, std::uint64_t seed, int num_threads);
+
+  /// Whether the counterparts of samples are missing from the cloud, in [0, 1], by which ends of the cloud say so.
+  /// \param matched,closest,reflected as of missingCounterparts(), for all points.
+  std::vector<float> missing(const std::vector<char>& matched, const std::vector<int>& closest,
+                             const Points& reflected) const;
+
+  /// How far ends say what is missing, in [0, 1]: not where the cloud is all borders, as a wire is.
+  double trust() const { return trust_; }
+
+private:
+  const LocalGeometry& geometry_;
+  double spacing_;
+  std::vector<char> borders_;
+  OutermostPoints outermost_;
+  std::vector<CutPlane> cuts_;
+  double trust_;
+};
 
 }  // namespace pcl_symmetry

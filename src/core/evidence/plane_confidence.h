@@ -2,9 +2,15 @@
 
 #include <vector>
 
-#include "core/evidence/cloud_kind.h"
-
 namespace pcl_symmetry {
+
+/// What a cloud shows of an object. Evidence counts by other coefficients for each kind, and detection goes by other
+/// rules (core/detection/kind_rules.h).
+enum class CloudKind {
+  Surface,  ///< the surface from all sides; a piece may be missing
+  Scan,     ///< the surface seen from one viewpoint, or from a few
+  Volume    ///< the points resolve no surface: they have neighbors on all sides, by noise beyond their spacing
+};
 
 /// What the points say about one plane, and how finely they sample the surface.
 struct PlaneEvidence {

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 

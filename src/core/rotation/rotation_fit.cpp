@@ -8,7 +8,7 @@
 
 #include "core/base/median.h"
 #include "core/base/parallel.h"
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {

@@ -1,5 +1,5 @@
 /// The decision: what a tolerance means, clouds with a piece missing, and the best plane of a shape without symmetry.
-#include "core/detection/plane_judge.h"
+#include "core/detection/plane_decision.h"
 
 #include <gtest/gtest.h>
 
@@ -148,7 +148,7 @@ TEST(PlaneJudge, OfAScanWhatStaysInPlaceSaysNothing) {
   const std::optional<Visibility> seen = Visibility::fromPoints(points, Eigen::Vector3d(0.0, 0.0, 6.0));
   ASSERT_TRUE(seen.has_value());
   const DetectionOptions options;
-  const GaussianEdt edt(points, options.edt);
+  const GaussianEdt edt(points);
   const NormalizedCloud cloud(points, edt, nullptr, &*seen, 1);
   const std::unique_ptr<PlaneFit> fit =
       makePlaneFit(cloud, {options.expert.update, options.expert.num_refine_samples, options.expert.max_iterations,

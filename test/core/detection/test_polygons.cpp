@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/detection/even_density.h"
+#include "core/detection/cloud_subset.h"
 #include "core/detection/fold_spectrum.h"
 #include "core/detection/plane_lattice.h"
 #include "pcl_symmetry/core/detect_planes.h"

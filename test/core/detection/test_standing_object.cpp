@@ -1,5 +1,5 @@
 /// Planes of what stands on a table.
-#include "core/detection/standing_object.h"
+#include "core/detection/plane_decision.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/detection/plane_fit.h"
-#include "core/detection/plane_judge.h"
 
 namespace pcl_symmetry {
 

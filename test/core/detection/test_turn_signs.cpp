@@ -1,10 +1,9 @@
 /// What a scan says of half turns besides the shares of its points.
-#include "core/detection/turn_signs.h"
+#include "core/detection/turn_confidence.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/constants.h"
-#include "core/detection/turn_confidence.h"
 #include "shapes/one_side.h"
 
 namespace {

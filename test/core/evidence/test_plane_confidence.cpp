@@ -124,7 +124,7 @@ TEST(PlaneConfidence, IsAProbabilityEverywhere) {
           for (const double spacing : {0.0, 1e-6, 0.1, 1.0})
             for (const double roughness : {0.0, 0.3, 10.0})
               for (const int kind : {0, 1, 2}) {
-                PlaneEvidence evidence = evidenceOf(score, spacing, roughness, kind == 1, kind == 2);
+                PlaneEvidence evidence = evidenceOf(score, spacing, roughness, static_cast<CloudKind>(kind));
                 evidence.support = support;
                 evidence.share = share;
                 evidence.unknown = unknown;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/surface_samples.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "shapes/shapes.h"
 

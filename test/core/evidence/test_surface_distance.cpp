@@ -1,4 +1,4 @@
-#include "core/evidence/surface_distance.h"
+#include "core/evidence/surface_samples.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// Where a cloud ends before a piece of its reflection.
-#include "core/evidence/surface_end.h"
+#include "core/evidence/missing_surface.h"
 
 #include <gtest/gtest.h>
 
