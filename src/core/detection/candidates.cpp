@@ -1,5 +1,6 @@
 #include "core/detection/candidates.h"
 
+#include "core/detection/detection_rules.h"
 #include "core/detection/plane_lattice.h"
 #include "core/geometry/principal_axes.h"
 
@@ -10,9 +11,6 @@ namespace {
 // Radians, and radii. chosen: a peak of D is about 0.1 radians wide at the default sigma; smaller values refine a peak
 // more than once, larger ones merge planes of a regular polygon with many sides.
 constexpr PlaneTolerance kBasin{0.1, 0.06};
-// Symmetries whose group is completed. chosen: the full group of a cube has 9, that of an icosahedron 15; more belong
-// to a family of planes, whose group never closes. measured: at twice, a sphere takes ten times as long.
-constexpr std::size_t kMaxClosed = 16;
 
 }  // namespace
 
@@ -51,7 +49,7 @@ std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& plan
   // The planes of a regular polygon, from those of them that are known.
   if (const std::optional<PlaneLattice> lattice = findLattice(symmetries))
     for (int k = 0; k < lattice->fold; ++k) add(lattice->plane(k));
-  if (symmetries.size() > kMaxClosed) return found;
+  if (symmetries.size() > detection_rules.max_closed) return found;
   for (const ReflectionPlane& plane : symmetries) {
     for (const ReflectionPlane& across : symmetries) {
       const Eigen::Vector3d normal = plane.normal() - 2.0 * plane.normal().dot(across.normal()) * across.normal();

@@ -9,6 +9,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/detection/detection_rules.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"
@@ -19,23 +20,12 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Points that stand for a cloud at the usual tolerance. chosen: their spacing on a typical shape is below the
-// tolerance; at half, it is above, at twice, the time is twice as long. measured: 96 of 100 models of fold 1 are
-// decided alike at 20 000 and at 100 000 points (planes.py, rows of counts), 95 where all points decide.
-constexpr double kMostPoints = 20'000.0, kUsualTolerance = 0.01;
-// Points that are compared before and after one along the curve. measured: with 2, 4 and 8 the nearest is taken for 72,
-// 81 and 86 % of 100 000 points; with 4 the distance is 1.17 times the least on average.
-constexpr Eigen::Index kAlongCurve = 4;
-// Share of the extent from which the curve has jumped and the nearest point is searched. derived: an edge of its cells.
-constexpr float kSubsetReach = 1.0f / 64.0f;
-constexpr std::size_t kSearchBlock = 4096;  // points. chosen: large enough that threads start seldom
-
 /// As many points as show a surface at the tolerance: their number grows as the square of what the spacing falls by.
 double mostPoints(const PointsRef& points, const DetectionOptions& options) {
   const double tolerance =
       options.absolute_tolerance > 0.0 ? options.absolute_tolerance / farthestPair(points) : options.tolerance;
-  const double finer = std::max(1.0, kUsualTolerance / tolerance);
-  return kMostPoints * finer * finer;
+  const double finer = std::max(1.0, detection_rules.usual_tolerance / tolerance);
+  return detection_rules.most_points * finer * finer;
 }
 
 }  // namespace
@@ -45,11 +35,12 @@ std::vector<int> CloudSubset::nearTo(const PointsRef& all, int num_threads) cons
   std::vector<char> is_far(near.size(), 0);
   const Eigen::Index last = points.cols() - 1;
   const Eigen::Vector3f extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
-  const float sq_reach = kSubsetReach * kSubsetReach * extent.maxCoeff() * extent.maxCoeff();
-  parallelRanges(near.size(), kSearchBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+  const float sq_reach =
+      detection_rules.subset_reach * detection_rules.subset_reach * extent.maxCoeff() * extent.maxCoeff();
+  parallelRanges(near.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Index from = std::max<Eigen::Index>(0, near[i] - kAlongCurve),
-                         to = std::min<Eigen::Index>(last, near[i] + kAlongCurve);
+      const Eigen::Index from = std::max<Eigen::Index>(0, near[i] - detection_rules.along_curve),
+                         to = std::min<Eigen::Index>(last, near[i] + detection_rules.along_curve);
       const Eigen::Vector3f x = all.col(static_cast<Eigen::Index>(i));
       float least = std::numeric_limits<float>::infinity();
       for (Eigen::Index k = from; k <= to; ++k) {
@@ -73,7 +64,7 @@ std::vector<int> CloudSubset::nearTo(const PointsRef& all, int num_threads) cons
 }
 
 std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options) {
-  if (static_cast<double>(points.cols()) <= kMostPoints) return std::nullopt;
+  if (static_cast<double>(points.cols()) <= detection_rules.most_points) return std::nullopt;
   const double most = mostPoints(points, options);
   if (!(static_cast<double>(points.cols()) > most)) return std::nullopt;
   const DistinctPoints distinct(points);
@@ -100,38 +91,26 @@ void spreadSupport(Detection& detection, const std::vector<int>& place_of) {
   if (detection.best) spread(*detection.best);
 }
 
-namespace {
-
-constexpr int kDensitySamples = 1000;  // chosen: the slope has an error of 2 % at an even density; more cost time
-// Neighbours that are counted, and that a neighbourhood has in the middle. chosen: counts of 16 vary by a quarter; at
-// half, the slope is noisy, at twice, neighbourhoods are as large as parts of the shape.
-constexpr int kMostCounted = 48, kNeighbours = 16;
-// Ends of the range, shares of the points. chosen: beyond, few points are extrapolated to.
-constexpr double kEnd = 0.05;
-// Logarithm of the ratio of the densities at the ends from which, and by which more, they are made even. chosen: shapes
-// themselves vary by less; a density of a quarter has 1.1.
-constexpr double kUneven = 0.4, kFullyUneven = 0.7;
-
-}  // namespace
-
 std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
   const Eigen::Index size = cloud.points.cols();
-  const std::vector<int> samples = drawSamples(size, kDensitySamples, seed);
-  if (size <= kMostCounted) return allOf(size);
+  const std::vector<int> samples = drawSamples(size, detection_rules.density_samples, seed);
+  if (size <= detection_rules.most_counted) return allOf(size);
   std::vector<int> unused;
   std::vector<float> sq_distances;
   const Points at = pointsAt(cloud.points, samples);
-  cloud.search->search(at, kMostCounted, unused, sq_distances);
+  cloud.search->search(at, detection_rules.most_counted, unused, sq_distances);
   std::vector<float> to_neighbour(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) to_neighbour[i] = sq_distances[i * kMostCounted + kNeighbours];
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    to_neighbour[i] = sq_distances[i * detection_rules.most_counted + detection_rules.neighbors];
   const float sq_radius = median(to_neighbour);
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
   Eigen::MatrixX4d places(num_samples, 4);
   Eigen::VectorXd logs(num_samples);
   for (Eigen::Index i = 0; i < num_samples; ++i) {
-    const auto first = sq_distances.begin() + i * kMostCounted;
+    const auto first = sq_distances.begin() + i * detection_rules.most_counted;
     places.row(i) << at.col(i).cast<double>().transpose(), 1.0;
-    logs[i] = std::log(static_cast<double>(std::upper_bound(first, first + kMostCounted, sq_radius) - first));
+    logs[i] =
+        std::log(static_cast<double>(std::upper_bound(first, first + detection_rules.most_counted, sq_radius) - first));
   }
   const Eigen::Vector3d slope = places.colPivHouseholderQr().solve(logs).head<3>();
   std::vector<double> along(samples.size());
@@ -139,9 +118,10 @@ std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
     along[i] = slope.dot(at.col(static_cast<Eigen::Index>(i)).cast<double>());
   std::sort(along.begin(), along.end());
   const auto last = static_cast<double>(along.size() - 1);
-  const double low = along[static_cast<std::size_t>(kEnd * last)],
-               high = along[static_cast<std::size_t>((1.0 - kEnd) * last)];
-  const double strength = std::clamp((high - low - kUneven) / (kFullyUneven - kUneven), 0.0, 1.0);
+  const double low = along[static_cast<std::size_t>(detection_rules.end * last)],
+               high = along[static_cast<std::size_t>((1.0 - detection_rules.end) * last)];
+  const double strength = std::clamp(
+      (high - low - detection_rules.uneven) / (detection_rules.fully_uneven - detection_rules.uneven), 0.0, 1.0);
   if (strength == 0.0) return allOf(size);
   RandomStream random(seed);
   std::vector<int> kept;

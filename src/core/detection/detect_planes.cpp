@@ -12,6 +12,7 @@
 #include "core/base/stopwatch.h"
 #include "core/detection/candidates.h"
 #include "core/detection/cloud_subset.h"
+#include "core/detection/detection_rules.h"
 #include "core/detection/fold_spectrum.h"
 #include "core/detection/part_search.h"
 #include "core/detection/plane_decision.h"
@@ -29,11 +30,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-// Confidence of planes of whole clouds that climb. measured: cut clouds of 89 models of fold 0 are decided alike with
-// 0, 0.005 and 0.02; a true plane had 0.0105 before its climb and 0.81 after it. With 0, climbs of planes that are none
-// take a fifth of the time of a cloud without a symmetry.
-constexpr double kClimbingConfidence = 0.01;
 
 /// The last stage of refinement and the judgement, with as little work as the answer needs: planes that cannot be
 /// symmetries beside the ones that were found are left out after a look at some points, and planes climb only where
@@ -90,7 +86,7 @@ std::vector<SymmetryPlane> PlaneSettler::judged(std::vector<Candidate> candidate
   std::vector<Candidate> climbing;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].confidence < kClimbingConfidence) continue;
+    if (planes[i].confidence < detection_rules.climbing_confidence) continue;
     climbing.push_back(std::move(candidates[i]));
     places.push_back(i);
   }

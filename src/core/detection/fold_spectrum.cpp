@@ -11,6 +11,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
+#include "core/detection/detection_rules.h"
 #include "core/detection/plane_families.h"
 #include "core/geometry/point_samples.h"
 
@@ -18,48 +19,14 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kMostFrequency = 60;  // derived: 60 folds, as rotations of objects
-constexpr int kLeastFold = 3;       // derived: what is thinner on one side, or flat, has one and two
-// Rings about the line, each with as many points. chosen: with 1, what is outside cancels what is inside; at half,
-// walls that noise blurs share a ring with what is beside them, at twice, chance has twice the power.
-constexpr int kRings = 8;
-// Points counted. chosen: folds of 10 000 points that this leaves undecided are so with more; more cost time.
-constexpr int kSpectrumSamples = 20'000;
-// Slabs that tell the angle of the planes. chosen: the walls of cones are as wide at each height; to tell folds from
-// chance, fewer rings are better.
-constexpr int kSlabs = 4;
-constexpr int kAngles = 192;  // derived: three for each of 60 folds
-// Points reflected to find that angle. chosen: the mean of f has an error of 0.004; more cost time.
-constexpr int kPhaseSamples = 5000;
-// Times the power beside it from which reflections tell that angle better than rings. chosen: noise alone reaches it in
-// one of a million frequencies.
-constexpr double kReflectionsStandOut = 20.0;
-constexpr double kTiny = 1e-30;  // derived: below the rounding of sums of 5000 values; avoids a division by 0
-// Frequencies on either side that a frequency is compared with. chosen: few enough that their level is the same.
-constexpr int kBeside = 12;
-// Power. chosen: of eight round bodies in noise of two spacings, about their true axis, the strongest frequency has 15;
-// at half, all of them have folds, at twice, rims of 22 folds lose them.
-constexpr double kLeastPower = 20.0;
-// Times the median of the powers beside it, which is 4 to 5 in noise. chosen: handles and corners have power at all low
-// frequencies; at 8, folds of thin walls in noise are lost.
-constexpr double kStandsOut = 4.0;
-// Odds of planes at the places of a polygon, over those of other planes with the same evidence: what looks like a
-// symmetry in noise is often a fold that noise hides, and here the frequency shows the folds. chosen: all polygons of
-// 96 noisy clouds of the tuning half whose frequency stands out are true; at 2, one of them is lost, at 8, none more is
-// found.
-constexpr double kOddsOfPolygon = 4.0;
-constexpr std::size_t kMostLinePairs = 4;         // planes whose common lines are tried. chosen: 6 lines of 10 ms
-constexpr double kLeastLineAngle = 0.1;           // radians. chosen: at smaller angles errors move the line too far
-constexpr std::array<int, 3> kDivisors{2, 3, 5};  // derived: of parts of a polygon whose planes may differ
-
 /// How strongly a frequency stands out of those on both sides of it.
 /// \param power of a frequency.
 template <typename Power>
 double aboveBeside(int m, const Power& power) {
   std::vector<double> beside;
-  for (int k = std::max(1, m - kBeside); k <= m + kBeside; ++k)
+  for (int k = std::max(1, m - detection_rules.beside); k <= m + detection_rules.beside; ++k)
     if (k != m) beside.push_back(power(k));
-  return power(m) / std::max(median(beside), kTiny);
+  return power(m) / std::max(median(beside), 1e-30);
 }
 
 /// The folds of points about a line.
@@ -67,17 +34,17 @@ class FoldSpectrum {
 public:
   /// \param num_slabs across the line, each of which is cut into rings of its own.
   FoldSpectrum(const Points& points, const Line3d& line, int num_slabs)
-      : squares_(kMostFrequency + kBeside + 1, 0.0), powers_(squares_.size(), 0.0) {
+      : squares_(detection_rules.most_frequency + detection_rules.beside + 1, 0.0), powers_(squares_.size(), 0.0) {
     const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
     std::vector<Place> places;
-    for (const int i : drawSamples(points.cols(), kSpectrumSamples, 1)) {
+    for (const int i : drawSamples(points.cols(), detection_rules.spectrum_samples, 1)) {
       const Eigen::Vector3d x = points.col(i).cast<double>() - line.origin();
       const std::complex<double> across(x.dot(u), x.dot(v));
       const double distance = std::abs(across);
       if (distance > 0.0) places.push_back({x.dot(line.direction()), distance, across / distance});
     }
     inParts(places.begin(), places.end(), num_slabs, &Place::height, [&](Places first, Places last) {
-      inParts(first, last, kRings, &Place::distance, [&](Places from, Places to) { addRing(from, to); });
+      inParts(first, last, detection_rules.rings, &Place::distance, [&](Places from, Places to) { addRing(from, to); });
     });
   }
 
@@ -86,7 +53,7 @@ public:
   /// By how much the frequency has more power than those beside it; 0 where that may be chance.
   double prominence(int m) const {
     const double now = aboveBeside(m, [this](int k) { return power(k); });
-    return power(m) >= kLeastPower && now >= kStandsOut ? now : 0.0;
+    return power(m) >= detection_rules.least_power && now >= detection_rules.stands_out ? now : 0.0;
   }
   /// Angle of the normal of a plane, radians.
   double phase(int m) const { return 0.5 * kPi + std::arg(squares_[m]) / (2.0 * m); }
@@ -129,21 +96,21 @@ private:
 /// the line reflect the cloud best there.
 /// \return none where the frequency does not stand out of the mean.
 std::optional<double> phaseByReflections(const NormalizedCloud& cloud, const Line3d& line, int fold, int num_threads) {
-  const std::vector<int> samples = drawSamples(cloud.points.cols(), kPhaseSamples, 1);
-  const PlaneLattice fan{line, kAngles, 0.0, 0};
-  std::vector<double> mean(kAngles, 0.0);
-  parallelBlocks(kAngles, num_threads, [&](std::size_t k) {
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), detection_rules.phase_samples, 1);
+  const PlaneLattice fan{line, detection_rules.angles, 0.0, 0};
+  std::vector<double> mean(detection_rules.angles, 0.0);
+  parallelBlocks(detection_rules.angles, num_threads, [&](std::size_t k) {
     const ReflectionPlane plane = cloud.toInput(fan.plane(static_cast<double>(k)));
     for (const int i : samples) mean[k] += cloud.edt(plane.reflect(cloud.toInput(cloud.points.col(i).cast<double>())));
   });
   const auto coefficient = [&](int m) {
     std::complex<double> sum = 0.0;
-    for (int k = 0; k < kAngles; ++k)
-      sum += mean[k] * std::polar(1.0, 2.0 * kPi * static_cast<double>(m) * k / kAngles);
+    for (int k = 0; k < detection_rules.angles; ++k)
+      sum += mean[k] * std::polar(1.0, 2.0 * kPi * static_cast<double>(m) * k / detection_rules.angles);
     return sum;
   };
   const double prominence = aboveBeside(fold, [&](int m) { return std::norm(coefficient(m)); });
-  if (prominence < kReflectionsStandOut) return std::nullopt;
+  if (prominence < detection_rules.reflections_stand_out) return std::nullopt;
   return std::arg(coefficient(fold)) / (2.0 * fold);
 }
 
@@ -168,7 +135,7 @@ double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int
 /// The least confidence of parts of a polygon that may be symmetries while the others are not.
 double leastTogether(const std::vector<JudgedPlane>& judged) {
   double least = confidenceTogether(judged, 0, 1);
-  for (const int divisor : kDivisors)
+  for (const int divisor : detection_rules.divisors)
     if (judged.size() % divisor == 0 && judged.size() > static_cast<std::size_t>(divisor))
       for (int first = 0; first < divisor; ++first) least = std::min(least, confidenceTogether(judged, first, divisor));
   return least;
@@ -179,7 +146,7 @@ Line3d lineThrough(const std::vector<ReflectionPlane>& planes, const ReflectionP
   const Line3d line = commonLine({a, b});
   std::vector<ReflectionPlane> through;
   std::copy_if(planes.begin(), planes.end(), std::back_inserter(through),
-               [&](const ReflectionPlane& plane) { return contains(plane, line, kContainedOffset); });
+               [&](const ReflectionPlane& plane) { return contains(plane, line, detection_rules.contained_offset); });
   return commonLine(through.size() > 2 ? through : std::vector<ReflectionPlane>{a, b});
 }
 
@@ -192,10 +159,10 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
         (plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible) &&
         !basinTolerance().anySame(likely, normalized))
       likely.push_back(normalized);
-  const std::size_t size = std::min(likely.size(), kMostLinePairs);
+  const std::size_t size = std::min(likely.size(), detection_rules.most_line_pairs);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (likely[i].angleTo(likely[j]) >= kLeastLineAngle)
+      if (likely[i].angleTo(likely[j]) >= detection_rules.least_line_angle)
         if (const auto lattice = latticeBySpectrum(cloud, all, lineThrough(likely, likely[i], likely[j]), num_threads))
           return lattice;
   return std::nullopt;
@@ -208,7 +175,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
   const FoldSpectrum spectrum(all, line, 1);
   int fold = 0;
   double most = 0.0;
-  for (int m = kLeastFold; m <= kMostFrequency; ++m) {
+  for (int m = detection_rules.least_fold; m <= detection_rules.most_frequency; ++m) {
     const double now = spectrum.prominence(m);
     if (now <= most) continue;
     most = now;
@@ -221,9 +188,9 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
       fold = m;
       break;
     }
-  if (fold < kLeastFold) return std::nullopt;
+  if (fold < detection_rules.least_fold) return std::nullopt;
   const std::optional<double> phase = phaseByReflections(cloud, line, fold, num_threads);
-  return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kSlabs).phase(fold), 0};
+  return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, detection_rules.slabs).phase(fold), 0};
 }
 
 PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
@@ -236,13 +203,14 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
   std::vector<Candidate> candidates;
   for (int k = 0; k < lattice->fold; ++k) candidates.push_back({lattice->plane(k), false});
   std::vector<JudgedPlane> judged = judge.judgeWithEvidence(candidates);
-  const double least = kOddsOfPolygon * leastTogether(judged);
-  const double together = least / (least + 1.0 - least / kOddsOfPolygon);
+  const double least = detection_rules.odds_of_polygon * leastTogether(judged);
+  const double together = least / (least + 1.0 - least / detection_rules.odds_of_polygon);
   if (together < options.min_confidence) return {std::move(planes), std::nullopt};
   // All planes tell where the polygon lies: those that noise moved away from their place make way.
   planes.erase(std::remove_if(planes.begin(), planes.end(),
                               [&](const SymmetryPlane& plane) {
-                                return contains(cloud.toNormalized(plane), lattice->line, kContainedOffset);
+                                return contains(cloud.toNormalized(plane), lattice->line,
+                                                detection_rules.contained_offset);
                               }),
                planes.end());
   for (JudgedPlane& one : judged) {

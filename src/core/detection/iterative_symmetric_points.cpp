@@ -11,6 +11,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
+#include "core/detection/detection_rules.h"
 #include "core/detection/far_test.h"
 #include "core/detection/plane_fit.h"
 #include "core/detection/step_equations.h"
@@ -79,21 +80,6 @@ std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) 
 
 namespace {
 
-// Share of the stiffest direction below which the surface leaves a direction free. chosen: at half, the noise of
-// normals makes free directions of coarse samples look stiff; at twice, slow directions of slender shapes pass for
-// free.
-constexpr double kLeastStiffness = 1e-3;
-// Radians, or times the extent of the samples. chosen: at half, far starts take more iterations; at twice, a step can
-// leave the basin of its maximum.
-constexpr double kLongestStep = 0.2;
-constexpr double kReach = 3.0;  // sigmas. derived: weights beyond are below exp(-9) = 1.3e-4
-constexpr double kRest = 0.1;   // sigmas. chosen: at half, a few iterations more; at twice, weights narrow on the way
-// Depth behind the surface that was seen, sigmas, over which a pair loses its weight. chosen: of 310 scans of folds 0
-// and 1 the right plane is decided for 290, 288, 286, 284 and 272 with 0.05, 0.1, 0.25, 0.5 and 1, for 260 where hidden
-// pairs keep their weight. Less than the errors of depths would leave only reflections in front of the surface.
-constexpr double kHiddenDepth = 0.1;
-constexpr std::size_t kBlockSize = 1024;  // samples. chosen: large enough that threads start seldom
-
 /// Mean and extent of weighted points.
 struct WeightedExtent {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -151,7 +137,7 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
   const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
   int num_soft = 0;
-  while (num_soft < 3 && !(stiffness[num_soft] > kLeastStiffness * stiffness[2])) ++num_soft;
+  while (num_soft < 3 && !(stiffness[num_soft] > detection_rules.least_stiffness * stiffness[2])) ++num_soft;
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int i = num_soft; i < 3; ++i)
     step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
@@ -164,7 +150,7 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
   }
   const double length = step.norm();
   if (!std::isfinite(length)) return plane;
-  if (length > kLongestStep) step *= kLongestStep / length;
+  if (length > detection_rules.longest_step) step *= detection_rules.longest_step / length;
   return across.moved(step);
 }
 
@@ -175,10 +161,10 @@ IspStep matchReflections(const IspSurface& surface, const Points& reflected, dou
   const auto size = static_cast<std::size_t>(reflected.cols());
   step.closest.assign(size, -1);
   step.sq_distances.assign(size, std::numeric_limits<float>::infinity());
-  const float bound = surface.far ? surface.far->bound(kReach * sigma) : 0.0f;
-  const auto sq_reach = static_cast<float>(kReach * kReach * sigma * sigma);
-  parallelRanges(size, kBlockSize, surface.num_threads, [&](std::size_t begin, std::size_t end) {
-    if (!surface.far && size <= kBlockSize) {  // all at once
+  const float bound = surface.far ? surface.far->bound(detection_rules.reach * sigma) : 0.0f;
+  const auto sq_reach = static_cast<float>(detection_rules.reach * detection_rules.reach * sigma * sigma);
+  parallelRanges(size, 1024, surface.num_threads, [&](std::size_t begin, std::size_t end) {
+    if (!surface.far && size <= 1024) {  // all at once
       if (guesses) step.closest = *guesses;
       surface.search.searchWithin(reflected, sq_reach, step.closest, step.sq_distances);
       return;
@@ -233,7 +219,7 @@ Points reflections(const Points& points, const ReflectionPlane& plane) {
 /// taken in their place, draw a plane away from the symmetry, to where more of what was seen overlaps.
 double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflection, double sigma) {
   if (!visibility) return 1.0;
-  const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (kHiddenDepth * sigma);
+  const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (detection_rules.hidden_depth * sigma);
   return std::exp(-depth * depth);
 }
 
@@ -360,7 +346,7 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     result.converged = sigma == options.final_sigma && moved <= tolerance && angle * extent <= tolerance;
     result.plane = next;
     // Narrower weights only where the plane has come to rest at these: it must not lose what it moves towards.
-    if (moved + angle * extent <= kRest * sigma) sigma = std::max(options.final_sigma, 0.5 * sigma);
+    if (moved + angle * extent <= detection_rules.rest * sigma) sigma = std::max(options.final_sigma, 0.5 * sigma);
   }
   return result;
 }

@@ -8,6 +8,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/detection/detection_rules.h"
 #include "core/detection/plane_fit.h"
 #include "core/geometry/point_samples.h"
 
@@ -15,42 +16,26 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Samples of a cloud. chosen: a part of 4 % has 160. measured (as kLeastEdge of part_search.cpp, 20 clouds): with 2500
-// as many planes are found, but 0.50 wrong ones a cloud in place of 0.25.
-constexpr int kNumRegionSamples = 4000;
-// Neighbours of a sample that smooth what matches. measured: twice as many find 49 of 71 planes in place of 61, as the
-// edge of narrow parts is smoothed away.
-constexpr int kNumSmoothing = 11;
-// The nearest of these, which connect a region. chosen: those around a point of an even surface; nothing else was
-// tried.
-constexpr int kNumConnecting = 6;
-// Mean support of a neighbourhood that matches. chosen: chance matches of a surface that crosses another one have about
-// half. measured: with 0.7, 88 % of the planes of parts at 0.25 wrong ones a cloud, with 0.8, 93 % at 0.15.
-constexpr double kMatched = 0.8;
-// Support of a sample that connects it with its counterpart. derived: half of the greatest.
-constexpr float kCounterpart = 0.5f;
-constexpr std::size_t kQueryBlock = 1024;  // points. chosen: large enough that threads start seldom
-
 /// Edge of a flat disc: sum over its samples of the share of neighbours beyond the edge, over the root of their number.
 /// derived: k neighbours lie within rho = sqrt(k / pi) spacings. Of the neighbours of samples within rho of a straight
 /// edge, 2 rho / (3 pi) per spacing of edge lie beyond it. A disc of n samples has an edge of 2 sqrt(pi n) spacings.
 double edgeOfDisc() {
-  const double reach = std::sqrt((kNumSmoothing + 1) / kPi);
+  const double reach = std::sqrt((detection_rules.num_smoothing + 1) / kPi);
   return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);
 }
 
 }  // namespace
 
 MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, std::uint64_t seed, int num_threads)
-    : cloud_(cloud), fit_(fit), samples_(drawSamples(cloud.points.cols(), kNumRegionSamples, seed)) {
+    : cloud_(cloud), fit_(fit), samples_(drawSamples(cloud.points.cols(), detection_rules.num_region_samples, seed)) {
   std::sort(samples_.begin(), samples_.end());
   const Points places = pointsAt(cloud.points, samples_);
   const ClosestPointSearch::Ptr search = makeFlannSearch(places);
   std::vector<float> sq_distances;
-  const int num_neighbours = std::min<int>(kNumSmoothing + 1, static_cast<int>(samples_.size()));
+  const int num_neighbours = std::min<int>(detection_rules.num_smoothing + 1, static_cast<int>(samples_.size()));
   search->search(places, num_neighbours, neighbours_, sq_distances);
   closest_sample_.resize(static_cast<std::size_t>(cloud.points.cols()));
-  parallelRanges(closest_sample_.size(), kQueryBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(closest_sample_.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> closest;
     std::vector<float> ignored;
     const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
@@ -67,7 +52,7 @@ MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::v
   for (std::size_t i = 0; i < size; ++i) {
     double sum = 0.0;
     for (std::size_t k = 0; k < num_neighbours; ++k) sum += support[neighbours_[i * num_neighbours + k]];
-    matched[i] = sum >= kMatched * static_cast<double>(num_neighbours);
+    matched[i] = sum >= detection_rules.matched * static_cast<double>(num_neighbours);
   }
   const std::vector<char> inside = inLargest(matched, step, support);
   MatchedRegion region;
@@ -93,14 +78,14 @@ std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, co
   std::vector<int> rank(size, 0), parent(size);
   std::iota(parent.begin(), parent.end(), 0);
   boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
-  const std::size_t num_connecting = std::min<std::size_t>(kNumConnecting + 1, num_neighbours);
+  const std::size_t num_connecting = std::min<std::size_t>(detection_rules.num_connecting + 1, num_neighbours);
   for (std::size_t i = 0; i < size; ++i) {
     if (!matched[i]) continue;
     for (std::size_t k = 0; k < num_connecting; ++k) {
       const int j = neighbours_[i * num_neighbours + k];
       if (matched[j]) sets.union_set(static_cast<int>(i), j);
     }
-    if (step.closest[i] < 0 || support[i] < kCounterpart) continue;
+    if (step.closest[i] < 0 || support[i] < detection_rules.counterpart) continue;
     const int j = closest_sample_[step.closest[i]];
     if (matched[j]) sets.union_set(static_cast<int>(i), j);
   }

@@ -8,23 +8,15 @@
 
 #include "core/base/median.h"
 #include "core/base/parallel.h"
-#include "core/transform/edt_correlation.h"
+#include "core/detection/detection_rules.h"
 #include "core/evidence/plane_support.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/flann_search.h"
+#include "core/transform/edt_correlation.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Spacings. chosen: half of it leaves reflected samples between the samples without weight, so that planes stop early;
-// twice lets the ends of a long shape pull at the plane of its middle.
-constexpr double kFinalSigmaInSpacings = 3.0;
-// Spacings. chosen: below the 0.42 of points that fill a volume evenly. Lower values judge noisy surfaces by density,
-// which blurs small asymmetries; above 0.42 nothing is a volume, and noise beyond the spacing leaves no symmetry.
-constexpr double kVolumeRoughness = 0.36;
-constexpr double kLeastSpacing = 1e-6;   // radii. derived: the rounding of coordinates about 1; avoids a division by 0
-constexpr double kLeastBaseline = 1e-3;  // chosen: any value far below the supports of surfaces; avoids a division by 0
 
 /// The geometry of points, whose neighbors FLANN's search uses from then on.
 /// \param flann null: the search is of the caller.
@@ -73,13 +65,13 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       principal_axes(measures_.principal_axes),
       extent(measures_.extent),
       spacing(measures_.spacing),
-      roughness(measures_.roughness / std::max(spacing, kLeastSpacing)),
-      baseline(std::max(meanSupport(ownSupport(samples, num_threads)), kLeastBaseline)),
+      roughness(measures_.roughness / std::max(spacing, 1e-6)),
+      baseline(std::max(meanSupport(ownSupport(samples, num_threads)), 1e-3)),
       sigma(edt.sigma() / scale),
-      final_sigma(std::min(sigma, std::max(kLeastSpacing, kFinalSigmaInSpacings * spacing))),
-      kind_(visibility                     ? CloudKind::Scan
-            : roughness > kVolumeRoughness ? CloudKind::Volume
-                                           : CloudKind::Surface) {}
+      final_sigma(std::min(sigma, std::max(1e-6, detection_rules.final_sigma_in_spacings * spacing))),
+      kind_(visibility                                     ? CloudKind::Scan
+            : roughness > detection_rules.volume_roughness ? CloudKind::Volume
+                                                           : CloudKind::Surface) {}
 
 NormalizedCloud::Measures::Measures(const Points& points, const LocalGeometry& geometry, int num_threads) {
   const std::array<std::function<void()>, 4> measurements{

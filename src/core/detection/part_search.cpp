@@ -12,6 +12,7 @@
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
 #include "core/detection/candidates.h"
+#include "core/detection/detection_rules.h"
 #include "core/detection/matched_region.h"
 #include "core/detection/plane_fit.h"
 #include "core/geometry/directions.h"
@@ -23,55 +24,15 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Balls of each radius. chosen: balls of half a radius then cover the unit sphere one and a half times; fewer miss
-// small parts, more take longer and find the same parts again.
-constexpr int kNumSeeds = 24;
-// Starting directions beside the principal axes of a ball. chosen: fewer leave planes out of reach of refinement, more
-// take longer and end at the same planes.
-constexpr int kNumDirections = 8;
-// Radii of the balls, radii of the points. chosen: limbs to halves of a shape; smaller balls hold too few samples.
-constexpr double kRadii[] = {0.25, 0.35, 0.5};
-// Share of the points of a ball. chosen: less is too few to refine a plane, more is nearly the whole shape.
-constexpr double kLeastBall = 0.04, kLargestBall = 0.6;
-// Share of the points of a ball that match. chosen: higher values lose planes of parts that share their balls with
-// others, lower ones measure more regions in vain.
-constexpr double kLeastSupport = 0.7;
-// Radii of the ball, from its middle. chosen: beyond half a radius most of the ball lies on one side of the plane.
-constexpr double kFarthestPlane = 0.5;
 // Planes that are one: radians, and radii of the points. chosen: half of what is between the planes of a prism of 24
 // sides.
 constexpr PlaneTolerance kSamePlane{0.07, 0.04};
-// Share of the points. chosen: a part of less is a detail. derived: a plane that maps 90 % is an approximate symmetry
-// of the whole (evidence/README.md).
-constexpr double kLeastPart = 0.04, kLargestPart = 0.9;
-// Greatest edge of a part, edges of a disc: that of a small part, and by how much more a part of the whole cloud may
-// have, as chance matches little of a surface. measured: `shapes.py composites`, 40 clouds of the
-// tuning half: 262 of 288 planes and 0.10 wrong ones a cloud; with 0.45 for a small part 269 and 0.22.
-constexpr double kLeastEdge = 0.4, kEdgePerShare = 0.5;
-// By how much longer the edge may be of a part whose points no better one holds, and share of its points that better
-// ones may hold. chosen: the head of the bull (Figure 8) needs 0.10, a disc has at least 0.1 more; half, as a limb has
-// many like regions.
-constexpr double kLongerEdge = 0.15, kSharedPart = 0.5;
-// How much planes of one part have in common of their regions, and how many of them there are at most: those of a cube.
-// chosen: parts of more are round or a clutter that every plane maps onto itself, and one plane stands for them; half
-// of the region, as regions of planes of one part differ by what matches by chance.
-constexpr double kSamePart = 0.5;
-constexpr std::size_t kMostPlanesOfPart = 9;
-// By how much the edge may be longer than that of a part before each of the two rounds on the region of a plane, edges
-// of a disc. measured: of 488 planes of 35 clouds that end as parts, 461 and 476 have no longer edge, of the others 51
-// and 27 %. Higher values take longer.
-constexpr double kLongestEdgesBefore[] = {1.0, 0.6};
-// Iterations of a plane of a part. chosen: as many as of a candidate in its second stage.
-constexpr int kIterations = 6;
-// Points that refinement reflects, of a ball and of a region. measured: with 400 of a ball as many planes of composites
-// are found, in half as much time again; chosen: half of a region makes its planes noisy.
-constexpr std::size_t kBallSamples = 200, kRegionSamples = 400;
 
 /// Farthest-point sampling: each seed is the point farthest from those before.
 std::vector<Eigen::Vector3f> spreadSeeds(const Points& points) {
   std::vector<Eigen::Vector3f> seeds;
   Eigen::VectorXf sq_distances = Eigen::VectorXf::Constant(points.cols(), std::numeric_limits<float>::infinity());
-  for (int next = 0, k = 0; k < kNumSeeds; ++k) {
+  for (int next = 0, k = 0; k < detection_rules.num_seeds; ++k) {
     seeds.push_back(points.col(next));
     sq_distances = sq_distances.cwiseMin((points.colwise() - seeds.back()).colwise().squaredNorm().transpose());
     sq_distances.maxCoeff(&next);
@@ -109,7 +70,7 @@ std::vector<int> within(const Points& points, const Eigen::Vector3f& center, dou
 
 bool isBall(std::size_t count, const Points& points) {
   const auto part = static_cast<double>(count), whole = static_cast<double>(points.cols());
-  return part >= kLeastBall * whole && part <= kLargestBall * whole;
+  return part >= detection_rules.least_ball * whole && part <= detection_rules.largest_ball * whole;
 }
 
 /// Evenly chosen samples, at most \p most and at least half as many where there are enough.
@@ -123,8 +84,8 @@ std::vector<int> thinned(const std::vector<int>& samples, std::size_t most) {
 /// Planes through the middle of a ball: across the principal axes of its points, and in directions all around.
 std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vector3d& middle) {
   std::vector<ReflectionPlane> planes = principalPlanes(principalAxes(ball));
-  for (int k = 0; k < kNumDirections; ++k) {
-    const Eigen::Vector3d n = spiralDirection(k, kNumDirections, 2.0 * kPi * kGoldenSection * k);
+  for (int k = 0; k < detection_rules.num_directions; ++k) {
+    const Eigen::Vector3d n = spiralDirection(k, detection_rules.num_directions, 2.0 * kPi * kGoldenSection * k);
     planes.emplace_back(n, n.dot(middle));
   }
   return planes;
@@ -153,29 +114,29 @@ struct BallSearch {
     isp.update = update;
     isp.sigma = cloud.sigma;
     isp.final_sigma = cloud.final_sigma;
-    isp.max_iterations = kIterations;
+    isp.max_iterations = detection_rules.iterations;
   }
 
   /// Refines a plane on the points of a ball, moves the ball to the plane, and refines the plane again.
   /// \return nothing where the ball has too few or too many points, the plane leaves the ball, or little matches.
   std::optional<SymmetricPart> refined(const ReflectionPlane& start, const std::vector<int>& ball,
                                        const Eigen::Vector3d& middle, double radius) const {
-    IspResult result = refineSymmetricPoints(surface, thinned(ball, kBallSamples), start, isp);
+    IspResult result = refineSymmetricPoints(surface, thinned(ball, detection_rules.ball_samples), start, isp);
     // A ball about a point of the plane is cut into equal halves.
     const Eigen::Vector3d center = middle - result.plane.signedDistance(middle) * result.plane.normal();
     const std::vector<int> moved = within(cloud.points, center.cast<float>(), radius);
     if (!isBall(moved.size(), cloud.points)) return std::nullopt;
-    const std::vector<int> samples = thinned(moved, kBallSamples);
+    const std::vector<int> samples = thinned(moved, detection_rules.ball_samples);
     IspOptions fine = isp;
     fine.sigma = fine.final_sigma;
     const int num_before = result.iterations;
     result = refineSymmetricPoints(surface, samples, result.plane, fine);
-    if (std::abs(result.plane.signedDistance(middle)) > kFarthestPlane * radius) return std::nullopt;
+    if (std::abs(result.plane.signedDistance(middle)) > detection_rules.farthest_plane * radius) return std::nullopt;
     SymmetricPart part{result.plane, {}, 0.0, 0.0, num_before + result.iterations, 0.0};
     const IspStep step = matchReflectionsOnly(surface, samples, part.plane, cloud.final_sigma, &result.last.closest);
     part.support = fit.relativeSupport(fit.shares(part.plane, samples, step));
     part.share = static_cast<double>(moved.size()) / static_cast<double>(cloud.points.cols());
-    if (part.support < kLeastSupport) return std::nullopt;
+    if (part.support < detection_rules.least_support) return std::nullopt;
     return part;
   }
 
@@ -214,15 +175,15 @@ struct RegionSearch {
 
   /// By how much the edge of a region is longer than that of a part of its size, edges of a disc.
   static double longerEdge(const MatchedRegion& region) {
-    return region.edge - kLeastEdge - kEdgePerShare * region.share;
+    return region.edge - detection_rules.least_edge - detection_rules.edge_per_share * region.share;
   }
 
   /// Moves the plane to the best one on a region.
   void refine(SymmetricPart& part, const MatchedRegion& region, double sigma) const {
     IspOptions isp = balls.isp;
     isp.sigma = sigma;
-    const IspResult result =
-        refineSymmetricPoints(balls.cloud.surface, thinned(region.points, kRegionSamples), part.plane, isp);
+    const IspResult result = refineSymmetricPoints(
+        balls.cloud.surface, thinned(region.points, detection_rules.region_samples), part.plane, isp);
     part.plane = result.plane;
     part.iterations += result.iterations;
   }
@@ -234,13 +195,15 @@ struct RegionSearch {
     MatchedRegion region = regions.largest(part.plane);
     int round = 0;
     for (const double sigma : {balls.isp.sigma, balls.isp.final_sigma}) {
-      if (region.share < kLeastPart || longerEdge(region) > kLongestEdgesBefore[round++]) return std::nullopt;
+      if (region.share < detection_rules.least_part ||
+          longerEdge(region) > detection_rules.longest_edges_before[round++])
+        return std::nullopt;
       refine(part, region, sigma);
       region = regions.largest(part.plane, &region.closest);
     }
-    if (region.share < kLeastPart || region.share > kLargestPart) return std::nullopt;
+    if (region.share < detection_rules.least_part || region.share > detection_rules.largest_part) return std::nullopt;
     part.longer_edge = longerEdge(region);
-    if (part.longer_edge > kLongerEdge) return std::nullopt;
+    if (part.longer_edge > detection_rules.longer_edge) return std::nullopt;
     part.points = std::move(region.points);
     part.share = region.share;
     part.support = region.support;
@@ -258,7 +221,7 @@ std::vector<SymmetricPart> withoutRemains(std::vector<SymmetricPart> parts, Eige
   for (SymmetricPart& part : parts) {
     const auto num_taken = std::count_if(part.points.begin(), part.points.end(), [&](int i) { return taken[i] != 0; });
     if (part.longer_edge > 0.0 &&
-        static_cast<double>(num_taken) > kSharedPart * static_cast<double>(part.points.size()))
+        static_cast<double>(num_taken) > detection_rules.shared_part * static_cast<double>(part.points.size()))
       continue;
     for (const int i : part.points) taken[i] = 1;
     kept.push_back(std::move(part));
@@ -271,7 +234,7 @@ bool isSamePart(const SymmetricPart& a, const SymmetricPart& b) {
   std::vector<int> both;
   std::set_intersection(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both));
   const auto either = static_cast<double>(a.points.size() + b.points.size() - both.size());
-  return static_cast<double>(both.size()) > kSamePart * either;
+  return static_cast<double>(both.size()) > detection_rules.same_part * either;
 }
 
 /// Leaves one plane of each part that has more planes than a part without axis has.
@@ -287,7 +250,7 @@ std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
   }
   std::vector<SymmetricPart> kept;
   for (std::vector<SymmetricPart>& group : groups) {
-    if (group.size() > kMostPlanesOfPart) group.resize(1);
+    if (group.size() > detection_rules.most_planes_of_part) group.resize(1);
     std::move(group.begin(), group.end(), std::back_inserter(kept));
   }
   return kept;
@@ -299,9 +262,10 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
                                               const PartSearchOptions& options) {
   const BallSearch search(cloud, fit, options.update);
   const std::vector<Eigen::Vector3f> seeds = spreadSeeds(cloud.points);
-  std::vector<std::vector<SymmetricPart>> of_balls(seeds.size() * std::size(kRadii));
+  std::vector<std::vector<SymmetricPart>> of_balls(seeds.size() * detection_rules.radii.size());
   parallelBlocks(of_balls.size(), options.num_threads, [&](std::size_t i) {
-    of_balls[i] = search.planes(seeds[i / std::size(kRadii)], kRadii[i % std::size(kRadii)]);
+    of_balls[i] =
+        search.planes(seeds[i / detection_rules.radii.size()], detection_rules.radii[i % detection_rules.radii.size()]);
   });
   std::vector<SymmetricPart> planes;
   for (std::vector<SymmetricPart>& found : of_balls) std::move(found.begin(), found.end(), std::back_inserter(planes));

@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
+#include "core/detection/detection_rules.h"
 #include "core/detection/plane_fit.h"
 #include "core/geometry/point_samples.h"
 
@@ -14,12 +15,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Radians from upright or level within which a plane does not slant. chosen: planes of noisy scans are off by three
-// degrees; half doubts some of them, twice lets a third of the slanting ones pass.
-constexpr double kUpright = 5.0 * kPi / 180.0;
-// Diameters farther from the points than the nearest support that others carry the object, too: a box stands on a table
-// and touches a wall. chosen: half takes noise for a gap, twice takes in walls behind an object.
-constexpr double kTouching = 0.05;
 /// The least signed distance of the points from a support.
 double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
   return (support.head<3>().transpose().cast<float>() * points).minCoeff() + support[3];
@@ -32,7 +27,7 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
   for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
   if (heights.empty()) return {};
   const double reach =
-      *std::min_element(heights.begin(), heights.end()) + kTouching * 2.0 * boundingBall(points).radius;
+      *std::min_element(heights.begin(), heights.end()) + detection_rules.touching * 2.0 * boundingBall(points).radius;
   std::vector<Eigen::Vector3d> normals;
   for (std::size_t i = 0; i < heights.size(); ++i)
     if (heights[i] <= reach) normals.push_back(seen.supports()[i].head<3>().normalized());
@@ -42,33 +37,12 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals) {
   const auto is_along = [&](const Eigen::Vector3d& normal) {
     const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
-    return angle <= kUpright || angle >= 0.5 * kPi - kUpright;
+    return angle <= detection_rules.upright || angle >= 0.5 * kPi - detection_rules.upright;
   };
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
 
 namespace {
-
-// Shares of the surface: less is missing by chance, and more is a piece; and the odds that a cloud lacks a piece
-// although a plane explains all of it. chosen: cuts along a plane of symmetry are rare; at one, the plane across an
-// open cup is as good as its others, at a hundredth, cut prisms lose planes.
-constexpr double kNothingMissing = 0.01, kPieceMissing = 0.03, kOddsOfAPiece = 0.2;
-// Odds of a plane that slants over those of one that does not, where both have the same confidence. chosen: one in ten.
-// Of the planes called in scenes of fold 0, 7 of 228 right ones slant and 27 of 85 wrong ones: too few for a fit.
-constexpr double kSlantedOdds = 0.1;
-// Share of the samples of a scan that a plane moves to where something is known, below which its confidence falls: a
-// table lies on itself, and what stands on it lands below, where nothing was seen. chosen: no right plane of 100
-// labelled objects in frames of a Kinect is lost, and a table with a carton and bottles is no symmetry. Of 160 planes
-// of virtual scans three are lost.
-constexpr double kLeastTold = 0.1;
-// Share of the diameter: a sensor that resolves less decides at this. measured: of 100 labelled objects in frames of a
-// Kinect 90 are decided right at 2 %, 94 at 2.5 % and 95 at 3 %, with four, three and three wrong.
-constexpr double kCoarsestTolerance = 0.03;
-// Share of the points that a plane leaves in place if it says nothing. chosen: half, as a sheet may be noisy; a box as
-// thin as two tolerances keeps its plane at any value.
-constexpr double kStillShare = 0.5;
-constexpr double kLookErrors =
-    2.0;  // standard errors of a quick look. chosen: with one, symmetries of few points are lost
 
 double withOdds(double confidence, double factor) {
   return factor * confidence / (1.0 - confidence + factor * confidence);
@@ -91,7 +65,7 @@ SymmetryPlane PlaneDecision::decide(PlaneRecord record) const {
   plane.iterations = record.iterations;
   plane.converged = record.converged;
   plane.residual = record.residual * cloud_.scale;
-  decideBy(planeConfidence(evidence) * std::min(1.0, record.told / kLeastTold), plane);
+  decideBy(planeConfidence(evidence) * std::min(1.0, record.told / detection_rules.least_told), plane);
   return plane;
 }
 
@@ -104,32 +78,34 @@ PlaneKind PlaneDecision::kindOf(const ReflectionPlane& plane, double confidence)
   // What moves nothing says nothing: a sheet is mapped onto itself by its own plane, whatever it is a part of.
   const auto saysNothing = [&] {
     if (measure_.thinness() == Thinness::Solid) return false;
-    return measure_.thinness() == Thinness::Line || measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - kStillShare;
+    return measure_.thinness() == Thinness::Line ||
+           measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - detection_rules.still_share;
   };
   if (confidence >= options_.min_confidence && isResolved() && !saysNothing()) return PlaneKind::Symmetry;
   return confidence >= options_.min_possible ? PlaneKind::Possible : PlaneKind::Approximate;
 }
 
 bool PlaneDecision::isResolved() const {
-  return measure_.tolerance() >= std::min(measure_.resolution(), kCoarsestTolerance * cloud_.extent);
+  return measure_.tolerance() >= std::min(measure_.resolution(), detection_rules.coarsest_tolerance * cloud_.extent);
 }
 
 bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {
-  return cloud_.rules().may_lack_piece && plane.kind == PlaneKind::Symmetry && 1.0 - plane.seen <= kNothingMissing;
+  return cloud_.rules().may_lack_piece && plane.kind == PlaneKind::Symmetry &&
+         1.0 - plane.seen <= detection_rules.nothing_missing;
 }
 
 bool PlaneDecision::isHopeless(const Candidate& candidate) const {
-  if (!cloud_.rules().may_lack_piece || candidate.merit >= kSymmetricMerit) return false;
+  if (!cloud_.rules().may_lack_piece || candidate.merit >= detection_rules.symmetric_merit) return false;
   const PlaneMeasure::QuickShare quick = measure_.quickShare(candidate);
-  return quick.share + kLookErrors * quick.error < kSymmetricMerit;
+  return quick.share + detection_rules.look_errors * quick.error < detection_rules.symmetric_merit;
 }
 
 void PlaneDecision::preferWhole(std::vector<SymmetryPlane>& planes) const {
   if (std::none_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); }))
     return;
   for (SymmetryPlane& plane : planes) {
-    if (1.0 - plane.seen <= kPieceMissing) continue;
-    const double odds = kOddsOfAPiece * plane.confidence;
+    if (1.0 - plane.seen <= detection_rules.piece_missing) continue;
+    const double odds = detection_rules.odds_of_a_piece * plane.confidence;
     decideBy(odds / (odds + 1.0 - plane.confidence), plane);
   }
 }
@@ -147,7 +123,8 @@ void PlaneDecision::doubtSlanted(std::vector<SymmetryPlane>& planes) const {
   if (!cloud_.seen() || cloud_.seen()->supports().empty()) return;
   const std::vector<Eigen::Vector3d> normals = carryingNormals(cloud_.points, *cloud_.seen());
   for (SymmetryPlane& plane : planes)
-    if (isDecided(plane) && slants(plane, normals)) decideBy(withOdds(plane.confidence, kSlantedOdds), plane);
+    if (isDecided(plane) && slants(plane, normals))
+      decideBy(withOdds(plane.confidence, detection_rules.slanted_odds), plane);
   if (!options_.approximate)
     planes.erase(std::remove_if(planes.begin(), planes.end(), [](const SymmetryPlane& p) { return !isDecided(p); }),
                  planes.end());
@@ -221,9 +198,6 @@ namespace {
 // Radians, and radii: how far the slope of a maximum may reach. chosen: twice the limits of a basin of refinement;
 // smaller values report planes that came to rest on a slope, larger ones only cost a value of D each.
 constexpr PlaneTolerance kSlope{0.2, 0.15};
-// Difference of D. chosen: what rounding and cells make of a level slope; larger values drop shallow maxima of their
-// own.
-constexpr double kSlopeDip = 0.005;
 
 /// Refinement can come to rest on the way to a maximum, where few points say how to go on (on flat pieces, for
 /// instance). A plane is a maximum of its own only if D falls on the way to a better plane nearby.
@@ -233,12 +207,12 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
   const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d normal = a.normal() + sign * b.normal();
   const ReflectionPlane between(normal, 0.5 * normal.norm() * (a.offset() + sign * b.offset()));
-  return cloud.score(cloud.toInput(between)) > plane.score - kSlopeDip;
+  return cloud.score(cloud.toInput(between)) > plane.score - detection_rules.slope_dip;
 }
 
 /// Whether a plane is of a polygon, between whose planes noise may leave no dip.
 bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
-  return polygon && contains(cloud.toNormalized(plane), polygon->line, kContainedOffset);
+  return polygon && contains(cloud.toNormalized(plane), polygon->line, detection_rules.contained_offset);
 }
 
 /// Judges every point, where the plane was judged by some of them.

@@ -1,11 +1,12 @@
 #include "core/detection/plane_families.h"
-#include "core/detection/candidates.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include "core/detection/candidates.h"
+#include "core/detection/detection_rules.h"
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
@@ -19,30 +20,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-// Planes whose common lines are tried, best first. chosen: 28 lines; fewer can miss the axis where other symmetries are
-// better, more only cost time.
-constexpr std::size_t kMostPlanes = 8;
-// Radians between two planes that define their common line. chosen: at smaller angles the errors of the planes move the
-// line too far; at larger ones the planes of some families are too close to each other.
-constexpr double kLeastAngle = 0.17;
-// Planes of a family that are screened, that its line is fitted to, and that test it. chosen: a regular polygon fails
-// at one of the first three already; more planes cost time, fewer let prisms with many sides pass.
-constexpr int kScreening = 3, kFitted = 6, kTested = 8;
-constexpr double kRoughFactor = 2.0;  // allowances. chosen: the line through two rough planes is off by a little
-// Share of the largest singular value below which normals are coplanar. chosen: 3 degrees; smaller values move the
-// common point of almost parallel planes far along their line.
-constexpr double kCoplanar = 0.05;
-// Least eigenvalue of the mean outer product of normals (1/3 at most). chosen: its root is 8 degrees, so that planes of
-// one axis with their errors have less, and planes of a sphere more.
-constexpr double kLeastSpread = 0.02;
-
-constexpr int kRoughSampleShare = 5;  // chosen: one sample in this many screens a family
-// Confidence of the worst plane of a family, shares of that of a symmetry. chosen: one, and chance breaks up families
-// of few points; a quarter, and cones with five petals pass for round.
-constexpr double kWorstShare = 0.5;
-constexpr int kRefineIterations = 6;  // chosen: as many as of a candidate in its second stage
-constexpr double kLeastSeen = 0.01;   // chosen: any small share of the points; avoids a division by 0
 
 /// Plane \p k of a sequence of planes through a line whose angles no regular polygon has.
 ReflectionPlane planeThrough(const Line3d& line, int k) {
@@ -67,7 +44,7 @@ Eigen::Vector3d commonPoint(const std::vector<ReflectionPlane>& planes, const Ei
     distances[i] = -planes[i].signedDistance(start);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
-  solver.setThreshold(kCoplanar);
+  solver.setThreshold(detection_rules.coplanar);
   solver.compute(normals);
   return start + solver.solve(distances);
 }
@@ -88,18 +65,21 @@ double meanShare(const PlaneAt& plane_at, int count, double least,
 template <typename PlaneAt>
 std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
   std::vector<ReflectionPlane> planes;
-  for (int k = 0; k < kTested; ++k) planes.push_back(plane_at(k));
+  for (int k = 0; k < detection_rules.tested; ++k) planes.push_back(plane_at(k));
   return planes;
 }
 
 /// The family of all planes through a point, or through one nearby.
 std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const FamilyTest& test) {
-  const auto at = [&](int k) { return planeThrough(point, k, kTested); };
-  if (meanShare(at, kScreening, least - kRoughFactor * test.allowance, test.rough_share) == 0.0) return std::nullopt;
+  const auto at = [&](int k) { return planeThrough(point, k, detection_rules.tested); };
+  if (meanShare(at, detection_rules.screening, least - detection_rules.rough_factor * test.allowance,
+                test.rough_share) == 0.0)
+    return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < kFitted; ++k) refined.push_back(test.refine(planeThrough(point, k, kFitted)));
+  for (int k = 0; k < detection_rules.fitted; ++k)
+    refined.push_back(test.refine(planeThrough(point, k, detection_rules.fitted)));
   point = commonPoint(refined, point);
-  const double share = meanShare(at, kTested, least, test.share);
+  const double share = meanShare(at, detection_rules.tested, least, test.share);
   if (share < least) return std::nullopt;
   return CenterFamily{point, share, planesAt(at)};
 }
@@ -109,15 +89,17 @@ std::optional<AxisFamily> axisAt(const Line3d& start, double least, const Family
   Line3d line = start;
   const auto at = [&](int k) { return planeThrough(line, k); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
-  if (meanShare(at, kScreening, least - kRoughFactor * test.allowance, test.rough_share) == 0.0) return std::nullopt;
+  if (meanShare(at, detection_rules.screening, least - detection_rules.rough_factor * test.allowance,
+                test.rough_share) == 0.0)
+    return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < kFitted; ++k) refined.push_back(test.refine(planeThrough(line, k)));
+  for (int k = 0; k < detection_rules.fitted; ++k) refined.push_back(test.refine(planeThrough(line, k)));
   line = commonLine(refined);
-  double share = meanShare(at, kTested, least, test.share);
+  double share = meanShare(at, detection_rules.tested, least, test.share);
   // Planes that map a scan to what was not seen drift when they are refined.
   if (share < least) {
     line = start;
-    share = meanShare(at, kTested, least, test.share);
+    share = meanShare(at, detection_rules.tested, least, test.share);
   }
   if (share < least) return std::nullopt;
   return AxisFamily{line, share, planesAt(at)};
@@ -142,7 +124,8 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()),
                                                               Eigen::EigenvaluesOnly);
-  const bool has_point = planes.size() >= 3 && solver.eigenvalues()[0] >= kLeastSpread;  // or else all hold one line
+  const bool has_point =
+      planes.size() >= 3 && solver.eigenvalues()[0] >= detection_rules.least_spread;  // or else all hold one line
   if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));
   points.insert(points.end(), guesses.begin(), guesses.end());
   const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
@@ -157,7 +140,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   std::vector<Line3d> tried;
   const auto attempt = [&](const Line3d& line, double best_share) {
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Line3d& other) {
-      return std::abs(other.direction().dot(line.direction())) > std::cos(kContainedAngle) &&
+      return std::abs(other.direction().dot(line.direction())) > std::cos(detection_rules.contained_angle) &&
              other.distance(line.origin()) < test.tolerance;
     });
     if (known) return;
@@ -169,10 +152,10 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   };
   if (!planes.empty())
     for (const Line3d& guess : guesses) attempt(guess, test.share(planes[0]));
-  const std::size_t size = std::min(planes.size(), kMostPlanes);
+  const std::size_t size = std::min(planes.size(), detection_rules.most_planes);
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (planes[i].angleTo(planes[j]) < kLeastAngle) continue;
+      if (planes[i].angleTo(planes[j]) < detection_rules.least_angle) continue;
       attempt(commonLine({planes[i], planes[j]}), std::max(test.share(planes[i]), test.share(planes[j])));
     }
   }
@@ -189,7 +172,7 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
     return [&fit, used, is_scan](const ReflectionPlane& plane) {
       const PlaneShares shares = fit.shares(plane, used);
       const double support = fit.relativeSupport(shares);
-      return is_scan ? 1.0 - shares.conflict : support / std::max(kLeastSeen, std::min(1.0, support + shares.conflict));
+      return is_scan ? 1.0 - shares.conflict : support / std::max(0.01, std::min(1.0, support + shares.conflict));
     };
   };
   FamilyTest test;
@@ -197,15 +180,15 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   // Samples may be all points in the order of the file, whose first fifth is one end of the shape.
   std::vector<int> fewer;
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
-  for (const int i : drawSamples(num_samples, static_cast<int>(num_samples) / kRoughSampleShare, seed))
+  for (const int i : drawSamples(num_samples, static_cast<int>(num_samples) / detection_rules.rough_sample_share, seed))
     fewer.push_back(samples[i]);
   test.rough_share = share_of(fewer);
   test.refine = [&fit, samples](const ReflectionPlane& plane) {
-    return fit.refined(plane, samples, kRefineIterations);
+    return fit.refined(plane, samples, detection_rules.refine_iterations);
   };
   test.min_share = cloud.rules().family_share;
   test.allowance = fit.familyAllowance();
-  test.tolerance = kContainedOffset;
+  test.tolerance = detection_rules.contained_offset;
   return test;
 }
 
@@ -263,7 +246,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   if (is_line) {
     const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
-    for (int k = 0; k < kTested; ++k) through.push_back(planeThrough(line, k));
+    for (int k = 0; k < detection_rules.tested; ++k) through.push_back(planeThrough(line, k));
     const JudgedFamily judged = judge.judgeFamily(through, samples);
     if (judged.confidence >= options.min_confidence)
       found.axes.push_back(
@@ -281,7 +264,8 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   // planes too badly for that.
   const auto isFamily = [&](const JudgedFamily& judged) {
     return judged.confidence >= options.min_confidence &&
-           (!cloud.rules().family_needs_all || judged.least_confidence >= kWorstShare * options.min_confidence);
+           (!cloud.rules().family_needs_all ||
+            judged.least_confidence >= detection_rules.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, guesses.centers)) {
     const JudgedFamily judged = judge.judgeFamily(center->planes, samples);
@@ -301,7 +285,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     // Nothing bounded turns about two parallel lines, but a thin disc seems to within the tolerance: the best is the
     // axis.
     const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& axis) {
-      return std::abs(axis.direction.dot(family.line.direction())) > std::cos(kContainedAngle);
+      return std::abs(axis.direction.dot(family.line.direction())) > std::cos(detection_rules.contained_angle);
     });
     if (!is_known)
       found.axes.push_back({cloud.toInput(family.line.origin()), family.line.direction(), judged.confidence,
@@ -315,7 +299,7 @@ std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, co
                                            const NormalizedCloud& cloud) {
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), kContainedOffset);
+      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), detection_rules.contained_offset);
     });
   };
   planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());

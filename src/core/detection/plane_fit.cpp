@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/detection/detection_rules.h"
 #include "core/evidence/plane_support.h"
 #include "core/evidence/point_density.h"
 #include "core/geometry/point_samples.h"
@@ -13,29 +14,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-// Share of the surface. chosen: smaller values break families up by sampling noise, larger ones let bodies with a small
-// handle pass for families.
-constexpr double kSurfaceAllowance = 0.015;
-// Steps of a climb: radians, and radii of the offset; the first and the last. chosen: planes of cut clouds that
-// Iterative Symmetric Points leaves are off by up to 0.05; at half of the first, they stay there; half of the last is
-// below their errors.
-constexpr double kFirstClimb = 0.02, kLastClimb = 0.0025;
-// Steps of a climb up, of all lengths. chosen: far planes are other planes; most take fewer than ten.
-constexpr int kMostClimbs = 24;
-// Points by which planes of whole clouds climb. chosen: twice as many change one of 69 decisions, and cost time.
-constexpr int kClimbSamples = 500;
-// Merit that a climb has to gain. chosen: what few samples make of a plane at rest; at 0, good planes leave their place
-// by 0.1 degrees, at twice, some planes stay beside their place.
-constexpr double kLeastGain = 0.005;
-// Merit of planes that climb. chosen: planes with less are no symmetries; at half, the climbs take longer.
-constexpr double kClimbingMerit = 0.5;
-// Roughness, spacings, from which planes of scans climb: where depths are noisy, half of the points lie behind the
-// surface by the noise alone and look hidden. chosen: a Kinect's scan of a carton has more, flat pieces of exact scans
-// have 0; where curved ones have more, they climb without need. With a climb for all, of 441 exact scans 401 in place
-// of 398 are right, but 67 in place of 56 have a false plane, too. Other values were not tried.
-constexpr double kNoisyDepth = 0.1;
-constexpr std::size_t kSharesBlock = 1024;  // samples. chosen: large enough that threads start seldom
 
 /// Planes of points that resolve a surface: Iterative Symmetric Points, and the share of points whose reflection lies
 /// on the surface.
@@ -81,18 +59,19 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
     candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
     if (!stage.undo_slides) return;
     undoSlide(candidate, start, used, stage.isp.final_sigma);
-    if (cloud_.roughness > kNoisyDepth && candidate.merit >= kClimbingMerit) climbOne(candidate, used, fewer);
+    if (cloud_.roughness > detection_rules.noisy_depth && candidate.merit >= detection_rules.climbing_merit)
+      climbOne(candidate, used, fewer);
   });
 }
 
 void SurfaceFit::climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
   const std::vector<int> samples = drawSamples(cloud_.points.cols(), stage.num_samples, options_.seed);
-  const std::vector<int> fewer =
-      drawSamples(cloud_.points.cols(), std::min(stage.num_rough_samples, kClimbSamples), options_.seed);
+  const std::vector<int> fewer = drawSamples(
+      cloud_.points.cols(), std::min(stage.num_rough_samples, detection_rules.climb_samples), options_.seed);
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
-    const bool is_at_rest = candidate.merit >= kSymmetricMerit;  // nothing pulls at it
-    if (candidate.merit >= kClimbingMerit && !is_at_rest) climbOne(candidate, samples, fewer);
+    const bool is_at_rest = candidate.merit >= detection_rules.symmetric_merit;  // nothing pulls at it
+    if (candidate.merit >= detection_rules.climbing_merit && !is_at_rest) climbOne(candidate, samples, fewer);
   });
 }
 
@@ -124,8 +103,8 @@ void SurfaceFit::climbOne(Candidate& candidate, const std::vector<int>& samples,
   IspStep here = matched(plane, nullptr);
   double best = merit(shares(plane, fewer, here));
   int num_climbs = 0;
-  for (double step = kFirstClimb; step >= kLastClimb; step *= 0.5) {
-    for (int fails = 0, k = 0; fails < 6 && num_climbs < kMostClimbs; k = (k + 1) % 6) {
+  for (double step = detection_rules.first_climb; step >= detection_rules.last_climb; step *= 0.5) {
+    for (int fails = 0, k = 0; fails < 6 && num_climbs < detection_rules.most_climbs; k = (k + 1) % 6) {
       const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
       IspStep there = matched(next, &here.closest);
       const double value = merit(shares(next, fewer, there));
@@ -141,7 +120,7 @@ void SurfaceFit::climbOne(Candidate& candidate, const std::vector<int>& samples,
   if (num_climbs == 0) return;
   IspStep step = matches(plane, samples);
   const double value = merit(shares(plane, samples, step));
-  if (value <= candidate.merit + kLeastGain) return;
+  if (value <= candidate.merit + detection_rules.least_gain) return;
   candidate.plane = plane;
   candidate.merit = value;
   candidate.last.last = std::move(step);
@@ -160,7 +139,7 @@ PlaneShares SurfaceFit::shares(const ReflectionPlane& plane, const std::vector<i
                                const IspStep& step) const {
   PointEvidence evidence{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
   const Eigen::Vector3f n = plane.normal().cast<float>();
-  parallelRanges(samples.size(), kSharesBlock, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(samples.size(), 1024, options_.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
     Points reflected(3, size), normals(3, size);
     for (Eigen::Index i = 0; i < size; ++i) {
@@ -185,7 +164,7 @@ double SurfaceFit::merit(const PlaneShares& shares) const {
 }
 
 double SurfaceFit::familyAllowance() const {
-  return kSurfaceAllowance;
+  return detection_rules.surface_allowance;
 }
 
 PlaneEvidence SurfaceFit::evidence(double support, double conflict, double score) const {
@@ -201,19 +180,6 @@ PlaneEvidence SurfaceFit::evidence(double support, double conflict, double score
 }
 
 namespace {
-
-// Spacings. chosen: at half, the density shows single points; at twice, it blurs the shape itself.
-constexpr double kBandwidth = 1.5;
-// chosen: Newton steps double the digits once they are near; half as many leave distant starts behind, twice as many
-// only cost time.
-constexpr int kMaxIterations = 6;
-// Samples per sample of a surface. chosen: a look-up in the density costs about a tenth of a search for the closest
-// point; with more, a stage takes longer than that of a surface, with fewer its samples are noisier than need be.
-constexpr int kSampleFactor = 10;
-// Share of the overlap, which varies less from plane to plane than the support of a surface does, at this number of
-// points and more; fewer vary by more. chosen: at a third, sampling noise breaks up round bodies with noise of two
-// spacings; what passes is judged by halves of the cloud.
-constexpr double kVolumeAllowance = 0.012, kPointsOfAllowance = 10'000;
 
 /// Planes of points that resolve no surface: the overlap of the points' density with its reflection.
 class VolumeFit : public PlaneFit {
@@ -244,12 +210,12 @@ VolumeFit::VolumeFit(const NormalizedCloud& cloud, const PlaneFitOptions& option
     : PlaneFit(cloud),
       options_(options),
       surface_(cloud, options),
-      density_(cloud.points, kBandwidth * cloud.spacing, options.num_threads) {}
+      density_(cloud.points, detection_rules.bandwidth * cloud.spacing, options.num_threads) {}
 
 void VolumeFit::refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
-  const int num_samples = std::min(kSampleFactor * stage.num_samples, options_.max_samples);
+  const int num_samples = std::min(detection_rules.sample_factor * stage.num_samples, options_.max_samples);
   const Points samples = pointsAt(cloud_.points, drawSamples(cloud_.points.cols(), num_samples, options_.seed));
-  const int max_iterations = std::min(kMaxIterations, options_.max_iterations);
+  const int max_iterations = std::min(detection_rules.max_iterations, options_.max_iterations);
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
     const PointDensity::Refined refined = density_.refine(samples, candidate.plane, max_iterations);
@@ -282,7 +248,8 @@ double VolumeFit::merit(const PlaneShares& shares) const {
 }
 
 double VolumeFit::familyAllowance() const {
-  return kVolumeAllowance * std::sqrt(std::max(1.0, kPointsOfAllowance / static_cast<double>(cloud_.points.cols())));
+  return detection_rules.volume_allowance *
+         std::sqrt(std::max(1.0, detection_rules.points_of_allowance / static_cast<double>(cloud_.points.cols())));
 }
 
 PlaneEvidence VolumeFit::evidence(double support, double conflict, double score) const {

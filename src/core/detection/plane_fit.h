@@ -34,11 +34,6 @@ struct PlaneTolerance {
   }
 };
 
-/// Merit of a symmetry of a whole cloud, and its share of the surface less what few samples blur. chosen: a symmetry of
-/// 97 % support and 3 % conflict has 0.97; higher values lose symmetries where samples are few, lower ones refine
-/// hopeless candidates in full. Planes that leave 7 % off have a confidence of 0.15 where nothing is missing.
-constexpr double kSymmetricMerit = 0.93;
-
 /// What a set of samples says about one plane.
 struct PlaneShares {
   double support;                    ///< mean over the samples: the reflection lies on the surface

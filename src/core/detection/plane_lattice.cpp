@@ -1,26 +1,16 @@
 #include "core/detection/plane_lattice.h"
 
-#include "core/detection/plane_families.h"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
 #include "core/base/constants.h"
+#include "core/detection/detection_rules.h"
+#include "core/detection/plane_families.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-constexpr int kMostFold = 60;            // derived: as rotations of objects (ObjectSymmetries)
-constexpr std::size_t kLeastPlanes = 4;  // chosen: three planes fit too many lattices by chance
-constexpr std::size_t kMostPairs = 6;    // planes whose common lines are tried. chosen: 15 lines; more repeat them
-constexpr double kLeastPairAngle = 0.1;  // radians. chosen: at smaller angles errors move the line too far
-// Share of the angle between two planes by which planes may be off. chosen: at half, planes of noisy clouds do not fit
-// many folds; at twice, any plane fits.
-constexpr double kMostFolded = 0.2;
-constexpr double kMostOffAngle = 0.05;  // radians. chosen: planes of symmetries are off by less, in noise too
-constexpr double kMostChance = 1e-3;    // chosen: of a hundred round bodies, with some lines each, none has a lattice
 
 /// Angle of the normal of a plane about a line, in [0, pi).
 double angleAbout(const Line3d& line, const ReflectionPlane& plane) {
@@ -33,20 +23,20 @@ double angleAbout(const Line3d& line, const ReflectionPlane& plane) {
 std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<ReflectionPlane>& planes) {
   std::vector<double> angles;
   for (const ReflectionPlane& plane : planes)
-    if (contains(plane, line, kContainedOffset)) angles.push_back(angleAbout(line, plane));
-  if (angles.size() < kLeastPlanes) return std::nullopt;
-  for (int fold = 3; fold <= kMostFold; ++fold) {
+    if (contains(plane, line, detection_rules.contained_offset)) angles.push_back(angleAbout(line, plane));
+  if (angles.size() < detection_rules.least_planes) return std::nullopt;
+  for (int fold = 3; fold <= detection_rules.most_fold; ++fold) {
     std::complex<double> sum = 0.0;
     for (const double angle : angles) sum += std::polar(1.0, 2.0 * fold * angle);
     const double phase = std::arg(sum) / (2.0 * fold), step = kPi / fold;
     double most = 0.0;
     for (const double angle : angles) most = std::max(most, std::abs(std::remainder(angle - phase, step)));
-    if (most > std::min(kMostFolded * step, kMostOffAngle)) continue;
+    if (most > std::min(detection_rules.most_folded * step, detection_rules.most_off_angle)) continue;
     // Two of the angles give line and phase; each other one falls this close to a plane by chance, and the folds below
     // were tried before.
-    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * kMostFolded * step) / step);
+    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * detection_rules.most_folded * step) / step);
     const double chance = fold * std::pow(by_chance, static_cast<double>(angles.size()) - 1.0);
-    if (chance > kMostChance) return std::nullopt;
+    if (chance > detection_rules.most_chance) return std::nullopt;
     return PlaneLattice{line, fold, phase, static_cast<int>(angles.size())};
   }
   return std::nullopt;
@@ -55,7 +45,7 @@ std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<R
 }  // namespace
 
 bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
-  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kContainedAngle) &&
+  return std::abs(plane.normal().dot(line.direction())) <= std::sin(detection_rules.contained_angle) &&
          std::abs(plane.signedDistance(line.origin())) <= tolerance;
 }
 
@@ -68,15 +58,15 @@ ReflectionPlane PlaneLattice::plane(double k) const {
 
 std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes) {
   std::optional<PlaneLattice> best;
-  const std::size_t size = std::min(planes.size(), kMostPairs);
+  const std::size_t size = std::min(planes.size(), detection_rules.most_pairs);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      if (planes[i].angleTo(planes[j]) < kLeastPairAngle) continue;
+      if (planes[i].angleTo(planes[j]) < detection_rules.least_pair_angle) continue;
       Line3d line = commonLine({planes[i], planes[j]});
       std::vector<ReflectionPlane> through;
       for (const ReflectionPlane& plane : planes)
-        if (contains(plane, line, kContainedOffset)) through.push_back(plane);
-      if (through.size() < kLeastPlanes) continue;
+        if (contains(plane, line, detection_rules.contained_offset)) through.push_back(plane);
+      if (through.size() < detection_rules.least_planes) continue;
       line = commonLine(through);
       const std::optional<PlaneLattice> lattice = latticeAbout(line, planes);
       if (lattice && (!best || lattice->num_planes > best->num_planes)) best = lattice;

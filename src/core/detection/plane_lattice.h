@@ -3,15 +3,11 @@
 #include <optional>
 #include <vector>
 
+#include "core/detection/detection_rules.h"
 #include "pcl_symmetry/core/axial_transform.h"
 #include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
-
-/// Radii by which a plane may miss a line, or a point, that it contains. chosen: smaller values leave planes of a
-/// family beside it as single planes, larger ones take planes that have nothing to do with it.
-constexpr double kContainedOffset = 0.03;
-constexpr double kContainedAngle = 0.0524;  // radians. chosen: 3 degrees, the limit of a plane that counts as found
 
 /// Whether a plane contains a line, within 3 degrees and \p tolerance.
 bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/detection/detection_rules.h"
 #include "core/evidence/plane_stiffness.h"
 #include "core/evidence/plane_support.h"
 #include "core/evidence/surface_samples.h"
@@ -16,36 +17,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Share within the tolerance from which nothing needs to be missing. chosen: above the 0.97 of a symmetry by the error
-// of the share; at 1, borders are looked for in every cloud, which takes time.
-constexpr double kSurelyWhole = 0.985;
-// Samples whose distances are measured however far they are. chosen: the error of a share of 0.97 is 0.004; more cost
-// time.
-constexpr int kDeviationSamples = 2000;
-// Offset stiffness from which an open border begins to excuse, and at twice which it does in full. chosen: 0.25 % of
-// the surface across the plane has 0.01; at half, the noise of normals holds sheets, at twice, flat boxes are not held.
-constexpr double kHeld = 0.02;
-// Tolerances by which a plane has to move a sample of a scan, so that its reflection says something: what lies at the
-// plane is mapped onto itself, and a scan shows little else of some false planes. chosen: by cross-validation over
-// scans of half of the models of fold 0: 0.206 nats a plane, 0.215 where all samples count.
-constexpr double kStill = 2.0;
-// Tolerances within which points that resolve no surface are a sheet or a line. chosen: noise of 1 % of the length of a
-// line holds 97 % of the points within 2.7; at half, such lines have axes, at twice, thick noisy plates lose a plane.
-constexpr double kNoisyThinness = 3.0;
-// Spacings within which points of a line say nothing of its cross-section. derived: a tube of that radius has 2 pi 2 =
-// 12 samples around.
-constexpr double kRoundSpacings = 2.0;
-// Samples of a first look. chosen: at half, fewer planes are refused.
-constexpr int kLookSamples = 2000;
-constexpr double kLeastOwnShare = 0.1;  // chosen: any value far below that of surfaces; avoids a division by 0
-// Tolerances at which the share is measured. derived: see PlaneEvidence.
-constexpr std::array<double, 2> kTolerances{1.0, 2.0};
-constexpr std::size_t kReflectedBlock = 1024;  // samples. chosen: large enough that threads start seldom
-
 std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
   std::array<double, 2> shares{};
   for (std::size_t k = 0; k < shares.size(); ++k)
-    shares[k] = std::max(kLeastOwnShare, shareWithin(distances, kTolerances[k] * tolerance));
+    shares[k] = std::max(0.1, shareWithin(distances, detection_rules.tolerances[k] * tolerance));
   return shares;
 }
 
@@ -72,8 +47,10 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                          : 1.0) {}
 
 double PlaneMeasure::lineTolerance() const {
-  const double noisy = kNoisyThinness * tolerance_;
-  return cloud_.kind() == CloudKind::Volume ? noisy : std::clamp(kRoundSpacings * cloud_.spacing, tolerance_, noisy);
+  const double noisy = detection_rules.noisy_thinness * tolerance_;
+  return cloud_.kind() == CloudKind::Volume
+             ? noisy
+             : std::clamp(detection_rules.round_spacings * cloud_.spacing, tolerance_, noisy);
 }
 
 std::vector<int> PlaneMeasure::samples() const {
@@ -127,7 +104,7 @@ PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double s
 PlaneMeasure::Reflected PlaneMeasure::reflected(const ReflectionPlane& plane, const std::vector<int>& samples,
                                                 const IspStep& step) const {
   Reflected result{Points(3, static_cast<Eigen::Index>(samples.size())), std::vector<float>(samples.size())};
-  parallelRanges(samples.size(), kReflectedBlock, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(samples.size(), 1024, options_.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
     Points some(3, size);
     for (Eigen::Index i = 0; i < size; ++i)
@@ -168,7 +145,7 @@ std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, cons
       if (!matched[i]) unknown[i] = isSeenEmpty(reflected.points.col(i).cast<double>(), rim) ? 0.0f : 1.0f;
     return unknown;
   }
-  const double held = std::clamp(offset_stiffness / kHeld - 1.0, 0.0, 1.0);
+  const double held = std::clamp(offset_stiffness / detection_rules.held - 1.0, 0.0, 1.0);
   if (held <= 0.0 || static_cast<Eigen::Index>(size) != cloud_.points.cols()) return unknown;
   const auto trust = static_cast<float>(held * ends().trust());
   if (trust <= 0.0f) return unknown;
@@ -184,12 +161,12 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
   const std::vector<float> moved = halves_ ? of_halves : movedOnly(reflected.distances, plane, reflected.points);
   std::array<double, 2> within{};
   for (std::size_t k = 0; k < within.size() && !moved.empty(); ++k)
-    within[k] = std::min(1.0, shareWithin(moved, kTolerances[k] * tolerance_) / own_shares_[k]);
+    within[k] = std::min(1.0, shareWithin(moved, detection_rules.tolerances[k] * tolerance_) / own_shares_[k]);
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   std::vector<float> unknown(size, 0.0f);
-  if (cloud_.seen() || (cloud_.rules().may_lack_piece && within[0] < kSurelyWhole)) {
+  if (cloud_.seen() || (cloud_.rules().may_lack_piece && within[0] < detection_rules.surely_whole)) {
     stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
     unknown = unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim);
   }
@@ -201,7 +178,7 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
     if (unknown[i] < 0.5f) telling.push_back(reflected.distances[i]);
     if (unknown[i] < 0.5f && moves(plane, reflected.points.col(static_cast<Eigen::Index>(i)))) ++num_told;
     for (std::size_t k = 0; k < missing.size(); ++k)
-      if (reflected.distances[i] > kTolerances[k] * tolerance_) missing[k] += unknown[i] / count;
+      if (reflected.distances[i] > detection_rules.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
   }
   const auto share = [&](std::size_t k) {
     const double good = within[k], bad = std::max(0.0, 1.0 - good - missing[k]);
@@ -214,7 +191,7 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
 }
 
 bool PlaneMeasure::moves(const ReflectionPlane& plane, const Eigen::Vector3f& x) const {
-  return 2.0 * std::abs(plane.signedDistance(x.cast<double>())) > kStill * tolerance_;
+  return 2.0 * std::abs(plane.signedDistance(x.cast<double>())) > detection_rules.still * tolerance_;
 }
 
 std::vector<float> PlaneMeasure::movedOnly(const std::vector<float>& distances, const ReflectionPlane& plane,
@@ -235,7 +212,7 @@ double PlaneMeasure::deviationOf(std::vector<float> distances) const {
 }
 
 double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kDeviationSamples, options_.seed);
+  const std::vector<int> samples = drawSamples(cloud_.points.cols(), detection_rules.deviation_samples, options_.seed);
   IspStep step;
   step.closest.assign(samples.size(), -1);
   const Reflected all = reflected(plane, samples, step);
@@ -244,7 +221,7 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
 }
 
 PlaneMeasure::QuickShare PlaneMeasure::quickShare(const Candidate& candidate) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kLookSamples, options_.seed);
+  const std::vector<int> samples = drawSamples(cloud_.points.cols(), detection_rules.look_samples, options_.seed);
   const Reflected some = reflected(candidate.plane, samples, fit_.matches(candidate.plane, samples));
   const double share = std::min(1.0, shareWithin(some.distances, tolerance_) / own_shares_[0]);
   return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};

@@ -8,6 +8,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/detection/detection_rules.h"
 #include "core/detection/turn_confidence.h"
 #include "core/detection/turn_evidence.h"
 #include "core/geometry/answerable_points.h"
@@ -22,26 +23,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kNormalSamples = 600;  // chosen: half shifts the axis by noise, twice takes twice the time
-// Draws of normals, and normals in each. derived: six numbers fix a motion but for its size; chosen: at 60 draws one is
-// free of a handle of a fifth of the surface with probability 1 - 1e-8.
-constexpr int kNormalDraws = 60, kNormalsInDraw = 8;
-constexpr std::size_t kDrawsPerBlock = 4;  // chosen: large enough that threads start seldom
-constexpr int kFromNormals = 3;            // lines kept; chosen: more repeat the best
-constexpr double kMeets = 0.1;             // radians; chosen: as for the weights of axisOfNormals()
-constexpr double kLeastLever = 0.05;       // radii; chosen: as there
-// Radians, radii: lines are one within these. chosen: a fit comes to the same line from either.
-constexpr double kSameStartAngle = 0.1, kSameStartOffset = 0.06;
-constexpr double kAngleOfFold = 3.0 * kDegree;  // chosen: planes of scans are off by this much in one of ten
-constexpr double kLeastPlaneAngle = 0.13;       // radians; chosen: lines of planes at less are too far off
-// The coarse transform: cells, bins, samples and folds. chosen: it takes a tenth of the time of a scan; half of the
-// bins misses axes, twice takes 16 times as long. measured: 64, 32 and 24 samples find 122, 123 and 122 of 124 axes
-// (scans of shapes made by code, tuning half, 160 scans).
-constexpr int kCoarseCells = 24, kCoarseTheta = 8, kCoarsePhi = 32, kCoarseOffset = 12, kCoarseSamples = 32;
-constexpr std::size_t kCoarseMaxima = 10;  // chosen: half misses axes of folds, twice takes twice the time
-constexpr double kCoarseAngle = 0.3, kCoarseDistance = 0.3;  // radians, radii; derived: one and a half bins
-constexpr double kCoarseEqual = 0.05;                        // D; chosen: coarse maxima are this far from their peaks
-
 bool isOne(const Line3d& a, const Line3d& b, double angle, double offset) {
   return std::abs(a.direction().dot(b.direction())) > std::cos(angle) &&
          a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
@@ -49,30 +30,30 @@ bool isOne(const Line3d& a, const Line3d& b, double angle, double offset) {
 
 double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d velocity = line.direction().cross(x - line.origin());
-  return std::abs(velocity.dot(normal)) / std::max(kLeastLever, velocity.norm());
+  return std::abs(velocity.dot(normal)) / std::max(detection_rules.least_lever, velocity.norm());
 }
 
 }  // namespace
 
 std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
-  const std::vector<int> samples = drawSamples(cloud.points.cols(), kNormalSamples, seed);
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), detection_rules.normal_samples, seed);
   const Points& normals = cloud.geometry.normals;
   const auto inliersOf = [&](const Line3d& line) {
     std::vector<int> inliers;
     for (const int i : samples)
-      if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) < kMeets)
+      if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) < detection_rules.meets)
         inliers.push_back(i);
     return inliers;
   };
   std::vector<std::vector<int>> draws(1, samples);
   RandomStream random(seed);
-  for (int draw = 0; draw < kNormalDraws; ++draw) {
+  for (int draw = 0; draw < detection_rules.normal_draws; ++draw) {
     std::vector<int> few;
-    for (int k = 0; k < kNormalsInDraw; ++k) few.push_back(samples[random.below(samples.size())]);
+    for (int k = 0; k < detection_rules.normals_in_draw; ++k) few.push_back(samples[random.below(samples.size())]);
     draws.push_back(std::move(few));
   }
   std::vector<std::pair<double, Line3d>> found(draws.size());
-  parallelRanges(draws.size(), kDrawsPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(draws.size(), 4, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Line3d line = axisOfNormals(cloud.points, normals, draws[i]);
       const bool is_line = line.direction().allFinite() && line.origin().allFinite();
@@ -83,12 +64,12 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<AxisStart> starts;
   for (const auto& [unused, line] : found) {
-    if (starts.size() == kFromNormals) break;
+    if (starts.size() == detection_rules.from_normals) break;
     const std::vector<int> inliers = inliersOf(line);
     if (inliers.empty()) break;
     const Line3d fitted = axisOfNormals(cloud.points, normals, inliers);
     const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
-      return isOne(other.line, fitted, kSameStartAngle, kSameStartOffset);
+      return isOne(other.line, fitted, detection_rules.same_start_angle, detection_rules.same_start_offset);
     });
     if (!is_known && fitted.origin().norm() < 2.0) starts.push_back({fitted, 0});
   }
@@ -100,7 +81,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
   for (std::size_t i = 0; i < planes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double angle = planes[i].angleTo(planes[j]);
-      if (angle < kLeastPlaneAngle) continue;
+      if (angle < detection_rules.least_plane_angle) continue;
       const Eigen::Vector3d& a = planes[i].normal();
       const Eigen::Vector3d& b = planes[j].normal();
       const double cosine = a.dot(b), sq_sine = 1.0 - cosine * cosine;
@@ -110,7 +91,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
       // The least fold whose planes have this angle: two planes at k pi / n turn by 2 k pi / n.
       for (int n = 2; n <= max_fold; ++n) {
         const double step = kPi / n, off = std::abs(angle - step * std::round(angle / step));
-        if (off > kAngleOfFold * std::min(1.0, 6.0 / n)) continue;
+        if (off > detection_rules.angle_of_fold * std::min(1.0, 6.0 / n)) continue;
         starts.push_back({line, n});
         break;
       }
@@ -120,15 +101,16 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
 
 std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
   GaussianEdtOptions coarse;
-  coarse.num_cells = kCoarseCells;
+  coarse.num_cells = detection_rules.coarse_cells;
   coarse.num_threads = num_threads;
   const GaussianEdt edt(cloud.points, coarse);
   AxialTransformOptions options;
   options.folds = {2, 3, 4, 5, 6};
-  options.num_samples = kCoarseSamples;
+  options.num_samples = detection_rules.coarse_samples;
   options.seed = seed;
   options.num_threads = num_threads;
-  const AxisGrid grid(kCoarseTheta, kCoarsePhi, kCoarseOffset, edt.center(), edt.radius());
+  const AxisGrid grid(detection_rules.coarse_theta, detection_rules.coarse_phi, detection_rules.coarse_offset,
+                      edt.center(), edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);
   std::vector<std::size_t> bins;  // a heap: the greatest first, of equal ones the one with the least index
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
@@ -138,41 +120,24 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   };
   std::make_heap(bins.begin(), bins.end(), isBehind);
   std::vector<AxisStart> starts;
-  while (!bins.empty() && starts.size() < kCoarseMaxima) {
+  while (!bins.empty() && starts.size() < detection_rules.coarse_maxima) {
     const std::size_t bin = bins.front();
     std::pop_heap(bins.begin(), bins.end(), isBehind);
     bins.pop_back();
     const Line3d line = grid.axis(grid.bin(bin));
     const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
-      return isOne(other.line, line, kCoarseAngle, kCoarseDistance);
+      return isOne(other.line, line, detection_rules.coarse_angle, detection_rules.coarse_distance);
     });
     if (is_known) continue;
     int fold = 2;
     for (std::size_t i = 0; i < map.folds.size(); ++i)
-      if (map.values[i][bin] >= map.greatest[bin] - kCoarseEqual) fold = std::max(fold, map.folds[i]);
+      if (map.values[i][bin] >= map.greatest[bin] - detection_rules.coarse_equal) fold = std::max(fold, map.folds[i]);
     starts.push_back({line, fold});
   }
   return starts;
 }
 
 namespace {
-
-constexpr int kMostTurnFold = 12;  // chosen: bodies of more folds are nearly round to a scan
-// Turns that stand for all, besides small ones. chosen: half overlooks handles, twice takes twice the time.
-constexpr int kRoundTurns = 10;
-// Radians: turns that the fit of a round body uses, both ways. chosen: smaller ones fix the axis badly, larger ones
-// leave what was seen.
-constexpr double kSmallTurn = 0.26, kLargerTurn = 0.7;
-// kMostOff and kMostFar for screening, and tolerances of its distances. chosen: twice, for the error of the EDT.
-constexpr double kRoughTurns = 3.0, kRoughSlack = 2.0;
-constexpr std::size_t kMostPlanesOfAxes = 8;                    // chosen: 28 lines; more are of false planes
-constexpr double kPlaneShare = 0.85;                            // chosen: planes of less are none of the whole
-constexpr double kSameTurnAngle = 0.12, kSameTurnOffset = 0.1;  // radians, radii; chosen: no body has two axes nearer
-// Radians, radii: fitted lines that are judged once. chosen: half judges lines twice, twice may judge the worse one.
-constexpr double kFittedAngle = 0.02, kFittedOffset = 0.02;
-constexpr std::size_t kMostTurns = 5;        // chosen: a polyhedron seen from a corner shows as many
-constexpr int kMostScanTurnPoints = 10'000;  // chosen: as DetectionOptions::num_refine_samples
-constexpr int kScoredPlanes = 4;  // chosen: D of a round body differs little between planes; each takes a millisecond
 
 /// The worst of several turns, and the greatest share on the surface.
 struct TurnsTogether {
@@ -196,8 +161,10 @@ struct TurnLimits {
 template <typename Shares>
 TurnsTogether roundTurns(const Shares& shares, const TurnLimits& limits = {}) {
   TurnsTogether all;
-  for (int k = 1; k <= kRoundTurns && limits.allow(all); ++k) all.add(shares(2.0 * kPi * goldenFraction(k)));
-  if (limits.allow(all)) all.on = 0.5 * (shares(kSmallTurn).on + shares(-kSmallTurn).on);
+  for (int k = 1; k <= detection_rules.round_turns && limits.allow(all); ++k)
+    all.add(shares(2.0 * kPi * goldenFraction(k)));
+  if (limits.allow(all))
+    all.on = 0.5 * (shares(detection_rules.small_turn).on + shares(-detection_rules.small_turn).on);
   return all;
 }
 
@@ -224,16 +191,18 @@ public:
 
   /// The best that can be said of a line.
   std::optional<JudgedTurns> judged(const Line3d& line) const {
-    constexpr TurnLimits kRough{kRoughTurns * kMostOff, kRoughTurns * kMostFar};  // derived: from both
+    constexpr TurnLimits kRough{detection_rules.rough_turns * detection_rules.most_off,
+                                detection_rules.rough_turns * detection_rules.most_far};  // derived: from both
     const auto roughly = [&](double angle) {
-      return evidence_.roughly(Eigen::Affine3d(turnAbout(line, angle)), kRoughSlack, kRough.off, kRough.far);
+      return evidence_.roughly(Eigen::Affine3d(turnAbout(line, angle)), detection_rules.rough_slack, kRough.off,
+                               kRough.far);
     };
     std::optional<JudgedTurns> best;
     const auto take = [&](JudgedTurns&& turns) {
       if (!best || turns.margin > best->margin) best = turns;
     };
     if (kRough.allow(roundTurns(roughly, kRough))) take(exactly(line, 0));
-    for (int fold = kMostTurnFold; fold >= 2; --fold) {
+    for (int fold = detection_rules.most_turn_fold; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
       if (kRough.allow(turnsOfFold(roughly, fold, 0.0, kRough))) take(exactly(line, fold));
     }
@@ -251,7 +220,9 @@ public:
 
 private:
   static std::vector<double> fitAngles(int fold) {
-    if (fold == 0) return {kSmallTurn, -kSmallTurn, kLargerTurn, -kLargerTurn};
+    if (fold == 0)
+      return {detection_rules.small_turn, -detection_rules.small_turn, detection_rules.larger_turn,
+              -detection_rules.larger_turn};
     const double step = 2.0 * kPi / fold;
     return fold == 2 ? std::vector<double>{step} : std::vector<double>{step, -step};
   }
@@ -263,7 +234,8 @@ private:
 std::vector<ReflectionPlane> planesOfAxes(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud) {
   std::vector<ReflectionPlane> found;
   for (const SymmetryPlane& plane : planes)
-    if (plane.kind != PlaneKind::Local && plane.share >= kPlaneShare && found.size() < kMostPlanesOfAxes)
+    if (plane.kind != PlaneKind::Local && plane.share >= detection_rules.plane_share &&
+        found.size() < detection_rules.most_planes_of_axes)
       found.push_back(cloud.toNormalized(plane));
   return found;
 }
@@ -274,11 +246,11 @@ bool isNear(const Line3d& a, const Line3d& b, double angle, double offset) {
 }
 
 bool isNearly(const Line3d& a, const Line3d& b) {
-  return isNear(a, b, kFittedAngle, kFittedOffset);
+  return isNear(a, b, detection_rules.fitted_angle, detection_rules.fitted_offset);
 }
 
 bool isSameLine(const Line3d& a, const Line3d& b) {
-  return isNear(a, b, kSameTurnAngle, kSameTurnOffset);
+  return isNear(a, b, detection_rules.same_turn_angle, detection_rules.same_turn_offset);
 }
 
 }  // namespace
@@ -292,7 +264,7 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
     starts.insert(starts.end(), more.begin(), more.end());
   };
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
-  append(startsFromPlanes(planesOfAxes(planes, cloud), kMostTurnFold));
+  append(startsFromPlanes(planesOfAxes(planes, cloud), detection_rules.most_turn_fold));
   append(startsFromTransform(cloud, options.seed, options.num_threads));
   const AxisJudge judge(evidence);
   std::vector<Line3d> fitted(starts.size());
@@ -308,7 +280,7 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
                    [](const auto& a, const auto& b) { return a && (!b || a->margin > b->margin); });
   std::vector<JudgedTurns> found;
   for (const std::optional<JudgedTurns>& turns : judged) {
-    if (!turns || found.size() == kMostTurns) break;
+    if (!turns || found.size() == detection_rules.most_turns) break;
     if (std::none_of(found.begin(), found.end(), [&](const JudgedTurns& o) { return isSameLine(o.line, turns->line); }))
       found.push_back(*turns);
   }
@@ -336,7 +308,8 @@ std::vector<SymmetryTurn> turnsOfScan(const PointsRef& points, const GaussianEdt
                                       const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
-  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kMostScanTurnPoints, options.seed));
+  const Points used =
+      pointsAt(distinct, drawSamples(distinct.cols(), detection_rules.most_scan_turn_points, options.seed));
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
   return scanAxes(TurnEvidence(cloud, options.tolerance * cloud.extent, options.seed), {}, axes, options);
@@ -350,12 +323,12 @@ std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vect
                               const TurnsTogether all = roundTurns([&](double angle) {
                                 return evidence.exactly(Eigen::Affine3d(turnAbout(cloud.lineOf(axis), angle)));
                               });
-                              return all.far > kMostRoundFar;
+                              return all.far > detection_rules.most_round_far;
                             }),
              axes.end());
   for (const SymmetryTurn& turn : turns) {
     // However probable: a handle that was seen contradicts.
-    const bool is_contradicted = turn.off > kMostRoundOff || turn.far > kMostRoundFar;
+    const bool is_contradicted = turn.off > detection_rules.most_round_off || turn.far > detection_rules.most_round_far;
     if (turn.fold != 0 || is_contradicted || turn.confidence < options.min_confidence) continue;
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
       return isSameLine(cloud.lineOf(axis), cloud.lineOf(turn));
@@ -365,11 +338,11 @@ std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vect
       known->direction = turn.direction;
     } else {
       double score = 0.0;
-      for (int k = 0; k < kScoredPlanes; ++k) {
-        const double angle = kPi * k / kScoredPlanes;
+      for (int k = 0; k < detection_rules.scored_planes; ++k) {
+        const double angle = kPi * k / detection_rules.scored_planes;
         const Eigen::Vector3d u = turn.direction.unitOrthogonal(), v = turn.direction.cross(u);
         const Eigen::Vector3d normal = std::cos(angle) * u + std::sin(angle) * v;
-        score += cloud.score(ReflectionPlane(normal, normal.dot(turn.point))) / kScoredPlanes;
+        score += cloud.score(ReflectionPlane(normal, normal.dot(turn.point))) / detection_rules.scored_planes;
       }
       axes.push_back({turn.point, turn.direction, turn.confidence, score, turn.support});
     }

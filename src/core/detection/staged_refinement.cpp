@@ -5,67 +5,38 @@
 #include <utility>
 
 #include "core/detection/candidates.h"
+#include "core/detection/detection_rules.h"
 
 namespace pcl_symmetry {
-
-namespace {
-
-// Iterations. chosen: Gauss-Newton steps settle symmetries in fewer; half as many stop some early, twice as many only
-// move approximate symmetries, which never settle.
-constexpr int kCoarseIterations = 5, kCloseIterations = 6, kFullIterations = 8;
-constexpr int kRoughIterations = 4;  // chosen: as above, for candidates that never settle
-
-// How far below the merit of a symmetry a candidate may be after the second stage. chosen: few samples blur the merit;
-// smaller values lose symmetries early, larger ones cost time.
-constexpr double kCloseSlack = 0.1;
-// The same after the first stage, of candidates that are refined beside a symmetry. chosen: a hundred samples blur the
-// merit by up to 0.1; at half, a plane that rose from 0.77 to 0.86 would be left out, at twice, twice as many are
-// refined.
-constexpr double kCoarseSlack = 0.2;
-// Candidates with less merit that go on after the first two stages, best first: symmetries of scans and of clouds with
-// a piece missing, and the best plane of a shape that has no symmetry. chosen: fewer lose some of them, more cost time.
-constexpr std::size_t kKeptCoarsely = 8, kKeptClosely = 4;
-
-// Samples of the second stage per sample of the first. chosen: fewer blur the merit by which candidates are dropped,
-// more cost time.
-constexpr int kCloseSampleFactor = 4;
-// Width of the weights at the end of the first stage, sigmas. chosen: narrower weights let planes rest on few pairs,
-// wider ones leave more to the second stage.
-constexpr double kNarrowestCoarsely = 0.5;
-
-// Share of a standard error: a shorter Gauss-Newton step of a symmetry is the last. measured: another one over all
-// points leaves the errors of boxes and prisms, exact and sampled, where they are.
-constexpr double kSettledErrorShare = 3.0;
-
-}  // namespace
 
 StagedRefinement::StagedRefinement(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
     : cloud_(cloud), fit_(fit), options_(options) {}
 
 std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const {
-  const double narrow = std::clamp(cloud_.final_sigma, kNarrowestCoarsely * cloud_.sigma, cloud_.sigma);
-  const std::vector<Candidate> moved =
-      refined(candidates, stage(options_.expert.num_coarse_samples, cloud_.sigma, narrow, kCoarseIterations));
-  return distinct(withinCells(moved, candidates, grid), -1.0, kKeptCoarsely);
+  const double narrow = std::clamp(cloud_.final_sigma, detection_rules.narrowest_coarsely * cloud_.sigma, cloud_.sigma);
+  const std::vector<Candidate> moved = refined(
+      candidates, stage(options_.expert.num_coarse_samples, cloud_.sigma, narrow, detection_rules.coarse_iterations));
+  return distinct(withinCells(moved, candidates, grid), -1.0, detection_rules.kept_coarsely);
 }
 
 std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
-  const auto isSymmetry = [](const Candidate& candidate) { return candidate.merit >= kSymmetricMerit; };
+  const auto isSymmetry = [](const Candidate& candidate) { return candidate.merit >= detection_rules.symmetric_merit; };
   const bool all = cloud_.rules().keeps_unlikely || options_.approximate;
   const auto likely = all ? candidates.end()
                           : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
-                              return candidate.merit >= kSymmetricMerit - kCoarseSlack;
+                              return candidate.merit >= detection_rules.symmetric_merit - detection_rules.coarse_slack;
                             });
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
   // Beside a symmetry of a whole cloud, the others are of no use.
   if (!all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
   for (Candidate& other : refined({likely, candidates.end()}, closeStage())) found.push_back(std::move(other));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
-  return distinct(std::move(found), -1.0, all || !is_whole ? kKeptClosely : 0);
+  return distinct(std::move(found), -1.0, all || !is_whole ? detection_rules.kept_closely : 0);
 }
 
 std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
-  return distinct(refined(std::move(candidates), closeStage()), kSymmetricMerit - kCloseSlack, kKeptClosely);
+  return distinct(refined(std::move(candidates), closeStage()),
+                  detection_rules.symmetric_merit - detection_rules.close_slack, detection_rules.kept_closely);
 }
 
 std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates) const {
@@ -83,13 +54,14 @@ std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) co
 
 RefinementStage StagedRefinement::fullStage() const {
   return stage(options_.expert.num_refine_samples / cloud_.rules().full_share, cloud_.final_sigma, cloud_.final_sigma,
-               kFullIterations);
+               detection_rules.full_iterations);
 }
 
 RefinementStage StagedRefinement::closeStage() const {
-  return stage(std::min(kCloseSampleFactor * options_.expert.num_coarse_samples, options_.expert.num_refine_samples),
-               std::clamp(cloud_.final_sigma, kNarrowestCoarsely * cloud_.sigma, cloud_.sigma), cloud_.final_sigma,
-               kCloseIterations);
+  return stage(std::min(detection_rules.close_sample_factor * options_.expert.num_coarse_samples,
+                        options_.expert.num_refine_samples),
+               std::clamp(cloud_.final_sigma, detection_rules.narrowest_coarsely * cloud_.sigma, cloud_.sigma),
+               cloud_.final_sigma, detection_rules.close_iterations);
 }
 
 RefinementStage StagedRefinement::stage(int num_samples, double sigma, double final_sigma, int max_iterations) const {
@@ -106,8 +78,8 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.isp.final_sigma = final_sigma;
   stage.isp.max_iterations = std::min(max_iterations, options_.expert.max_iterations);
   stage.rough_isp = stage.isp;
-  stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kRoughIterations);
-  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = kSettledErrorShare;
+  stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, detection_rules.rough_iterations);
+  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = detection_rules.settled_error_share;
   return stage;
 }
 
@@ -141,7 +113,7 @@ std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candida
   std::vector<Candidate> kept;
   for (Candidate& candidate : candidates) {
     if (candidate.merit < least_merit) break;
-    if (candidate.merit < kSymmetricMerit - kCloseSlack && kept.size() >= most) break;
+    if (candidate.merit < detection_rules.symmetric_merit - detection_rules.close_slack && kept.size() >= most) break;
     if (!tolerance.anySame(kept, candidate.plane, [](const Candidate& other) { return other.plane; }))
       kept.push_back(std::move(candidate));
   }

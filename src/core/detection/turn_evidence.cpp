@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/detection/detection_rules.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 
@@ -13,29 +14,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Points that judge a turn exactly, and roughly. chosen: standard errors of 0.7 and 1.2 % at a share of 0.05; half
-// decides by chance, twice takes twice the time.
-constexpr int kSamplesOfTurn = 1000, kFewSamplesOfTurn = 300;
-constexpr double kFarTurn = 10.0;  // tolerances. derived: as ObjectSymmetryOptions::max_feature has it
-// Widths of the weights of the fit, tolerances, from start to end. chosen: starts are off by a few degrees; half loses
-// them, twice lets wrong matches pull.
-constexpr std::array<double, 6> kFitWidths{8.0, 5.0, 3.0, 2.0, 1.5, 1.5};
-// The same of the close fit, which starts from the other one. measured: of 75 half turns of scans of PSB, fold 0, that
-// a fit on the whole mesh makes symmetries, 67 in place of 61 are symmetries with these in place of last widths of 1.5.
-constexpr std::array<double, 6> kCloseFitWidths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};
-// Tolerances: points beside the rim by less pull nothing. chosen: the rim is as exact as its pixels; half lets noise
-// pull, twice leaves lines off by as much.
-constexpr double kLeastEmptyMiss = 0.5;
-constexpr double kFitReach = 2.0;   // widths beyond which a match has no weight. derived: exp(-4) = 0.02
-constexpr double kFitRidge = 1e-3;  // share of the trace. chosen: keeps free directions, such as along a ball, at rest
-constexpr double kFitStep = 1e-4;   // radians, radii; chosen: for derivatives in double precision
-constexpr double kLeastTurnF = 1e-6;  // derived: below any f that is not 0
-
-constexpr double kSlackOfReach = 1.001;  // derived: more than what distances are rounded by
-
 /// Radius of the greatest disc that stands for a point.
 double greatestDisc(const LocalGeometry& geometry) {
-  return kDiscRadius * static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
+  return evidence_rules.disc_radius *
+         static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
 }
 
 /// The normals of a scan, towards the scanner.
@@ -52,10 +34,11 @@ Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
   return {line.origin() + by[2] * u + by[3] * v, (line.direction() + by[0] * u + by[1] * v).normalized()};
 }
 
-/// The turns about the lines beside a line, by kFitStep.
+/// The turns about the lines beside a line, by detection_rules.fit_step.
 std::array<Eigen::Isometry3d, 4> turnsBeside(const Line3d& line, double angle) {
   std::array<Eigen::Isometry3d, 4> beside;
-  for (int k = 0; k < 4; ++k) beside[k] = turnAbout(movedLine(line, kFitStep * Eigen::Vector4d::Unit(k)), angle);
+  for (int k = 0; k < 4; ++k)
+    beside[k] = turnAbout(movedLine(line, detection_rules.fit_step * Eigen::Vector4d::Unit(k)), angle);
   return beside;
 }
 
@@ -63,7 +46,7 @@ std::array<Eigen::Isometry3d, 4> turnsBeside(const Line3d& line, double angle) {
 Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Eigen::Vector3d& x,
                         const Eigen::Vector3d& turned, const Eigen::Vector3d& along) {
   Eigen::Vector4d slope;
-  for (int k = 0; k < 4; ++k) slope[k] = along.dot(beside[k] * x - turned) / kFitStep;
+  for (int k = 0; k < 4; ++k) slope[k] = along.dot(beside[k] * x - turned) / detection_rules.fit_step;
   return slope;
 }
 
@@ -80,10 +63,10 @@ TurnEvidence::TurnEvidence(const NormalizedCloud& cloud, double tolerance, std::
     : cloud_(cloud),
       tolerance_(tolerance),
       viewpoint_(cloud.visibility->viewpoint()),
-      far_(kFarTurn * tolerance),
-      reach_(kSlackOfReach * (far_ + greatestDisc(cloud.geometry))),
-      samples_(drawSamples(cloud.points.cols(), kSamplesOfTurn, seed)),
-      few_samples_(drawSamples(cloud.points.cols(), kFewSamplesOfTurn, seed)),
+      far_(detection_rules.far_turn * tolerance),
+      reach_(detection_rules.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
+      samples_(drawSamples(cloud.points.cols(), detection_rules.samples_of_turn, seed)),
+      few_samples_(drawSamples(cloud.points.cols(), detection_rules.few_samples_of_turn, seed)),
       facing_(facingNormals(cloud, viewpoint_)) {}
 
 bool TurnEvidence::isSeenEmpty(const Eigen::Vector3d& x) const {
@@ -104,7 +87,7 @@ TurnShares TurnEvidence::roughly(const Eigen::Affine3d& motion, double slack, do
   for (const int sample : few_samples_) {
     if (shares.off > most_off || shares.far > most_far) break;
     const Eigen::Vector3d x = motion * cloud_.points.col(sample).cast<double>();
-    const double f = std::max(kLeastTurnF, cloud_.edt(cloud_.toInput(x)));
+    const double f = std::max(detection_rules.least_turn_f, cloud_.edt(cloud_.toInput(x)));
     if (f >= near_f) {
       shares.on += one;
     } else if (isSeenEmpty(x)) {
@@ -168,7 +151,9 @@ void TurnEvidence::addPulls(const Line3d& line, double angle, const std::vector<
     turned.col(static_cast<Eigen::Index>(i)) = (turn * cloud_.points.col(samples[i]).cast<double>()).cast<float>();
   std::vector<int> closest(samples.size(), -1);
   std::vector<float> sq_distances;
-  cloud_.search->searchWithin(turned, static_cast<float>(kFitReach * kFitReach * sq_width), closest, sq_distances);
+  cloud_.search->searchWithin(turned,
+                              static_cast<float>(detection_rules.fit_reach * detection_rules.fit_reach * sq_width),
+                              closest, sq_distances);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (closest[i] < 0) continue;
     const Eigen::Vector3d x = cloud_.points.col(samples[i]).cast<double>(), y = turn * x;
@@ -176,7 +161,8 @@ void TurnEvidence::addPulls(const Line3d& line, double angle, const std::vector<
     Eigen::Vector3d along;
     double weight = std::exp(-sq_distances[i] / sq_width);
     if (cloud_.geometry.at_border[closest[i]]) {
-      if (miss.norm() < kLeastEmptyMiss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0) continue;
+      if (miss.norm() < detection_rules.least_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0)
+        continue;
       along = miss.normalized();
     } else {
       const Eigen::Vector3d there = facing_.col(closest[i]).cast<double>(),
@@ -199,21 +185,22 @@ Line3d TurnEvidence::fitted(const Line3d& start, const std::vector<double>& angl
   for (const double width : widths) {
     Pulls pulls;
     for (const double angle : angles) addPulls(line, angle, samples, width, pulls);
-    pulls.squares.diagonal().array() += kFitRidge * pulls.squares.trace() + kLeastTurnF;
+    pulls.squares.diagonal().array() +=
+        detection_rules.fit_ridge * pulls.squares.trace() + detection_rules.least_turn_f;
     const Eigen::Vector4d step = pulls.squares.ldlt().solve(pulls.sum);
     constexpr double kMostStep = 0.1;  // radians, radii; chosen: starts are closer, larger steps leave the basin
-    line = movedLine(line, step * std::min(1.0, kMostStep / std::max(kFitStep, step.norm())));
+    line = movedLine(line, step * std::min(1.0, kMostStep / std::max(detection_rules.fit_step, step.norm())));
     line.origin() = line.projection(Eigen::Vector3d::Zero());
   }
   return line;
 }
 
 Line3d TurnEvidence::refined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(start, angles, few_samples_, kFitWidths);
+  return fitted(start, angles, few_samples_, detection_rules.fit_widths);
 }
 
 Line3d TurnEvidence::closelyRefined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(start, angles, samples_, kCloseFitWidths);
+  return fitted(start, angles, samples_, detection_rules.close_fit_widths);
 }
 
 }  // namespace pcl_symmetry

@@ -7,29 +7,11 @@
 #include <optional>
 
 #include "core/base/random.h"
+#include "core/evidence/evidence_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Planes through three border points that are tried. derived: with 12 % of the borders on a cut, 1000 draws miss it
-// with a probability of 18 %, with 20 % of them with 0.03 %. chosen: twice takes twice the time, a millisecond.
-constexpr int kCutDraws = 1000;
-constexpr int kMostCuts = 4;  // chosen: a box that crops a corner has three sides
-// Spacings about the plane in which points belong to it. chosen: half loses ragged borders, twice takes in the surface
-// behind them.
-constexpr float kCutBand = 1.5f;
-// Share of the points that may lie beyond. chosen: half loses cuts of noisy clouds, twice cuts off small parts.
-constexpr double kMostBeyond = 0.002;
-// Border points of a cut. chosen: a cut of 5 % of a long object has about 30; half takes chance for cuts, twice loses
-// cuts through thin parts.
-constexpr std::size_t kLeastOfCut = 15;
-// Share of the points in the band that are at borders. chosen: rows of a cut have 0.6 to 0.9, faces of closed objects
-// 0.01; at half, the flat bottom of an object with many holes is a cut, at twice, ragged cuts are none.
-constexpr double kLeastAtBorder = 0.12;
-// Spacings that the border points of a cut spread in both directions, root mean square. chosen: points along one line
-// fix no plane. At half, single edges of sheets do, at twice, cuts through thin parts are lost.
-constexpr double kLeastSpread = 2.0;
 
 /// Three points fix a plane if they are not along a line.
 std::optional<CutPlane> planeThrough(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
@@ -37,7 +19,7 @@ std::optional<CutPlane> planeThrough(const Eigen::Vector3f& a, const Eigen::Vect
   const Eigen::Vector3f across = (b - a).cross(c - a);
   const float longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
   // The height of the triangle, compared with the error of its points.
-  if (!(across.norm() > 2.0f * kCutBand * spacing * longest)) return std::nullopt;
+  if (!(across.norm() > 2.0f * evidence_rules.cut_band * spacing * longest)) return std::nullopt;
   const Eigen::Vector3f normal = across.normalized();
   return CutPlane{normal, normal.dot(a)};
 }
@@ -45,7 +27,7 @@ std::optional<CutPlane> planeThrough(const Eigen::Vector3f& a, const Eigen::Vect
 class CutSearch {
 public:
   CutSearch(const Points& points, const std::vector<char>& borders, float spacing)
-      : points_(points), borders_(borders), band_(kCutBand * spacing), spacing_(spacing) {
+      : points_(points), borders_(borders), band_(evidence_rules.cut_band * spacing), spacing_(spacing) {
     for (std::size_t i = 0; i < borders.size(); ++i)
       if (borders[i]) free_.push_back(static_cast<Eigen::Index>(i));
     middle_ = points.rowwise().mean();
@@ -54,10 +36,10 @@ public:
   /// The cut with most of the border points that no other cut has; nothing where there is none.
   std::optional<CutPlane> next(RandomStream& random) {
     std::optional<CutPlane> best;
-    std::size_t most = kLeastOfCut - 1;
+    std::size_t most = evidence_rules.least_of_cut - 1;
     if (free_.size() <= most) return best;
     const auto any = [&]() -> Eigen::Vector3f { return points_.col(free_[random.below(free_.size())]); };
-    for (int draw = 0; draw < kCutDraws; ++draw) {
+    for (int draw = 0; draw < evidence_rules.cut_draws; ++draw) {
       const Eigen::Vector3f a = any(), b = any(), c = any();
       std::optional<CutPlane> plane = planeThrough(a, b, c, spacing_);
       if (!plane) continue;
@@ -79,7 +61,7 @@ public:
 
 private:
   bool leavesPointsBeyond(const CutPlane& plane) const {
-    auto left = static_cast<Eigen::Index>(kMostBeyond * static_cast<double>(points_.cols()));
+    auto left = static_cast<Eigen::Index>(evidence_rules.most_beyond * static_cast<double>(points_.cols()));
     for (Eigen::Index i = 0; i < points_.cols(); ++i)
       if (plane.normal.dot(points_.col(i)) > plane.offset + band_ && --left < 0) return true;
     return false;
@@ -103,7 +85,7 @@ private:
       squares += d * d.transpose() / static_cast<double>(at.size());
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares);
-    const double least = kLeastSpread * spacing_;
+    const double least = evidence_rules.least_spread * spacing_;
     if (!(solver.eigenvalues()[1] > least * least)) return std::nullopt;
     Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();
     if (normal.dot(start.normal) < 0.0f) normal = -normal;
@@ -115,7 +97,8 @@ private:
       ++num_near;
       num_at_border += borders_[static_cast<std::size_t>(i)] ? 1 : 0;
     }
-    if (static_cast<double>(num_at_border) < kLeastAtBorder * static_cast<double>(num_near)) return std::nullopt;
+    if (static_cast<double>(num_at_border) < evidence_rules.least_at_border * static_cast<double>(num_near))
+      return std::nullopt;
     return plane;
   }
 
@@ -133,7 +116,7 @@ std::vector<CutPlane> findCutPlanes(const Points& points, const std::vector<char
   std::vector<CutPlane> cuts;
   CutSearch search(points, borders, static_cast<float>(spacing));
   RandomStream random(seed);
-  while (cuts.size() < static_cast<std::size_t>(kMostCuts)) {
+  while (cuts.size() < static_cast<std::size_t>(evidence_rules.most_cuts)) {
     const std::optional<CutPlane> cut = search.next(random);
     if (!cut) break;
     cuts.push_back(*cut);

@@ -7,16 +7,13 @@
 #include <numeric>
 #include <vector>
 
+#include "core/evidence/evidence_rules.h"
 #include "core/geometry/open_borders.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Points for each square of the side of a box. chosen: 10 000 points of a surface lie in some 200 cells of 50, so that
-// a question looks at about as many boxes as points; other numbers were not tried.
-constexpr double kPointsPerSquare = 160.0;
 
 /// The cell of each point, in a box that has as many cells along each side.
 std::vector<int> cellsOf(const Points& points, int cells_per_side) {
@@ -38,7 +35,8 @@ std::vector<int> cellsOf(const Points& points, int cells_per_side) {
 
 OutermostPoints::OutermostPoints(const Points& points) : mean_(points.rowwise().mean()) {
   const auto size = static_cast<std::size_t>(points.cols());
-  const int cells_per_side = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size) / kPointsPerSquare)));
+  const int cells_per_side =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size) / evidence_rules.points_per_square)));
   const std::vector<int> cells = cellsOf(points, cells_per_side);
   std::vector<std::size_t> place(static_cast<std::size_t>(cells_per_side * cells_per_side * cells_per_side) + 1, 0);
   for (const int cell : cells) ++place[static_cast<std::size_t>(cell) + 1];
@@ -85,37 +83,16 @@ Eigen::Vector3f OutermostPoints::last(const Eigen::Vector3f& direction) const {
 
 namespace {
 
-// Spacings by which the piece may reach behind the last points of the cloud: from the second on it is not beyond them.
-// chosen: a ragged cut and the tolerance of a match take two. By cross-validation over whole and cut clouds of fold 0:
-// 0.103 nats a plane, 0.105 and 0.110 with one and two spacings less, 0.110 without this test.
-constexpr float kInFront = 3.0f, kBehind = 4.0f;
-// Mean cosine between the normals of the last points and that of the plane before which they end: up to the first the
-// surface runs into the plane, from the second on it closes before it. chosen: as above; 0.104 with 0.05 less of both,
-// 0.108 with 0.1 less; 0.5 is that of a sphere that is cut through its center, or of random normals.
-constexpr float kRunsInto = 0.65f, kCloses = 0.8f;
-// Spacings before the plane. chosen: a point or two deep, so that the bend of edges does not count; other widths were
-// not tried.
-constexpr float kLastPoints = 2.0f;
-constexpr double kOutliers = 0.002;  // share of the points. chosen: as of planes of cuts, see cut_planes.cpp
-// Spacings before the farthest point in which outliers are looked for first. chosen: holds enough points of most ends;
-// where it does not, all points are looked at.
-constexpr float kOutliersWithin = 8.0f;
-constexpr int kMostSteps = 200;  // chosen: a bound; clouds apart from each other need fewer
-// Share of the squared distance by which a step may still shorten it. derived: the direction is then within the root of
-// this, 8 degrees. measured: planes of fold 0 have 0.103 nats with it and with all 200 steps.
-constexpr float kLeastGain = 0.02f;
-constexpr float kNoDistance = 1.0f;  // spacings. chosen: hulls that near touch or overlap, and the direction is chance
-
 /// The direction along which two clouds are farthest apart: that between the closest points of their convex hulls
 /// (Gilbert 1966). Where these overlap, a direction in which they overlap little.
 Eigen::Vector3f separatingDirection(const OutermostPoints& points, const OutermostPoints& piece, float spacing) {
   Eigen::Vector3f between = piece.mean() - points.mean();
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < evidence_rules.most_steps; ++step) {
     const Eigen::Vector3f nearest = piece.last(-between) - points.last(between);
-    if (between.dot(nearest) >= (1.0f - kLeastGain) * between.squaredNorm()) break;
+    if (between.dot(nearest) >= (1.0f - evidence_rules.least_gain) * between.squaredNorm()) break;
     const Eigen::Vector3f change = nearest - between;
     const Eigen::Vector3f next = between - std::min(1.0f, between.dot(change) / change.squaredNorm()) * change;
-    if (next.norm() < kNoDistance * spacing) break;
+    if (next.norm() < evidence_rules.no_distance * spacing) break;
     between = next;
   }
   return between.normalized();
@@ -125,9 +102,11 @@ Eigen::Vector3f separatingDirection(const OutermostPoints& points, const Outermo
 /// \param farthest that of all points.
 float lastOf(const OutermostPoints& points, const Eigen::Vector3f& direction, float farthest, float spacing) {
   const auto size = static_cast<std::size_t>(points.size());
-  const std::size_t num_beyond = size - 1 - static_cast<std::size_t>((1.0 - kOutliers) * static_cast<double>(size - 1));
+  const std::size_t num_beyond =
+      size - 1 - static_cast<std::size_t>((1.0 - evidence_rules.outliers) * static_cast<double>(size - 1));
   std::vector<float> distances;
-  for (const float from : {farthest - kOutliersWithin * spacing, -std::numeric_limits<float>::infinity()}) {
+  for (const float from :
+       {farthest - evidence_rules.outliers_within * spacing, -std::numeric_limits<float>::infinity()}) {
     distances.clear();
     points.visitFrom(direction, from, [&](Eigen::Index, float distance) { distances.push_back(distance); });
     if (distances.size() > num_beyond) break;
@@ -149,35 +128,22 @@ float beyondEnd(const OutermostPoints& cloud, const Points& normals, const Outer
   const Eigen::Vector3f normal = separatingDirection(cloud, piece, unit);
   const float farthest = normal.dot(cloud.last(normal));
   const float gap = (normal.dot(piece.last(-normal)) - farthest) / unit;
-  const float is_beyond = ramp(gap, -kBehind, -kInFront);
+  const float is_beyond = ramp(gap, -evidence_rules.behind, -evidence_rules.in_front);
   if (is_beyond <= 0.0f) return 0.0f;
   float cosines = 0.0f, count = 0.0f;
-  cloud.visitFrom(normal, lastOf(cloud, normal, farthest, unit) - kLastPoints * unit, [&](Eigen::Index i, float) {
-    cosines += std::abs(normal.dot(normals.col(i)));
-    count += 1.0f;
-  });
-  return is_beyond * ramp(-cosines / count, -kCloses, -kRunsInto);
+  cloud.visitFrom(normal, lastOf(cloud, normal, farthest, unit) - evidence_rules.last_points * unit,
+                  [&](Eigen::Index i, float) {
+                    cosines += std::abs(normal.dot(normals.col(i)));
+                    count += 1.0f;
+                  });
+  return is_beyond * ramp(-cosines / count, -evidence_rules.closes, -evidence_rules.runs_into);
 }
 
 namespace {
 
-// Explained share of a region's edge, beyond chance, from which its samples begin to count as missing, and from which
-// they count in full. chosen: among these, 0.45 and 0.8, and 0.5 and 0.9 by cross-validation over the models of fold 0:
-// 207, 203 and 199 of 249 symmetric clouds cut by 20 % are decided right, 6, 6 and 3 of 248 asymmetric whole ones
-// called.
-constexpr float kLeastExplained = 0.4f, kExplained = 0.75f;
-// Standard errors by which the explained share of an edge may be more than that of longer edges of its kind. derived:
-// 97.5 % of a normal distribution are below. Edges of ten pairs are explained by chance too often.
-constexpr float kStandardErrors = 1.96f;
-// Share of the surface, and samples, from which a region may be a piece whose counterpart was cut off. chosen: less
-// decides nothing, and its reflection fixes no plane.
-constexpr double kLeastPiece = 0.002;
-constexpr std::size_t kLeastOfPiece = 8;
-constexpr float kMostByChance = 0.99f;  // chosen: any share near 1; avoids a division by 0
-
 /// Lower limit of a proportion (Wilson).
 float lowerLimit(float count, float total) {
-  const float share = count / total, sq = kStandardErrors * kStandardErrors / total;
+  const float share = count / total, sq = evidence_rules.standard_errors * evidence_rules.standard_errors / total;
   return (share + 0.5f * sq - std::sqrt(sq * (share * (1.0f - share) + 0.25f * sq))) / (1.0f + sq);
 }
 
@@ -213,12 +179,6 @@ std::vector<std::vector<int>> membersOf(Regions& regions, const std::vector<char
   return members;
 }
 
-// Share of the surface near open borders up to which these say where something is missing, and from which on they say
-// nothing, as of a wire, all of which is a border. chosen: clouds of 1000 to 10 000 points of 30 models of fold 0,
-// whole and cut, have 0.56 at most; of 115 noisy curves nine of ten have more than 0.81. Limits of 0.4 and 0.5 doubt
-// true planes of clouds of 1000 points.
-constexpr double kFewBorders = 0.6, kBordersEverywhere = 0.75;
-
 }  // namespace
 
 std::vector<float> missingCounterparts(const SampledSurface& surface, const std::vector<char>& matched,
@@ -240,7 +200,8 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
       explained[region] += ends(static_cast<int>(i)) || ends(j) ? 1.0f : 0.0f;
     }
   }
-  const auto least = std::max(kLeastOfPiece, static_cast<std::size_t>(kLeastPiece * static_cast<double>(size)));
+  const auto least = std::max(evidence_rules.least_of_piece,
+                              static_cast<std::size_t>(evidence_rules.least_piece * static_cast<double>(size)));
   std::vector<float> missing(size, 0.0f);
   for (const std::vector<int>& members : membersOf(regions, matched)) {
     const int region = regions.of(members.front());
@@ -248,9 +209,11 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
     if (edges[region] > 0.0f) {
       const auto at_borders = std::count_if(members.begin(), members.end(), [&](int i) { return near[i] != 0; });
       // A region all of which lies near borders, as a wire, has its edge near them whatever the plane.
-      const float chance = std::min(kMostByChance, static_cast<float>(at_borders) / static_cast<float>(members.size()));
+      const float chance = std::min(0.99f, static_cast<float>(at_borders) / static_cast<float>(members.size()));
       const float share = (lowerLimit(explained[region], edges[region]) - chance) / (1.0f - chance);
-      value = std::clamp((share - kLeastExplained) / (kExplained - kLeastExplained), 0.0f, 1.0f);
+      value = std::clamp(
+          (share - evidence_rules.least_explained) / (evidence_rules.explained - evidence_rules.least_explained), 0.0f,
+          1.0f);
     }
     if (value < 1.0f && members.size() >= least)
       value = std::max(value, beyondEnd(surface.points, surface.geometry.normals,
@@ -267,9 +230,9 @@ SurfaceEnds::SurfaceEnds(const Points& points, const LocalGeometry& geometry, co
       borders_(openBorders(points, search, geometry.normals, num_threads, &found)),
       outermost_(points),
       cuts_(findCutPlanes(points, borders_, spacing, seed)),
-      trust_(std::clamp(
-          (kBordersEverywhere - shareNearBorders(borders_, geometry)) / (kBordersEverywhere - kFewBorders), 0.0, 1.0)) {
-}
+      trust_(std::clamp((evidence_rules.borders_everywhere - shareNearBorders(borders_, geometry)) /
+                            (evidence_rules.borders_everywhere - evidence_rules.few_borders),
+                        0.0, 1.0)) {}
 
 std::vector<float> SurfaceEnds::missing(const std::vector<char>& matched, const std::vector<int>& closest,
                                         const Points& reflected) const {

@@ -5,31 +5,16 @@
 #include <numeric>
 
 #include "core/evidence/confidence_fit.h"
+#include "core/evidence/evidence_rules.h"
 #include "core/geometry/symmetric_share.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kLeastTolerance = 1e-6;  // radii. derived: rounding of coordinates about 1; avoids a division by 0
-// Spacing, tolerances, beyond which points do not resolve the tolerance, and log odds lost per tolerance beyond.
-// chosen: 1000 points of a typical shape have 3, 500 have 4.5, 300 have 5.8. At half of the first, clouds of 5000
-// points become uncertain; at half of the second, chance alone makes symmetries of clouds of 100 points.
-constexpr double kCoarsest = 5.0, kLostPerCoarseness = 2.0;
-// The same limit where points resolve no surface. chosen: 10 000 points with noise of two spacings have 2.5, a normal
-// distribution of 450 has 5.4. At 3, clouds of 3000 noisy points become uncertain; at 5, chance makes symmetries of
-// blobs.
-constexpr double kCoarsestVolume = 4.0;
-// The same limit where all points lie in one plane: any plane across maps the inside, and the outline is known to a
-// spacing. chosen: a random sheet of 300 to 500 points has 3 to 4, of 1500 points 2. At 3, half of the random sheets of
-// 500 points that pass for symmetric still do; at 1, discs and rectangles of 3000 points become uncertain.
-constexpr double kCoarsestFlat = 2.0;
-// Units of a share per share that says nothing. chosen: half of it may be off; only widens intervals.
-constexpr double kUnknownShare = 0.5;
-
 /// \return spacing of the samples, tolerances.
 double coarseness(const PlaneEvidence& evidence) {
-  return evidence.spacing / std::max(evidence.tolerance, kLeastTolerance);
+  return evidence.spacing / std::max(evidence.tolerance, 1e-6);
 }
 
 /// \return log odds by a share of the surface that is off: 0 at that of a symmetry.
@@ -125,7 +110,7 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
 double shareUnit(const PlaneEvidence& evidence) {
   const EvidenceUnits units;
   return units.off + units.off_per_spacing * coarseness(evidence) + noiseOf(evidence) +
-         kUnknownShare * evidence.unknown;
+         evidence_rules.unknown_share * evidence.unknown;
 }
 
 ShareInterval shareInterval(const PlaneEvidence& evidence) {
@@ -138,10 +123,10 @@ ShareInterval shareInterval(const PlaneEvidence& evidence) {
 double planeConfidence(const PlaneEvidence& evidence) {
   const std::vector<double> terms = logOddsTerms(evidence);
   const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(evidence.kind)];
-  const double coarsest = evidence.flat                        ? kCoarsestFlat
-                          : evidence.kind == CloudKind::Volume ? kCoarsestVolume
-                                                               : kCoarsest;
-  const double unresolved = kLostPerCoarseness * std::max(0.0, coarseness(evidence) - coarsest);
+  const double coarsest = evidence.flat                        ? evidence_rules.coarsest_flat
+                          : evidence.kind == CloudKind::Volume ? evidence_rules.coarsest_volume
+                                                               : evidence_rules.coarsest;
+  const double unresolved = evidence_rules.lost_per_coarseness * std::max(0.0, coarseness(evidence) - coarsest);
   const double log_odds = std::inner_product(terms.begin(), terms.end(), coefficients.begin(), 0.0) - unresolved;
   return 1.0 / (1.0 + std::exp(-log_odds));
 }

@@ -4,13 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/evidence/evidence_rules.h"
+
 namespace pcl_symmetry {
-
-namespace {
-
-constexpr double kTiltRidge = 1e-4;  // chosen: any value far below the stiffness of tilts that are held
-
-}  // namespace
 
 Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
                                 const ReflectionPlane& plane) {
@@ -36,7 +32,7 @@ Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, con
 
 double offsetStiffness(const Eigen::Matrix3d& stiffness) {
   Eigen::Matrix2d tilts = stiffness.topLeftCorner<2, 2>();
-  tilts.diagonal().array() += kTiltRidge;
+  tilts.diagonal().array() += evidence_rules.tilt_ridge;
   const Eigen::Vector2d coupling = stiffness.topRightCorner<2, 1>();
   return std::max(0.0, stiffness(2, 2) - coupling.dot(tilts.ldlt().solve(coupling)));
 }

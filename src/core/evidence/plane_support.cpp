@@ -6,57 +6,44 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/evidence/evidence_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Reach across the surface, radii of the points. chosen: the tolerance of a symmetry (1 % of the radius); smaller
-// values see smaller asymmetries, and take the errors of normals for them.
-constexpr float kNormalReach = 0.01f;
-// The same in units of the roughness. derived: 99.7 % of Gaussian noise.
-constexpr float kRoughReach = 3.0f;
-// Radians between normals that agree. chosen: at half, curved surfaces with few samples lose support; at twice, the
-// faces of a blunt edge support each other.
-constexpr float kNormalAngle = 0.5f;
-// Cosine of normals that surely agree. derived: cos(kNormalAngle) = 0.87758, and more than acos is rounded by.
-constexpr float kAgreeingCosine = 0.8777f;
-// Share of a reach within which a length surely is. derived: 1, less than what a root and a division are rounded by.
-constexpr float kSurely = 0.99999f;
-// Squared deviation that counts as no support. derived: exp(-9) = 1.2e-4.
-constexpr float kMost = 9.0f;
-constexpr float kLeastLength = 1e-6f;  // radii. derived: rounding of coordinates about 1; avoids a division by 0
 
 /// How far a point with a normal lies off the surface at a sample, squared, in units of what its support allows.
 /// \return \p most where it is not less.
 float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
                   float most) {
   const Eigen::Vector3f difference = point - sample.point;
-  const float reach = std::max(kLeastLength, sample.disc_radius);
+  const float reach = std::max(1e-6f, sample.disc_radius);
   const float sq_length = difference.squaredNorm();
-  const float along = sq_length < kSurely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
+  const float along =
+      sq_length < evidence_rules.surely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
   if (along * along >= most) return most;
-  const float normal_reach = std::max(kNormalReach, kRoughReach * sample.roughness);
+  const float normal_reach = std::max(evidence_rules.normal_reach, evidence_rules.rough_reach * sample.roughness);
   const float height = std::abs(sample.normal.dot(difference));
-  const float across = height < kSurely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
+  const float across =
+      height < evidence_rules.surely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
   const float sq_distance = along * along + across * across;
   if (sq_distance >= most) return most;
   const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
   // Normals count as far as they can be trusted, without a jump.
-  if (cosine > kAgreeingCosine || sample.normal_trust == 0.0f) return sq_distance;
-  const float turned = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kNormalAngle - 1.0f);
+  if (cosine > evidence_rules.agreeing_cosine || sample.normal_trust == 0.0f) return sq_distance;
+  const float turned = sample.normal_trust * std::max(0.0f, std::acos(cosine) / evidence_rules.normal_angle - 1.0f);
   return sq_distance + turned * turned;
 }
 
 /// Support by the closest sample or one of those next to it, whichever is best, but not by sample \p self (-1 = none).
 float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
                   const SurfaceSamples& samples) {
-  float least = sqDeviation(samples[closest], point, point_normal, kMost);
+  float least = sqDeviation(samples[closest], point, point_normal, evidence_rules.most);
   for (const int j : samples[closest].nearest) {
     if (least == 0.0f) return 1.0f;
     if (j != self) least = std::min(least, sqDeviation(samples[j], point, point_normal, least));
   }
-  return least < kMost ? std::exp(-least) : 0.0f;
+  return least < evidence_rules.most ? std::exp(-least) : 0.0f;
 }
 
 }  // namespace

@@ -7,27 +7,11 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/evidence/evidence_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-constexpr int kMostCells = 160;    // along the longest side. chosen: 16 MB; half coarsens the density of large clouds
-constexpr double kCellSize = 0.5;  // bandwidths. chosen: at half, eight times the memory; at twice, cells show
-constexpr double kMargin = 4.0;    // bandwidths around the points. derived: the density is 3e-4 of its peak there
-constexpr double kKernelReach = 3.0;  // standard deviations. derived: 99.7 % of a Gaussian
-// Cells squared. derived: a third of a squared cell is what spreading and reading add to the variance.
-constexpr double kCellVariance = 1.0 / 3.0;
-constexpr double kLeastVariance =
-    0.1;                         // cells squared. chosen: less needs no blur; only where kMostCells makes cells wide
-constexpr double kLeast = 1e-9;  // chosen: any value far below all densities and extents; avoids a division by 0
-
-// Bandwidths by which the farthest points move in a difference of refine(). chosen: at half, single points make the
-// differences noisy; at twice, they miss narrow maxima.
-constexpr double kStep = 0.5;
-constexpr double kLongestStep = 3.0;  // differences. chosen: the quadric holds that far; longer steps leave the maximum
-constexpr double kSettled = 0.01;     // bandwidths. chosen: far below the error of a plane; at twice, one step less
-constexpr double kLeastCurvature = 1e-3;  // share of the greatest. chosen: softer directions take no longer steps
 
 /// A cell and the weights of its lower corner and its upper one along each axis.
 struct CellPlace {
@@ -72,7 +56,7 @@ struct Quadric {
   Eigen::Vector3d stepUp() const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hessian);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    const double least = kLeastCurvature * solver.eigenvalues().cwiseAbs().maxCoeff();
+    const double least = evidence_rules.least_curvature * solver.eigenvalues().cwiseAbs().maxCoeff();
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d axis = solver.eigenvectors().col(k);
       step += axis * axis.dot(gradient) / std::max(std::abs(solver.eigenvalues()[k]), least);
@@ -85,23 +69,26 @@ struct Quadric {
 
 PointDensity::PointDensity(const PointsRef& points, double bandwidth, int num_threads)
     : bandwidth_(bandwidth), middle_(centerOfMass(points)) {
-  const Eigen::Array3f low = points.rowwise().minCoeff().array() - static_cast<float>(kMargin * bandwidth);
-  const Eigen::Array3f high = points.rowwise().maxCoeff().array() + static_cast<float>(kMargin * bandwidth);
-  cell_size_ = std::max(static_cast<float>(kCellSize * bandwidth), (high - low).maxCoeff() / kMostCells);
+  const Eigen::Array3f low =
+      points.rowwise().minCoeff().array() - static_cast<float>(evidence_rules.margin * bandwidth);
+  const Eigen::Array3f high =
+      points.rowwise().maxCoeff().array() + static_cast<float>(evidence_rules.margin * bandwidth);
+  cell_size_ = std::max(static_cast<float>(evidence_rules.cell_size * bandwidth),
+                        (high - low).maxCoeff() / evidence_rules.most_cells);
   origin_ = low.matrix();
   size_ = ((high - low) / cell_size_).ceil().cast<int>() + 2;
   spread(points);
   const double deviation = blur(bandwidth, num_threads);
   // What a point adds to the density at its own place.
-  const double own_part = std::pow(2.0 * kPi * (deviation * deviation + kCellVariance), -1.5);
+  const double own_part = std::pow(2.0 * kPi * (deviation * deviation + evidence_rules.cell_variance), -1.5);
   double total = 0.0, sq_extent = 0.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     total += at(points.col(i));
     sq_extent += (points.col(i).cast<double>() - middle_).squaredNorm();
   }
   const double count = static_cast<double>(points.cols());
-  mean_ = std::max(total / count - own_part, kLeast);
-  extent_ = std::max(std::sqrt(sq_extent / count), kLeast);
+  mean_ = std::max(total / count - own_part, 1e-9);
+  extent_ = std::max(std::sqrt(sq_extent / count), 1e-9);
 }
 
 /// Counts each point in the eight cells around it, trilinearly.
@@ -132,8 +119,8 @@ double PointDensity::blur(double bandwidth, int num_threads) {
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(size_[0]),
                                           static_cast<std::size_t>(size_[0]) * size_[1]};
   const double sq_cells = std::pow(bandwidth / cell_size_, 2);
-  const double deviation = std::sqrt(std::max(kLeastVariance, sq_cells - kCellVariance));
-  const int reach = static_cast<int>(std::ceil(kKernelReach * deviation));
+  const double deviation = std::sqrt(std::max(evidence_rules.least_variance, sq_cells - evidence_rules.cell_variance));
+  const int reach = static_cast<int>(std::ceil(evidence_rules.kernel_reach * deviation));
   const std::vector<float> kernel = gaussianKernel(deviation, reach);
   for (int axis = 0; axis < 3; ++axis) {
     const int along = size_[axis], across = size_[(axis + 1) % 3], deep = size_[(axis + 2) % 3];
@@ -181,7 +168,7 @@ PointDensity::Refined PointDensity::refine(const PointsRef& samples, const Refle
                                            int max_iterations) const {
   Refined best{plane, 0};
   double best_value = overlap(samples, best.plane);
-  const double step = kStep * bandwidth_ / extent_;  // radians; times the extent in offset
+  const double step = evidence_rules.step * bandwidth_ / extent_;  // radians; times the extent in offset
   for (; best.iterations < max_iterations; ++best.iterations) {
     const Eigen::Vector3d n = best.plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
     const double offset = best.plane.signedDistance(middle_);
@@ -192,16 +179,16 @@ PointDensity::Refined PointDensity::refine(const PointsRef& samples, const Refle
     const auto value = [&](const Eigen::Vector3d& by) { return overlap(samples, moved(by)); };
     Eigen::Vector3d by = Quadric(value, best_value, step).stepUp();
     if (!by.allFinite()) break;
-    if (by.norm() > kLongestStep * step) by *= kLongestStep * step / by.norm();
+    if (by.norm() > evidence_rules.longest_step * step) by *= evidence_rules.longest_step * step / by.norm();
     double next = value(by);
-    while (next < best_value && by.norm() * extent_ > kSettled * bandwidth_) {
+    while (next < best_value && by.norm() * extent_ > evidence_rules.settled * bandwidth_) {
       by *= 0.5;
       next = value(by);
     }
     if (next < best_value) break;
     best.plane = moved(by);
     best_value = next;
-    if (by.norm() * extent_ < kSettled * bandwidth_) break;
+    if (by.norm() * extent_ < evidence_rules.settled * bandwidth_) break;
   }
   return best;
 }

@@ -3,16 +3,12 @@
 #include <array>
 #include <vector>
 
+#include "core/evidence/evidence_rules.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
-
-/// Radius of the disc of surface that a sample stands for, spacings.
-/// derived: a disc of that radius on a surface of density rho holds no sample with probability exp(-pi 1.25^2) = 1 /
-/// 135.
-constexpr float kDiscRadius = 1.25f;
 
 /// A sample of a surface and what its neighbourhood says, side by side: one line of the cache, as a query asks for
 /// samples anywhere.

@@ -140,7 +140,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   last_sigma_ = std::max({kLeastLength, kLastTolerances * limits.tolerance, kLastRoughnesses * surface->roughness});
   last_sigma_ = std::min(last_sigma_, first_sigma_);
   const double farthest = std::max(reach, first_sigma_);
-  surface->discs = std::make_unique<SurfaceDiscs>(p, geometry, kDiscRadius, static_cast<float>(farthest));
+  surface->discs = std::make_unique<SurfaceDiscs>(p, geometry, evidence_rules.disc_radius, static_cast<float>(farthest));
   surface->grid = std::make_unique<ClosestPointGrid>(p, kGridCells);
   surface->own_distances.resize(static_cast<std::size_t>(p.cols()));
   constexpr std::size_t kBlockSize = 512;  // points; chosen: smaller blocks cost more calls, larger ones idle threads
@@ -286,7 +286,7 @@ OffShares RotationFit::offShares(const Eigen::Matrix3d& rotation, const Eigen::V
   const Eigen::Vector3f shift = (center - rotation * center).cast<float>();
   const auto tolerance = static_cast<float>(limits_.tolerance);
   // The closest sample lies beside the closest place of the surface.
-  const auto far = static_cast<float>(std::hypot(kFar * limits_.tolerance, kDiscRadius * surface_->spacing));
+  const auto far = static_cast<float>(std::hypot(kFar * limits_.tolerance, evidence_rules.disc_radius * surface_->spacing));
   std::size_t num_off = 0, num_far = 0;
   for (std::size_t k = 0; k < size; ++k) {
     const Eigen::Vector3f x = turn * points.col(surface_->order[k]) + shift;

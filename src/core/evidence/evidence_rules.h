@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+
+namespace pcl_symmetry {
+
+/// The numbers that the evidence of a plane depends on, beside EvidenceUnits and what is fitted (confidence_fit.h).
+struct EvidenceRules {
+  // Surface of samples.
+  float disc_radius = 1.25f;  ///< spacings, of the disc that a sample represents; 1 in 135 holds no other sample
+  float rough_share = 0.25f, trust_width = 0.1f;  ///< roughness, spacings, at which normals mean nothing; volumes: 0.42
+  float new_point_factor = 1.41421356f;           ///< distance of a new point from a plane over that of its nine points
+
+  // Support.
+  float normal_reach = 0.01f;  ///< reach across the surface, radii of the points
+  float rough_reach = 3.0f;    ///< the same in units of the roughness: 99.7 % of Gaussian noise
+  float normal_angle = 0.5f, agreeing_cosine = 0.8777f;  ///< radians between normals that agree; more than its cosine
+  float surely = 0.99999f;                               ///< share of a reach that rounding does not exceed
+  float most = 9.0f;                                     ///< squared deviation that counts as no support
+  double tilt_ridge = 1e-4;                              ///< far below the stiffness of tilts that are held
+
+  // Confidence.
+  double coarsest = 5.0, coarsest_volume = 4.0, coarsest_flat = 2.0;  ///< tolerances; a wider spacing resolves none
+  double lost_per_coarseness = 2.0;                                   ///< log odds per tolerance beyond
+  double unknown_share = 0.5;  ///< units of a share per share that is uninformative
+
+  // Where a cloud ends.
+  float least_explained = 0.4f, explained = 0.75f;  ///< share of an edge from which its region is missing, and fully
+  float standard_errors = 1.96f;                    ///< of that share
+  double least_piece = 0.002;                       ///< share of the surface of a piece that was cut off
+  std::size_t least_of_piece = 8;                   ///< samples of it
+  double few_borders = 0.6, borders_everywhere = 0.75;  ///< share near borders up to which they tell, or nothing
+  float in_front = 3.0f, behind = 4.0f;                 ///< spacings by which a piece reaches behind the last points
+  float runs_into = 0.65f, closes = 0.8f;               ///< cosine of normals at a cut, and where a surface closes
+  float last_points = 2.0f;                             ///< depth of these points, spacings
+  double outliers = 0.002;                              ///< share of the points
+  float outliers_within = 8.0f;                         ///< spacings in which they are looked for first
+  double points_per_square = 160.0;                     ///< for each square of the side of a box of cells
+  int most_steps = 200;                                 ///< between convex hulls
+  float least_gain = 0.02f;                             ///< share of the squared distance that a step shortens
+  float no_distance = 1.0f;                             ///< spacings, of hulls that overlap
+
+  // Planes of cuts.
+  int cut_draws = 1000, most_cuts = 4;  ///< a box that crops a corner has three sides
+  float cut_band = 1.5f;                ///< spacings about the plane of a cut in which points belong to it
+  double most_beyond = 0.002;           ///< share of the points beyond it
+  std::size_t least_of_cut = 15;        ///< border points
+  double least_at_border = 0.12;        ///< share of the points in the band at borders; cuts have 0.6 to 0.9
+  double least_spread = 2.0;            ///< spacings that border points spread in both directions
+
+  // Density of points that resolve no surface.
+  int most_cells = 160;              ///< along the longest side
+  double cell_size = 0.5;            ///< bandwidths
+  double margin = 4.0;               ///< bandwidths around the points
+  double kernel_reach = 3.0;         ///< standard deviations
+  double cell_variance = 1.0 / 3.0;  ///< squared cells that spreading and reading add
+  double least_variance = 0.1;       ///< squared cells; less needs no blur
+  double step = 0.5;                 ///< bandwidths by which the farthest points move in a difference
+  double longest_step = 3.0;         ///< differences, as far as the quadric holds
+  double settled = 0.01;             ///< bandwidths; far below the error of a plane
+  double least_curvature = 1e-3;     ///< share of the greatest
+};
+
+inline constexpr EvidenceRules evidence_rules;
+
+}  // namespace pcl_symmetry
