@@ -26,7 +26,7 @@ struct PlaneInput {
       : points(points_of_cloud.data(), 3, points_of_cloud.cols(), points_of_cloud.outerStride()),
         visibility(seen_space) {}
 
-  /// 3 x N, finite, input units. Fewer than 20 distinct points, at one place or on one line give an empty result with a
+  /// 3 x N, finite, input units. Fewer than 20 distinct points, at one point or on one line give an empty result with a
   /// reason. Of more than 20 000, as many decide as the tolerance needs.
   Eigen::Map<const Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> points;
   /// What a scanner saw, input frame; null = the points show the object from all sides.
@@ -55,16 +55,16 @@ struct DetectionOptions {
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
   bool evidence = false;  ///< fills Detection::evidence; takes about as long again as the detection
-  bool families = true;  ///< planes through one axis or one center are reported as such in place of single planes
-  bool turns = true;     ///< axes of turns of scans are searched too; false saves about a third of the time
-  int max_planes = 64;   ///< >= 1; folds of rotations go up to 60
-  int max_possible = 5;  ///< symmetries and possible planes together, where there are possible ones, >= 1
-  int num_cells = 64;    ///< cells of the distance transform along each side, in [8, 512]
-  double sigma = 0.0;    ///< its width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
+  bool families = true;   ///< planes through one axis or one center are reported as such in place of single planes
+  bool turns = true;      ///< axes of rotations of scans are searched too; false saves about a third of the time
+  int max_planes = 64;    ///< >= 1; folds of rotations go up to 60
+  int max_possible = 5;   ///< symmetries and possible planes together, where there are possible ones, >= 1
+  int num_cells = 64;     ///< cells of the distance transform along each side, in [8, 512]
+  double sigma = 0.0;     ///< its width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
   std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
   int num_threads = 0;     ///< >= 0; 0 = one per core; the answer does not depend on it
 
-  /// What only experiments turn.
+  /// What only experts change.
   struct Expert {
     /// Bins of the map that candidates come from. chosen: as many as the paper's 64 x 64 directions, but as fine in phi
     /// at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.

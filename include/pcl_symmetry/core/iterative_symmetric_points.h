@@ -80,7 +80,7 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
 /// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2, where m is the mean direction of the normal at y
 /// and the reflected normal at x.
 ///
-/// Directions that this leaves free (a flat piece of surface says nothing about planes across it) move by a step on
+/// Directions that this leaves free (a flat piece of surface is uninformative about planes across it) move by a step on
 /// sum w |x' - y|^2. Departure from the paper, which minimises the latter alone: it needs many more iterations.
 /// \param x,y,x_normals,y_normals 3 x M.
 /// \param weights M values >= 0.

@@ -17,9 +17,9 @@ struct LocalMaximaOptions {
   void validate() const;
 };
 
-/// A bin higher than all its neighbours.
+/// A bin higher than all its neighbors.
 struct LocalMaximum {
-  PlaneGrid::Bin bin;     ///< whose value is the greatest among its neighbours
+  PlaneGrid::Bin bin;     ///< whose value is the greatest among its neighbors
   ReflectionPlane plane;  ///< at the bin center, input frame
   double value;           ///< D
 };

@@ -35,7 +35,7 @@ struct SymmetryPlane : ReflectionPlane {
   /// Share of the surface seen that the plane maps onto the surface, relative to what sampling and noise allow, [0, 1].
   double support = 0.0;
   /// Estimate of the share of the surface that the plane maps to within the tolerance of the surface, in [0, 1]: of the
-  /// part of the surface that says something. A plane is a symmetry of the object if that share is at least 0.97.
+  /// informative part of the surface. A plane is a symmetry of the object if that share is at least 0.97.
   double share = 0.0;
   /// Lower limit of that share for the whole object: it lies between the limits in 95 of 100 cases, in [0, 1].
   double share_low = 0.0;
@@ -58,26 +58,26 @@ struct SymmetryPlane : ReflectionPlane {
 struct SymmetryAxis {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
-  /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only turns show that of
+  /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only rotations show that of
   /// SymmetryTurn.
   double confidence = 0.0;
   double score = 0.0;    ///< mean D of these planes
   double support = 0.0;  ///< mean support of these planes
 };
 
-/// Turns about a line map what a scanner saw onto itself or to unseen places: the axis of a nut, a wheel, a bottle seen
-/// from one side. Beyond the paper (Section 6).
+/// Rotations about a line map what a scanner saw onto itself or to unseen space: the axis of a nut, a wheel, a bottle
+/// seen from one side. Beyond the paper (Section 6).
 struct SymmetryTurn {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
-  int fold = 0;               ///< order of the turns; 0: by any angle
-  /// Probability that these turns are symmetries of the whole object at the limits of ObjectSymmetryOptions.
+  int fold = 0;               ///< order of the rotations; 0: by any angle
+  /// Probability that these rotations are symmetries of the whole object at the limits of ObjectSymmetryOptions.
   double confidence = 0.0;
   // Shares of the points seen, in [0, 1].
-  double support = 0.0;  ///< that the best turn maps onto the surface seen; a small turn for any angle
-  double off = 0.0;      ///< that the worst turn maps to where the scanner saw that there is nothing
+  double support = 0.0;  ///< that the best rotation maps onto the surface seen; a small rotation for any angle
+  double off = 0.0;      ///< that the worst rotation maps to where the scanner saw that there is nothing
   double far = 0.0;      ///< the same, beyond ten tolerances of the surface
-  double halfway = 0.0;  ///< off of turns halfway between those of the fold: these speak against other folds
+  double halfway = 0.0;  ///< off of rotations halfway between those of the fold: evidence against other folds
 };
 
 /// What the decisions of one detection were taken from (core/detection/plane_decision.h); the Python module gives it as
@@ -101,8 +101,8 @@ struct Detection {
   /// Where there is no symmetry and no possible one: the plane that maps the greatest share of the surface; else empty.
   std::optional<SymmetryPlane> best;
   /// Where 97 % of the points lie within the tolerance of one plane (three tolerances where noise hides the surface),
-  /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and say
-  /// nothing.
+  /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and are
+  /// uninformative.
   std::optional<ReflectionPlane> flat;
   double tolerance = 0.0;                       ///< that was decided at, input units
   double resolution = 0.0;                      ///< least tolerance that the sensor resolves, input units; 0 = unknown

@@ -19,7 +19,7 @@ inline PlaneTolerance mergeTolerance(const DetectionOptions& options) {
   return {options.expert.merge_angle, options.expert.merge_offset};
 }
 
-/// Limits within which two maxima share one basin of refinement, normalised frame.
+/// Limits within which two maxima share one basin of refinement, normalized frame.
 PlaneTolerance basinTolerance();
 
 /// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate, and
@@ -37,7 +37,7 @@ public:
 private:
   const NormalizedCloud& cloud_;
   PlaneTolerance tolerance_;
-  std::vector<ReflectionPlane> tried_;  ///< normalised frame
+  std::vector<ReflectionPlane> tried_;  ///< normalized frame
 };
 
 }  // namespace pcl_symmetry

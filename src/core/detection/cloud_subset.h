@@ -9,33 +9,33 @@
 
 namespace pcl_symmetry {
 
-/// The points that stand for a large cloud: as many as the tolerance needs. Planes, decisions and support are theirs;
+/// The points that represent a large cloud: as many as the tolerance needs. Planes, decisions and support are theirs;
 /// all other points take the support of one near them.
 struct CloudSubset {
   std::vector<int> kept;  ///< indices of points of the cloud
   Points points;          ///< 3 x kept.size(), these points
-  /// For each point of the cloud the place in kept of a point that is likely to be near.
+  /// For each point of the cloud the index in kept of a point that is likely to be near.
   std::vector<int> beside;
 
   /// \param all the points of the cloud.
   /// \param num_threads 0 = one per core.
-  /// \return for each point of the cloud the place in kept of a point near it, mostly of the nearest.
+  /// \return for each point of the cloud the index in kept of a point near it, mostly of the nearest.
   std::vector<int> nearTo(const PointsRef& all, int num_threads) const;
 };
 
 /// \param points 3 x N, finite, that hold an answer.
-/// \return the points that stand for a cloud; empty where all of its points are needed.
+/// \return the points that represent a cloud; empty where all of its points are needed.
 std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options);
 
-/// Gives each point of a cloud the support of the point that stands for it.
-/// \param place_of of each point of the cloud, the place of its support.
+/// Gives each point of a cloud the support of the point that represents it.
+/// \param place_of of each point of the cloud, the index of its support.
 void spreadSupport(Detection& detection, const std::vector<int>& place_of);
 
 /// Points of a cloud such that they lie about equally dense on one side and on the other.
 ///
 /// Where noise leaves no surface, density is what planes are judged by, and a cloud that is thinner on one side is no
 /// more symmetric than a shape that ends there. The logarithm of the density is fitted by a linear function of the
-/// place: what the shape itself varies by is the same on both sides of a symmetry, and stays.
+/// position: what the shape itself varies by is the same on both sides of a symmetry, and stays.
 /// \return indices in increasing order; all where the density is even.
 std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed);
 

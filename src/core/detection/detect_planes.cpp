@@ -37,7 +37,7 @@ namespace {
 class PlaneSettler {
 public:
   /// \param refinement,judge must outlive this object.
-  /// \param looks the cloud is a whole surface, and planes that are no symmetries are not asked for where there are any.
+  /// \param looks the cloud is a whole surface, and other planes than symmetries are not wanted where there are any.
   PlaneSettler(const StagedRefinement& refinement, const PlaneJudge& judge, bool looks)
       : refinement_(refinement), judge_(judge), looks_(looks) {}
 
@@ -133,10 +133,10 @@ std::vector<JudgedPlane> evidenceOf(std::vector<Candidate> candidates, const Sta
   return judge.judgeWithEvidence(distinct);
 }
 
-/// Finds the axes of turns of a scan, and brings axes of revolution and planes in line with them.
+/// Finds the axes of rotations of a scan, and brings axes of revolution and planes in line with them.
 std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
                                         double tolerance, const DetectionOptions& options, Detection& detection) {
-  // A ball turns about every line through its center.
+  // A ball is symmetric about every line through its center.
   if (!options.turns || !cloud.rules().has_turns || !detection.centers.empty()) return planes;
   const TurnEvidence turns(cloud, tolerance, options.seed);
   detection.turns =
@@ -184,7 +184,7 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   planes = std::move(completed.planes);
   timed("closure");
 
-  // Families: bodies of revolution, spheres, and what only turns of a scan show.
+  // Families: bodies of revolution, spheres, and what only rotations of a scan show.
   if (options.families) {
     PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, judge, options);
     planes = std::move(found.planes);

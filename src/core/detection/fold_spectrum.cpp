@@ -66,7 +66,7 @@ private:
   };
   using Places = std::vector<Place>::iterator;
 
-  /// Sorts places by a member, and calls for parts that have as many of them each.
+  /// Sorts indices by a member, and calls for parts that have as many of them each.
   template <typename Call>
   static void inParts(Places first, Places last, int num_parts, double Place::*member, const Call& call) {
     std::sort(first, last, [&](const Place& a, const Place& b) { return a.*member < b.*member; });
@@ -206,7 +206,7 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
   const double least = detection_rules.odds_of_polygon * leastTogether(judged);
   const double together = least / (least + 1.0 - least / detection_rules.odds_of_polygon);
   if (together < options.min_confidence) return {std::move(planes), std::nullopt};
-  // All planes tell where the polygon lies: those that noise moved away from their place make way.
+  // All planes tell where the polygon lies: those that noise moved away are dropped.
   planes.erase(std::remove_if(planes.begin(), planes.end(),
                               [&](const SymmetryPlane& plane) {
                                 return contains(cloud.toNormalized(plane), lattice->line,

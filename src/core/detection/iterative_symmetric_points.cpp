@@ -99,14 +99,14 @@ struct WeightedExtent {
   }
 };
 
-/// Three coordinates of a point to a place of a block.
+/// Three coordinates of a point to an index of a block.
 template <typename Column>
 void put(const Column& from, PairBlock::Coordinates& to, int place) {
   for (int k = 0; k < 3; ++k) to[k][place] = static_cast<double>(from[k]);
 }
 
 /// Adds the terms of all pairs with a weight, in their order.
-/// \param fill fill(i, block, place) writes the points and normals of pair i to a place of a block.
+/// \param fill fill(i, block, index) writes the points and normals of pair i to an index of a block.
 /// \param terms_of terms_of(block, terms) works out what the pairs of a block add.
 template <typename Fill, typename TermsOf>
 void addAll(StepEquations& equations, const std::vector<double>& weights, const Fill& fill, const TermsOf& terms_of) {
@@ -216,7 +216,7 @@ Points reflections(const Points& points, const ReflectionPlane& plane) {
 /// Weight of a pair by what the scanner saw where the reflection lies, in [0, 1].
 ///
 /// A departure from the paper, whose pairs all pull: many partners of a scan's points are hidden. The closest points,
-/// taken in their place, draw a plane away from the symmetry, to where more of what was seen overlaps.
+/// taken instead, draw a plane away from the symmetry, to where more of what was seen overlaps.
 double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflection, double sigma) {
   if (!visibility) return 1.0;
   const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (detection_rules.hidden_depth * sigma);

@@ -30,7 +30,7 @@ struct KindRules {
   bool family_needs_all;  ///< the worst plane of a family has to be a symmetry; a scan shows some too badly
   bool has_polygons;      ///< planes of a polygon are judged together, as noise hides single ones
 
-  bool has_turns;      ///< axes of turns are searched
+  bool has_turns;      ///< axes of rotations are searched
   bool evens_density;  ///< the denser side is thinned
 };
 

@@ -16,8 +16,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Edge of a flat disc: sum over its samples of the share of neighbours beyond the edge, over the root of their number.
-/// derived: k neighbours lie within rho = sqrt(k / pi) spacings. Of the neighbours of samples within rho of a straight
+/// Edge of a flat disc: sum over its samples of the share of neighbors beyond the edge, over the root of their number.
+/// derived: k neighbors lie within rho = sqrt(k / pi) spacings. Of the neighbors of samples within rho of a straight
 /// edge, 2 rho / (3 pi) per spacing of edge lie beyond it. A disc of n samples has an edge of 2 sqrt(pi n) spacings.
 double edgeOfDisc() {
   const double reach = std::sqrt((detection_rules.num_smoothing + 1) / kPi);
@@ -70,7 +70,7 @@ MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::v
   return region;
 }
 
-/// Neighbours that match are in one region, and so are samples and what they are mapped to: two hands are a region of
+/// Neighbors that match are in one region, and so are samples and what they are mapped to: two hands are a region of
 /// the plane between them.
 std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, const IspStep& step,
                                             const std::vector<float>& support) const {

@@ -27,7 +27,7 @@ public:
   /// \param cloud,fit must outlive this object.
   MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, std::uint64_t seed, int num_threads);
 
-  /// \param plane normalised frame.
+  /// \param plane normalized frame.
   /// \param guesses MatchedRegion::closest of a plane nearby, which makes the search faster; null = not known.
   /// \return the largest region, empty where nothing matches.
   MatchedRegion largest(const ReflectionPlane& plane, const std::vector<int>* guesses = nullptr) const;

@@ -17,11 +17,11 @@ class FlannSearch;
 
 /// The cloud as all stages of detection see it: in the unit ball about 0, with normals, spacing and roughness.
 ///
-/// The normalised frame is (x - center) / scale. Lengths below are in this frame.
+/// The normalized frame is (x - center) / scale. Lengths below are in this frame.
 struct NormalizedCloud {
   /// \param input 3 x N, finite, distinct, input units.
   /// \param edt_of_input distance transform of these points; must outlive this object.
-  /// \param input_search closest points among the normalised points; null = FLANN's.
+  /// \param input_search closest points among the normalized points; null = FLANN's.
   /// \param seen what a scanner saw, input frame; null = the points show the object from all sides.
   /// \param num_threads 0 = one per core.
   /// \param given_normals 3 x N, of any length and sign, used where they are finite and not zero; null = all estimated.
@@ -78,7 +78,7 @@ public:
     return {toNormalized(input_axis.point), input_axis.direction};
   }
 
-  /// D(f, gamma) of equation 2 for a normalised f: the full sum over the cells of the edt.
+  /// D(f, gamma) of equation 2 for a normalized f: the full sum over the cells of the edt.
   /// \param input_plane in the input frame.
   /// \return in [0, 1].
   double score(const ReflectionPlane& input_plane) const;

@@ -10,7 +10,7 @@ namespace pcl_symmetry {
 
 /// A part of a surface, and a plane of symmetry of that part.
 struct SymmetricPart {
-  ReflectionPlane plane;     ///< normalised frame
+  ReflectionPlane plane;     ///< normalized frame
   std::vector<int> points;   ///< some points of the part, spread over it, as ascending indices
   double share = 0.0;        ///< of the cloud, in [0, 1]
   double support = 0.0;      ///< mean support of these points, in [0, 1]

@@ -75,7 +75,8 @@ void PlaneDecision::decideBy(double confidence, SymmetryPlane& plane) const {
 }
 
 PlaneKind PlaneDecision::kindOf(const ReflectionPlane& plane, double confidence) const {
-  // What moves nothing says nothing: a sheet is mapped onto itself by its own plane, whatever it is a part of.
+  // A plane that moves nothing is uninformative: a sheet is mapped onto itself by its own plane, whatever it is a part
+  // of.
   const auto saysNothing = [&] {
     if (measure_.thinness() == Thinness::Solid) return false;
     return measure_.thinness() == Thinness::Line ||
@@ -180,7 +181,7 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
     family.score += one.score / count;
     family.least_confidence = std::min(family.least_confidence, planeConfidence(one));
   }
-  // Planes of a family say as much as the scan shows of them, and D falls with what it does not show: the plane that
+  // Planes of a family tell as much as the scan shows of them, and D falls with what it does not show: the plane that
   // is shown best represents it.
   constexpr double kLeastTelling = 1e-3;  // avoids a division by 0
   PlaneEvidence all = measure.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);

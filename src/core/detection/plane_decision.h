@@ -91,7 +91,7 @@ struct DetectionEvidence {
   std::vector<JudgedTurn> turns;  ///< of scans
 };
 
-/// What the planes of a family say together.
+/// What the planes of a family tell together.
 struct JudgedFamily {
   double confidence = 0.0;        ///< of the mean evidence
   double least_confidence = 1.0;  ///< of a single plane
@@ -132,7 +132,7 @@ private:
 /// Order: symmetries, then possible ones, both by falling confidence, then approximate and local ones by falling
 /// support.
 /// \param planes input frame.
-/// \param polygon whose planes are all of them maxima, normalised frame.
+/// \param polygon whose planes are all of them maxima, normalized frame.
 /// \return with the support of every point.
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
                                         const NormalizedCloud& cloud, const PlaneFit& fit,

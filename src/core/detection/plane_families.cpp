@@ -211,7 +211,7 @@ FamilyGuesses guessFamilies(const NormalizedCloud& cloud, const std::vector<int>
   return guesses;
 }
 
-/// Different symmetries among planes, most confident first, normalised frame.
+/// Different symmetries among planes, most confident first, normalized frame.
 std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
                                           const PlaneTolerance& tolerance) {
   std::vector<const SymmetryPlane*> symmetries;
@@ -282,7 +282,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     if (cloud.rules().has_polygons && latticeBySpectrum(cloud, all, family.line, options.num_threads)) continue;
     const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
-    // Nothing bounded turns about two parallel lines, but a thin disc seems to within the tolerance: the best is the
+    // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.
     const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& axis) {
       return std::abs(axis.direction.dot(family.line.direction())) > std::cos(detection_rules.contained_angle);

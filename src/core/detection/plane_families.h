@@ -63,7 +63,7 @@ struct PlanesAndFamilies {
 
 /// Finds the families that symmetries belong to, and takes their planes away. A line has its axis.
 /// \param planes input frame.
-/// \param all the points of the cloud and those that were left out to make it evenly dense, normalised frame.
+/// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
 PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
                                   const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options);
 

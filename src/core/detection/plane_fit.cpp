@@ -75,7 +75,7 @@ void SurfaceFit::climb(std::vector<Candidate>& candidates, const RefinementStage
   });
 }
 
-/// Point-to-plane distances say nothing about a plane along flat pieces, and a scan may have little else. The plane
+/// Point-to-plane distances are uninformative along flat pieces, and a scan may have little else. The plane
 /// takes one point-to-point step from its start instead if that has more merit.
 void SurfaceFit::undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
                            double sigma) const {

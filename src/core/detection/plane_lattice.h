@@ -24,7 +24,7 @@ struct PlaneLattice {
 };
 
 /// The lattice that most planes through one line fit.
-/// \param planes normalised frame, most certain first.
+/// \param planes normalized frame, most certain first.
 /// \return none where planes fit none better than chance would have it.
 std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes);
 

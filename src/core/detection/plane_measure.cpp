@@ -170,7 +170,7 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
     stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
     unknown = unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim);
   }
-  std::vector<float> telling;  // distances of the samples that say something
+  std::vector<float> telling;  // distances of the informative samples
   std::size_t num_told = 0;
   std::array<double, 2> missing{};
   const double count = static_cast<double>(halves_ ? size : std::max<std::size_t>(1, moved.size()));

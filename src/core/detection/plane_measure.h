@@ -26,7 +26,7 @@ struct PlaneRecord {
   bool converged = false;            ///< SymmetryPlane::converged
 };
 
-/// Measures how much of a cloud planes map onto the cloud, and how much says nothing of them. It decides nothing.
+/// Measures how much of a cloud planes map onto the cloud, and how much of it is uninformative. It decides nothing.
 class PlaneMeasure {
 public:
   /// \param cloud,fit,options must outlive this object.
@@ -76,13 +76,13 @@ private:
     Points points;
     std::vector<float> distances;
   };
-  /// What the reflections say at the tolerance.
+  /// What the reflections tell at the tolerance.
   struct Agreement {
-    double share;         ///< within the tolerance, of those that say something
+    double share;         ///< within the tolerance, of the informative ones
     double double_share;  ///< the same within twice the tolerance
     double hold;          ///< how firmly those within the tolerance hold the plane; 0 where nothing is missing
-    double unknown;       ///< say nothing
-    double deviation;     ///< distance that 97 % of those that say something stay within
+    double unknown;       ///< uninformative
+    double deviation;     ///< distance that 97 % of the informative ones stay within
     double told;          ///< of all samples, those that move and land where something is known; 1 of whole clouds
   };
 
@@ -98,9 +98,9 @@ private:
   std::vector<float> unknownMatches(const Reflected& reflected, const IspStep& step, const std::vector<char>& matched,
                                     double offset_stiffness, double rim) const;
   Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step, double rim) const;
-  /// Whether a plane moves a point, or its reflection, so far that this says something.
+  /// Whether a plane moves a point, or its reflection, so far that this is informative.
   bool moves(const ReflectionPlane& plane, const Eigen::Vector3f& x) const;
-  /// The distances of those whose position says something: of scans without what the plane leaves in place.
+  /// The distances of those whose position is informative: of scans without what the plane leaves in place.
   std::vector<float> movedOnly(const std::vector<float>& distances, const ReflectionPlane& plane,
                                const Points& reflected) const;
   PlaneRecord recordOf(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
@@ -117,7 +117,7 @@ private:
   std::array<double, 2> own_shares_;
   double own_score_;  ///< PlaneEvidence::own_score
   mutable std::once_flag ends_found_;
-  mutable std::optional<SurfaceEnds> ends_;  ///< found where they are first asked for, by ends()
+  mutable std::optional<SurfaceEnds> ends_;  ///< found when ends() is first called
 };
 
 }  // namespace pcl_symmetry

@@ -88,7 +88,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
       const double s = (planes[i].offset() - cosine * planes[j].offset()) / sq_sine,
                    t = (planes[j].offset() - cosine * planes[i].offset()) / sq_sine;
       const Line3d line(s * a + t * b, a.cross(b).normalized());
-      // The least fold whose planes have this angle: two planes at k pi / n turn by 2 k pi / n.
+      // The least fold whose planes have this angle: two planes at k pi / n rotate by 2 k pi / n.
       for (int n = 2; n <= max_fold; ++n) {
         const double step = kPi / n, off = std::abs(angle - step * std::round(angle / step));
         if (off > detection_rules.angle_of_fold * std::min(1.0, 6.0 / n)) continue;
@@ -139,7 +139,7 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
 
 namespace {
 
-/// The worst of several turns, and the greatest share on the surface.
+/// The worst of several rotations, and the greatest share on the surface.
 struct TurnsTogether {
   double on = 0.0, off = 0.0, far = 0.0;
 
@@ -150,7 +150,7 @@ struct TurnsTogether {
   }
 };
 
-/// Shares that turns may throw into empty space, and far into it: beyond, a line is refused.
+/// Shares that rotations may throw into empty space, and far into it: beyond, a line is refused.
 struct TurnLimits {
   double off = 1.0, far = 1.0;
 
@@ -189,7 +189,7 @@ public:
 
   Line3d fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
 
-  /// The best that can be said of a line.
+  /// The best rotations about a line.
   std::optional<JudgedTurns> judged(const Line3d& line) const {
     constexpr TurnLimits kRough{detection_rules.rough_turns * detection_rules.most_off,
                                 detection_rules.rough_turns * detection_rules.most_far};  // derived: from both
@@ -230,7 +230,7 @@ private:
   const TurnEvidence& evidence_;
 };
 
-/// Planes that may be symmetries, normalised frame.
+/// Planes that may be symmetries, normalized frame.
 std::vector<ReflectionPlane> planesOfAxes(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud) {
   std::vector<ReflectionPlane> found;
   for (const SymmetryPlane& plane : planes)

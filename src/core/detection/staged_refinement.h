@@ -30,7 +30,7 @@ public:
   /// All samples at the narrowest weights: this stage decides the precision of the planes.
   std::vector<Candidate> full(std::vector<Candidate> candidates) const;
 
-  /// Moves planes of a whole cloud to their place where pairs without a true partner pull them aside.
+  /// Moves planes of a whole cloud to their optimum where pairs without a true partner pull them aside.
   /// \param candidates after full(), those that may be symmetries.
   /// \return for each whether it moved; of a scan none: those of noisy ones have climbed in full().
   std::vector<bool> climb(std::vector<Candidate>& candidates) const;

@@ -59,7 +59,7 @@ double grownBy(const NormalizedCloud& cloud, const Eigen::Affine3d& turn) {
   return std::max(1.0, diameter(both) / cloud.extent);
 }
 
-/// Whether two lines, normalised frame, cross at a right angle.
+/// Whether two lines, normalized frame, cross at a right angle.
 bool crossesUpright(const Line3d& a, const Line3d& b) {
   const Eigen::Vector3d across = a.direction().cross(b.direction()).normalized();
   return std::abs(a.direction().dot(b.direction())) < std::sin(detection_rules.upright_angle) &&
@@ -82,7 +82,7 @@ std::vector<TurnSigns> turnSigns(const TurnEvidence& evidence, const std::vector
     signs[i].hold = evidence.hold(line, kPi);
     const bool is_best = marginOf(turns[i]) >= marginOf(*best);
     signs[i].beside = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;
-    // Planes only speak against a turn, and take most of the time.
+    // Planes are evidence only against a rotation, and take most of the time.
     if (turnConfidence(turns[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
   });
   return signs;

@@ -14,7 +14,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Radius of the greatest disc that stands for a point.
+/// Radius of the greatest disc that represents a point.
 double greatestDisc(const LocalGeometry& geometry) {
   return evidence_rules.disc_radius *
          static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
@@ -34,7 +34,7 @@ Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
   return {line.origin() + by[2] * u + by[3] * v, (line.direction() + by[0] * u + by[1] * v).normalized()};
 }
 
-/// The turns about the lines beside a line, by detection_rules.fit_step.
+/// The rotations about the lines beside a line, by detection_rules.fit_step.
 std::array<Eigen::Isometry3d, 4> turnsBeside(const Line3d& line, double angle) {
   std::array<Eigen::Isometry3d, 4> beside;
   for (int k = 0; k < 4; ++k)
@@ -103,7 +103,7 @@ TurnEvidence::Moved TurnEvidence::moved(const Eigen::Affine3d& motion) const {
   for (std::size_t i = 0; i < samples_.size(); ++i)
     moved.points.col(static_cast<Eigen::Index>(i)) =
         (motion * cloud_.points.col(samples_[i]).cast<double>()).cast<float>();
-  // Of points beyond the reach nothing is asked but that they are far.
+  // Points beyond the reach only need to be known as far.
   std::vector<float> sq_distances;
   cloud_.search->searchWithin(moved.points, static_cast<float>(reach_ * reach_), moved.closest, sq_distances);
   moved.distances = surfaceDistances(moved.points, moved.closest, cloud_.samples);

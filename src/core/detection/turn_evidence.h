@@ -26,21 +26,21 @@ inline double marginOf(const SymmetryTurn& turn) {
   return turn.fold == 0 ? margin : std::min(margin, (turn.halfway - turn.off) / detection_rules.halfway_more - 1.0);
 }
 
-/// What a scan says of one turn about a line, shares of the points seen. The rest lands where nothing was seen.
+/// What a scan tells about one rotation about a line, shares of the points seen. The rest lands where nothing was seen.
 struct TurnShares {
   double on = 0.0;   ///< lands within the tolerance of the surface seen
   double off = 0.0;  ///< lands where the scanner saw that there is nothing, beyond the tolerance
   double far = 0.0;  ///< the same, beyond ten tolerances: a handle, not a dent
 };
 
-/// The turn about a line by an angle in radians.
+/// The rotation about a line by an angle in radians.
 Eigen::Isometry3d turnAbout(const Line3d& line, double angle);
 
-/// Judges turns by what a scanner saw: the surface, and the space in front of it. Beyond the paper (Section 6).
+/// Judges rotations by what a scanner saw: the surface, and the space in front of it. Beyond the paper (Section 6).
 class TurnEvidence {
 public:
   /// \param cloud of a scan; must outlive this.
-  /// \param tolerance normalised frame.
+  /// \param tolerance normalized frame.
   TurnEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed);
 
   /// By distances that the EDT tells, of a few points: for screening.
@@ -51,12 +51,12 @@ public:
   /// By distances from the surface.
   TurnShares exactly(const Eigen::Affine3d& motion) const;
 
-  /// How fast the match of a turn is lost as the line moves: second smallest eigenvalue of its stiffness, point to
+  /// How fast the match of a rotation is lost as the line moves: second smallest eigenvalue of its stiffness, point to
   /// plane, under two tilts and two shifts; mean over the points, radii. The smallest is small for all that slides.
   double hold(const Line3d& line, double angle) const;
 
-  /// The line moved to where some turns about it map the points seen onto each other best: point to plane, with
-  /// weights that fall with the distance and the angle between the normals. A side that turns away from the scanner
+  /// The line moved to where some rotations about it map the points seen onto each other best: point to plane, with
+  /// weights that fall with the distance and the angle between the normals. A side that faces away from the scanner
   /// matches nothing that was seen. Matches at borders do not count, as the true one may not have been seen, unless
   /// the point lands where the scanner saw nothing: the border then pulls it back.
   Line3d refined(const Line3d& line, const std::vector<double>& angles) const;
@@ -89,7 +89,7 @@ private:
 
   const NormalizedCloud& cloud_;
   double tolerance_;
-  Eigen::Vector3d viewpoint_;  ///< normalised frame
+  Eigen::Vector3d viewpoint_;  ///< normalized frame
   double far_, reach_;         ///< distance of what is far, and of points whose discs all are
   std::vector<int> samples_, few_samples_;
   Points facing_;  ///< normals, towards the scanner

@@ -7,7 +7,7 @@
 
 namespace pcl_symmetry {
 
-/// A plane at which a cloud was cut off: nothing is known of places where normal . x > offset.
+/// A plane at which a cloud was cut off: nothing is known where normal . x > offset.
 struct CutPlane {
   Eigen::Vector3f normal;  ///< unit, away from the cloud
   float offset;            ///< units of the points

@@ -147,7 +147,7 @@ float lowerLimit(float count, float total) {
   return (share + 0.5f * sq - std::sqrt(sq * (share * (1.0f - share) + 0.25f * sq))) / (1.0f + sq);
 }
 
-/// Regions of samples that are joined as neighbours.
+/// Regions of samples that are joined as neighbors.
 class Regions {
 public:
   explicit Regions(std::size_t size) : parents_(size) { std::iota(parents_.begin(), parents_.end(), 0); }

@@ -10,7 +10,7 @@
 
 namespace pcl_symmetry {
 
-/// Points that are asked again and again which of them are the last ones along a direction.
+/// Finds the points of a cloud that are farthest along a direction, for many directions.
 ///
 /// The points are kept by cells. Cells whose boxes end before what was found are passed over, so that most questions
 /// look at a few cells alone.
@@ -39,7 +39,7 @@ public:
 private:
   struct Cell {
     Eigen::Vector3f least, most;  ///< corners of the box of its points
-    std::size_t begin, end;       ///< places of its points
+    std::size_t begin, end;       ///< positions of its points in the order of cells
 
     /// No point of the cell is farther along the direction. As along() is computed, so that rounding keeps the order.
     float bound(const Eigen::Vector3f& direction) const {
@@ -67,7 +67,7 @@ private:
 /// told as well.
 /// \param cloud the N points of the cloud.
 /// \param normals 3 x N, unit, of arbitrary sign.
-/// \param piece reflections of neighbouring points without counterpart.
+/// \param piece reflections of neighboring points without counterpart.
 /// \param spacing median distance of the points.
 /// \return in [0, 1]: 1 where the cloud was cut off before the piece, 0 where a counterpart should be there.
 float beyondEnd(const OutermostPoints& cloud, const Points& normals, const OutermostPoints& piece, double spacing);
@@ -87,7 +87,7 @@ struct SampledSurface {
 
 /// How well the end of a cloud explains that a sample has no counterpart under a plane.
 ///
-/// Neighbouring samples without counterpart form regions. A region is explained as far as its edge runs along open
+/// Neighboring samples without counterpart form regions. A region is explained as far as its edge runs along open
 /// borders, at the samples themselves or at their reflections, more than chance would have it: short edges may do so by
 /// chance, and so may those of a region all of whose samples lie near borders. Or its reflection lies beyond the end of
 /// the cloud, see beyondEnd().

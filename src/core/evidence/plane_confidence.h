@@ -12,7 +12,7 @@ enum class CloudKind {
   Volume    ///< the points resolve no surface: they have neighbors on all sides, by noise beyond their spacing
 };
 
-/// What the points say about one plane, and how finely they sample the surface.
+/// What the points tell about one plane, and how finely they sample the surface.
 struct PlaneEvidence {
   double support = 0.0;    ///< mean over the points: the reflection lies on the surface, in [0, 1]
   double conflict = 0.0;   ///< mean over the points: the reflection lies where there is nothing, in [0, 1]
@@ -22,14 +22,14 @@ struct PlaneEvidence {
   double spacing = 0.0;    ///< median distance of the samples, divided by the radius of the points
   double roughness = 0.0;  ///< median distance of the samples from their tangent planes, divided by the spacing
   CloudKind kind = CloudKind::Surface;  ///< of the cloud; support of a volume is the overlap of its density
-  /// Share of the surface mapped to within the tolerance of the surface, of that which says something, in [0, 1].
+  /// Share of the surface mapped to within the tolerance of the surface, of its informative part, in [0, 1].
   double share = 1.0;
   double double_share = 1.0;  ///< the same within twice the tolerance, >= share
   double hold = 1.0;          ///< of scans: how firmly what is matched holds the plane, see secondStiffness(), >= 0
   double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
-  double unknown = 0.0;       ///< share of the surface that says nothing: its reflection was not seen or was cut off
-  bool flat = false;          ///< all points lie in one plane: the outline alone tells
-  bool further = false;       ///< another plane of the same cloud has better evidence
+  double unknown = 0.0;  ///< share of the surface that is uninformative: its reflection was not seen or was cut off
+  bool flat = false;     ///< all points lie in one plane: the outline alone tells
+  bool further = false;  ///< another plane of the same cloud has better evidence
 };
 
 /// Share of the surface seen that the plane maps onto the surface, relative to what sampling allows.

@@ -23,7 +23,7 @@ struct PointEvidence {
 };
 
 /// Near an edge the closest sample may lie on another face: the best of that sample and of those next to it counts.
-/// \param reflected 3 x M, reflections of points of the surface, normalised to the unit ball.
+/// \param reflected 3 x M, reflections of points of the surface, normalized to the unit ball.
 /// \param reflected_normals 3 x M, reflections of their normals.
 /// \param closest M indices of the closest samples; -1: none is near.
 /// \param samples the surface, in the same frame.
@@ -32,7 +32,7 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
                             const SurfaceSamples& samples, const Visibility* visibility);
 
 /// Support of each sample on the surface that the other samples describe: what sampling alone leaves of a symmetry.
-/// \param samples N, normalised to the unit ball.
+/// \param samples N, normalized to the unit ball.
 /// \param num_threads 0 = one per core.
 /// \return N values in [0, 1].
 std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads);
@@ -47,7 +47,7 @@ double meanSupport(const std::vector<float>& support);
 /// \param plane in the same frame.
 /// \param num_threads 0 = one per core.
 /// \return M values in [0, 1].
-/// \throws std::invalid_argument where all samples are at one place.
+/// \throws std::invalid_argument where all samples coincide.
 std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,
                                 int num_threads = 0);
 

@@ -79,7 +79,7 @@ PointDensity::PointDensity(const PointsRef& points, double bandwidth, int num_th
   size_ = ((high - low) / cell_size_).ceil().cast<int>() + 2;
   spread(points);
   const double deviation = blur(bandwidth, num_threads);
-  // What a point adds to the density at its own place.
+  // What a point adds to the density at its own position.
   const double own_part = std::pow(2.0 * kPi * (deviation * deviation + evidence_rules.cell_variance), -1.5);
   double total = 0.0, sq_extent = 0.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {

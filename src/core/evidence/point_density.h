@@ -9,7 +9,7 @@ namespace pcl_symmetry {
 
 /// Density of points that do not resolve a surface: noise beyond their spacing, or too few of them.
 ///
-/// Where every point has neighbours on all sides, closest points and normals mean nothing. The points are then a sample
+/// Where every point has neighbors on all sides, closest points and normals mean nothing. The points are then a sample
 /// of a density, and a plane is judged by how well the density agrees with its own reflection.
 class PointDensity {
 public:

@@ -36,7 +36,7 @@ float sqDistanceFromDisc(const SurfaceSample& sample, const Eigen::Vector3f& poi
   return across_factor * across_factor * across * across + beside * beside;
 }
 
-/// Distance from the nearest of the discs of a sample and its neighbours, but not from that of \p self (-1: none).
+/// Distance from the nearest of the discs of a sample and its neighbors, but not from that of \p self (-1: none).
 float distanceNear(int closest, int self, const Eigen::Vector3f& point, const SurfaceSamples& samples,
                    float across_factor) {
   float least = sqDistanceFromDisc(samples[closest], point, across_factor);

@@ -10,11 +10,10 @@
 
 namespace pcl_symmetry {
 
-/// A sample of a surface and what its neighbourhood says, side by side: one line of the cache, as a query asks for
-/// samples anywhere.
+/// A sample of a surface and its neighborhood.
 struct alignas(64) SurfaceSample {
   Eigen::Vector3f point, normal;
-  float disc_radius;   ///< of the disc of surface that it stands for
+  float disc_radius;   ///< of the disc of surface that it represents
   float roughness;     ///< LocalGeometry::roughness
   float normal_trust;  ///< how far the normal means anything, in [0, 1]: noise beyond the spacing leaves none
   std::array<int, kNumWitnesses> nearest;
@@ -35,8 +34,8 @@ private:
   std::vector<SurfaceSample> samples_;
 };
 
-/// How far points lie from the surface that samples describe. Each sample stands for a disc in its tangent plane; the
-/// disc of the closest sample or of one of its four neighbours counts, whichever is nearest.
+/// How far points lie from the surface that samples describe. Each sample represents a disc in its tangent plane; the
+/// disc of the closest sample or of one of its four neighbors counts, whichever is nearest.
 /// \param points 3 x M, in the frame of the samples.
 /// \param closest M indices of the closest samples; -1: none is near.
 /// \param samples N of them.
