@@ -22,6 +22,7 @@ struct PlaneInput {
   PlaneInput(const PointsRef& points_of_cloud, const Visibility* seen_space = nullptr)
       : points(points_of_cloud.data(), 3, points_of_cloud.cols(), points_of_cloud.outerStride()),
         visibility(seen_space) {}
+  /// As above, so that points convert to an input without naming it.
   PlaneInput(const Points& points_of_cloud, const Visibility* seen_space = nullptr)
       : points(points_of_cloud.data(), 3, points_of_cloud.cols(), points_of_cloud.outerStride()),
         visibility(seen_space) {}
@@ -86,7 +87,7 @@ struct DetectionOptions {
     double merge_angle = 0.035;  ///< radians, >= 0: planes that differ by no more than this in angle ...
     double merge_offset = 0.02;  ///< ... and by this share of the radius in offset are one, >= 0
   };
-  Expert expert;
+  Expert expert;  ///< see Expert
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
