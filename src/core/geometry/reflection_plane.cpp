@@ -8,7 +8,8 @@
 namespace pcl_symmetry {
 
 ReflectionPlane::ReflectionPlane(const Eigen::Vector3d& normal, double offset) {
-  const double length = normal.stableNorm();
+  // Not stableNorm(), whose sum depends on the address of the vector.
+  const double length = std::hypot(normal.x(), normal.y(), normal.z());
   check(std::isfinite(length) && length > 0.0, "normal", normal.transpose(), "finite and not zero");
   check(std::isfinite(offset), "offset", offset, "finite");
   normal_ = normal / length;

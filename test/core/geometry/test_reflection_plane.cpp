@@ -32,6 +32,17 @@ TEST(ReflectionPlane, ReflectingTwiceIsTheIdentity) {
   }
 }
 
+TEST(ReflectionPlane, HasTheSameBitsAtEveryAddress) {
+  RandomStream random(2);
+  struct alignas(16) {
+    Eigen::Vector3d first, second;  // of 24 bytes each: one address is a multiple of 16, the other is not
+  } at;
+  for (int i = 0; i < 1000; ++i) {
+    at.first = at.second = randomPoint(random);
+    EXPECT_EQ(ReflectionPlane(at.first, 1.0).coefficients(), ReflectionPlane(at.second, 1.0).coefficients());
+  }
+}
+
 TEST(ReflectionPlane, ReflectsAsWritten) {
   // x - 2 (n.x - r) n for n = (0, 0, 1), r = 2 turns (1, 2, 5) into (1, 2, -1).
   EXPECT_EQ(ReflectionPlane(Eigen::Vector3d::UnitZ(), 2.0).reflect({1.0, 2.0, 5.0}), Eigen::Vector3d(1.0, 2.0, -1.0));
