@@ -44,7 +44,7 @@ def describe(tool, files, part):
 
 def parts_of(models, folder, size):
     """The files of each part. Its name says which files, so that a part of other files is never taken for it."""
-    files = sorted(path for path in models.resolve().rglob("*") if path.suffix.lower() in KINDS)
+    files = sorted(path for path in models.resolve().rglob("*") if path.suffix.lower() in KINDS and path.is_file())
     known, parts = {}, {}
     for file in files:
         if known.setdefault(file.stem, file) != file:

@@ -29,6 +29,10 @@ class BadInput(Exception):
     """Input that cannot be used; the message is one sentence for the user."""
 
 
+class BadProgram(BadInput):
+    """A program that all items need and that cannot be run."""
+
+
 # Meshes and lists of models
 
 
@@ -490,10 +494,22 @@ def _detect_by_tool(points, sensor, seed, tool, options):
         if sensor is not None and points.ndim == 2:
             options = {"viewpoint": ",".join(str(v) for v in sensor[:3, 3]), **options}
         flags = [f for name, value in options.items() for f in (f"-{name}", str(value))]
-        command = [tool, "cloud.pcd", "-json", "found.json", "-quiet", "-threads", "1", "-seed", str(seed), *flags]
-        if subprocess.run(command, cwd=folder, capture_output=True).returncode:
-            return NO_ANSWERS
-        return read_answers(folder, "found")
+        command = [os.path.abspath(tool), "cloud.pcd", "-json", "found.json", "-quiet", "-threads", "1", "-seed", str(seed), *flags]
+        try:
+            run = subprocess.run(command, cwd=folder, capture_output=True)
+        except OSError as error:
+            raise BadProgram(f"{tool}: cannot be run, {error.strerror}") from None
+        return NO_ANSWERS if run.returncode else read_answers(folder, "found")
+
+
+def google_benchmark(command, *flags):
+    """Rows that a program of Google Benchmark writes; command: its path, or words that end with it."""
+    command = [*command] if isinstance(command, (list, tuple)) else [command]
+    try:
+        run = subprocess.run([*command, *flags, "--benchmark_format=json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+        return json.loads(run.stdout)["benchmarks"]
+    except (OSError, ValueError, KeyError, TypeError, subprocess.CalledProcessError):
+        raise BadInput(f"{command[-1]}: is no program of Google Benchmark that runs") from None
 
 
 def run_tool(folder, name, *arguments):
@@ -501,7 +517,7 @@ def run_tool(folder, name, *arguments):
     try:
         subprocess.run([pathlib.Path(folder, name), *arguments], check=True, capture_output=True, text=True)
     except OSError as error:
-        raise BadInput(f"{folder}/{name}: cannot be run, {error.strerror}") from None
+        raise BadProgram(f"{folder}/{name}: cannot be run, {error.strerror}") from None
     except subprocess.CalledProcessError as error:
         raise BadInput(error.stderr.strip()) from None
 
@@ -676,12 +692,16 @@ def numbers(kind, known=None):
 def main(program, arguments):
     """Runs program(arguments); input that cannot be used costs one sentence and exit code 1."""
     try:
+        for flag in ("repository", "people", "judge"):
+            path = getattr(arguments, flag, None)
+            if path and not os.path.exists(path):
+                raise BadInput(f"{path}: does not exist")
         program(arguments)
     except (BadInput, ImportError, OSError) as error:
         hint = ", set PYTHONPATH=build/src/python" if isinstance(error, ImportError) and "pcl_symmetry" in str(error) else ""
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}{hint}")
     except KeyboardInterrupt:
-        sys.exit("interrupted" + ", the same command goes on from its journal" * bool(arguments.json))
+        sys.exit("interrupted" + ", the same command goes on from its journal" * bool(getattr(arguments, "json", None)))
 
 
 def write_json(arguments, content):
@@ -759,10 +779,10 @@ def _attempt(function, item, arguments, name):
     """(result, sentence of the failure)"""
     try:
         return function(item, arguments), None
+    except (BadProgram, ImportError):  # of all items
+        raise
     except BadInput as error:
         return None, str(error) if name in str(error) else f"{name}: {error}"
-    except ImportError:  # of all items
-        raise
     except Exception as error:  # a fault of one model must not end the run
         return None, f"{name}: {type(error).__name__}, {error}"
 

@@ -49,6 +49,8 @@ def sample_item(item, arguments):
 def fit_weights(rows):
     """(weights, their standard errors)"""
     clouds = [(np.array(right, bool), np.array(x)) for _, right, x in rows if x]
+    if len(clouds) < fits.LEAST_EXAMPLES:
+        raise bench.BadInput(f"{len(clouds)} clouds of a kind, must be {fits.LEAST_EXAMPLES} or more")
 
     def loss(w):
         total, slope = 0.5 * PULL * w @ w, PULL * w

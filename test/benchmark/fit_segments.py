@@ -9,6 +9,7 @@ two fits: with all cues, and without those of an inside, for surfaces that are s
 """
 import concurrent.futures
 import pathlib
+import sys
 
 import numpy as np
 
@@ -69,6 +70,16 @@ class People:
         return np.array(cases), np.array(rand), np.minimum.accumulate(merges["log_odds"])
 
 
+def read(path, folder):
+    """A mesh with its people; one that cannot be used costs one sentence and itself only."""
+    try:
+        return People(path, folder)
+    except ValueError as error:
+        print(f"{path}: {error}", file=sys.stderr)
+    except bench.BadInput as error:
+        print(error, file=sys.stderr)
+
+
 def fit_kind(meshes, cues, pool):
     """(weights, errors, Rand distance, number of cases) of the best round."""
     weights, rounds, best = FIRST_RULE, [], None
@@ -91,22 +102,24 @@ def header(results, num_meshes):
     rows = []
     for name, (weights, errors, rand, _) in results.items():
         texts = fits.rounded(weights, errors) + ["0"] * (NUM_CUES - len(weights))
-        rows.append(f"    // {name}: Rand distance {rand:.3f}\n    {{{', '.join(texts[:7])},\n     {', '.join(texts[7:])}}}")
+        rows.append(f"// {name}: Rand distance {rand:.3f}\n     {{{', '.join(texts)}}}")
     return f"""
 // Log odds per unit of each cue, by MergingEvidence, fitted to {num_meshes} meshes that people cut into parts.
-inline constexpr std::array<MergeWeights, {len(rows)}> kMergeFit{{{{
-{(','+chr(10)).join(rows)}}}}};
+inline constexpr std::array<MergeWeights, {len(rows)}> kMergeFit{{
+    {{{(','+chr(10)+'     ').join(rows)}}}}};
 """
 
 
 def program(arguments):
     folder = pathlib.Path(arguments.people)
-    if not folder.is_dir():
-        raise bench.BadInput(f"{folder}: must be a folder")
     models = [pathlib.Path(model.path) for model in bench.list_models(arguments)]
     models = [p for p in models if p.stem.isdigit() and int(p.stem) % 2 and (int(p.stem) - 1) // 20 % 3 < 2]
+    if not models:
+        raise bench.BadInput(f"{arguments.models[0]}: no mesh with an odd number of these categories")
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:  # the module works without Python's lock
-        meshes = list(pool.map(lambda path: People(path, folder), models))
+        meshes = [mesh for mesh in pool.map(lambda path: read(path, folder), models) if mesh]
+        if not meshes:
+            raise bench.BadInput("nothing could be fitted")
         results = {name: fit_kind(meshes, cues, pool) for name, cues in KINDS.items()}
     lines = [[name, num, f"{rand:.4f}", " ".join(fits.rounded(w, e))] for name, (w, e, rand, num) in results.items()]
     bench.print_table(f"{len(meshes)} meshes", ["evidence", "merges", "Rand distance of patches", "weights"], lines)

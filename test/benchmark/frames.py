@@ -113,10 +113,6 @@ def unsigned(center, axes):
     return Frame(center, axes, [axes @ signs for signs in HALF_TURNS])
 
 
-def as_published(points, seed, method, refined):
-    return unsigned(*PublishedFrame(points, method, seed).frame(refined))
-
-
 def by_mass(points, viewpoint, seed):
     center = points.mean(axis=0, dtype=float)
     axes = np.linalg.eigh(np.cov((points - center).T))[1][:, ::-1]
@@ -136,9 +132,8 @@ def by_pushed_mass(points, viewpoint, seed):
 METHODS = {
     "symmetry": by_symmetry,
     "no free space": lambda points, viewpoint, seed: by_symmetry(points, None, seed),
-    "first maximum": lambda points, viewpoint, seed: as_published(points, seed, "sampled", False),
-    "exact map": lambda points, viewpoint, seed: as_published(points, seed, "convolution", False),
-    "exact map ISP": lambda points, viewpoint, seed: as_published(points, seed, "convolution", True),
+    "exact map": lambda points, viewpoint, seed: unsigned(*PublishedFrame(points, seed).frame(False)),
+    "exact map ISP": lambda points, viewpoint, seed: unsigned(*PublishedFrame(points, seed).frame(True)),
     "mass": by_mass,
     "pushed mass": by_pushed_mass,
 }

@@ -18,10 +18,10 @@ NUM_SAMPLES = 2048  # points drawn from the distance transform, at which the sym
 class PublishedFrame:
     """Planes (normal, offset) through a cloud, {x: normal . x = offset}, and what the transform says of them."""
 
-    def __init__(self, points, method="convolution", seed=1):
+    def __init__(self, points, seed=1):
         self.surface = np.asarray(points, float)
         self.points = self.surface[np.random.default_rng(seed).permutation(len(points))[:NUM_POINTS]]
-        self.map = pcl_symmetry.transform(self.surface.astype("f"), method=method, seed=seed, threads=1)
+        self.map = pcl_symmetry.transform(self.surface.astype("f"), method="convolution", seed=seed, threads=1)
         self.tree, self.mass = cKDTree(self.surface), self.surface.mean(axis=0)
         last = self.map.values.shape[2] - 1
         self.radius = 0.5 * (self._plane((0, 0, last))[1] - self._plane((0, 0, 0))[1]) * (last + 1) / last

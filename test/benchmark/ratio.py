@@ -8,40 +8,32 @@ is faster. The ratios of single rounds, from the least to the greatest, tell how
 example: ratio.py ../before/build-benchmark build-benchmark cow.off
 """
 import argparse
-import json
 import resource
 import subprocess
 from pathlib import Path
+
+import bench
 
 ROWS = "^(Edt|Sampled|Planes|Rotations|Description|Segmentation|Registration|NearestViews).*/threads:1($|/)"
 PER_MILLISECOND = {"ns": 1e6, "us": 1e3, "ms": 1.0, "s": 1e-3}
 
 
-def on_one_core(*command):
-    return subprocess.run(["taskset", "-c", "0", *map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+ON_ONE_CORE = ["taskset", "-c", "0"]
 
 
 def times_of(build, rows, files):
     """Milliseconds of processor time by row."""
-    program = Path(build) / "test/benchmark/benchmark_speed"
-    found = json.loads(on_one_core(program, f"--benchmark_filter={rows}", "--benchmark_format=json").stdout)
-    times = {each["name"]: each["cpu_time"] / PER_MILLISECOND[each["time_unit"]] for each in found["benchmarks"]}
+    found = bench.google_benchmark([*ON_ONE_CORE, f"{build}/test/benchmark/benchmark_speed"], f"--benchmark_filter={rows}")
+    times = {each["name"]: each["cpu_time"] / PER_MILLISECOND[each["time_unit"]] for each in found}
     for file in files:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        on_one_core(Path(build) / "apps/pcl_symmetry_planes", file, "-threads", 1, "-quiet")
+        bench.run_tool("/usr/bin", *ON_ONE_CORE, f"{build}/apps/pcl_symmetry_planes", file, "-threads", "1", "-quiet")
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         times[f"pcl_symmetry_planes {Path(file).name}"] = 1000 * (sum(after[:2]) - sum(before[:2]))
     return times
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("before", help="build folder")
-    parser.add_argument("after", help="build folder")
-    parser.add_argument("files", nargs="*", help="clouds or meshes for the fresh processes")
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--rows", default=ROWS, help="regular expression of the benchmarks")
-    options = parser.parse_args()
+def report(options):
     rounds = [[times_of(build, options.rows, options.files) for build in (options.before, options.after)] for _ in range(options.rounds)]
     print(f"{'row, processor time in ms':60} {'before':>9} {'after':>9} {'ratio':>6}  of single rounds")
     for row in rounds[0][1]:
@@ -54,4 +46,10 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("before", help="build folder")
+    parser.add_argument("after", help="build folder")
+    parser.add_argument("files", nargs="*", help="clouds or meshes for the fresh processes")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--rows", default=ROWS, help="regular expression of the benchmarks")
+    bench.main(report, parser.parse_args())

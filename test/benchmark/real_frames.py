@@ -299,9 +299,10 @@ def report(rows):
 
 
 def program(arguments):
-    arguments.tool = arguments.tools and str(pathlib.Path(arguments.tools).resolve() / "pcl_symmetry_planes")
+    arguments.tool = arguments.tools and f"{arguments.tools}/pcl_symmetry_planes"
     frames = [*LEARN_BOXES, *LEARN_CYLINDERS] if arguments.kind == "kinect" else VEHICLE_FRAMES
     evaluate = kinect_frame if arguments.kind == "kinect" else lidar_frame
+    show(arguments.repository, "segmentation/mOSD/learn" if arguments.kind == "kinect" else "data/example/lidar")
     results, left_out = bench.run(frames, evaluate, arguments)
     rows = [row for result in results for row in result["rows"]]
     bench.write_truth(arguments, functools.reduce(lambda a, b: {**a, **b["truths"]}, results, {}))

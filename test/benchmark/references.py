@@ -353,17 +353,18 @@ def references_of(model, mesh, folder=None, tolerance=TOLERANCE):
     return found
 
 
-def moved(references, pose):
-    """The same symmetries of the mesh after a motion."""
-    point = lambda p: [float(v) for v in bench.moved(pose, np.asarray(p))]
+def moved(references, pose, factor=1.0):
+    """The same symmetries of the mesh after it was enlarged about the origin, and moved."""
+    point = lambda p: [float(v) for v in bench.moved(pose, factor * np.asarray(p))]
     vector = lambda v: [float(x) for x in pose[:3, :3] @ np.asarray(v)]
 
     def plane(row):
         n = np.asarray(vector(row["coefficients"][:3]))
-        return {**row, "coefficients": [*map(float, n), float(row["coefficients"][3] - n @ pose[:3, 3])]}
+        return {**row, "coefficients": [*map(float, n), float(factor * row["coefficients"][3] - n @ pose[:3, 3])]}
 
     axis = lambda row: {**row, "point": point(row["point"]), "direction": vector(row["direction"])}
     center = lambda row: {**row, "point": point(row["point"])}
     change = {"planes": plane, "near_planes": plane, "axes": axis, "near_axes": axis, "centers": center}
     lists = {name: [function(row) for row in references[name]] for name, function in change.items()}
-    return {**references, **lists, "center": point(references["center"])}
+    sizes = {name: factor * references[name] for name in ("diagonal", "diameter", "tolerance")}
+    return {**references, **lists, **sizes, "center": point(references["center"])}

@@ -7,7 +7,6 @@ Each model asks for the others of its class (Princeton Shape Benchmark). Descrip
 of mass, in a ball of twice the mean distance of the points from it:
 
   PRST, PRSD   sqrt(D) of 32 x 32 x 32 planes, and of the 32 x 32 through the center; L2, weighted by sqrt(sin theta)
-  PRSD, max    the greatest difference in place of L2, as Kazhdan et al. (2004) compare it
   GEDT         exp(-distance^2 / sigma^2) at 32 x 32 x 32 places; L2
   equation 1   sqrt((1 + D) / 2) in place of sqrt(D)
   x            the product of two distances
@@ -146,11 +145,6 @@ def plane_weights(shape):
     return np.sqrt(np.sin((np.arange(shape[0]) + 0.5) * np.pi / 2 / shape[0]))[:, None, None].astype(np.float32)
 
 
-def greatest_difference(rows):
-    rows = rows.reshape(len(rows), -1)
-    return np.array([np.abs(rows - row).max(1) for row in rows])
-
-
 def unit(rows):
     """Rows of unit norm; each of the two shapes counts for half."""
     rows = rows.astype(np.float32)
@@ -190,8 +184,7 @@ def published(load, axes):
     """{row: distances} of the paper's descriptors in one kind of axes."""
     roots, through_center, f = load(f"prst {axes}"), load(f"prsd {axes}"), load(f"gedt {axes}")
     weights = plane_weights(roots.shape[1:])
-    rows = {"PRSD": l2(weights * through_center), "PRSD, max": greatest_difference(through_center),
-            "PRST": l2(weights * roots), "GEDT": l2(f)}  # fmt: skip
+    rows = {"PRSD": l2(weights * through_center), "PRST": l2(weights * roots), "GEDT": l2(f)}
     rows["PRST by equation 1"] = l2(weights * np.sqrt((1 + roots**2) / 2))
     rows["PRST x GEDT"] = rows["PRST"] * rows["GEDT"]
     rows["PRST by equation 1 x GEDT"] = rows["PRST by equation 1"] * rows["GEDT"]

@@ -6,9 +6,9 @@ bytes), each at the speed at which a loop of nothing else runs it here. Prints p
 
 example: roofline.py build-benchmark/test/benchmark/benchmark_speed
 """
-import json
-import subprocess
-import sys
+import argparse
+
+import bench
 
 STEPS = {  # counter of a stage: benchmark of the machine
     "look_up": ("look-ups", "Machine_look_up"),
@@ -35,14 +35,10 @@ STAGES = {
 NANOSECONDS = {"ns": 1.0, "us": 1e3, "ms": 1e6, "s": 1e9}
 
 
-def main():
-    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
-        sys.exit(__doc__)
-    rows = {}
+def report(arguments):
+    rows, wanted = {}, "--benchmark_filter=^Machine|^(" + "|".join(STAGES) + ")(/|$)"
     for _ in range(3):
-        wanted = "--benchmark_filter=^Machine|^(" + "|".join(STAGES) + ")(/|$)"
-        run = subprocess.run([sys.argv[1], wanted, "--benchmark_min_time=0.2", "--benchmark_format=json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
-        for row in json.loads(run.stdout)["benchmarks"]:
+        for row in bench.google_benchmark(arguments.benchmark, wanted, "--benchmark_min_time=0.2"):
             name = row["name"].replace("/process_time", "")
             row["cpu_ns"] = row["cpu_time"] * NANOSECONDS[row["time_unit"]]
             if name not in rows or row["cpu_ns"] < rows[name]["cpu_ns"]:
@@ -61,4 +57,6 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("benchmark", help="program benchmark_speed")
+    bench.main(report, parser.parse_args())

@@ -47,14 +47,9 @@ def prepare(model, arguments):
     random = bench.generator(arguments.seed, model.key, "size")
     diagonal = random.uniform(LEAST_DIAGONAL, GREATEST_DIAGONAL)
     mesh = bench.read_mesh(model.path)
-    found, factor = references.references_of(model, mesh, arguments.references), diagonal / mesh.diagonal
-    point = lambda p: [float(x) for x in factor * (np.array(p) - mesh.center)]
-    offset = lambda c: [*c[:3], float(factor * (np.dot(c[:3], mesh.center) + c[3]))]
-    change = lambda row: {**row, **({"coefficients": offset(row["coefficients"])} if "coefficients" in row else {}),
-                          **({"point": point(row["point"])} if "point" in row else {})}  # fmt: skip
-    lists = {k: [change(row) for row in v] for k, v in found.items() if isinstance(v, list) and k != "center"}
-    sizes = {k: factor * found[k] for k in ("diagonal", "diameter", "tolerance")}
-    symmetries = {**found, **lists, **sizes, "center": point(found["center"])}
+    found, factor, pose = references.references_of(model, mesh, arguments.references), diagonal / mesh.diagonal, np.eye(4)
+    pose[:3, 3] = -factor * mesh.center
+    symmetries = references.moved(found, pose, factor)
     return {"name": model.name, "path": model.path, "diagonal": diagonal, "symmetries": symmetries}
 
 

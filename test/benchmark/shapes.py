@@ -18,7 +18,6 @@ import planes
 import references
 import solids
 
-FOLDED_BODIES = ("prism", "tube", "rim", "cone", "open cone")
 ROUND_BODIES = {"tuning": ("bottle", "vase", "cup", "pin"), "report": ("jar", "goblet", "bowl", "can")}
 
 
@@ -111,7 +110,7 @@ FOLD_RANGES = {0: "round", 6: "2 to 6 folds", 12: "7 to 12 folds", 24: "13 to 24
 
 
 def folds(i, arguments, random):
-    bodies = [*FOLDED_BODIES, "round"]
+    bodies = ["prism", "tube", "rim", "cone", "open cone", "round"]
     body, noise, thinned = bodies[i % 6], i // 6 % 3, i // 18 % 2 == 1
     num_folds = random.integers(2, 25)
     if body == "round":
@@ -332,6 +331,8 @@ def evaluate(i, arguments):
 
 
 def program(arguments):
+    if arguments.models:
+        bench.list_models(arguments)  # says once what is amiss with them
     count = arguments.num or KINDS[arguments.kind][1]
     results, left_out = bench.run(range(count), evaluate, arguments)
     rates = {}
