@@ -131,8 +131,10 @@ def read_mesh(path):
         open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
         mesh = open3d.io.read_triangle_mesh(str(path))
         return make_mesh(np.asarray(mesh.vertices), np.asarray(mesh.triangles))
-    except (OSError, ValueError, IndexError, BadInput) as error:
+    except (OSError, BadInput) as error:
         raise BadInput(f"{path}: is no mesh that can be read, {getattr(error, 'strerror', None) or error}") from None
+    except (ValueError, IndexError):
+        raise BadInput(f"{path}: is no mesh that can be read, a number is missing or is none") from None
 
 
 def _read_off(path):
@@ -504,7 +506,7 @@ def _detect_by_tool(points, sensor, seed, tool, options):
 
 def google_benchmark(command, *flags):
     """Rows that a program of Google Benchmark writes; command: its path, or words that end with it."""
-    command = [*command] if isinstance(command, (list, tuple)) else [command]
+    command = [command] if isinstance(command, str) else command
     try:
         run = subprocess.run([*command, *flags, "--benchmark_format=json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
         return json.loads(run.stdout)["benchmarks"]
