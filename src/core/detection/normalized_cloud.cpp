@@ -26,7 +26,7 @@ LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search,
   LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbours, num_threads, &neighbours);
   static_assert(kNumSupportNeighbours == NeighborLists::kNeighbors);
   if (flann && NeighborLists::isUseful(points.cols()))
-    flann->use(NeighborLists(points, neighbours.indices, neighbours.sq_reach, num_threads));
+    flann->use(NeighborLists(points, neighbours.indices, neighbours.sq_reach));
   return geometry;
 }
 

@@ -16,20 +16,23 @@ public:
   explicit ClosestPointGrid(const PointsRef& points, int num_cells = 48);
 
   /// \return index of the point closest to the center of the cell that contains \p x; for an \p x outside the cube, of
-  /// the nearest cell at its border. Cells learn of points through their neighbours; a few know one that is only nearly
-  /// the closest.
+  /// the nearest cell at its border. A few cells have a point that is only nearly the closest.
   int closest(const Eigen::Vector3f& x) const {
-    const Eigen::Array3f cell = ((x - origin_) / cell_size_).array().max(0.0f).min(last_);
-    return nearest_[static_cast<std::size_t>(cell.z()) * num_cells_ * num_cells_ +
-                    static_cast<std::size_t>(cell.y()) * num_cells_ + static_cast<std::size_t>(cell.x())];
+    const Eigen::Array3f cell = cellOf(x);
+    return nearest_[indexOf(static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z()))];
   }
 
 private:
-  int num_cells_;
+  Eigen::Array3f cellOf(const Eigen::Vector3f& x) const {
+    return ((x - origin_) / cell_size_).array().max(0.0f).min(last_);
+  }
+  std::size_t indexOf(int x, int y, int z) const { return (static_cast<std::size_t>(z) * n_ + y) * n_ + x; }
+
+  int n_;  // cells along each side
   float cell_size_;
-  float last_;              // greatest coordinate inside the cube, in cells
-  Eigen::Vector3f origin_;  // corner of the cube
-  std::vector<int> nearest_;
+  float last_;                // greatest coordinate inside the cube, in cells
+  Eigen::Vector3f origin_;    // corner of the cube
+  std::vector<int> nearest_;  // of each cell, x fastest
 };
 
 }  // namespace pcl_symmetry

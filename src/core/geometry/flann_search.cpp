@@ -153,12 +153,13 @@ private:
 }  // namespace
 
 struct FlannSearch::Tree {
-  flann::KDTreeSingleIndex<flann::L2_Simple<float>> index;
+  flann::KDTreeSingleIndex<flann::L2_3D<float>> index;
   flann::SearchParams params{flann::FLANN_CHECKS_UNLIMITED, 0.0f, true};
 };
 
 FlannSearch::FlannSearch(const PointsRef& points)
-    : points_(points), tree_(new Tree{flann::Matrix<float>(points_.data(), points_.cols(), 3)}) {
+    : points_(points),
+      tree_(new Tree{{flann::Matrix<float>(points_.data(), points_.cols(), 3), flann::KDTreeSingleIndexParams(32)}}) {
   tree_->params.cores = 1;
   tree_->index.buildIndex();
 }

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <array>
-
-#include "core/base/parallel.h"
+#include <limits>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -13,45 +12,37 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kGridCells = 32;  // along each side
 constexpr int kTogether = 256;  // queries that walk side by side: they stay in the first cache
-// Share of the squared reach up to which a list decides: (1 / 2)^2, less what distances are rounded by (1e-6).
-constexpr float kDecidingShare = 0.2499f;
 
 }  // namespace
 
 bool NeighborLists::isUseful(Eigen::Index num_points) {
 #if defined(__x86_64__)
   static const bool is_supported = __builtin_cpu_supports("avx2");
-  return num_points > kNeighbors && num_points <= kMostPoints && is_supported;
+  return num_points > kNeighbors && num_points <= 50'000 && is_supported;
 #else
   return false;
 #endif
 }
 
-NeighborLists::NeighborLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach,
-                             int num_threads)
-    : lists_(new List[static_cast<std::size_t>(points.cols())]), grid_(points, kGridCells) {
-  parallelRanges(static_cast<std::size_t>(points.cols()), 2048, num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) fill(i, points, nearest, sq_reach[i]);
-  });
-}
-
-void NeighborLists::fill(std::size_t i, const Points& points, const std::vector<int>& nearest, float sq_reach) {
-  List& list = lists_[i];
-  list = List();
-  list.own_x = points(0, static_cast<Eigen::Index>(i));
-  list.own_y = points(1, static_cast<Eigen::Index>(i));
-  list.own_z = points(2, static_cast<Eigen::Index>(i));
-  list.most_sq_distance = kDecidingShare * sq_reach;
-  // The point itself is among the nearest, unless as many others are at the same position.
-  for (int k = 0, count = 0; k <= kNeighbors && count < kNeighbors; ++k) {
-    const int j = nearest[i * (kNeighbors + 1) + static_cast<std::size_t>(k)];
-    if (j == static_cast<int>(i)) continue;
-    list.x[count] = points(0, j);
-    list.y[count] = points(1, j);
-    list.z[count] = points(2, j);
-    list.index[count++] = static_cast<std::uint16_t>(j);
+NeighborLists::NeighborLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach)
+    : lists_(sq_reach.size()), grid_(points, 32) {
+  for (int i = 0; i < static_cast<int>(lists_.size()); ++i) {
+    List& list = lists_[static_cast<std::size_t>(i)];
+    list.own_x = points(0, i);
+    list.own_y = points(1, i);
+    list.own_z = points(2, i);
+    // (1 / 2)^2, less what distances are rounded by
+    list.most_sq_distance = 0.2499f * sq_reach[static_cast<std::size_t>(i)];
+    // The point itself is among the nearest, unless as many others are at the same position.
+    for (int k = 0, count = 0; k <= kNeighbors && count < kNeighbors; ++k) {
+      const int j = nearest[static_cast<std::size_t>(i) * (kNeighbors + 1) + static_cast<std::size_t>(k)];
+      if (j == i) continue;
+      list.x[count] = points(0, j);
+      list.y[count] = points(1, j);
+      list.z[count] = points(2, j);
+      list.index[count++] = static_cast<std::uint16_t>(j);
+    }
   }
 }
 

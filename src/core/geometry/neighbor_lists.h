@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <vector>
 
 #include "core/geometry/closest_point_grid.h"
@@ -16,19 +14,17 @@ namespace pcl_symmetry {
 /// neighbors reach as far as that, one of them is the closest point of all, or it is that point itself.
 class NeighborLists {
 public:
-  static constexpr int kNeighbors = 8;                 ///< of each point: floats in a register of AVX2
-  static constexpr Eigen::Index kMostPoints = 50'000;  ///< beyond, filling the lists takes longer than they save
+  static constexpr int kNeighbors = 8;  ///< of each point: floats in a register of AVX2
 
-  /// Whether there are lists for \p num_points points: enough, not too many, and the instructions for them.
+  /// Whether there are lists for \p num_points points: enough, not so many that filling the lists takes longer than
+  /// they save, and the instructions for them.
   static bool isUseful(Eigen::Index num_points);
 
   /// \pre isUseful(points.cols())
   /// \param points 3 x N.
   /// \param nearest kNeighbors + 1 indices for each point, nearest first, as a search for that point finds them.
   /// \param sq_reach squared distance of the last one of each point.
-  /// \param num_threads 0 = one per core.
-  NeighborLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach,
-                int num_threads);
+  NeighborLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach);
 
   /// A point near a query, and whether no other point is as close; that is not known of all points for which it is
   /// true.
@@ -52,13 +48,10 @@ private:
     float own_x, own_y, own_z;
     float most_sq_distance;  ///< from a query, so that the list decides
   };
-  static_assert(kMostPoints <= std::numeric_limits<std::uint16_t>::max());
-
-  void fill(std::size_t i, const Points& points, const std::vector<int>& nearest, float sq_reach);
   void walk(const PointsRef& queries, Found* found) const;
 
-  std::unique_ptr<List[]> lists_;  // each is set by the thread that fills it
-  ClosestPointGrid grid_;          // where walks without a guess begin
+  std::vector<List> lists_;
+  ClosestPointGrid grid_;  // where walks without a guess begin
 };
 
 /// Nearly the closest points, several times as fast as exact ones: where walks along the lists end, which may be beside

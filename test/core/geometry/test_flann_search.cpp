@@ -83,7 +83,7 @@ TEST(FlannSearch, GivesTheSameAnswersWithLists) {
     constexpr int kCount = NeighborLists::kNeighbors + 1;
     search.search(points, kCount, nearest, sq_nearest);
     for (std::size_t i = kCount - 1; i < sq_nearest.size(); i += kCount) sq_reach.push_back(sq_nearest[i]);
-    search.use(NeighborLists(points, nearest, sq_reach, 1));
+    search.use(NeighborLists(points, nearest, sq_reach));
     const ClosestPointSearch::Ptr without = makeFlannSearch(points);
     const Points queries = queriesFor(points);
     const auto size = static_cast<std::size_t>(queries.cols());

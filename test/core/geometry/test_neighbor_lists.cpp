@@ -22,7 +22,7 @@ struct Searches {
     std::vector<float> sq_distances, sq_reach;
     flann.search(points, kCount, nearest, sq_distances);
     for (Eigen::Index i = 0; i < points.cols(); ++i) sq_reach.push_back(sq_distances[kCount * i + kCount - 1]);
-    return NeighborLists(points, nearest, sq_reach, 1);
+    return NeighborLists(points, nearest, sq_reach);
   }
 
   Points points;
