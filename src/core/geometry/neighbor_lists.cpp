@@ -10,12 +10,6 @@
 
 namespace pcl_symmetry {
 
-namespace {
-
-constexpr int kTogether = 256;  // queries that walk side by side: they stay in the first cache
-
-}  // namespace
-
 bool NeighborLists::isUseful(Eigen::Index num_points) {
 #if defined(__x86_64__)
   static const bool is_supported = __builtin_cpu_supports("avx2");
@@ -46,72 +40,64 @@ NeighborLists::NeighborLists(const Points& points, const std::vector<int>& neare
   }
 }
 
-std::vector<NeighborLists::Found> NeighborLists::search(const PointsRef& queries,
-                                                        const std::vector<int>& guesses) const {
-  std::vector<Found> found(guesses.size());
-  for (Eigen::Index i = 0; i < queries.cols(); ++i) {
-    const int guess = guesses[static_cast<std::size_t>(i)];
-    found[static_cast<std::size_t>(i)].index = guess >= 0 ? guess : grid_.closest(queries.col(i));
-  }
-  for (Eigen::Index begin = 0; begin < queries.cols(); begin += kTogether)
-    walk(queries.middleCols(begin, std::min<Eigen::Index>(kTogether, queries.cols() - begin)), &found[begin]);
-  return found;
-}
-
 #if defined(__x86_64__)
 
-/// \param queries at most kTogether.
-__attribute__((target("avx2"))) void NeighborLists::walk(const PointsRef& queries, Found* found) const {
-  const auto num_queries = static_cast<int>(queries.cols());
-  const float* const coordinates = queries.data();
-  const std::ptrdiff_t stride = queries.outerStride();
-  std::array<std::uint16_t, kTogether> walking;
-  for (int i = 0; i < num_queries; ++i) {
-    const List& list = lists_[static_cast<std::size_t>(found[i].index)];
-    const float* const query = coordinates + stride * i;
-    const float dx = query[0] - list.own_x, dy = query[1] - list.own_y, dz = query[2] - list.own_z;
-    found[i].sq_distance = dx * dx + dy * dy + dz * dz;
-    __builtin_prefetch(list.x);
-    walking[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(i);
-  }
-  for (int num_walking = num_queries; num_walking > 0;) {
-    int num_on = 0;
-    for (int w = 0; w < num_walking; ++w) {
-      const int i = walking[static_cast<std::size_t>(w)];
-      Found& at = found[i];
-      const List& list = lists_[static_cast<std::size_t>(at.index)];
-      const float* const query = coordinates + stride * i;
-      const __m256 ax = _mm256_sub_ps(_mm256_broadcast_ss(query), _mm256_load_ps(list.x)),
-                   ay = _mm256_sub_ps(_mm256_broadcast_ss(query + 1), _mm256_load_ps(list.y)),
-                   az = _mm256_sub_ps(_mm256_broadcast_ss(query + 2), _mm256_load_ps(list.z));
-      const __m256 sq =
-          _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, ax), _mm256_mul_ps(ay, ay)), _mm256_mul_ps(az, az));
-      __m128 least = _mm_min_ps(_mm256_castps256_ps128(sq), _mm256_extractf128_ps(sq, 1));
-      least = _mm_min_ps(least, _mm_movehl_ps(least, least));
-      least = _mm_min_ss(least, _mm_movehdup_ps(least));
-      const auto lanes =
-          static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_broadcastss_ps(least), _CMP_EQ_OQ)));
-      const float sq_least = _mm_cvtss_f32(least), sq_before = at.sq_distance;
-      const bool decides = sq_before <= list.most_sq_distance;
-      const bool is_closer = sq_least < sq_before, is_alone = (lanes & (lanes - 1)) == 0;
-      constexpr unsigned kLast = 1u << (kNeighbors - 1);  // where distances are no numbers, no lane is set
-      const int change = list.index[__builtin_ctz(lanes | kLast)] - at.index;
-      at.index += change & -static_cast<int>(is_closer);  // no branch: half of the guesses are the closest points
-      at.sq_distance = _mm_cvtss_f32(_mm_min_ss(least, _mm_set_ss(sq_before)));
-      at.is_closest = decides & ((is_closer & is_alone) | (sq_least > sq_before));
-      const List& next = lists_[static_cast<std::size_t>(at.index)];
-      __builtin_prefetch(next.x);  // for the next round
-      __builtin_prefetch(next.z);
-      walking[static_cast<std::size_t>(num_on)] = static_cast<std::uint16_t>(i);
-      num_on += is_closer & is_alone & !decides;
+__attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists::search(
+    const PointsRef& queries, const std::vector<int>& guesses) const {
+  constexpr std::size_t kTogether = 256;  // queries: they stay in the first cache
+  std::vector<Found> found(guesses.size());
+  std::array<std::size_t, kTogether> walking;
+  for (std::size_t begin = 0; begin < found.size(); begin += kTogether) {
+    std::size_t num_walking = 0;
+    for (std::size_t i = begin; i < std::min(begin + kTogether, found.size()); ++i) {
+      const Eigen::Vector3f query = queries.col(static_cast<Eigen::Index>(i));
+      found[i].index = guesses[i] >= 0 ? guesses[i] : grid_.closest(query);
+      const List& list = lists_[static_cast<std::size_t>(found[i].index)];
+      const float dx = query.x() - list.own_x, dy = query.y() - list.own_y, dz = query.z() - list.own_z;
+      found[i].sq_distance = dx * dx + dy * dy + dz * dz;
+      walking[num_walking++] = i;
     }
-    num_walking = num_on;
+    while (num_walking > 0) {
+      std::size_t num_on = 0;
+      for (std::size_t w = 0; w < num_walking; ++w) {
+        const std::size_t i = walking[w];
+        Found& at = found[i];
+        const List& list = lists_[static_cast<std::size_t>(at.index)];
+        const float* const query = queries.data() + queries.outerStride() * static_cast<Eigen::Index>(i);
+        const __m256 ax = _mm256_sub_ps(_mm256_broadcast_ss(query), _mm256_load_ps(list.x)),
+                     ay = _mm256_sub_ps(_mm256_broadcast_ss(query + 1), _mm256_load_ps(list.y)),
+                     az = _mm256_sub_ps(_mm256_broadcast_ss(query + 2), _mm256_load_ps(list.z));
+        const __m256 sq =
+            _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, ax), _mm256_mul_ps(ay, ay)), _mm256_mul_ps(az, az));
+        __m128 least = _mm_min_ps(_mm256_castps256_ps128(sq), _mm256_extractf128_ps(sq, 1));
+        least = _mm_min_ps(least, _mm_movehl_ps(least, least));
+        least = _mm_min_ss(least, _mm_movehdup_ps(least));
+        const auto lanes =
+            static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_broadcastss_ps(least), _CMP_EQ_OQ)));
+        const float sq_least = _mm_cvtss_f32(least), sq_before = at.sq_distance;
+        const bool decides = sq_before <= list.most_sq_distance;
+        const bool is_closer = sq_least < sq_before, is_alone = (lanes & (lanes - 1)) == 0;
+        constexpr unsigned kLast = 1u << (kNeighbors - 1);  // where distances are no numbers, no lane is set
+        const int change = list.index[__builtin_ctz(lanes | kLast)] - at.index;
+        at.index += change & -static_cast<int>(is_closer);  // no branch: half of the guesses are the closest points
+        at.sq_distance = _mm_cvtss_f32(_mm_min_ss(least, _mm_set_ss(sq_before)));
+        at.is_closest = decides & ((is_closer & is_alone) | (sq_least > sq_before));
+        __builtin_prefetch(lists_[static_cast<std::size_t>(at.index)].x);  // for the next round
+        __builtin_prefetch(lists_[static_cast<std::size_t>(at.index)].z);
+        walking[num_on] = i;
+        num_on += is_closer & is_alone & !decides;
+      }
+      num_walking = num_on;
+    }
   }
+  return found;
 }
 
 #else
 
-void NeighborLists::walk(const PointsRef&, Found*) const {}  // there are no lists, see isUseful()
+std::vector<NeighborLists::Found> NeighborLists::search(const PointsRef&, const std::vector<int>&) const {
+  return {};  // there are no lists, see isUseful()
+}
 
 #endif
 

@@ -48,8 +48,6 @@ private:
     float own_x, own_y, own_z;
     float most_sq_distance;  ///< from a query, so that the list decides
   };
-  void walk(const PointsRef& queries, Found* found) const;
-
   std::vector<List> lists_;
   ClosestPointGrid grid_;  // where walks without a guess begin
 };
