@@ -54,8 +54,8 @@ void warnOfNoAnswer(const std::string& source, const std::string& reason) {
 }
 
 void forPieces(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range) {
-  constexpr std::size_t kPiece = 1 << 14;  // chosen: large enough that threads start seldom
-  parallelRanges(size, kPiece, num_threads, range);
+  constexpr std::size_t points_of_block = 1 << 14;
+  parallelRanges(size, points_of_block, num_threads, range);
 }
 
 std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t max_points, std::uint64_t seed) {
@@ -64,20 +64,12 @@ std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t ma
 
 namespace {
 
-// Pixels, root mean square. chosen: a smaller value refuses cameras with lens distortion, a larger one accepts rows and
-// columns that are no picture.
-constexpr double kLargestError = 0.7;
-// Share of the focal length, for the skew and for the difference of the two focal lengths. chosen: a smaller value
-// refuses noisy pictures, a larger one accepts the cameras without square pixels that fit a flat cloud.
-constexpr double kLargestSkew = 0.05;
-// Points that a projection is estimated from. chosen: fewer leave its 11 parameters to noise, more refuse small
-// pictures.
-constexpr std::size_t kFewestPoints = 50;
-// Points. chosen: the estimate of 11 parameters gains nothing from more, at half it takes half the time.
-constexpr std::size_t kMostPoints = 20'000;
-// Share of the picture. chosen: a smaller value takes missing measurements for background, a larger one takes
-// background between the parts of an object for missing measurements.
-constexpr double kSmallHole = 0.01;
+constexpr double largest_error = 0.7;  // pixels, root mean square; more are rows and columns that are no picture
+constexpr double largest_skew =
+    0.05;  // share of the focal length, also between the two: cameras that fit a flat cloud have no square pixels
+constexpr std::size_t fewest_points = 50;    // fewer leave the 11 parameters of a projection to noise
+constexpr std::size_t most_points = 20'000;  // that the 11 parameters gain from
+constexpr double small_hole = 0.01;  // share of the picture; smaller ones are missing measurements, not background
 
 /// Fills the pixels without a point: large regions and regions at the border are background, small regions are missing
 /// measurements.
@@ -104,7 +96,7 @@ void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
       visit(v > 0, at - width);
       visit(v + 1 < height, at + width);
     }
-    const bool background = at_border || static_cast<double>(region.size()) > kSmallHole * static_cast<double>(size);
+    const bool background = at_border || static_cast<double>(region.size()) > small_hole * static_cast<double>(size);
     for (const std::size_t at : region) depths[at] = background ? Visibility::kBackground : Visibility::kNoRay;
   }
 }
@@ -131,8 +123,8 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
   pcl::Indices finite;
   for (Eigen::Index i = 0; i < pixels.cols(); ++i)
     if (pixels.col(i).allFinite()) finite.push_back(static_cast<pcl::index_t>(i));
-  if (finite.size() < kFewestPoints) return std::nullopt;
-  const std::size_t stride = 1 + finite.size() / kMostPoints;
+  if (finite.size() < fewest_points) return std::nullopt;
+  const std::size_t stride = 1 + finite.size() / most_points;
   pcl::Indices used;
   for (std::size_t i = 0; i < finite.size(); i += stride) used.push_back(finite[i]);
   Points points(3, static_cast<Eigen::Index>(used.size()));
@@ -163,13 +155,13 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
     const Eigen::Vector2d pixel(used[i] % width, used[i] / width);
     sq_error += (image.head<2>() / image.z() - pixel).squaredNorm();
   }
-  if (!(sq_error <= kLargestError * kLargestError * static_cast<double>(used.size()))) return std::nullopt;
+  if (!(sq_error <= largest_error * largest_error * static_cast<double>(used.size()))) return std::nullopt;
   // A flat cloud fits cameras that do not exist. The pixels of real ones are square.
   const Eigen::Vector3d across = projection.block<1, 3>(0, 0), down = projection.block<1, 3>(1, 0),
                         forward = projection.block<1, 3>(2, 0);
   const Eigen::Vector3d x = across - across.dot(forward) * forward, y = down - down.dot(forward) * forward;
   const double focal = std::max(x.norm(), y.norm());
-  if (!(std::abs(x.norm() - y.norm()) <= kLargestSkew * focal && std::abs(x.dot(y)) <= kLargestSkew * focal * focal))
+  if (!(std::abs(x.norm() - y.norm()) <= largest_skew * focal && std::abs(x.dot(y)) <= largest_skew * focal * focal))
     return std::nullopt;
 
   // Back to the input frame; depths are in its units.

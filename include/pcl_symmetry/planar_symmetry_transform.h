@@ -34,7 +34,7 @@ public:
   /// Uses at most 200 000 points, see setMaxPoints().
   PlanarSymmetryTransform() : ScanAnalysis<PointT>("PlanarSymmetryTransform", 200'000) {}
 
-  /// \param method sampled (default), convolution or voting; all estimate the same normalised quantity.
+  /// \param method sampled (default), convolution or voting; all estimate the same normalized quantity.
   void setMethod(TransformMethod method) { transform_.method = method; }
   TransformMethod getMethod() const { return transform_.method; }  ///< see setMethod()
 

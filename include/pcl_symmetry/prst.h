@@ -15,8 +15,8 @@
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/visibility.h"
-#include "pcl_symmetry/point_types.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
+#include "pcl_symmetry/point_types.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -44,7 +44,7 @@ std::vector<float> describePRST(const Points& points, const PRSTParameters& para
 
 /// The planar-reflective symmetry transform as a global descriptor: one for the whole cloud (Section 5.2).
 ///
-/// Honours setIndices; points that are not finite are left out. The descriptor has no neighbourhoods: setRadiusSearch,
+/// Honors setIndices; points that are not finite are left out. The descriptor has no neighborhoods: setRadiusSearch,
 /// setKSearch, setSearchMethod and setSearchSurface of the base class are ignored. Clouds that hold no answer (no
 /// finite point, all points at one place) give an empty output and a PCL_WARN.
 ///

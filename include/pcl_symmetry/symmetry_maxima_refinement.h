@@ -95,7 +95,7 @@ public:
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
 
   /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not
-  /// zero; false, and for other point types: all normals are estimated from the neighbours.
+  /// zero; false, and for other point types: all normals are estimated from the neighbors.
   void setUseInputNormals(bool use_input_normals) { use_input_normals_ = use_input_normals; }
   bool getUseInputNormals() const { return use_input_normals_; }  ///< see setUseInputNormals()
 

@@ -20,7 +20,7 @@
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Poses around a guess.
-struct PoseNeighbourhood {
+struct PoseNeighborhood {
   double angle;     ///< radians, greatest turn away from the guess, in (0, pi]
   double distance;  ///< input units, greatest way from where the guess puts the center of the source, >= 0
 };
@@ -28,7 +28,7 @@ struct PoseNeighbourhood {
 /// The search for a pose and its refinement.
 struct CloudRegistrationOptions {
   /// Only poses around the guess, as a track needs them; not set: all poses. Frames are then not looked for.
-  std::optional<PoseNeighbourhood> around = {};
+  std::optional<PoseNeighborhood> around = {};
   bool frames = true;        ///< tries the poses that bring symmetry frames together, beside evenly spread rotations
   FrameOptions frame;        ///< of these frames
   PoseSearchOptions search;  ///< of the search for poses
@@ -120,7 +120,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 /// rotations spread evenly. A candidate is judged by the points of one cloud that lie on the other, and by the points
 /// that lie where the scanner saw that there is nothing. The best candidates are refined by PCL's point-to-plane ICP.
 ///
-/// Honours setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
+/// Honors setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
 /// epsilons of the refinement. Points that are not finite are left out. The target is prepared by the first align()
 /// after it was set, and kept: a change of the points in that cloud needs setInputTarget() again, as PCL's own classes
 /// need it.

@@ -82,7 +82,7 @@ public:
   /// \param search is given a cloud of the points used, then clouds of samples of the surface and of its parts, and is
   /// called as in SymmetryMaximaRefinement::setSearchMethod(). Null: FLANN (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
-  /// \param num_neighbors number of neighbours that each point is joined with, >= 3; default 12.
+  /// \param num_neighbors number of neighbors that each point is joined with, >= 3; default 12.
   void setNumberOfNeighbors(int num_neighbors) {
     detail::checkAtLeast("num_neighbors", num_neighbors, 3);
     num_neighbors_ = num_neighbors;

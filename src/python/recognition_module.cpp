@@ -41,7 +41,7 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
   CloudRegistrationOptions options;
   options.seed = seed;
   options.num_threads = threads;
-  if (around) options.around = PoseNeighbourhood{around->first, around->second};
+  if (around) options.around = PoseNeighborhood{around->first, around->second};
   return registerClouds(source_input.points(), source_seen, target_input.points(), target_seen, T_target_source,
                         options);
 }

@@ -124,7 +124,7 @@ std::vector<Eigen::Isometry3d> posesAround(const PosedSurface& scan, const Posed
 
 /// Leaves those of the poses that are around a guess.
 /// \param poses between search frames.
-void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const PoseNeighbourhood& around,
+void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const PoseNeighborhood& around,
                 std::vector<RankedPose>& poses) {
   const Eigen::Vector3d& center = clouds.frames().source_center;
   const auto isFar = [&](const RankedPose& pose) {

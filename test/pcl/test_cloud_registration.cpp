@@ -45,7 +45,7 @@ TEST(RegisterClouds, FindsALargeMotionBetweenTwoSamplings) {
 TEST(RegisterClouds, IsTheSameWithATargetThatIsPreparedOnce) {
   const Points source = blockOnBox(1), target = blockOnBox(2);
   CloudRegistrationOptions options;
-  options.around = PoseNeighbourhood{20.0 * kDegree, 1.0};
+  options.around = PoseNeighborhood{20.0 * kDegree, 1.0};
   const RegistrationTarget prepared(target, std::nullopt, options);
   for (const double angle : {0.05, 0.1}) {
     const Eigen::Isometry3d guess(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()));
@@ -76,7 +76,7 @@ PoseErrors errorsUnderNoise(double noise, int num_trials) {
       Eigen::Translation3d(9.0, -4.0, 6.0) * Eigen::AngleAxisd(1.2, Eigen::Vector3d(1.0, 2.0, -0.5).normalized());
   PoseErrors errors;
   CloudRegistrationOptions options;
-  options.around = PoseNeighbourhood{20.0 * kDegree, 1.0};
+  options.around = PoseNeighborhood{20.0 * kDegree, 1.0};
   for (int i = 0; i < num_trials; ++i) {
     RandomStream random(100 + i);
     Points source = blockOnBox(10 + i), target = (T_target_source * blockOnBox(500 + i).cast<double>()).cast<float>();

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -147,7 +147,7 @@ std::vector<float> axialPointSymmetry(const AxisMap& map, const PointsRef& point
 /// Symmetry with respect to points: D(f, c) = f . f(2 c - x) / |f|^2 for centers c on a cubic lattice.
 struct CenterMap {
   int num_centers = 0;                               ///< along each edge
-  double step = 0.0;                                 ///< between neighbours, input units
+  double step = 0.0;                                 ///< between neighbors, input units
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< center (0, 0, 0), input frame
   std::vector<float> values;                         ///< num_centers^3, x fastest
 

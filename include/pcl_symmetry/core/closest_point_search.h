@@ -24,12 +24,12 @@ public:
   using Ptr = std::shared_ptr<ClosestPointSearch>;
   virtual ~ClosestPointSearch() = default;
 
-  /// Finds the num_neighbours closest points to each query. Must be safe to call from several threads at once.
+  /// Finds the num_neighbors closest points to each query. Must be safe to call from several threads at once.
   /// \param queries 3 x M, finite, input units.
-  /// \param num_neighbours neighbours of each query, >= 1 and at most the number of points.
-  /// \param[out] indices M * num_neighbours indices of points, query by query, nearest first; resized by the call.
+  /// \param num_neighbors neighbors of each query, >= 1 and at most the number of points.
+  /// \param[out] indices M * num_neighbors indices of points, query by query, nearest first; resized by the call.
   /// \param[out] sq_distances squared distances to these points, input units squared; resized by the call.
-  virtual void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+  virtual void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
                       std::vector<float>& sq_distances) const = 0;
 
   /// Finds the closest point to each query within a distance. Must be safe to call from several threads at once.

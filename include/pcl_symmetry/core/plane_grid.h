@@ -75,15 +75,15 @@ public:
 
   /// The bins around a bin: one step in theta and r, and as many steps in phi as cover the angle of one step in theta.
   ///
-  /// At the equator these are the 26 neighbours of the paper. Departure near the pole: bins are slivers in phi there,
+  /// At the equator these are the 26 neighbors of the paper. Departure near the pole: bins are slivers in phi there,
   /// and one peak would be a maximum in many of them.
   /// \return ascending indices, without that of the bin itself.
-  std::vector<std::size_t> neighbours(const Bin& bin) const;
+  std::vector<std::size_t> neighbors(const Bin& bin) const;
 
-  /// Calls visit(index) for the bins of neighbours(), some of them twice, until a call returns false.
+  /// Calls visit(index) for the bins of neighbors(), some of them twice, until a call returns false.
   /// \return whether all calls returned true.
   template <typename Visit>
-  bool visitNeighbours(const Bin& bin, const Visit& visit) const {
+  bool visitNeighbors(const Bin& bin, const Visit& visit) const {
     const std::size_t self = index(bin);
     for (int dt = -1; dt <= 1; ++dt) {
       const Bin beside = *step(bin, dt, 0, 0);

@@ -14,7 +14,7 @@ public:
   /// The plane z = 0.
   ReflectionPlane() = default;
 
-  /// \param normal finite and not zero; it is normalised, and the offset is divided by its length.
+  /// \param normal finite and not zero; it is normalized, and the offset is divided by its length.
   /// \param offset normal.x for points x of the plane, input units times the length of the normal.
   /// \throws std::invalid_argument for a zero normal or a value that is not finite.
   ReflectionPlane(const Eigen::Vector3d& normal, double offset);

@@ -8,22 +8,22 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// A surface as N elements with neighbours (Section 5.3): the faces of a mesh or the points of a cloud.
+/// A surface as N elements with neighbors (Section 5.3): the faces of a mesh or the points of a cloud.
 struct SurfaceGraph {
-  /// Two neighbouring elements and the border that they share.
+  /// Two neighboring elements and the border that they share.
   struct Edge {
     int from;      ///< element, in [0, N)
     int to;        ///< element, in [0, N)
     float length;  ///< of the border, input units
     /// Angle between the two normals, in [-pi, pi] radians; > 0 where the surface is concave. For points 1.5 times
-    /// that, because their normals are means over neighbours.
+    /// that, because their normals are means over neighbors.
     float concavity;
   };
 
   Points centers;               ///< 3 x N, input frame
   Points normals;               ///< 3 x N, unit, outward; zero for an element without a normal
   std::vector<float> areas;     ///< N, input units squared, >= 0
-  std::vector<Edge> edges;      ///< each pair of neighbours once
+  std::vector<Edge> edges;      ///< each pair of neighbors once
   std::vector<int> first_edge;  ///< N + 1 indices into edge_of: where the edges of each element begin
   std::vector<int> edge_of;     ///< indices into edges, element by element
 
@@ -38,11 +38,11 @@ struct SurfaceGraph {
   /// \return the total area, input units squared.
   double area() const;
 
-  /// Calls visit(neighbour, edge) for each neighbour of an element.
+  /// Calls visit(neighbor, edge) for each neighbor of an element.
   /// \param element in [0, N).
   /// \param visit takes (int, const Edge&).
   template <typename Visit>
-  void visitNeighbours(int element, const Visit& visit) const {
+  void visitNeighbors(int element, const Visit& visit) const {
     for (int i = first_edge[element]; i < first_edge[element + 1]; ++i) {
       const Edge& edge = edges[edge_of[i]];
       visit(edge.from == element ? edge.to : edge.from, edge);
@@ -50,23 +50,23 @@ struct SurfaceGraph {
   }
 };
 
-/// The graph of a mesh: faces are neighbours if they share an edge.
+/// The graph of a mesh: faces are neighbors if they share an edge.
 ///
 /// Vertices at the same place are joined, so that a polygon soup is connected. If more than two faces share an edge,
-/// each is joined with the next one. Faces without area have neighbours, too.
+/// each is joined with the next one. Faces without area have neighbors, too.
 /// \param vertices 3 x V, input frame.
 /// \param polygons three or more indices into the vertices each. A polygon with a vertex that is not finite becomes an
-/// element without neighbours.
+/// element without neighbors.
 /// \return one element per polygon, in input order.
 /// \throws std::invalid_argument if an index is out of range, no polygon has an area, or the extent is not 1e-15 to 1e15.
 SurfaceGraph meshGraph(const PointsRef& vertices, const std::vector<std::vector<int>>& polygons);
 
-/// The graph of a cloud: two points are neighbours if one of them is among the nearest of the other.
+/// The graph of a cloud: two points are neighbors if one of them is among the nearest of the other.
 /// \param points 3 x N, finite, input frame.
-/// \param neighbours for each point the indices of its nearest other points, nearest first; the same number for all.
-/// \return one element per point, in input order; the area is estimated from the distance of the last neighbour.
-/// \throws std::invalid_argument if all points are equal, their extent is not 1e-15 to 1e15, or a neighbour is missing.
-SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours);
+/// \param neighbors for each point the indices of its nearest other points, nearest first; the same number for all.
+/// \return one element per point, in input order; the area is estimated from the distance of the last neighbor.
+/// \throws std::invalid_argument if all points are equal, their extent is not 1e-15 to 1e15, or a neighbor is missing.
+SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbors);
 
 /// Connected pieces of equal label.
 /// \param graph N elements.

@@ -38,7 +38,7 @@ struct MergingOptions {
   /// 0.134 with one, 0.124 with four divisions into 300 patches); twice as many take twice the time.
   int num_divisions = 4;
 
-  /// Smaller regions join a neighbour; share of the surface, in [0, 1).
+  /// Smaller regions join a neighbor; share of the surface, in [0, 1).
   /// chosen: at half, fragments of noise remain; at twice, small parts such as ears are lost.
   double least_area = 0.003;
 

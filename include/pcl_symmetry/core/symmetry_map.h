@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/plane_grid.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// Estimators of the transform. All give the same normalised quantity.
+/// Estimators of the transform. All give the same normalized quantity.
 enum class TransformMethod {
   Sampled,      ///< draws one point of each pair and looks up the other; the default and the fastest
   Convolution,  ///< exact correlation along each normal (Section 4.2)

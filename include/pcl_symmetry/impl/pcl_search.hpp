@@ -34,7 +34,7 @@ public:
     search_->setInputCloud(cloud);
   }
 
-  void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+  void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
               std::vector<float>& sq_distances) const override {
     indices.clear();
     sq_distances.clear();
@@ -45,10 +45,10 @@ public:
     for (Eigen::Index i = 0; i < queries.cols(); ++i) {
       PointT query;
       query.getVector3fMap() = queries.col(i);
-      if (search_->nearestKSearch(query, num_neighbours, found, sq_found) < num_neighbours)
-        throw std::invalid_argument("search method: found fewer neighbours than points, must find all");
-      indices.insert(indices.end(), found.begin(), found.begin() + num_neighbours);
-      sq_distances.insert(sq_distances.end(), sq_found.begin(), sq_found.begin() + num_neighbours);
+      if (search_->nearestKSearch(query, num_neighbors, found, sq_found) < num_neighbors)
+        throw std::invalid_argument("search method: found fewer neighbors than points, must find all");
+      indices.insert(indices.end(), found.begin(), found.begin() + num_neighbors);
+      sq_distances.insert(sq_distances.end(), sq_found.begin(), sq_found.begin() + num_neighbors);
     }
   }
 

@@ -6,16 +6,11 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/geometry/geometry_rules.h"
+
 namespace pcl_symmetry {
 
 namespace {
-
-// Share of the length of a line. chosen: five times the rounding of a line about the origin; at half, a line that was
-// turned and moved in float may pass for a surface, at twice nothing changes, as no surface is that thin.
-constexpr double kLineThickness = 1e-6;
-// Share of the largest distance from the origin. derived: rounding moves a point by at most sqrt(3) 2^-24 of that, and
-// moves the line through two rounded points as much again.
-constexpr double kRounding = 2.0 * std::numeric_limits<float>::epsilon();
 
 /// \return the number of distinct points, counted up to \p most.
 int countDistinct(const PointsRef& points, int most) {
@@ -27,11 +22,11 @@ int countDistinct(const PointsRef& points, int most) {
   return static_cast<int>(distinct.size());
 }
 
-Eigen::Vector3d farthestFrom(const Eigen::Vector3d& place, const PointsRef& points) {
+Eigen::Vector3d farthestFrom(const Eigen::Vector3d& position, const PointsRef& points) {
   Eigen::Index farthest = 0;
   double sq_largest = -1.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const double sq_distance = (points.col(i).cast<double>() - place).squaredNorm();
+    const double sq_distance = (points.col(i).cast<double>() - position).squaredNorm();
     if (sq_distance <= sq_largest) continue;
     sq_largest = sq_distance;
     farthest = i;
@@ -52,10 +47,12 @@ std::string whyUnanswerable(const PointsRef& points) {
   const Eigen::Vector3d first = farthestFrom(points.col(0).cast<double>(), points);
   const Eigen::Vector3d last = farthestFrom(first, points);
   const double length = (last - first).norm();
-  const double rounding = kRounding * farthestFrom(Eigen::Vector3d::Zero(), points).norm();
-  if (length <= rounding) return "all points are at one place, up to the rounding of their coordinates";
+  // Rounding moves a point by sqrt(3) 2^-24 of its distance from the origin, and the line through two others as much.
+  const double rounding =
+      2.0 * std::numeric_limits<float>::epsilon() * farthestFrom(Eigen::Vector3d::Zero(), points).norm();
+  if (length <= rounding) return "all points are at one position, up to the rounding of their coordinates";
   const Eigen::Vector3d direction = (last - first) / length;
-  const double thickness = std::max(kLineThickness * length, rounding);
+  const double thickness = std::max(kGeometry.line_thickness * length, rounding);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d offset = points.col(i).cast<double>() - first;
     if ((offset - direction.dot(offset) * direction).norm() > thickness) return {};

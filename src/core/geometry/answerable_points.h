@@ -11,10 +11,10 @@ namespace pcl_symmetry {
 // with 40.
 constexpr int kMinDistinctPoints = 20;
 
-/// Why points hold no answer: too few distinct ones, all at one place, or all on one line (a line is symmetric in every
-/// plane that contains it, whatever it was sampled from).
+/// Why points hold no answer: too few distinct ones, all at one position, or all on one line (a line is symmetric in
+/// every plane that contains it, whatever it was sampled from).
 ///
-/// Places are compared up to the rounding of the coordinates; a line may be 1e-6 of its length thick.
+/// Positions are compared up to the rounding of the coordinates; a line may be 1e-6 of its length thick.
 /// \param points 3 x N, N >= 0, finite.
 /// \return one sentence such as "12 distinct points, at least 20 are needed"; empty where the points can be analysed.
 /// \throws std::invalid_argument where a coordinate is not finite.

@@ -3,13 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/geometry/geometry_rules.h"
+
 namespace pcl_symmetry {
 
 namespace {
-
-// points around a cell that make a normal; chosen: twice the three that span a plane. Fewer give normals that follow
-// noise, more leave thin parts without a normal.
-constexpr int kFewestPoints = 6;
 
 /// Sums over points that give their mean and covariance, in one line of the cache.
 class Moments {
@@ -62,7 +60,7 @@ public:
 
   std::size_t numOccupied() const { return occupied_.size(); }
 
-  /// Sum over a cell and its 26 neighbours.
+  /// Sum over a cell and its 26 neighbors.
   Moments around(std::size_t slot) const {
     Moments sum;
     for (int z = -1; z <= 1; ++z)
@@ -95,7 +93,7 @@ CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, 
     const auto column = static_cast<Eigen::Index>(c);
     result.normals.col(column).setUnit(2);
     const Moments near = cells.around(c);
-    if (near.count() < kFewestPoints) continue;
+    if (near.count() < kGeometry.fewest_cell_points) continue;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
     solver.computeDirect(near.covariance());
     const Eigen::Vector3f values = solver.eigenvalues();

@@ -15,7 +15,7 @@ struct CellNormals {
   std::vector<int> cell_of_points;  ///< N, the column of normals for each point
 };
 
-/// Fits a plane to the points of each occupied cell and its 26 neighbours.
+/// Fits a plane to the points of each occupied cell and its 26 neighbors.
 /// \param points 3 x N, finite.
 /// \param origin corner of the cube of cells. The few points outside it count with the cells at its sides.
 /// \param cell_size input units, > 0.

@@ -12,20 +12,20 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kPointsPerNode = 8;  // points; chosen: half and twice as many shift work between bounds and distances
+constexpr int points_per_node = 8;
 
-/// The point farthest from a place.
+/// The point farthest from a position.
 struct Farthest {
   Eigen::Index index;
   float sq_distance;
 };
 
-/// Squared distances of points from a place.
+/// Squared distances of points from a position.
 /// \param points three coordinates each, \p stride numbers from one to the next.
 PCL_SYMMETRY_MULTIVERSION
-void sqDistancesFrom(const float* place, const float* points, std::ptrdiff_t stride, Eigen::Index size,
+void sqDistancesFrom(const float* position, const float* points, std::ptrdiff_t stride, Eigen::Index size,
                      float* sq_distances) {
-  const float x = place[0], y = place[1], z = place[2];
+  const float x = position[0], y = position[1], z = position[2];
 #pragma GCC ivdep
   for (Eigen::Index i = 0; i < size; ++i) {
     const float dx = points[stride * i] - x, dy = points[stride * i + 1] - y, dz = points[stride * i + 2] - z;
@@ -33,9 +33,9 @@ void sqDistancesFrom(const float* place, const float* points, std::ptrdiff_t str
   }
 }
 
-Farthest farthestOf(const Eigen::Vector3f& place, const PointsRef& points) {
+Farthest farthestOf(const Eigen::Vector3f& position, const PointsRef& points) {
   std::vector<float> sq_distances(static_cast<std::size_t>(points.cols()));
-  sqDistancesFrom(place.data(), points.data(), points.outerStride(), points.cols(), sq_distances.data());
+  sqDistancesFrom(position.data(), points.data(), points.outerStride(), points.cols(), sq_distances.data());
   const auto greatest = std::max_element(sq_distances.begin(), sq_distances.end());
   return {greatest - sq_distances.begin(), *greatest};
 }
@@ -71,12 +71,12 @@ private:
     std::size_t child = 0;    // the first of two, side by side; 0 before it is split
 
     int size() const { return end - begin; }
-    bool isLeaf() const { return size() <= kPointsPerNode; }
+    bool isLeaf() const { return size() <= points_per_node; }
   };
 
   Node around(int begin, int end) const {
-    constexpr double kSlack = 1e-9;       // derived: far above the rounding of doubles, so that bounds stay bounds
-    constexpr double kAngleSlack = 1e-6;  // derived: the same of an angle near 0 that comes from its cosine
+    constexpr double slack = 1e-9;        // far above the rounding of doubles
+    constexpr double angle_slack = 1e-6;  // the same of an angle near 0 that comes from its cosine
     Node node;
     node.begin = begin;
     node.end = end;
@@ -89,8 +89,8 @@ private:
       const double along = node.axis.dot(ends_[i].point - center_);
       if (along < least_cosine * ends_[i].reach) least_cosine = along / ends_[i].reach;
     }
-    node.reach *= 1.0 + kSlack;
-    node.half_angle = std::acos(std::max(-1.0, least_cosine)) + kAngleSlack;
+    node.reach *= 1.0 + slack;
+    node.half_angle = std::acos(std::max(-1.0, least_cosine)) + angle_slack;
     return node;
   }
 
@@ -109,10 +109,10 @@ private:
 
   /// A first guess that is mostly close to the diameter: from a point to the farthest one, and on from there.
   static double sqDistanceOfHops(const PointsRef& points) {
-    constexpr int kNumHops = 4;  // chosen: fewer start the search lower, more rarely find a greater distance
+    constexpr int num_hops = 4;
     double best = 0.0;
     Eigen::Index at = 0;
-    for (int k = 0; k < kNumHops; ++k) {
+    for (int k = 0; k < num_hops; ++k) {
       const Eigen::Vector3f from = points.col(at);
       at = farthestOf(from, points).index;
       best = std::max(best, (points.col(at).cast<double>() - from.cast<double>()).squaredNorm());
@@ -123,12 +123,12 @@ private:
   /// The points that can be an end of the greatest distance: no point is farther from one of them than its own distance
   /// from the center and the greatest one together.
   std::vector<End> possibleEnds(const PointsRef& points) const {
-    constexpr double kSlack = 1e-9;  // derived: as in around()
+    constexpr double slack = 1e-9;  // far above the rounding of doubles
     std::vector<double> reaches(static_cast<std::size_t>(points.cols()));
     for (std::size_t i = 0; i < reaches.size(); ++i)
       reaches[i] = (points.col(static_cast<Eigen::Index>(i)).cast<double>() - center_).norm();
     const double least =
-        std::sqrt(sq_of_hops_) * (1.0 - kSlack) - *std::max_element(reaches.begin(), reaches.end()) * (1.0 + kSlack);
+        std::sqrt(sq_of_hops_) * (1.0 - slack) - *std::max_element(reaches.begin(), reaches.end()) * (1.0 + slack);
     std::vector<End> ends;
     for (std::size_t i = 0; i < reaches.size(); ++i)
       if (reaches[i] >= least) ends.push_back({points.col(static_cast<Eigen::Index>(i)).cast<double>(), reaches[i]});

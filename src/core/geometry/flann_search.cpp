@@ -166,22 +166,22 @@ FlannSearch::FlannSearch(const PointsRef& points)
 
 FlannSearch::~FlannSearch() = default;
 
-void FlannSearch::search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+void FlannSearch::search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
                          std::vector<float>& sq_distances) const {
-  const auto num_queries = static_cast<std::size_t>(queries.cols()), count = static_cast<std::size_t>(num_neighbours);
+  const auto num_queries = static_cast<std::size_t>(queries.cols()), count = static_cast<std::size_t>(num_neighbors);
   indices.assign(num_queries * count, 0);
   sq_distances.assign(num_queries * count, kInfinity);
-  constexpr Eigen::Index kTogether = 12;  // queries
-  const float margin = 1.0f + 3.0f / std::sqrt(static_cast<float>(num_neighbours));
+  constexpr Eigen::Index group_size = 12;  // queries
+  const float margin = 1.0f + 3.0f / std::sqrt(static_cast<float>(num_neighbors));
   NearestOfGroup nearest_of_group(points_);
   float sq_expected = 0.0f;  // distance of the last neighbor, by the group before; 0: not known
-  for (Eigen::Index begin = 0; begin < queries.cols(); begin += kTogether) {
-    const Eigen::Index end = std::min(queries.cols(), begin + kTogether);
+  for (Eigen::Index begin = 0; begin < queries.cols(); begin += group_size) {
+    const Eigen::Index end = std::min(queries.cols(), begin + group_size);
     const auto group = queries.middleCols(begin, end - begin);
     const Eigen::Vector3f low = group.rowwise().minCoeff(), high = group.rowwise().maxCoeff(),
                           center = 0.5f * (low + high);
     const float radius = 0.5f * (high - low).norm(), sq_limit = margin * sq_expected;
-    const bool together = num_neighbours > 1 && radius * radius < 9.0f * sq_limit;
+    const bool together = num_neighbors > 1 && radius * radius < 9.0f * sq_limit;
     if (together) {
       const float reach = 1.00001f * (radius + std::sqrt(sq_limit));  // rounding
       nearest_of_group.around.start(reach * reach);
@@ -192,11 +192,11 @@ void FlannSearch::search(const PointsRef& queries, int num_neighbours, std::vect
       const float* const query = queries.col(static_cast<Eigen::Index>(i)).data();
       int* const found = &indices[i * count];
       float* const sq_found = &sq_distances[i * count];
-      if (!together || !nearest_of_group.find(query, sq_limit, num_neighbours, found, sq_found)) {
-        NearestPoints nearest(found, sq_found, num_neighbours);
+      if (!together || !nearest_of_group.find(query, sq_limit, num_neighbors, found, sq_found)) {
+        NearestPoints nearest(found, sq_found, num_neighbors);
         tree_->index.findNeighbors(nearest, query, tree_->params);
       }
-      sq_expected += sq_found[num_neighbours - 1] / static_cast<float>(end - begin);
+      sq_expected += sq_found[num_neighbors - 1] / static_cast<float>(end - begin);
     }
   }
 }

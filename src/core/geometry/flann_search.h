@@ -17,7 +17,7 @@ public:
   explicit FlannSearch(const PointsRef& points);
   ~FlannSearch() override;
 
-  void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+  void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
               std::vector<float>& sq_distances) const override;
   void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
                     std::vector<float>& sq_distances) const override;

@@ -44,12 +44,12 @@ NeighborLists::NeighborLists(const Points& points, const std::vector<int>& neare
 
 __attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists::search(
     const PointsRef& queries, const std::vector<int>& guesses) const {
-  constexpr std::size_t kTogether = 256;  // queries: they stay in the first cache
+  constexpr std::size_t together = 256;  // queries: they stay in the first cache
   std::vector<Found> found(guesses.size());
-  std::array<std::size_t, kTogether> walking;
-  for (std::size_t begin = 0; begin < found.size(); begin += kTogether) {
+  std::array<std::size_t, together> walking;
+  for (std::size_t begin = 0; begin < found.size(); begin += together) {
     std::size_t num_walking = 0;
-    for (std::size_t i = begin; i < std::min(begin + kTogether, found.size()); ++i) {
+    for (std::size_t i = begin; i < std::min(begin + together, found.size()); ++i) {
       const Eigen::Vector3f query = queries.col(static_cast<Eigen::Index>(i));
       found[i].index = guesses[i] >= 0 ? guesses[i] : grid_.closest(query);
       const List& list = lists_[static_cast<std::size_t>(found[i].index)];
@@ -77,8 +77,8 @@ __attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists:
         const float sq_least = _mm_cvtss_f32(least), sq_before = at.sq_distance;
         const bool decides = sq_before <= list.most_sq_distance;
         const bool is_closer = sq_least < sq_before, is_alone = (lanes & (lanes - 1)) == 0;
-        constexpr unsigned kLast = 1u << (kNeighbors - 1);  // where distances are no numbers, no lane is set
-        const int change = list.index[__builtin_ctz(lanes | kLast)] - at.index;
+        constexpr unsigned last = 1u << (kNeighbors - 1);  // where distances are no numbers, no lane is set
+        const int change = list.index[__builtin_ctz(lanes | last)] - at.index;
         at.index += change & -static_cast<int>(is_closer);  // no branch: half of the guesses are the closest points
         at.sq_distance = _mm_cvtss_f32(_mm_min_ss(least, _mm_set_ss(sq_before)));
         at.is_closest = decides & ((is_closer & is_alone) | (sq_least > sq_before));

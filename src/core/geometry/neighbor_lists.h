@@ -60,9 +60,9 @@ public:
   /// \param exact answers search(); must outlive this object.
   NeighborWalk(const NeighborLists& lists, const ClosestPointSearch& exact) : lists_(lists), exact_(exact) {}
 
-  void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+  void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
               std::vector<float>& sq_distances) const override {
-    exact_.search(queries, num_neighbours, indices, sq_distances);
+    exact_.search(queries, num_neighbors, indices, sq_distances);
   }
   void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
                     std::vector<float>& sq_distances) const override;

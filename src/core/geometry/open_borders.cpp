@@ -7,24 +7,14 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t kBorderBlock = 512;  // points; chosen: smaller blocks cost more calls, larger ones idle threads
-// Neighbours among which a gap is looked for. chosen: with half as many, gaps appear inside the surface; with twice as
-// many, narrow cuts close.
-constexpr int kBorderNeighbours = 16;
-// Radians. derived: the greatest gap g (in turns) between k = 16 random directions exceeds g with the probability
-// k (1 - g)^(k - 1) at most: 0.5 % for 150 degrees. At a straight border the gap is 180 degrees and more.
-constexpr float kGap = 150.0f * static_cast<float>(kPi) / 180.0f;
-// A neighbour is off the tangent plane if its offset across exceeds this share of its distance (30 degrees), and the
-// surface folds where more than this many are. chosen: at half, noise looks like folds; at twice, the edges of a box
-// look like borders.
-constexpr float kOffPlane = 0.5f;
-constexpr int kMostOffPlane = 2;
+constexpr std::size_t points_of_block = 512;
 
 /// The eighth of a full turn that a direction points to, counted from 0 against the clock.
 int octantOf(float x, float y) {
@@ -34,24 +24,24 @@ int octantOf(float x, float y) {
   return x < 0.0f ? 3 - of_quadrant : of_quadrant;
 }
 
-/// Whether no two neighbouring octants are empty: gaps are of three octants (135 degrees) at most.
+/// Whether no two neighboring octants are empty: gaps are of three octants (135 degrees) at most.
 bool leavesNoGap(unsigned octants) {
-  static_assert(kGap > 2.4f, "a gap of three octants is 2.356");
+  static_assert(kGeometry.border_gap > 2.4f, "a gap of three octants is 2.356");
   const unsigned empty = ~octants & 0xFFu, next = (empty >> 1 | empty << 7) & 0xFFu;
   return (empty & next) == 0u;
 }
 
-/// Whether the neighbours of a sample leave a gap in its tangent plane.
-bool isAtBorder(int self, const int* neighbours, int count, const Points& samples, const Points& normals) {
+/// Whether the neighbors of a sample leave a gap in its tangent plane.
+bool isAtBorder(int self, const int* neighbors, int count, const Points& samples, const Points& normals) {
   const Eigen::Vector3f n = normals.col(self), u = n.unitOrthogonal(), v = n.cross(u);
-  std::array<Eigen::Vector2f, kBorderNeighbours + 1> directions;
-  std::array<float, kBorderNeighbours + 1> angles;
+  std::array<Eigen::Vector2f, kGeometry.border_neighbors + 1> directions;
+  std::array<float, kGeometry.border_neighbors + 1> angles;
   int num_angles = 0, num_off = 0;
   unsigned octants = 0;
   for (int k = 0; k < count; ++k) {
-    if (neighbours[k] == self) continue;
-    const Eigen::Vector3f difference = samples.col(neighbours[k]) - samples.col(self);
-    if (std::abs(n.dot(difference)) > kOffPlane * difference.norm()) {
+    if (neighbors[k] == self) continue;
+    const Eigen::Vector3f difference = samples.col(neighbors[k]) - samples.col(self);
+    if (std::abs(n.dot(difference)) > kGeometry.off_plane * difference.norm()) {
       ++num_off;
       continue;
     }
@@ -59,12 +49,12 @@ bool isAtBorder(int self, const int* neighbours, int count, const Points& sample
     direction = {u.dot(difference), v.dot(difference)};
     octants |= 1u << octantOf(direction.x(), direction.y());
   }
-  if (num_off > kMostOffPlane || num_angles == 0 || leavesNoGap(octants)) return false;
+  if (num_off > kGeometry.most_off_plane || num_angles == 0 || leavesNoGap(octants)) return false;
   for (int k = 0; k < num_angles; ++k) angles[k] = std::atan2(directions[k].y(), directions[k].x());
   std::sort(angles.begin(), angles.begin() + num_angles);
   float gap = angles[0] + 2.0f * static_cast<float>(kPi) - angles[num_angles - 1];
   for (int k = 1; k < num_angles; ++k) gap = std::max(gap, angles[k] - angles[k - 1]);
-  return gap > kGap;
+  return gap > kGeometry.border_gap;
 }
 
 }  // namespace
@@ -72,13 +62,13 @@ bool isAtBorder(int self, const int* neighbours, int count, const Points& sample
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
                               int num_threads, const FoundNeighbours* known) {
   const auto size = static_cast<std::size_t>(samples.cols());
-  const int count = static_cast<int>(std::min<Eigen::Index>(samples.cols(), kBorderNeighbours + 1));
+  const int count = static_cast<int>(std::min<Eigen::Index>(samples.cols(), kGeometry.border_neighbors + 1));
   const int num_known = known ? std::min(count, static_cast<int>(known->indices.size() / size)) : 0;
   std::vector<char> borders(size);
-  parallelRanges(size, kBorderBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(size, points_of_block, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> open, indices;
     std::vector<float> sq_distances;
-    // More neighbours only fill gaps, or fold the surface: what is inside by some of them is inside by all.
+    // More neighbors only fill gaps, or fold the surface: what is inside by some of them is inside by all.
     for (std::size_t i = begin; i < end; ++i) {
       const auto self = static_cast<int>(i);
       const int* const nearest = known ? known->indices.data() + i * known->indices.size() / size : nullptr;

@@ -7,7 +7,7 @@
 
 namespace pcl_symmetry {
 
-/// Finds the points at the open borders of a sampled surface: the neighbours in the tangent plane leave a gap, and the
+/// Finds the points at the open borders of a sampled surface: the neighbors in the tangent plane leave a gap, and the
 /// surface does not fold there.
 /// \param samples 3 x N, finite.
 /// \param search over the same samples.
@@ -19,13 +19,14 @@ namespace pcl_symmetry {
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
                               int num_threads, const FoundNeighbours* known = nullptr);
 
-/// The points within two steps of a border along neighbours: about three spacings.
+/// The points within two steps of a border along neighbors: about three spacings.
 /// \param borders what openBorders() returned.
 /// \param geometry of the samples.
 /// \return N values, 1 near a border.
 std::vector<char> nearBorders(const std::vector<char>& borders, const LocalGeometry& geometry);
 
-/// How often the place between two neighbouring samples lies within about three spacings of an open border, by chance.
+/// How often the position between two neighboring samples lies within about three spacings of an open border, by
+/// chance.
 /// \param borders what openBorders() returned.
 /// \param geometry of the samples.
 /// \return in [0, 1]; 0 for a closed surface, 1 for a wire.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/simd.h"
+#include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {
 
@@ -52,18 +53,13 @@ double sqDistancesFrom(const double* center, const double* x, const double* y, c
 BoundingBall boundingBall(const PointsRef& points) {
   BoundingBall ball;
   if (points.cols() == 0) return ball;
-  // chosen: half as many points miss more of the outermost ones, twice as many double the time
-  constexpr Eigen::Index kNumProbed = 2'500;
-  // chosen: the radius is within about 1 % of the smallest; half as many leave it farther off, twice as many take twice
-  // the time
-  constexpr int kNumIterations = 60;
-  const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kNumProbed);
+  const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kGeometry.ball_points);
   ball.center = centerOfMass(points);
   std::array<std::vector<double>, 3> probed;
   for (Eigen::Index i = 0; i < points.cols(); i += stride)
     for (int axis = 0; axis < 3; ++axis) probed[axis].push_back(points(axis, i));
   std::vector<double> sq_distances(probed[0].size());
-  for (int i = 1; i <= kNumIterations; ++i) {
+  for (int i = 1; i <= kGeometry.ball_iterations; ++i) {
     const double sq_greatest = sqDistancesFrom(ball.center.data(), probed[0].data(), probed[1].data(), probed[2].data(),
                                                sq_distances.size(), sq_distances.data());
     const auto farthest = std::find(sq_distances.begin(), sq_distances.end(), sq_greatest);

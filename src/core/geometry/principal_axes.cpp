@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <stdexcept>
 
+#include "core/geometry/geometry_rules.h"
+
 namespace pcl_symmetry {
 
 PrincipalAxes principalAxes(const PointsRef& points) {
@@ -29,12 +31,9 @@ std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes) {
 }
 
 Eigen::Isometry3d sheetPose(const PointsRef& points) {
-  // share of the extent; chosen: some roundings of a float. Smaller values turn sheets with rounded z by their
-  // principal axes, larger ones take thin tilted sheets for level ones.
-  constexpr float kFlat = 1e-6f;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const Eigen::Vector3f low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
-  if (high.z() - low.z() <= kFlat * (high - low).head<2>().norm()) {
+  if (high.z() - low.z() <= kGeometry.flat * (high - low).head<2>().norm()) {
     pose.translation().z() = 0.5 * (static_cast<double>(low.z()) + high.z());
     return pose;
   }

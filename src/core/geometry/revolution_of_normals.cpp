@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/geometry/geometry_rules.h"
 #include "core/geometry/weighted_products.h"
 
 namespace pcl_symmetry {
@@ -12,17 +13,8 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-// Radians by which a normal may miss at half its weight. chosen: the error of normals of samples with noise of a third
-// of their spacing; at half, good points lose their weight, at twice, handles keep theirs.
-constexpr double kMiss = 0.1;
-constexpr int kReweightings = 8;  // chosen: half leaves bodies with a base at the start, twice changes nothing
-// Radii. chosen: the speed of points nearer than this to the axis does not divide; at half, single points decide.
-constexpr double kLeastLever = 0.05;
-// Share of the trace. chosen: only keeps the translation along a cylinder from growing without bound.
-constexpr double kTranslationRidge = 1e-6;
-
 double weightOf(double miss) {
-  const double scaled = miss / kMiss, sum = 1.0 + scaled * scaled;
+  const double scaled = miss / kGeometry.normal_miss, sum = 1.0 + scaled * scaled;
   return 1.0 / (sum * sum);
 }
 
@@ -36,7 +28,7 @@ struct Motion {
 /// The motion with a turn of length one that moves the samples the least along their normals.
 Motion slowestAlongNormals(const Matrix6d& sum) {
   Eigen::Matrix3d shifts = sum.bottomRightCorner<3, 3>();
-  shifts.diagonal().array() += kTranslationRidge * std::max(1e-12, shifts.trace());
+  shifts.diagonal().array() += kGeometry.translation_ridge * std::max(1e-12, shifts.trace());
   const Eigen::Matrix3d coupling = sum.topRightCorner<3, 3>();
   const Eigen::Matrix3d best_shifts = -shifts.ldlt().solve(coupling.transpose());
   const Eigen::Matrix3d turns = sum.topLeftCorner<3, 3>() + coupling * best_shifts;
@@ -65,14 +57,14 @@ Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Poi
   const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
   std::vector<double> weights(oriented.size(), 1.0);
   Motion motion{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()};
-  for (int k = 0; k < kReweightings; ++k) {
+  for (int k = 0; k < kGeometry.reweightings; ++k) {
     WeightedProducts products;  // of how fast points move along their normals, by turn and by shift
     for (std::size_t i = 0; i < oriented.size(); ++i)
       products.add(oriented[i].point.cross(oriented[i].normal), oriented[i].normal, 0.0, weights[i]);
     motion = slowestAlongNormals(products.sums().topLeftCorner<6, 6>());
     for (std::size_t i = 0; i < oriented.size(); ++i) {
       const Eigen::Vector3d velocity = motion.velocityAt(oriented[i].point);
-      const double lever = std::max(kLeastLever, velocity.norm());
+      const double lever = std::max(kGeometry.least_lever, velocity.norm());
       weights[i] = weightOf(velocity.dot(oriented[i].normal) / lever) / (lever * lever);
     }
   }
@@ -81,11 +73,10 @@ Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Poi
 }
 
 Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
-  constexpr double kRidge = 1e-9;  // chosen: parallel normals leave the place along them open; far below any weight
   const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
   std::vector<double> weights(oriented.size(), 1.0);
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (int k = 0; k < kReweightings; ++k) {
+  for (int k = 0; k < kGeometry.reweightings; ++k) {
     // The point with the least sum of w |(I - n n^T) (x - center)|^2.
     WeightedProducts products;
     for (std::size_t i = 0; i < oriented.size(); ++i) {
@@ -93,12 +84,13 @@ Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, con
       products.add(n, x - n.dot(x) * n, 1.0, weights[i]);
     }
     const WeightedProducts::Matrix sums = products.sums();
-    const Eigen::Matrix3d across = (sums(6, 6) + kRidge) * Eigen::Matrix3d::Identity() - sums.topLeftCorner<3, 3>();
+    const Eigen::Matrix3d across =
+        (sums(6, 6) + kGeometry.position_ridge) * Eigen::Matrix3d::Identity() - sums.topLeftCorner<3, 3>();
     const Eigen::Vector3d pull = sums.block<3, 1>(3, 6);
     center = across.ldlt().solve(pull);
     for (std::size_t i = 0; i < oriented.size(); ++i) {
       const Eigen::Vector3d d = oriented[i].point - center;
-      const double lever = std::max(kLeastLever, d.norm());
+      const double lever = std::max(kGeometry.least_lever, d.norm());
       weights[i] = weightOf(d.cross(oriented[i].normal).norm() / lever) / (lever * lever);
     }
   }

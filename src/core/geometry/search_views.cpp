@@ -12,10 +12,10 @@ public:
   SearchInFrame(Ptr search, const Eigen::Vector3d& center, double scale)
       : search_(std::move(search)), center_(center), scale_(scale) {}
 
-  void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+  void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
               std::vector<float>& sq_distances) const override {
     const Points moved = ((queries.cast<double>() * scale_).colwise() + center_).cast<float>();
-    search_->search(moved, num_neighbours, indices, sq_distances);
+    search_->search(moved, num_neighbors, indices, sq_distances);
     for (float& sq_distance : sq_distances) sq_distance = static_cast<float>(sq_distance / (scale_ * scale_));
   }
 
@@ -33,9 +33,9 @@ public:
   }
 
   /// Asks for more neighbors until enough of them are kept.
-  void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+  void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
               std::vector<float>& sq_distances) const override {
-    const auto wanted = static_cast<std::size_t>(num_neighbours);
+    const auto wanted = static_cast<std::size_t>(num_neighbors);
     indices.clear();
     sq_distances.clear();
     std::vector<int> found;

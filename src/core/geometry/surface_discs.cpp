@@ -4,20 +4,13 @@
 #include <cmath>
 
 #include "core/base/median.h"
+#include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Spacings, edge of a cell. chosen: half takes four times the memory, twice lists twice as many discs in each cell.
-constexpr float kCellInSpacings = 1.5f;
-// Median spacings, greatest spacing that makes a disc. chosen: at half, unevenly dense surfaces get holes, at twice the
-// disc of an outlier covers much of a shape.
-constexpr float kMostSpacings = 3.0f;
-// Cells along the longest edge. derived: 96^3 cells of 4 bytes are 3.5 MB.
-constexpr float kMostCells = 96.0f;
-// Half the diagonal of a cell, cells. derived: sqrt(3) / 2.
-constexpr float kHalfDiagonal = 0.8660254f;
+constexpr float half_diagonal = 0.8660254f;  // cells: sqrt(3) / 2
 
 }  // namespace
 
@@ -27,17 +20,17 @@ SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry,
   float greatest = 0.0f;
   for (Eigen::Index i = 0; i < samples.cols(); ++i) {
     discs_.push_back({samples.col(i), geometry.normals.col(i),
-                      disc_radius * std::min(geometry.spacing[i], kMostSpacings * spacing)});
+                      disc_radius * std::min(geometry.spacing[i], kGeometry.most_disc_spacing * spacing)});
     greatest = std::max(greatest, discs_.back().radius);
   }
   const float margin = reach + greatest;
   const Eigen::Vector3f low = samples.rowwise().minCoeff(), high = samples.rowwise().maxCoeff();
   const float extent = (high - low).maxCoeff() + 2.0f * margin;
-  cell_size_ = std::max(kCellInSpacings * spacing, extent / kMostCells);
+  cell_size_ = std::max(kGeometry.disc_cell * spacing, extent / kGeometry.most_disc_cells);
   origin_ = low.array() - margin;
   const Eigen::Array3f sides = (high - low).array() + 2.0f * margin;
   size_ = (sides / cell_size_).cast<int>() + 1;
-  // Counts, then places: two passes over the same cells.
+  // Counts, then positions: two passes over the same cells.
   first_.assign(static_cast<std::size_t>(size_.prod()) + 1, 0);
   for (const Disc& disc : discs_) visitCells(disc, [&](std::size_t cell) { ++first_[cell + 1]; });
   for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
@@ -50,7 +43,7 @@ SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry,
 /// Calls visit(cell) for the cells that hold points within reach of a disc, and for some more.
 template <typename Visit>
 void SurfaceDiscs::visitCells(const Disc& disc, const Visit& visit) const {
-  const float beside = disc.radius + reach_, slack = kHalfDiagonal * cell_size_;
+  const float beside = disc.radius + reach_, slack = half_diagonal * cell_size_;
   const Eigen::Array3f low = (disc.center - origin_).array() - beside, high = low + 2.0f * beside;
   const Eigen::Array3i from = (low / cell_size_).max(0.0f).cast<int>();
   const Eigen::Array3i to = (high / cell_size_).cast<int>().min(size_ - 1);
@@ -70,9 +63,9 @@ void SurfaceDiscs::visitCells(const Disc& disc, const Visit& visit) const {
 }
 
 SurfaceDiscs::Range SurfaceDiscs::discsNear(const Eigen::Vector3f& x) const {
-  const Eigen::Array3f place = (x - origin_).array() / cell_size_;
-  if (!(place >= 0.0f).all()) return {nullptr, nullptr};
-  const Eigen::Array3i cell = place.min(static_cast<float>(kMostCells) + 2.0f).cast<int>();
+  const Eigen::Array3f position = (x - origin_).array() / cell_size_;
+  if (!(position >= 0.0f).all()) return {nullptr, nullptr};
+  const Eigen::Array3i cell = position.min(static_cast<float>(kGeometry.most_disc_cells) + 2.0f).cast<int>();
   if (!(cell < size_).all()) return {nullptr, nullptr};
   const std::size_t index = (static_cast<std::size_t>(cell.z()) * size_.y() + cell.y()) * size_.x() + cell.x();
   return {entries_.data() + first_[index], entries_.data() + first_[index + 1]};

@@ -11,19 +11,19 @@ namespace pcl_symmetry {
 /// derived: a sample is within reach at 1.25 spacings, and that circle holds pi 1.25^2 = 5 samples on average.
 constexpr int kNumWitnesses = 4;
 
-/// What the neighbourhood of each sample says about the surface.
+/// What the neighborhood of each sample says about the surface.
 struct LocalGeometry {
   Points normals;                ///< 3 x N, unit, of arbitrary sign
-  std::vector<float> roughness;  ///< N, root mean square distance of the neighbours from the tangent plane
-  std::vector<char> at_border;   ///< N, 1 if the neighbours lie to one side: the rim of a scan, or a sharp edge
+  std::vector<float> roughness;  ///< N, root mean square distance of the neighbors from the tangent plane
+  std::vector<char> at_border;   ///< N, 1 if the neighbors lie to one side: the rim of a scan, or a sharp edge
   /// N, the closest other samples, nearest first; the sample itself where there are no more
   std::vector<std::array<int, kNumWitnesses>> nearest;
-  /// N, distance between neighbouring samples: 1 / sqrt(density), input units
+  /// N, distance between neighboring samples: 1 / sqrt(density), input units
   std::vector<float> spacing;
 };
 
-/// Neighbours that give normals and spacing.
-/// derived: the error of the spacing from k neighbours is 1 / (2 sqrt(k)), 18 % for 8; fewer exceed 20 %.
+/// Neighbors that give normals and spacing.
+/// derived: the error of the spacing from k neighbors is 1 / (2 sqrt(k)), 18 % for 8; fewer exceed 20 %.
 constexpr int kNumSupportNeighbours = 8;
 
 /// The closest points of each sample.
@@ -32,18 +32,18 @@ struct FoundNeighbours {
   std::vector<float> sq_reach;
 };
 
-/// Normals by PCA of the nearest neighbours, and the local spacing of the samples.
+/// Normals by PCA of the nearest neighbors, and the local spacing of the samples.
 ///
-/// The spacing comes from the distance r_k to the k-th neighbour: a surface of density rho has k = pi rho r_k^2
-/// neighbours within r_k.
+/// The spacing comes from the distance r_k to the k-th neighbor: a surface of density rho has k = pi rho r_k^2
+/// neighbors within r_k.
 /// \param points 3 x N, finite.
 /// \param search over the same points.
-/// \param num_neighbours >= 3; clouds with fewer points use all of them.
+/// \param num_neighbors >= 3; clouds with fewer points use all of them.
 /// \param num_threads 0 = one per core.
-/// \param[out] neighbours those that were found, with the point itself: for each point num_neighbours + 1 indices,
+/// \param[out] neighbors those that were found, with the point itself: for each point num_neighbors + 1 indices,
 /// nearest first, or as many as there are points, and the squared distance of the last one; null = not wanted.
-LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbours, int num_threads,
-                            FoundNeighbours* neighbours = nullptr);
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbors, int num_threads,
+                            FoundNeighbours* neighbors = nullptr);
 
 /// A part of LocalGeometry at a few of the points.
 struct GeometryAtPlaces {
@@ -53,8 +53,8 @@ struct GeometryAtPlaces {
 
 /// \param points 3 x N, finite.
 /// \param search over the same points.
-/// \param places 3 x M, some of the points.
-GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& places,
-                                 int num_neighbours = kNumSupportNeighbours);
+/// \param positions 3 x M, some of the points.
+GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& positions,
+                                 int num_neighbors = kNumSupportNeighbours);
 
 }  // namespace pcl_symmetry

@@ -12,26 +12,24 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kMost = TangentPlanes::kMost;                        // derived: the room of the result
-constexpr float kEpsilon = std::numeric_limits<float>::epsilon();  // derived: as Eigen takes it
-
 /// Symmetric matrices of three rows, element by element: m00, m10, m20, m11, m21, m22.
-using Matrices = float[6][kMost];
+using Matrices = float[6][TangentPlanes::most];
 
 /// The steps of Eigen's SelfAdjointEigenSolver::computeDirect(), between which stand an arc tangent, a sine and a
 /// cosine.
 struct DirectSolutions {
   Matrices scaled;  ///< without their mean eigenvalue, at most 1
-  float third_trace[kMost], rho[kMost], root_q[kMost], half_b[kMost];
-  float cosine[kMost], sine[kMost];
-  std::int32_t is_open[kMost];  ///< 1 where two eigenvalues are so close that Eigen goes another way
+  float third_trace[TangentPlanes::most], rho[TangentPlanes::most], root_q[TangentPlanes::most],
+      half_b[TangentPlanes::most];
+  float cosine[TangentPlanes::most], sine[TangentPlanes::most];
+  std::int32_t is_open[TangentPlanes::most];  ///< 1 where two eigenvalues are so close that Eigen goes another way
 };
 
-/// Sums over the neighbours of each place, in the order in which they are given, and their covariance.
-/// \param points,places three coordinates each.
+/// Sums over the neighbors of each position, in the order in which they are given, and their covariance.
+/// \param points,positions three coordinates each.
 PCL_SYMMETRY_MULTIVERSION
-void addUp(const float* points, const float* places, const int* neighbours, int count, int size, float (*sums)[kMost],
-           Matrices& m) {
+void addUp(const float* points, const float* positions, const int* neighbors, int count, int size,
+           float (*sums)[TangentPlanes::most], Matrices& m) {
   float *const s0 = sums[0], *const s1 = sums[1], *const s2 = sums[2];
   for (int i = 0; i < size; ++i) {
     s0[i] = s1[i] = s2[i] = 0.0f;
@@ -40,9 +38,9 @@ void addUp(const float* points, const float* places, const int* neighbours, int 
   for (int k = 0; k < count; ++k) {
 #pragma GCC ivdep
     for (int i = 0; i < size; ++i) {
-      const std::int32_t j = 3 * neighbours[i * count + k];
-      const float d0 = points[j] - places[3 * i], d1 = points[j + 1] - places[3 * i + 1],
-                  d2 = points[j + 2] - places[3 * i + 2];
+      const std::int32_t j = 3 * neighbors[i * count + k];
+      const float d0 = points[j] - positions[3 * i], d1 = points[j + 1] - positions[3 * i + 1],
+                  d2 = points[j + 2] - positions[3 * i + 2];
       s0[i] += d0;
       s1[i] += d1;
       s2[i] += d2;
@@ -76,7 +74,7 @@ void addUp(const float* points, const float* places, const int* neighbours, int 
 
 PCL_SYMMETRY_MULTIVERSION
 void prepareRoots(const Matrices& m, int size, DirectSolutions& solutions) {
-  constexpr float kThird = 1.0f / 3.0f;  // derived: as Eigen takes it
+  constexpr float third = 1.0f / 3.0f;  // as Eigen takes it
   Matrices& scaled = solutions.scaled;
   float *const third_trace = solutions.third_trace, *const rho = solutions.rho, *const root_q = solutions.root_q,
                *const halves = solutions.half_b;
@@ -95,8 +93,8 @@ void prepareRoots(const Matrices& m, int size, DirectSolutions& solutions) {
     f /= by;
     const float c0 = a * d * f + 2.0f * b * c * e - a * e * e - d * c * c - f * b * b;
     const float c1 = a * d - b * b + a * f - c * c + d * f - e * e;
-    const float c2 = a + d + f, c2_third = c2 * kThird;
-    const float a_third = greater((c2 * c2_third - c1) * kThird, 0.0f);
+    const float c2 = a + d + f, c2_third = c2 * third;
+    const float a_third = greater((c2 * c2_third - c1) * third, 0.0f);
     const float half_b = 0.5f * (c0 + c2_third * (2.0f * c2_third * c2_third - c1));
     const float q = greater(a_third * a_third * a_third - half_b * half_b, 0.0f);
     scaled[0][i] = a;
@@ -114,7 +112,7 @@ void prepareRoots(const Matrices& m, int size, DirectSolutions& solutions) {
 
 /// The eigenvectors of the least eigenvalues.
 PCL_SYMMETRY_MULTIVERSION
-void findLeastAxes(DirectSolutions& solutions, float root_of_3, int size, float (*axes)[kMost]) {
+void findLeastAxes(DirectSolutions& solutions, float root_of_3, int size, float (*axes)[TangentPlanes::most]) {
   const Matrices& m = solutions.scaled;
   const float *const third_trace = solutions.third_trace, *const rho = solutions.rho, *const cosine = solutions.cosine,
                      *const sine = solutions.sine;
@@ -126,7 +124,9 @@ void findLeastAxes(DirectSolutions& solutions, float root_of_3, int size, float 
                 most = third_trace[i] + 2.0f * rho[i] * cosine[i];
     const float above = most - middle, below = middle - least;
     // Beside the greatest eigenvalue, the two others may be alike.
-    is_open[i] = (most - least <= kEpsilon) | ((above > below) & (below <= 2.0f * kEpsilon * above));
+    // As Eigen compares them.
+    constexpr float epsilon = std::numeric_limits<float>::epsilon();
+    is_open[i] = (most - least <= epsilon) | ((above > below) & (below <= 2.0f * epsilon * above));
     const float a = m[0][i] - least, b = m[1][i], c = m[2][i], d = m[3][i] - least, e = m[4][i], f = m[5][i] - least;
     const float abs_a = magnitude(a), abs_d = magnitude(d), abs_f = magnitude(f);
     // The column of the greatest element of the diagonal, and the two that follow it.
@@ -145,9 +145,9 @@ void findLeastAxes(DirectSolutions& solutions, float root_of_3, int size, float 
   }
 }
 
-/// Axes that are no unit vectors are put along z; distances of the neighbours from the planes.
+/// Axes that are no unit vectors are put along z; distances of the neighbors from the planes.
 PCL_SYMMETRY_MULTIVERSION
-void findRoughness(const Matrices& m, int count, int size, float (*axes)[kMost], float* roughness) {
+void findRoughness(const Matrices& m, int count, int size, float (*axes)[TangentPlanes::most], float* roughness) {
   const auto number = static_cast<float>(std::max(1, count - 3));
 #pragma GCC ivdep
   for (int i = 0; i < size; ++i) {
@@ -165,10 +165,10 @@ void findRoughness(const Matrices& m, int count, int size, float (*axes)[kMost],
 
 }  // namespace
 
-void TangentPlanes::fit(const Points& points, const PointsRef& places, const int* neighbours, int count) {
-  const auto size = static_cast<int>(places.cols());
+void TangentPlanes::fit(const Points& points, const PointsRef& positions, const int* neighbors, int count) {
+  const auto size = static_cast<int>(positions.cols());
   Matrices covariances;
-  addUp(points.data(), places.data(), neighbours, count, size, offset_sum, covariances);
+  addUp(points.data(), positions.data(), neighbors, count, size, offset_sum, covariances);
   DirectSolutions solutions;
   prepareRoots(covariances, size, solutions);
   for (int i = 0; i < size; ++i) {

@@ -182,9 +182,10 @@ RayHit TriangleTree::search(const Eigen::Vector3f& origin, const Eigen::Vector3f
     const int behind = depth;
     for (int k = 0; k < node.num_children; ++k) {
       if (!(near[k] <= far[k])) continue;
-      int place = depth++;
-      for (; !any && place > behind && stack[place - 1].near < near[k]; --place) stack[place] = stack[place - 1];
-      stack[place] = {near[k], node.child[k]};
+      int position = depth++;
+      for (; !any && position > behind && stack[position - 1].near < near[k]; --position)
+        stack[position] = stack[position - 1];
+      stack[position] = {near[k], node.child[k]};
     }
   }
   return hit;

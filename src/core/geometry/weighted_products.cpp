@@ -6,10 +6,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kLanes = 8;  // derived: numbers of the widest registers
+constexpr int num_lanes = 8;  // numbers of the widest registers
 
-/// Adds the products of each two columns and a weight, in kLanes partial sums.
-/// \param weights,columns \p stride numbers each, of which \p size count, a multiple of kLanes up to \p stride.
+/// Adds the products of each two columns and a weight, in num_lanes partial sums.
+/// \param weights,columns \p stride numbers each, of which \p size count, a multiple of num_lanes up to \p stride.
 /// \param[in,out] weighted as many numbers that are overwritten.
 /// \param[in,out] products a matrix by rows, below the diagonal.
 PCL_SYMMETRY_MULTIVERSION
@@ -19,11 +19,11 @@ void addProducts(const double* __restrict weights, const double* __restrict colu
     for (int i = 0; i < size; ++i) weighted[i] = weights[i] * columns[a * stride + i];
     for (int b = 0; b <= a; ++b) {
       const double* const other = columns + b * stride;
-      double lanes[kLanes] = {};
-      for (int i = 0; i < size; i += kLanes)
-        for (int k = 0; k < kLanes; ++k) lanes[k] += weighted[i + k] * other[i + k];
+      double lanes[num_lanes] = {};
+      for (int i = 0; i < size; i += num_lanes)
+        for (int k = 0; k < num_lanes; ++k) lanes[k] += weighted[i + k] * other[i + k];
       double sum = 0.0;
-      for (int k = 0; k < kLanes; ++k) sum += lanes[k];
+      for (int k = 0; k < num_lanes; ++k) sum += lanes[k];
       products[a * num_columns + b] += sum;
     }
   }
@@ -32,13 +32,13 @@ void addProducts(const double* __restrict weights, const double* __restrict colu
 }  // namespace
 
 void WeightedProducts::sumUp() {
-  const int size = (num_rows_ + kLanes - 1) / kLanes * kLanes;
+  const int size = (num_rows_ + num_lanes - 1) / num_lanes * num_lanes;
   for (int i = num_rows_; i < size; ++i) {
     weights_[i] = 0.0;
     for (auto& column : columns_) column[i] = 0.0;
   }
-  double weighted[kMostRows];
-  addProducts(weights_, columns_[0], kColumns, kMostRows, size, weighted, products_.data());
+  double weighted[most_rows];
+  addProducts(weights_, columns_[0], num_columns, most_rows, size, weighted, products_.data());
   num_rows_ = 0;
 }
 

@@ -3,16 +3,9 @@
 #include <Eigen/Cholesky>
 
 #include "core/registration/pose_covariance.h"
+#include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
-
-namespace {
-
-// Inertia, added to the diagonal, relative to its greatest entry and absolute: directions that nothing fixes stay where
-// they are. derived: shortens steps along the best fixed direction by 1e-4 of their length.
-constexpr double kRelativeInertia = 1e-4, kInertia = 1e-6;
-
-}  // namespace
 
 Eigen::Isometry3d MotionEquations::motion() {
   using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -26,7 +19,7 @@ Eigen::Isometry3d MotionEquations::motion() {
   gradient.head<3>() +=
       Eigen::Vector3d(turned(1, 2) - turned(2, 1), turned(2, 0) - turned(0, 2), turned(0, 1) - turned(1, 0));
   gradient.tail<3>() += points.block<3, 1>(3, 6);
-  hessian.diagonal().array() += kInertia + kRelativeInertia * hessian.diagonal().maxCoeff();
+  hessian.diagonal().array() += kRegistration.inertia + kRegistration.relative_inertia * hessian.diagonal().maxCoeff();
   const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
   Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
   if (!motion.allFinite()) return moved;

@@ -7,15 +7,11 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
+#include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Numbers that a pose is made of. derived: three of the rotation, three of the translation.
-constexpr int kNumUnknowns = 6;
-// Radii, least standard deviation of a residual. derived: the rounding of coordinates that are stored as floats.
-constexpr double kLeastDeviation = 1e-7;
 
 /// Point-to-plane distances at a pose.
 struct Residuals {
@@ -31,17 +27,17 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
                       int num_points, double reach) {
   const auto size = std::min<Eigen::Index>(num_points, scan.points.cols());
   const Eigen::Isometry3f pose = T_model_scan.cast<float>();
-  Points places(3, size);
-  for (Eigen::Index i = 0; i < size; ++i) places.col(i) = pose * scan.points.col(scan.order[i]);
+  Points positions(3, size);
+  for (Eigen::Index i = 0; i < size; ++i) positions.col(i) = pose * scan.points.col(scan.order[i]);
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  model.search->search(places, 1, closest, sq_distances);
+  model.search->search(positions, 1, closest, sq_distances);
   Residuals residuals;
   for (Eigen::Index i = 0; i < size; ++i) {
     if (sq_distances[i] > reach * reach) continue;
-    const Eigen::Vector3d x = places.col(i).cast<double>(), n = model.normals.col(closest[i]).cast<double>();
+    const Eigen::Vector3d x = positions.col(i).cast<double>(), n = model.normals.col(closest[i]).cast<double>();
     const Eigen::Vector3d turned = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
-    Eigen::Matrix<double, kNumUnknowns, 3> lever;
+    Eigen::Matrix<double, 6, 3> lever;
     lever << crossMatrix(x), Eigen::Matrix3d::Identity();
     const Motion6d row = lever * n;
     const double distance = n.dot(x - model.points.col(closest[i]).cast<double>());
@@ -81,9 +77,10 @@ MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& mo
   information.diagonal().head<3>().setConstant(1.0 / sq_turn);
   information.diagonal().tail<3>().setConstant(1.0 / sq_way);
   Residuals residuals = residualsAt(scan, model, T_model_scan, num_points, reach);
-  if (residuals.count > kNumUnknowns) {
-    const double variance = residuals.sum_squares / (residuals.count - kNumUnknowns);
-    information += hessianWithoutNoise(std::move(residuals)) / std::max(kLeastDeviation * kLeastDeviation, variance);
+  if (residuals.count > 6) {
+    const double variance = residuals.sum_squares / (residuals.count - 6);
+    information += hessianWithoutNoise(std::move(residuals)) /
+                   std::max(kRegistration.least_deviation * kRegistration.least_deviation, variance);
   }
   return information.inverse();
 }

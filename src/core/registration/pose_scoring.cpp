@@ -4,26 +4,15 @@
 #include <cmath>
 
 #include "core/registration/motion_equations.h"
+#include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Share of a point's support that depends on its normal. chosen: half lets thin walls meet their back, twice is
-// beyond 1.
-constexpr float kNormalShare = 0.7f;
-// Share of a residual along the surface. chosen: half lets poses slide away on plain surfaces, twice slows convergence.
-constexpr double kPointShare = 0.1;
-// Share of the model's points that the scan must be able to judge. chosen: half lets small scans condemn a pose by few
-// points, twice hides real conflicts.
-constexpr double kLeastJudged = 0.05;
-// Weight of a model point in free space against one of the scan. chosen: half lets silhouettes stick out, twice lets
-// holes of the scan pull the pose.
-constexpr double kSilhouetteShare = 0.5;
-
 /// The first points of a surface in the frame of another, each with its closest point there.
 struct Matches {
-  Points places, normals;
+  Points positions, normals;
   std::vector<int> closest;
 };
 
@@ -34,15 +23,15 @@ Matches match(const PosedSurface& from, const PosedSurface& to, const Eigen::Iso
   const Eigen::Vector3f translation = T_to_from.translation().cast<float>();
   Matches matches{Points(3, size), Points(3, size), std::vector<int>(size)};
   for (Eigen::Index i = 0; i < size; ++i) {
-    matches.places.col(i) = rotation * from.points.col(from.order[i]) + translation;
+    matches.positions.col(i) = rotation * from.points.col(from.order[i]) + translation;
     matches.normals.col(i) = rotation * from.normals.col(from.order[i]);
   }
   if (detail.exact) {
     std::vector<float> sq_distances;
-    to.search->search(matches.places, 1, matches.closest, sq_distances);
+    to.search->search(matches.positions, 1, matches.closest, sq_distances);
   } else {
     const ClosestPointGrid& grid = to.grid->of(to.points);
-    for (Eigen::Index i = 0; i < size; ++i) matches.closest[i] = grid.closest(matches.places.col(i));
+    for (Eigen::Index i = 0; i < size; ++i) matches.closest[i] = grid.closest(matches.positions.col(i));
   }
   return matches;
 }
@@ -50,13 +39,13 @@ Matches match(const PosedSurface& from, const PosedSurface& to, const Eigen::Iso
 /// The Gaussian of the distance of a match from its closest point.
 float nearness(const Matches& matches, Eigen::Index i, const PosedSurface& to, double width) {
   const float factor = static_cast<float>(-1.0 / (width * width));
-  return std::exp(factor * (to.points.col(matches.closest[i]) - matches.places.col(i)).squaredNorm());
+  return std::exp(factor * (to.points.col(matches.closest[i]) - matches.positions.col(i)).squaredNorm());
 }
 
 /// The Gaussian of the distance of a match from the disc about its closest point: flat, as wide as points are apart.
 float nearnessOfSurface(const Matches& matches, Eigen::Index i, const PosedSurface& to, double width) {
   const int j = matches.closest[i];
-  const Eigen::Vector3f apart = matches.places.col(i) - to.points.col(j);
+  const Eigen::Vector3f apart = matches.positions.col(i) - to.points.col(j);
   const float height = apart.dot(to.normals.col(j)), sq_height = height * height;
   const float across = std::sqrt(std::max(0.0f, apart.squaredNorm() - sq_height));
   const float beyond = std::max(0.0f, across - to.spacing[static_cast<std::size_t>(j)]);
@@ -66,12 +55,12 @@ float nearnessOfSurface(const Matches& matches, Eigen::Index i, const PosedSurfa
 /// Share of a point's support that its normal leaves it: 1 where it is parallel to that of the closest point.
 float normalFactor(const Matches& matches, Eigen::Index i, const PosedSurface& to) {
   const float cosine = matches.normals.col(i).dot(to.normals.col(matches.closest[i]));
-  return 1.0f - kNormalShare + kNormalShare * cosine * cosine;
+  return 1.0f - kRegistration.normal_share + kRegistration.normal_share * cosine * cosine;
 }
 
-/// Whether a scanner looked through the place of a match.
+/// Whether a scanner looked through the position of a match.
 bool isInFreeSpace(const Matches& matches, Eigen::Index i, const PosedSurface& to) {
-  return to.seen->depthBehind(matches.places.col(i).cast<double>()) < 0.0;
+  return to.seen->depthBehind(matches.positions.col(i).cast<double>()) < 0.0;
 }
 
 }  // namespace
@@ -80,18 +69,18 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   PoseScore score;
   const Matches on_model = match(scan_, model_, T_model_scan, detail);
   double unexplained = 0.0;
-  for (Eigen::Index i = 0; i < on_model.places.cols(); ++i) {
+  for (Eigen::Index i = 0; i < on_model.positions.cols(); ++i) {
     const float near = detail.from_surface ? nearnessOfSurface(on_model, i, model_, detail.width)
                                            : nearness(on_model, i, model_, detail.width);
     score.support += detail.from_surface ? near : near * normalFactor(on_model, i, model_);
     if (model_.seen && isInFreeSpace(on_model, i, model_)) unexplained += 1.0 - near;
   }
-  score.support /= static_cast<double>(on_model.places.cols());
-  score.conflict = unexplained / static_cast<double>(on_model.places.cols());
+  score.support /= static_cast<double>(on_model.positions.cols());
+  score.conflict = unexplained / static_cast<double>(on_model.positions.cols());
   if (!scan_.seen) return score;
   const Matches on_scan = match(model_, scan_, T_model_scan.inverse(), detail);
-  double conflict = 0.0, judged = kLeastJudged * static_cast<double>(on_scan.places.cols());
-  for (Eigen::Index i = 0; i < on_scan.places.cols(); ++i) {
+  double conflict = 0.0, judged = kRegistration.least_judged * static_cast<double>(on_scan.positions.cols());
+  for (Eigen::Index i = 0; i < on_scan.positions.cols(); ++i) {
     const float near = nearness(on_scan, i, scan_, detail.width);
     const bool in_front = isInFreeSpace(on_scan, i, scan_);
     conflict += in_front ? 1.0f - near : 0.0f;
@@ -104,17 +93,18 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
 Eigen::Isometry3d PoseScorer::step(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const {
   MotionEquations equations(detail.unit);
   const Matches on_model = match(scan_, model_, T_model_scan, detail);
-  for (Eigen::Index i = 0; i < on_model.places.cols(); ++i) {
+  for (Eigen::Index i = 0; i < on_model.positions.cols(); ++i) {
     const int j = on_model.closest[i];
     const double weight = nearness(on_model, i, model_, detail.width) * normalFactor(on_model, i, model_);
-    const Eigen::Vector3d x = on_model.places.col(i).cast<double>(), y = model_.points.col(j).cast<double>();
-    equations.addPlane(x, y, model_.normals.col(j).cast<double>(), (1.0 - kPointShare) * weight);
-    equations.addPoint(x, y, kPointShare * weight);
+    const Eigen::Vector3d x = on_model.positions.col(i).cast<double>(), y = model_.points.col(j).cast<double>();
+    equations.addPlane(x, y, model_.normals.col(j).cast<double>(), (1.0 - kRegistration.point_share) * weight);
+    equations.addPoint(x, y, kRegistration.point_share * weight);
   }
   if (scan_.seen) {
     const Matches on_scan = match(model_, scan_, T_model_scan.inverse(), detail);
-    const double share = kSilhouetteShare * static_cast<double>(on_model.places.cols()) / on_scan.places.cols();
-    for (Eigen::Index i = 0; i < on_scan.places.cols(); ++i) {
+    const double share =
+        kRegistration.silhouette_share * static_cast<double>(on_model.positions.cols()) / on_scan.positions.cols();
+    for (Eigen::Index i = 0; i < on_scan.positions.cols(); ++i) {
       if (!isInFreeSpace(on_scan, i, scan_)) continue;
       const double weight = nearness(on_scan, i, scan_, detail.width);
       const Eigen::Vector3d moving = T_model_scan * scan_.points.col(on_scan.closest[i]).cast<double>();

@@ -9,7 +9,7 @@ namespace pcl_symmetry {
 
 /// Judges and improves poses that bring a scan, or a whole object, to a model of it (Section 5.1).
 ///
-/// Every point of the scan has to lie on the model, unless the model is a scan too and could not see that place. No
+/// Every point of the scan has to lie on the model, unless the model is a scan too and could not see that position. No
 /// point of the model may lie where the scan looked through. Both are counted with a Gaussian of the distance, so that
 /// the score rises on the way from a coarse pose to the exact one.
 class PoseScorer {

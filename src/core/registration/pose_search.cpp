@@ -9,22 +9,13 @@
 #include "core/registration/pose_scoring.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/ranked_poses.h"
+#include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Points of each cloud that poses are screened by, improved coarsely and improved finely by. chosen: half ranks poses
-// by chance, twice takes twice the time.
-constexpr int kScreenPoints = 80, kCoarsePoints = 120, kFinePoints = 400;
-// Radii, width of the Gaussian of the screening. derived: half the gap of 16 degrees between 1000 rotations is 0.14 at
-// the rim, and places differ as much again.
-constexpr double kScreenWidth = 0.2;
-// Steps of each improvement, over which the Gaussian shrinks. chosen: half shrinks faster than poses follow, twice
-// takes twice the time.
-constexpr int kCoarseSteps = 10, kFineSteps = 10;
-// Poses in one block of a thread. chosen: half adds overhead, twice leaves threads idle; results do not depend on it.
-constexpr std::size_t kBlockSize = 16;
+constexpr std::size_t poses_of_block = 16;
 
 bool better(const RankedPose& a, const RankedPose& b) {
   return a.score.merit() > b.score.merit();
@@ -33,7 +24,7 @@ bool better(const RankedPose& a, const RankedPose& b) {
 /// Calls improve(pose) for each pose.
 template <typename Improve>
 void forEach(std::vector<RankedPose>& poses, int num_threads, const Improve& improve) {
-  parallelRanges(poses.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(poses.size(), poses_of_block, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) improve(poses[i]);
   });
 }
@@ -45,7 +36,7 @@ std::vector<RankedPose> screened(const PoseStarts& starts, const PoseScorer& sco
     poses.push_back({Eigen::Isometry3d(rotation), {}});
   forEach(poses, options.num_threads, [&](RankedPose& pose) {
     pose.T_model_scan = starts.pose(pose.T_model_scan.linear());
-    pose.score = scorer.score(pose.T_model_scan, {kScreenPoints, kScreenWidth});
+    pose.score = scorer.score(pose.T_model_scan, {kRegistration.screen_points, kRegistration.screen_width});
   });
   std::stable_sort(poses.begin(), poses.end(), better);
   poses.resize(std::min<std::size_t>(poses.size(), options.num_screened));
@@ -109,9 +100,11 @@ std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface
   for (const Eigen::Isometry3d& hypothesis : hypotheses) poses.push_back({hypothesis, {}});
 
   const double middle_width = std::sqrt(options.coarse_width * options.fine_width);
-  improve(poses, scorer, {kCoarseSteps, kCoarsePoints, options.coarse_width, middle_width}, options.num_threads);
+  improve(poses, scorer, {kRegistration.coarse_steps, kRegistration.coarse_points, options.coarse_width, middle_width},
+          options.num_threads);
   poses = distinctPoses(std::move(poses), options.num_refined, options);
-  improve(poses, scorer, {kFineSteps, kFinePoints, middle_width, options.fine_width}, options.num_threads);
+  improve(poses, scorer, {kRegistration.fine_steps, kRegistration.fine_points, middle_width, options.fine_width},
+          options.num_threads);
   return distinctPoses(std::move(poses), options.max_poses, options);
 }
 

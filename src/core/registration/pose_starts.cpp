@@ -5,23 +5,21 @@
 
 #include "core/base/constants.h"
 #include "core/geometry/viewing_frame.h"
+#include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Points of the model whose outline is taken. chosen: half cuts off thin parts, twice takes twice the time.
-constexpr int kOutlinePoints = 200;
-
-/// The place by which both clouds are held together, along three directions of the scanner: the middle of the outline
-/// in the picture plane, and the front along the view.
+/// The position by which both clouds are held together, along three directions of the scanner: the middle of the
+/// outline in the picture plane, and the front along the view.
 Eigen::Vector3d anchorOf(const Eigen::Matrix3Xd& in_scanner) {
   const Eigen::Vector3d low = in_scanner.rowwise().minCoeff(), high = in_scanner.rowwise().maxCoeff();
   return {0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), low.z()};
 }
 
 Eigen::Matrix3Xd sampleOf(const PosedSurface& surface) {
-  const auto size = std::min<Eigen::Index>(kOutlinePoints, surface.points.cols());
+  const auto size = std::min<Eigen::Index>(kRegistration.outline_points, surface.points.cols());
   Eigen::Matrix3Xd sample(3, size);
   for (Eigen::Index i = 0; i < size; ++i) sample.col(i) = surface.points.col(surface.order[i]).cast<double>();
   return sample;
@@ -30,12 +28,12 @@ Eigen::Matrix3Xd sampleOf(const PosedSurface& surface) {
 }  // namespace
 
 std::vector<Eigen::Matrix3d> uniformRotations(int num_rotations) {
-  // Second irrational of the spirals beside sqrt(2). derived: the positive root of psi^4 = psi + 4.
-  constexpr double kPsi = 1.533751168755204288118041;
+  constexpr double psi = 1.533751168755204288118041;  // second irrational of the spirals beside sqrt(2): the positive
+                                                      // root of psi^4 = psi + 4
   std::vector<Eigen::Matrix3d> rotations;
   for (int i = 0; i < num_rotations; ++i) {
     const double s = i + 0.5, share = s / num_rotations;
-    const double a = 2.0 * kPi * s / std::sqrt(2.0), b = 2.0 * kPi * s / kPsi;
+    const double a = 2.0 * kPi * s / std::sqrt(2.0), b = 2.0 * kPi * s / psi;
     const double inner = std::sqrt(share), outer = std::sqrt(1.0 - share);
     rotations.push_back(
         Eigen::Quaterniond(outer * std::cos(b), inner * std::sin(a), inner * std::cos(a), outer * std::sin(b))

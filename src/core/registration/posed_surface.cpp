@@ -6,23 +6,11 @@
 #include "core/base/median.h"
 #include "core/base/random.h"
 #include "core/geometry/surface_normals.h"
+#include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Share of the spacing; rougher surfaces take normals from more neighbours. chosen: half blurs the edges of clean
-// scans, twice leaves noisy scans with random normals.
-constexpr double kRoughShare = 0.15;
-// Neighbours on rough surfaces. chosen: four times as many halve the error of the normals; half is noisier, twice blurs
-// edges.
-constexpr int kNumRoughNeighbours = 32;
-
-// Cells along each side of the grid. chosen: half gives wrong neighbours, twice takes eight times the time.
-constexpr int kCells = 48;
-// Cells along each side of the grid of few points. chosen: as wide as a thousand points of a surface are apart; half
-// gives wrong neighbours, twice takes eight times the memory.
-constexpr int kFewCells = 24;
 
 std::vector<int> randomOrder(int size, std::uint64_t seed) {
   std::vector<int> order(size);
@@ -44,13 +32,13 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
     : points(input),
       order(randomOrder(static_cast<int>(input.cols()), seed)),
       seen(std::move(seen_space)),
-      grid(std::make_shared<LateGrid>(kCells)),
+      grid(std::make_shared<LateGrid>(kRegistration.cells)),
       search(makeFlannSearch(input)) {
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, num_threads);
   const double typical = median(geometry.spacing);
   spacing = geometry.spacing;
-  if (median(geometry.roughness) > kRoughShare * typical)
-    geometry = localGeometry(points, *search, kNumRoughNeighbours, num_threads);
+  if (median(geometry.roughness) > kRegistration.rough_share * typical)
+    geometry = localGeometry(points, *search, kRegistration.num_rough_neighbors, num_threads);
   normals = std::move(geometry.normals);
   accuracy = typical + 2.0 * median(std::move(geometry.roughness));
 }
@@ -60,7 +48,7 @@ PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normal
       normals(known_normals),
       order(static_cast<std::size_t>(input.cols())),
       seen(std::move(seen_space)),
-      grid(std::make_shared<LateGrid>(kFewCells)) {
+      grid(std::make_shared<LateGrid>(kRegistration.few_cells)) {
   std::iota(order.begin(), order.end(), 0);
 }
 

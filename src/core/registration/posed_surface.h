@@ -32,7 +32,7 @@ private:
 struct PosedSurface {
   Points points;                   ///< 3 x N
   Points normals;                  ///< 3 x N, unit, of any sign
-  std::vector<float> spacing;      ///< N, distance between neighbouring samples there
+  std::vector<float> spacing;      ///< N, distance between neighboring samples there
   std::vector<int> order;          ///< N, the points in random order: the first k are an even sample of the surface
   double accuracy = 0.0;           ///< distance within which samples of one surface meet: their spacing and their noise
   std::optional<Visibility> seen;  ///< what the scanner saw; nothing = the cloud shows its object from all sides

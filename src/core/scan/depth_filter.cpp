@@ -6,35 +6,13 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/scan/scan_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();  // derived: the depth of a pixel without a point
-constexpr std::size_t kRowsOfBlock = 8;  // chosen: half costs more calls, twice leaves threads idle
-// Share of the pixels by which the error is measured. chosen: the rest has edges; at half, the error of quantised
-// depths is 0, at all, edges are errors.
-constexpr double kEvenShare = 0.8;
-// Root mean square of the least 80 % of the magnitudes of a normal distribution, per standard deviation.
-// derived: the truncated second moment for |x| < 1.2816, 1 - 2 * 1.2816 * 0.1755 / 0.8 = 0.4377; its root.
-constexpr double kTrimmedDeviation = 0.6616;
-// Pixel sizes. chosen: errors below this share do no harm to shapes; at half, curved surfaces count as errors, at
-// twice, noise of a tenth of the spacing stays.
-constexpr double kLeastError = 0.1;
-// Tangent of the slant of a surface up to which neighbours count at the start; the fit follows steeper ones by itself.
-// measured: among 1, 1.5, 2 and 3.7, the least errors on the objects of five scenes of the tuning fold with the noise
-// of a structured-light camera.
-constexpr double kSlantAtStart = 1.0;
-// Errors of an inverse depth beyond which a pixel shows another surface. measured: among 2.5, 3 and 4.7, as above.
-constexpr float kCut = 3.0f;
-// The same between a pixel and the plane of its neighbours: beyond, it flies. derived: 1.2 % of normal errors are
-// greater. chosen: at 4.7, objects keep pixels that fly; at half, holes appear in surfaces.
-constexpr float kOwnCut = 2.5f;
-constexpr int kRounds = 3;  // chosen: weights settle; one less leaves edges blurred, more change nothing
-// Sum of the weights of the neighbours of a pixel that flies, neighbours. chosen: a leg of two pixels has ten; at half,
-// flying pixels in line hold each other, at twice, thin parts are lost.
-constexpr float kFewest = 4.0f;
+constexpr std::size_t rows_of_block = 8;
 
 bool hasDepth(float depth) {
   return depth > 0.0f && std::isfinite(depth);
@@ -43,14 +21,14 @@ bool hasDepth(float depth) {
 std::vector<float> inverted(const std::vector<float>& depths) {
   std::vector<float> inverse(depths.size());
   std::transform(depths.begin(), depths.end(), inverse.begin(),
-                 [](float depth) { return hasDepth(depth) ? 1.0f / depth : kNone; });
+                 [](float depth) { return hasDepth(depth) ? 1.0f / depth : std::numeric_limits<float>::quiet_NaN(); });
   return inverse;
 }
 
-/// What the neighbours say about the inverse depth of a pixel.
+/// What the neighbors say about the inverse depth of a pixel.
 struct Fit {
-  float inverse_depth = kNone;
-  float weight = 0.0f;  ///< of the neighbours
+  float inverse_depth = std::numeric_limits<float>::quiet_NaN();
+  float weight = 0.0f;  ///< of the neighbors
 };
 
 /// Weighted least squares of a + b du + c dv.
@@ -80,17 +58,17 @@ public:
         height_(image.height),
         radius_(radius),
         error_(static_cast<float>(error)),
-        slant_(static_cast<float>(kSlantAtStart * image.pixel_angle)),
+        slant_(static_cast<float>(kScan.slant_at_start * image.pixel_angle)),
         inverse_(inverted(image.depths)) {}
 
   /// \return the filtered depth; NaN where the pixel flies.
   float at(int u, int v) const {
     const float own = inverse_[index(u, v)];
-    if (!std::isfinite(own)) return kNone;
+    if (!std::isfinite(own)) return std::numeric_limits<float>::quiet_NaN();
     const Fit fit = fitAt(u, v, own);
-    const bool flies =
-        fit.weight < kFewest || !(std::abs(own - fit.inverse_depth) <= kOwnCut * error_) || !(fit.inverse_depth > 0.0f);
-    return flies ? kNone : 1.0f / fit.inverse_depth;
+    const bool flies = fit.weight < kScan.fewest_neighbors ||
+                       !(std::abs(own - fit.inverse_depth) <= kScan.flying_cut * error_) || !(fit.inverse_depth > 0.0f);
+    return flies ? std::numeric_limits<float>::quiet_NaN() : 1.0f / fit.inverse_depth;
   }
 
 private:
@@ -107,14 +85,14 @@ private:
   }
 
   Fit fitAt(int u, int v, float own) const {
-    const float cut = kCut * error_, slope = slant_ * own;
+    const float cut = kScan.surface_cut * error_, slope = slant_ * own;
     PixelPlane start;
     around(u, v, [&](float du, float dv, float value) {
       if (std::abs(value - own) <= cut + slope * (std::abs(du) + std::abs(dv))) start.add(du, dv, value, 1.0f);
     });
     Eigen::Vector3f plane = start.solve();
     Fit fit;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kScan.filter_rounds; ++round) {
       PixelPlane next;
       fit = {};
       around(u, v, [&](float du, float dv, float value) {
@@ -124,7 +102,7 @@ private:
         next.add(du, dv, value, weight);
         if (du != 0.0f || dv != 0.0f) fit.weight += weight;
       });
-      if (fit.weight < kFewest) return fit;
+      if (fit.weight < kScan.fewest_neighbors) return fit;
       plane = next.solve();
     }
     fit.inverse_depth = plane[0];
@@ -149,18 +127,18 @@ double inverseDepthError(const DepthImage& image) {
     }
   }
   if (bends.empty()) return 0.0;
-  const auto size = static_cast<std::ptrdiff_t>(std::ceil(kEvenShare * static_cast<double>(bends.size())));
+  const auto size = static_cast<std::ptrdiff_t>(std::ceil(kScan.even_share * static_cast<double>(bends.size())));
   std::nth_element(bends.begin(), bends.begin() + size - 1, bends.end());
   double sum = 0.0;
   for (std::ptrdiff_t i = 0; i < size; ++i) sum += static_cast<double>(bends[i]) * bends[i];
   // derived: a second difference has 1 + 4 + 1 times the variance of a pixel.
-  return std::sqrt(sum / static_cast<double>(size) / 6.0) / kTrimmedDeviation;
+  return std::sqrt(sum / static_cast<double>(size) / 6.0) / kScan.trimmed_deviation;
 }
 
 FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads) {
   FilteredDepths result{image.depths, 0, 0.0};
   for (float& depth : result.depths)
-    if (!hasDepth(depth)) depth = kNone;
+    if (!hasDepth(depth)) depth = std::numeric_limits<float>::quiet_NaN();
   const double error = inverseDepthError(image);
   double sum = 0.0, count = 0.0;
   for (const float depth : result.depths) {
@@ -169,11 +147,11 @@ FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads
     count += 1.0;
   }
   // An error of depth over the size of a pixel, both at the mean inverse depth.
-  if (count == 0.0 || error < kLeastError * image.pixel_angle * sum / count) return result;
+  if (count == 0.0 || error < kScan.least_error * image.pixel_angle * sum / count) return result;
   result.inverse_error = error;
   const std::vector<float> before = result.depths;
   const DepthFilter filter(image, radius, error);
-  parallelRanges(static_cast<std::size_t>(image.height), kRowsOfBlock, num_threads,
+  parallelRanges(static_cast<std::size_t>(image.height), rows_of_block, num_threads,
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t v = begin; v < end; ++v)
                      for (int u = 0; u < image.width; ++u)

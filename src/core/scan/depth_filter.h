@@ -9,7 +9,7 @@ namespace pcl_symmetry {
 struct DepthImage {
   int width, height;          ///< >= 1
   std::vector<float> depths;  ///< along the forward axis, > 0; NaN or infinite where the pixel holds no point
-  double pixel_angle;         ///< between neighbouring pixels, radians, > 0
+  double pixel_angle;         ///< between neighboring pixels, radians, > 0
 };
 
 struct FilteredDepths {
@@ -18,7 +18,7 @@ struct FilteredDepths {
   double inverse_error = 0.0;  ///< standard deviation of the errors of the inverse depths that were taken out
 };
 
-/// Errors of the inverse depths, from what neighbours on slanted planes cannot explain: there, inverse depths grow
+/// Errors of the inverse depths, from what neighbors on slanted planes cannot explain: there, inverse depths grow
 /// evenly from pixel to pixel. Errors of stereo and of structured light are the same for all inverse depths.
 /// \return standard deviation, units of the inverse depths; 0 for fewer than three pixels in line.
 double inverseDepthError(const DepthImage& image);
@@ -27,7 +27,7 @@ double inverseDepthError(const DepthImage& image);
 ///
 /// Each depth becomes that of the plane through the pixels around it, fitted to their inverse depths: those of a
 /// slanted plane grow evenly from pixel to pixel. Pixels of other surfaces do not count, so that edges stay. A pixel
-/// that hardly any neighbour agrees with is a flying one, between two surfaces, and is left out. Pictures without
+/// that hardly any neighbor agrees with is a flying one, between two surfaces, and is left out. Pictures without
 /// errors stay as they are.
 /// \param radius of the square around a pixel, pixels, >= 1.
 /// \param num_threads 0 = one per core; the result does not depend on it.

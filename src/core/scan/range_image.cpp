@@ -6,71 +6,38 @@
 
 #include "core/base/constants.h"
 #include "core/scan/ray_gaps.h"
+#include "core/scan/scan_rules.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Rays at more than 75 degrees to the middle make no picture. chosen: a wider cone stretches the picture at its rim by
-// 1 / cos^2, a narrower one refuses viewpoints close to the object.
+// Rays at more than 75 degrees to the middle make no picture: it would be stretched by 1 / cos^2 there.
 const double kLeastCosine = std::cos(75.0 * kPi / 180.0);
-// chosen: a surface that faces the viewer has half the average density, which leaves exp(-2), one pixel in seven, empty
-// and can be closed. Half as many leave holes in surfaces, twice as many blur the silhouette.
-constexpr double kPointsPerPixel = 4.0;
-// The same where the rays of a scene lie in rings. measured: scenes of a LiDAR scanner with 64 rings, tuning fold: at
-// 4, silhouettes are as wide as the rings are apart, and asymmetric objects pass for symmetric ones.
-constexpr double kPointsPerRingPixel = 1.3;
-// Typical gap in pixels of that size from which on the rays lie in rings. derived: it is 2 for points at random and 1
-// for the rows of a depth camera; 64 rings of 26.8 degrees have 3, 16 rings 14.
-constexpr double kGapOfRings = 3.0;
-// Typical gaps that are bridged. chosen: at half, a ring that misses a dark spot leaves a hole in the surface, twice
-// closes openings between objects.
-constexpr double kLongestBridge = 3.0;
-// pixels of a side that surround the filled ones. derived: one on each side, and one for rounding on each.
-constexpr double kRim = 4.0;
-// share of the squared longest side; chosen: points along a line get pixels with an area. Any tiny value will do.
-constexpr double kLeastArea = 1e-6;
-// chosen: fewer may leave the size off by more than its accuracy, more take time
-constexpr int kPixelSizeRounds = 4;
-// share of the size; chosen: it leaves the points in a pixel off by 10 %, twice as much by 20 %, half takes more rounds
-constexpr double kPixelSizeAccuracy = 0.05;
-// neighbours of eight; chosen: fewer widen the silhouette, more leave holes open
-constexpr int kClosingNeighbours = 5;
-// chosen: each pass narrows holes by a pixel on each side. Fewer leave holes, more fill true notches.
-constexpr int kClosingPasses = 3;
-// share of the filled pixels; chosen: less leaves gaps between sparse points, more closes true openings such as handles
-constexpr double kSmallHole = 0.01;
-
-// points; chosen: a gap between samples of one surface. A scene holds many objects: a share of the picture, as for
-// one object, would close the space between them. Half leaves holes in sparse surfaces, twice closes handles.
-constexpr double kLargestSceneHole = 100.0;
-// Directions of four in which a pixel of the picture has filled ones. chosen: with 2, corners that no ray passed count
-// as seen, with 4, the sky between two objects does not.
-constexpr int kInsideSides = 3;
 
 /// Pixels of such a size that the filled ones have \p points_per_pixel points on average.
-PixelGrid fitPixels(const std::vector<Eigen::Array2d>& places, std::size_t max_pixels, double points_per_pixel) {
+PixelGrid fitPixels(const std::vector<Eigen::Array2d>& positions, std::size_t max_pixels, double points_per_pixel) {
   const double largest_side = std::floor(std::sqrt(static_cast<double>(max_pixels)));
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Eigen::Array2d& place : places) {
-    low = low.min(place);
-    high = high.max(place);
+  for (const Eigen::Array2d& position : positions) {
+    low = low.min(position);
+    high = high.max(position);
   }
   const Eigen::Array2d extent = high - low;
-  const double longest = extent.maxCoeff(), num_points = static_cast<double>(places.size());
-  PixelGrid grid{low, std::sqrt(std::max(extent.prod(), kLeastArea * longest * longest) / num_points)};
+  const double longest = extent.maxCoeff(), num_points = static_cast<double>(positions.size());
+  PixelGrid grid{low, std::sqrt(std::max(extent.prod(), 1e-6 * longest * longest) / num_points)};
   for (int round = 1;; ++round) {
-    grid.size = std::max(grid.size, longest / std::max(1.0, largest_side - kRim));
+    grid.size = std::max(grid.size, longest / std::max(1.0, largest_side - 4.0));
     if (!(grid.size > 0.0)) grid.size = 1.0;
     grid.width = grid.column(high) + 2;
     grid.height = grid.row(high) + 2;
     std::vector<char> filled(grid.numPixels(), 0);
-    for (const Eigen::Array2d& place : places) filled[grid.at(place)] = 1;
+    for (const Eigen::Array2d& position : positions) filled[grid.at(position)] = 1;
     const auto num_filled = std::count(filled.begin(), filled.end(), 1);
     const double wanted = std::sqrt(points_per_pixel * static_cast<double>(num_filled) / num_points);
-    const bool settled = wanted > 1.0 - kPixelSizeAccuracy && wanted < 1.0 + kPixelSizeAccuracy;
-    if (round == kPixelSizeRounds || settled) return grid;
+    const bool settled = wanted > 1.0 - kScan.pixel_size_accuracy && wanted < 1.0 + kScan.pixel_size_accuracy;
+    if (round == 4 || settled) return grid;
     grid.size *= wanted;
   }
 }
@@ -83,7 +50,7 @@ void visitAround(int u, int v, int width, int height, const Visit& visit) {
       visit(static_cast<std::size_t>(y) * width + x);
 }
 
-/// Fills empty pixels that most neighbours surround, with the depth nearest to the viewer: space counts as free only if
+/// Fills empty pixels that most neighbors surround, with the depth nearest to the viewer: space counts as free only if
 /// a point lies behind it.
 void closeHoles(std::vector<float>& depths, int width, int height) {
   const std::vector<float> before = depths;
@@ -97,7 +64,7 @@ void closeHoles(std::vector<float>& depths, int width, int height) {
         num_filled += before[near] != Visibility::kBackground ? 1 : 0;
         nearest = std::min(nearest, before[near]);
       });
-      if (num_filled >= kClosingNeighbours) depths[at] = nearest;
+      if (num_filled >= kScan.closing_neighbors) depths[at] = nearest;
     }
   }
 }
@@ -110,7 +77,7 @@ void closeGaps(std::vector<float>& depths, int width, int height, std::size_t la
   const auto num_empty = std::count(depths.begin(), depths.end(), Visibility::kBackground);
   const double largest =
       std::min(static_cast<double>(largest_hole),
-               kSmallHole * static_cast<double>(depths.size() - static_cast<std::size_t>(num_empty)));
+               kScan.small_hole * static_cast<double>(depths.size() - static_cast<std::size_t>(num_empty)));
   std::vector<char> visited(depths.size(), 0);
   std::vector<std::size_t> region;
   for (std::size_t start = 0; start < depths.size(); ++start) {
@@ -133,10 +100,10 @@ void closeGaps(std::vector<float>& depths, int width, int height, std::size_t la
 }
 
 RangeImage nearestInPixels(const SeenPlaces& seen, std::size_t max_pixels, double points_per_pixel) {
-  RangeImage image{fitPixels(seen.places, max_pixels, points_per_pixel), {}};
+  RangeImage image{fitPixels(seen.positions, max_pixels, points_per_pixel), {}};
   image.depths.assign(image.grid.numPixels(), Visibility::kBackground);
-  for (std::size_t i = 0; i < seen.places.size(); ++i) {
-    float& depth = image.depths[image.grid.at(seen.places[i])];
+  for (std::size_t i = 0; i < seen.positions.size(); ++i) {
+    float& depth = image.depths[image.grid.at(seen.positions[i])];
     depth = std::min(depth, seen.depths[i]);
   }
   return image;
@@ -144,12 +111,12 @@ RangeImage nearestInPixels(const SeenPlaces& seen, std::size_t max_pixels, doubl
 
 /// Closes what is empty between the points of one surface.
 void closeSurfaces(RangeImage& image, std::size_t largest_hole) {
-  for (int pass = 0; pass < kClosingPasses; ++pass) closeHoles(image.depths, image.grid.width, image.grid.height);
+  for (int pass = 0; pass < kScan.closing_passes; ++pass) closeHoles(image.depths, image.grid.width, image.grid.height);
   closeGaps(image.depths, image.grid.width, image.grid.height, largest_hole);
 }
 
 /// Turns empty pixels beyond the measured part of the picture to Visibility::kNoRay: those that have filled pixels in
-/// fewer than kInsideSides of the four directions along rows and columns.
+/// fewer than kScan.inside_sides of the four directions along rows and columns.
 void forgetOutside(RangeImage& image) {
   const int width = image.grid.width, height = image.grid.height;
   // Of each pixel, the number of the four directions in which a filled pixel lies.
@@ -172,7 +139,7 @@ void forgetOutside(RangeImage& image) {
     walk(static_cast<std::size_t>(height - 1) * width + u, -width, height);
   }
   for (std::size_t i = 0; i < image.depths.size(); ++i)
-    if (num_sides[i] < kInsideSides) image.depths[i] = Visibility::kNoRay;
+    if (num_sides[i] < kScan.inside_sides) image.depths[i] = Visibility::kNoRay;
 }
 
 }  // namespace
@@ -180,35 +147,35 @@ void forgetOutside(RangeImage& image) {
 SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input,
                       FieldOfView field) {
   SeenPlaces seen;
-  seen.places.reserve(static_cast<std::size_t>(points.cols()));
+  seen.positions.reserve(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d ray = R_camera_input * (points.col(i).cast<double>() - viewpoint);
     const bool inside = field == FieldOfView::Cone ? ray.z() > kLeastCosine * ray.norm()
                                                    : ray.z() > 0.0 && ray.head<2>().cwiseAbs().maxCoeff() <= ray.z();
     if (!inside) continue;
-    seen.places.push_back(ray.head<2>().array() / ray.z());
+    seen.positions.push_back(ray.head<2>().array() / ray.z());
     seen.depths.push_back(static_cast<float>(ray.z()));
   }
   return seen;
 }
 
 RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels) {
-  RangeImage image = nearestInPixels(seen, max_pixels, kPointsPerPixel);
+  RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_pixel);
   closeSurfaces(image, std::numeric_limits<std::size_t>::max());
   return image;
 }
 
 RangeImage sceneRangeImage(const SeenPlaces& seen, std::size_t max_pixels) {
-  RangeImage image = nearestInPixels(seen, max_pixels, kPointsPerRingPixel);
+  RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_ring_pixel);
   const PartialImage partial{image.grid.width, image.grid.height, image.depths};
   const double gap = typicalGap(partial);
-  if (gap < kGapOfRings) {
-    image = nearestInPixels(seen, max_pixels, kPointsPerPixel);
-    closeSurfaces(image, static_cast<std::size_t>(kLargestSceneHole / kPointsPerPixel));
+  if (gap < kScan.gap_of_rings) {
+    image = nearestInPixels(seen, max_pixels, kScan.points_per_pixel);
+    closeSurfaces(image, static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_pixel));
   } else {
-    bridgeGaps(partial, kLongestBridge * gap);
+    bridgeGaps(partial, kScan.longest_bridge * gap);
     closeGaps(image.depths, partial.width, partial.height,
-              static_cast<std::size_t>(kLargestSceneHole / kPointsPerRingPixel));
+              static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_ring_pixel));
   }
   forgetOutside(image);
   return image;

@@ -16,14 +16,14 @@ enum class FieldOfView {
 
 /// Points in the picture plane at depth one.
 struct SeenPlaces {
-  std::vector<Eigen::Array2d> places;
+  std::vector<Eigen::Array2d> positions;
   std::vector<float> depths;  ///< along the direction that the camera looks along, input units
 };
 
-/// The pixels of a picture. Pixel (u, v) contains the places about its integer coordinates; one empty pixel at least
+/// The pixels of a picture. Pixel (u, v) contains the positions about its integer coordinates; one empty pixel at least
 /// surrounds the filled ones.
 struct PixelGrid {
-  Eigen::Array2d low;  ///< least coordinates of the places
+  Eigen::Array2d low;  ///< least coordinates of the positions
   double size;         ///< of a pixel, at depth one
   int width = 1, height = 1;
 
@@ -32,7 +32,7 @@ struct PixelGrid {
   std::size_t at(const Eigen::Array2d& p) const { return static_cast<std::size_t>(row(p)) * width + column(p); }
   std::size_t numPixels() const { return static_cast<std::size_t>(width) * height; }
 
-  /// Takes places at depth one to pixels.
+  /// Takes positions at depth one to pixels.
   Eigen::Matrix3d toPixels() const {
     Eigen::Matrix3d to_pixels = Eigen::Matrix3d::Identity();
     to_pixels(0, 0) = to_pixels(1, 1) = 1.0 / size;
@@ -56,7 +56,7 @@ SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
 
 /// A range image of the points of one object, without order. The size of the pixels follows the distance between the
 /// points in the picture; gaps between the points are closed. Empty pixels are background.
-/// \param seen at least one place.
+/// \param seen at least one position.
 /// \param max_pixels least number of pixels that make them larger, >= 16.
 RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels);
 
@@ -64,7 +64,7 @@ RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels);
 /// pixels are as small as the denser distance, and the gaps between the rings are bridged. Empty pixels beyond the
 /// measured part of the picture are Visibility::kNoRay: those with filled pixels in fewer than three of the four
 /// directions along rows and columns.
-/// \param seen at least one place.
+/// \param seen at least one position.
 /// \param max_pixels least number of pixels that make them larger, >= 16.
 RangeImage sceneRangeImage(const SeenPlaces& seen, std::size_t max_pixels);
 

@@ -13,9 +13,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-// pixels; derived: longer than any gap, where a line holds no other filled pixel.
-constexpr float kEndless = std::numeric_limits<float>::infinity();
-
 /// A step from pixel to pixel along a line of the picture.
 struct PixelStep {
   int du, dv;
@@ -50,7 +47,7 @@ void visitLines(const PartialImage& image, const PixelStep& step, const Visit& v
 
 /// Of each filled pixel, the distance to the next one along a step or against it.
 std::vector<float> distancesAlong(const PartialImage& image, const PixelStep& step) {
-  std::vector<float> distances(image.depths.size(), kEndless);
+  std::vector<float> distances(image.depths.size(), std::numeric_limits<float>::infinity());
   visitLines(image, step, [&](std::ptrdiff_t from, std::ptrdiff_t to, int count) {
     for (const std::ptrdiff_t at : {from, to}) distances[at] = std::min(distances[at], static_cast<float>(count));
   });
@@ -63,12 +60,13 @@ double typicalGap(const PartialImage& image) {
   const std::vector<float> in_row = distancesAlong(image, {1, 0}), in_column = distancesAlong(image, {0, 1});
   std::vector<double> gaps;
   for (std::size_t i = 0; i < in_row.size(); ++i)
-    if (in_row[i] < kEndless && in_column[i] < kEndless) gaps.push_back(std::max(in_row[i], in_column[i]));
+    if (in_row[i] < std::numeric_limits<float>::infinity() && in_column[i] < std::numeric_limits<float>::infinity())
+      gaps.push_back(std::max(in_row[i], in_column[i]));
   return gaps.empty() ? 0.0 : median(std::move(gaps));
 }
 
 void bridgeGaps(PartialImage image, double longest) {
-  std::vector<float> filled = image.depths, shortest(filled.size(), kEndless);
+  std::vector<float> filled = image.depths, shortest(filled.size(), std::numeric_limits<float>::infinity());
   for (const PixelStep& step : {PixelStep{1, 0}, PixelStep{0, 1}, PixelStep{1, 1}, PixelStep{-1, 1}}) {
     visitLines(image, step, [&](std::ptrdiff_t from, std::ptrdiff_t to, int count) {
       const float gap = step.length() * static_cast<float>(count);

@@ -37,12 +37,8 @@ public:
   std::optional<Eigen::Vector3d> bestViewpoint() const;
 
   /// \return viewpoints that leave at most \p most_unexplained, minima of what they leave, the most likely direction
-  /// first. Two flat pieces are as dense from several places.
+  /// first. Two flat pieces are as dense from several positions.
   std::vector<Eigen::Vector3d> viewpoints(double most_unexplained) const;
-
-  /// Variance of log(density) that is accuracy rather than pattern. chosen: 3 %, the accuracy of a density where a scan
-  /// is perfect. Half lets the regular points of a whole object pass for a pattern, twice asks more of flat objects.
-  static constexpr double kLeastVariance = 1e-3;
 
   /// \return a ball around the points.
   const BoundingBall& ball() const { return ball_; }

@@ -19,11 +19,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-// derived: the empty pixels around a picture leave none of fewer.
-constexpr std::size_t kLeastPixels = 16;
-// length of the mean of unit vectors; chosen: rays all around have no direction in common. Any tiny value will do.
-constexpr double kLeastMean = 1e-6;
-
 /// Takes points of the input frame to the frame of a camera.
 Visibility::Projection cameraAt(const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input) {
   Visibility::Projection projection;
@@ -65,7 +60,7 @@ std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector
                                     const Eigen::Matrix3d& R_camera_input, FieldOfView field, std::size_t max_pixels,
                                     Eigen::Index least_seen) {
   const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, field);
-  if (seen.places.empty() || static_cast<Eigen::Index>(seen.places.size()) < least_seen) return std::nullopt;
+  if (seen.positions.empty() || static_cast<Eigen::Index>(seen.positions.size()) < least_seen) return std::nullopt;
   RangeImage image = sceneRangeImage(seen, max_pixels);
   return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
                     std::move(image.depths), Visibility::kNoRay);
@@ -82,9 +77,9 @@ struct PixelFrame {
 
 /// Homogeneous pixels of some points, and whether they lie before what the picture shows there.
 struct Images {
-  static constexpr int kMost = 64;  ///< points. chosen: they stay in the first cache
-  double x[kMost], y[kMost], z[kMost];
-  int is_free[kMost];
+  static constexpr int most = 64;
+  double x[most], y[most], z[most];
+  int is_free[most];
 };
 
 /// The steps of Visibility::Picture::depthBehind() but for the sides.
@@ -141,13 +136,13 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   if (!forward.allFinite() || forward.norm() < 0.5) return std::nullopt;
   const Eigen::Matrix3d R_camera_input = viewingFrame(forward);
   const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, FieldOfView::Cone);
-  if (static_cast<Eigen::Index>(seen.places.size()) < points.cols()) return std::nullopt;
+  if (static_cast<Eigen::Index>(seen.positions.size()) < points.cols()) return std::nullopt;
   RangeImage image = rangeImage(seen, kMaxPixels);
   // Rays beside the object met nothing either: their space is free, as far as the picture reached.
   Visibility visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width,
                         image.grid.height, std::move(image.depths), kBackground);
   const Eigen::Matrix3d to_places = image.grid.toPixels().inverse();
-  for (const FrameSide& side : frameSides(seen.places))
+  for (const FrameSide& side : frameSides(seen.positions))
     visibility.pictures_.front().sides.emplace_back(to_places.transpose() *
                                                     Eigen::Vector3d(side.normal.x(), side.normal.y(), -side.offset));
   return visibility;
@@ -155,11 +150,11 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
 
 std::optional<Visibility> Visibility::ofScene(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                               std::size_t max_pixels) {
-  check(max_pixels >= kLeastPixels, "max_pixels", max_pixels, ">= 16");
+  check(max_pixels >= std::size_t{16}, "max_pixels", max_pixels, ">= 16");
   const Rays rays = raysTo(points, viewpoint);
   if (rays.count == 0) return std::nullopt;
   const Eigen::Vector3d forward =
-      rays.mean.norm() > kLeastMean ? Eigen::Vector3d(rays.mean.normalized()) : Eigen::Vector3d::UnitX();
+      rays.mean.norm() > 1e-6 ? Eigen::Vector3d(rays.mean.normalized()) : Eigen::Vector3d::UnitX();
   const Eigen::Matrix3d ahead = viewingFrame(forward);
   if (auto one = pictureOf(points, viewpoint, ahead, FieldOfView::Cone, max_pixels, rays.count)) return one;
   std::vector<Visibility> faces;
@@ -223,8 +218,8 @@ void Visibility::Picture::markFree(const Eigen::Matrix3Xd& points, std::vector<c
   PixelFrame frame{{}, width, height, unit, outside, depths->data()};
   std::copy_n(projection.data(), projection.size(), frame.projection);
   Images images;
-  for (Eigen::Index begin = 0; begin < points.cols(); begin += Images::kMost) {
-    const auto size = static_cast<int>(std::min<Eigen::Index>(Images::kMost, points.cols() - begin));
+  for (Eigen::Index begin = 0; begin < points.cols(); begin += Images::most) {
+    const auto size = static_cast<int>(std::min<Eigen::Index>(Images::most, points.cols() - begin));
     findImages(points.data() + 3 * begin, size, frame, images);
     for (const Eigen::Vector3d& side : sides) leaveOutBeyond(side.data(), size, images);
     for (int i = 0; i < size; ++i) is_free[static_cast<std::size_t>(begin + i)] |= static_cast<char>(images.is_free[i]);

@@ -7,23 +7,11 @@
 #include "core/base/constants.h"
 #include "core/base/median.h"
 #include "core/base/random.h"
+#include "core/segmentation/segmentation_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// chosen: samples per patch and rays per sample, for one median per patch. Half as many make the thickness of a patch
-/// random; twice as many double the time.
-constexpr int kSamplesOfPatch = 6, kRaysOfSample = 6;
-/// chosen: radians; rays lie within this angle of the inward normal (35 degrees). At half, single rays miss the body's
-/// other side at dents; at twice, rays run along the body instead of across it.
-constexpr double kConeAngle = 0.61;
-/// chosen: radii; rays begin this far from the surface. Smaller values hit the element that a ray comes from, by
-/// rounding; larger values pass through thin walls.
-constexpr float kLeastReach = 1e-4f;
-/// chosen: the same for clouds, in square roots of the area of a point. At half, rays hit the triangles of neighbouring
-/// points, which overlap; at twice, they pass through thin walls.
-constexpr float kCloudReach = 2.5f;
 
 struct SurfacePoint {
   Eigen::Vector3f position, normal;
@@ -37,7 +25,7 @@ std::vector<std::vector<SurfacePoint>> samplePatches(const SurfaceGraph& graph, 
   const double whole = graph.area();
   std::vector<double> step(patches.areas.size()), next(step.size()), so_far(step.size(), 0.0);
   for (std::size_t p = 0; p < step.size(); ++p) {
-    step[p] = patches.areas[p] * whole / kSamplesOfPatch;
+    step[p] = patches.areas[p] * whole / kSegmentation.samples_of_patch;
     next[p] = random.uniform() * step[p];
   }
   std::vector<std::vector<SurfacePoint>> samples(step.size());
@@ -47,9 +35,9 @@ std::vector<std::vector<SurfacePoint>> samplePatches(const SurfaceGraph& graph, 
     const Eigen::Vector3f u = corner(1) - corner(0), v = corner(2) - corner(0);
     so_far[p] += graph.is_cloud ? graph.areas[element] : 0.5 * u.cross(v).norm();
     for (; step[p] > 0.0 && next[p] < so_far[p]; next[p] += step[p]) {
-      SurfacePoint sample{graph.centers.col(element), graph.normals.col(element), kLeastReach * radius};
+      SurfacePoint sample{graph.centers.col(element), graph.normals.col(element), kSegmentation.least_reach * radius};
       if (graph.is_cloud) {
-        sample.reach = std::max(kCloudReach * std::sqrt(graph.areas[element]), sample.reach);
+        sample.reach = std::max(kSegmentation.cloud_reach * std::sqrt(graph.areas[element]), sample.reach);
       } else {
         const auto root = static_cast<float>(std::sqrt(random.uniform())), share = static_cast<float>(random.uniform());
         sample.position = corner(0) + root * ((1.0f - share) * u + share * v);
@@ -60,13 +48,13 @@ std::vector<std::vector<SurfacePoint>> samplePatches(const SurfaceGraph& graph, 
   return samples;
 }
 
-/// Directions in a cone about the inward normal, one in each of kRaysOfSample sectors.
+/// Directions in a cone about the inward normal, one in each of kSegmentation.rays_of_sample sectors.
 std::vector<Eigen::Vector3f> inwardDirections(const Eigen::Vector3f& normal, RandomStream& random) {
   const Eigen::Vector3f u = normal.unitOrthogonal(), v = normal.cross(u);
   std::vector<Eigen::Vector3f> directions;
-  for (int k = 0; k < kRaysOfSample; ++k) {
-    const double around = 2.0 * kPi * (k + random.uniform()) / kRaysOfSample;
-    const double tilt = std::tan(kConeAngle) * std::sqrt(random.uniform());
+  for (int k = 0; k < kSegmentation.rays_of_sample; ++k) {
+    const double around = 2.0 * kPi * (k + random.uniform()) / kSegmentation.rays_of_sample;
+    const double tilt = std::tan(kSegmentation.cone_angle) * std::sqrt(random.uniform());
     const Eigen::Vector3f aside =
         static_cast<float>(tilt * std::cos(around)) * u + static_cast<float>(tilt * std::sin(around)) * v;
     directions.push_back((aside - normal).normalized());
@@ -86,7 +74,7 @@ float depthBehind(const std::vector<SurfacePoint>& samples, const TriangleTree& 
   return distances.empty() ? 0.0f : static_cast<float>(median(std::move(distances)));
 }
 
-/// The place half-way through the body behind the sample that is closest to the center of its patch.
+/// The position half-way through the body behind the sample that is closest to the center of its patch.
 Eigen::Vector3f innerPlace(const std::vector<SurfacePoint>& samples, const Eigen::Vector3f& center, float depth,
                            const TriangleTree& tree) {
   const SurfacePoint& middle = *std::min_element(samples.begin(), samples.end(), [&](const auto& a, const auto& b) {
@@ -96,12 +84,12 @@ Eigen::Vector3f innerPlace(const std::vector<SurfacePoint>& samples, const Eigen
   return middle.position - 0.5f * depth * middle.normal;
 }
 
-Eigen::MatrixXf linesOfSight(const Points& places, const TriangleTree& tree) {
-  const Eigen::Index size = places.cols();
+Eigen::MatrixXf linesOfSight(const Points& positions, const TriangleTree& tree) {
+  const Eigen::Index size = positions.cols();
   Eigen::MatrixXf sight = Eigen::MatrixXf::Identity(size, size);
   for (Eigen::Index from = 0; from < size; ++from)
     for (Eigen::Index to = 0; to < from; ++to)
-      sight(to, from) = tree.blocks(places.col(from), places.col(to)) ? 0.0f : 1.0f;
+      sight(to, from) = tree.blocks(positions.col(from), positions.col(to)) ? 0.0f : 1.0f;
   sight.triangularView<Eigen::StrictlyLower>() = sight.transpose();
   return sight;
 }

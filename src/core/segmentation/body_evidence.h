@@ -14,7 +14,7 @@ struct BodyEvidence {
   /// K, median length of rays from the patch to the other side of the body (shape diameter, Shapira et al. 2008), in
   /// radii of the surface; 0 if no ray met another side.
   std::vector<double> thickness;
-  /// K x K, symmetric: 1 if no surface lies between the places half-way through the body behind two patches, else 0.
+  /// K x K, symmetric: 1 if no surface lies between the positions half-way through the body behind two patches, else 0.
   Eigen::MatrixXf sight;
 };
 

@@ -31,7 +31,7 @@ std::vector<float> distanceFromBorder(const SurfaceGraph& graph, const std::vect
     const auto [d, element] = queue.top();
     queue.pop();
     if (d > distance[element]) continue;
-    graph.visitNeighbours(element, [&, from = element, so_far = d](int to, const SurfaceGraph::Edge&) {
+    graph.visitNeighbors(element, [&, from = element, so_far = d](int to, const SurfaceGraph::Edge&) {
       if (side[to] >= 0) reach(to, so_far + (graph.centers.col(to) - graph.centers.col(from)).norm());
     });
   }

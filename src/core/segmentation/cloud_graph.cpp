@@ -12,26 +12,26 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The surface at a point of a cloud, from the point and its neighbours.
+/// The surface at a point of a cloud, from the point and its neighbors.
 struct LocalSurface {
   Eigen::Vector3f normal, u, v;  ///< unit, perpendicular to each other: least, middle and greatest principal axis
   float area;                    ///< that the point stands for, input units squared
-  float border;                  ///< with each neighbour, input units
+  float border;                  ///< with each neighbor, input units
 };
 
-LocalSurface localSurface(const PointsRef& points, Eigen::Index i, const std::vector<int>& neighbours) {
-  Points around(3, static_cast<Eigen::Index>(neighbours.size()) + 1);
+LocalSurface localSurface(const PointsRef& points, Eigen::Index i, const std::vector<int>& neighbors) {
+  Points around(3, static_cast<Eigen::Index>(neighbors.size()) + 1);
   around.col(0) = points.col(i);
-  for (std::size_t k = 0; k < neighbours.size(); ++k)
-    around.col(static_cast<Eigen::Index>(k) + 1) = points.col(neighbours[k]);
+  for (std::size_t k = 0; k < neighbors.size(); ++k)
+    around.col(static_cast<Eigen::Index>(k) + 1) = points.col(neighbors[k]);
   const Points offsets = around.colwise() - around.rowwise().mean();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(offsets * offsets.transpose());
   LocalSurface local{axes.eigenvectors().col(0), axes.eigenvectors().col(1), axes.eigenvectors().col(2), 0.0f, 0.0f};
-  // A disc through the last of k neighbours holds k points: each stands for pi r^2 / k.
-  const auto count = static_cast<float>(neighbours.size());
+  // A disc through the last of k neighbors holds k points: each stands for pi r^2 / k.
+  const auto count = static_cast<float>(neighbors.size());
   const float radius = (around.rightCols(1) - around.col(0)).norm();
   local.area = static_cast<float>(kPi) * radius * radius / std::max(1.0f, count);
-  // Each neighbour takes 1 / k of the perimeter 2 sqrt(pi area) of the disc of that area.
+  // Each neighbor takes 1 / k of the perimeter 2 sqrt(pi area) of the disc of that area.
   local.border = 2.0f * std::sqrt(static_cast<float>(kPi) * local.area) / std::max(1.0f, count);
   return local;
 }
@@ -50,29 +50,29 @@ void addTriangle(SurfaceGraph& graph, Eigen::Index i, const LocalSurface& local)
   graph.element_of_triangle.push_back(static_cast<int>(i));
 }
 
-/// Joins a point with its neighbours; the lower index of two mutual neighbours adds their edge.
-void addEdges(SurfaceGraph& graph, int i, const std::vector<std::vector<int>>& neighbours, float length) {
-  for (const int j : neighbours[i]) {
-    const bool mutual = std::find(neighbours[j].begin(), neighbours[j].end(), i) != neighbours[j].end();
+/// Joins a point with its neighbors; the lower index of two mutual neighbors adds their edge.
+void addEdges(SurfaceGraph& graph, int i, const std::vector<std::vector<int>>& neighbors, float length) {
+  for (const int j : neighbors[i]) {
+    const bool mutual = std::find(neighbors[j].begin(), neighbors[j].end(), i) != neighbors[j].end();
     if (mutual && j < i) continue;
     graph.edges.push_back({i, j, length, 0.0f});
   }
 }
 
-void checkNeighbours(const std::vector<std::vector<int>>& neighbours, Eigen::Index num_points) {
+void checkNeighbors(const std::vector<std::vector<int>>& neighbors, Eigen::Index num_points) {
   const auto size = static_cast<std::size_t>(num_points);
-  check(neighbours.size() == size, "number of lists of neighbours", static_cast<double>(neighbours.size()),
+  check(neighbors.size() == size, "number of lists of neighbors", static_cast<double>(neighbors.size()),
         "that of the points");
-  for (const std::vector<int>& list : neighbours)
-    for (const int neighbour : list)
-      check(neighbour >= 0 && static_cast<std::size_t>(neighbour) < size, "neighbour", neighbour,
+  for (const std::vector<int>& list : neighbors)
+    for (const int neighbor : list)
+      check(neighbor >= 0 && static_cast<std::size_t>(neighbor) < size, "neighbor", neighbor,
             ">= 0 and < the number of points");
 }
 
 }  // namespace
 
-SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbours) {
-  checkNeighbours(neighbours, points.cols());
+SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbors) {
+  checkNeighbors(neighbors, points.cols());
   checkExtent(points);
   const BoundingBall ball = boundingBall(points);
   check(ball.radius > 0.0, "extent of the points", ball.radius, "> 0");
@@ -84,11 +84,11 @@ SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<i
   graph.areas.resize(static_cast<std::size_t>(size));
   graph.corners.resize(3, 3 * size);
   for (Eigen::Index i = 0; i < size; ++i) {
-    const LocalSurface local = localSurface(points, i, neighbours[i]);
+    const LocalSurface local = localSurface(points, i, neighbors[i]);
     graph.normals.col(i) = local.normal;
     graph.areas[i] = local.area;
     addTriangle(graph, i, local);
-    addEdges(graph, static_cast<int>(i), neighbours, local.border);
+    addEdges(graph, static_cast<int>(i), neighbors, local.border);
   }
   check(graph.area() > 0.0, "area of the cloud", graph.area(), "> 0");
   std::vector<float> agreement;

@@ -6,15 +6,12 @@
 #include <set>
 #include <utility>
 
+#include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/surface_patches.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// chosen: share of the surface; smaller intersections of the divisions join the closest larger one. At half,
-/// ragged borders make more cells; at twice, borders move further.
-constexpr double kLeastCell = 0.0005;
 
 /// Elements that lie in one cell of every division.
 struct CommonCells {
@@ -47,7 +44,7 @@ CommonCells commonCells(const SurfaceGraph& graph, const std::vector<MergedDivis
   CommonCells common;
   common.of_element = intersections(divisions);
   const std::vector<double> areas = areaShares(graph, common.of_element);
-  const double least = std::min(kLeastCell, *std::max_element(areas.begin(), areas.end()));
+  const double least = std::min(kSegmentation.least_cell, *std::max_element(areas.begin(), areas.end()));
   std::vector<int> number(areas.size(), -1);
   int size = 0;
   for (std::size_t c = 0; c < areas.size(); ++c)
@@ -69,15 +66,15 @@ public:
   Clusters(const SurfaceGraph& graph, const CommonCells& common, const std::vector<MergedDivision>& divisions)
       : cluster_(static_cast<std::size_t>(common.size())),
         areas_(common.areas),
-        neighbours_(cluster_.size()),
+        neighbors_(cluster_.size()),
         sums_(Eigen::MatrixXf::Zero(common.size(), common.size())),
         num_clusters_(common.size()) {
     std::iota(cluster_.begin(), cluster_.end(), 0);
     for (const SurfaceGraph::Edge& edge : graph.edges) {
       const int a = common.of_element[edge.from], b = common.of_element[edge.to];
       if (a == b) continue;
-      neighbours_[a].insert(b);
-      neighbours_[b].insert(a);
+      neighbors_[a].insert(b);
+      neighbors_[b].insert(a);
     }
     for (int a = 0; a < common.size(); ++a) {
       for (int b = 0; b < common.size(); ++b) {
@@ -96,11 +93,11 @@ public:
     double probability = -1.0;
   };
 
-  /// The neighbours that are most likely one part; a = -1 if no two clusters are neighbours.
+  /// The neighbors that are most likely one part; a = -1 if no two clusters are neighbors.
   Pair likeliest() const {
     Pair best;
-    for (int a = 0; a < static_cast<int>(neighbours_.size()); ++a) {
-      for (auto b = neighbours_[a].upper_bound(a); b != neighbours_[a].end(); ++b) {
+    for (int a = 0; a < static_cast<int>(neighbors_.size()); ++a) {
+      for (auto b = neighbors_[a].upper_bound(a); b != neighbors_[a].end(); ++b) {
         const double area = areas_[a] * areas_[*b], mean = area > 0.0 ? sums_(a, *b) / area : 1.0;
         if (mean > best.probability) best = {a, *b, mean};
       }
@@ -113,21 +110,21 @@ public:
     sums_.col(a) += sums_.col(b);
     sums_.row(a) += sums_.row(b);
     areas_[a] += areas_[b];
-    for (const int c : neighbours_[b]) {
-      neighbours_[c].erase(b);
+    for (const int c : neighbors_[b]) {
+      neighbors_[c].erase(b);
       if (c == a) continue;
-      neighbours_[a].insert(c);
-      neighbours_[c].insert(a);
+      neighbors_[a].insert(c);
+      neighbors_[c].insert(a);
     }
-    neighbours_[b].clear();
+    neighbors_[b].clear();
     --num_clusters_;
   }
 
 private:
-  std::vector<int> cluster_;               ///< of each cell
-  std::vector<double> areas_;              ///< of clusters, shares of the surface
-  std::vector<std::set<int>> neighbours_;  ///< of clusters
-  Eigen::MatrixXf sums_;                   ///< mean probability times both areas
+  std::vector<int> cluster_;              ///< of each cell
+  std::vector<double> areas_;             ///< of clusters, shares of the surface
+  std::vector<std::set<int>> neighbors_;  ///< of clusters
+  Eigen::MatrixXf sums_;                  ///< mean probability times both areas
   int num_clusters_;
 };
 
@@ -136,11 +133,9 @@ private:
 std::vector<int> consensus(const SurfaceGraph& graph, const std::vector<MergedDivision>& divisions, int num_parts) {
   const CommonCells common = commonCells(graph, divisions);
   Clusters clusters(graph, common, divisions);
-  // derived: a pair that is together with probability 1/2 adds as much to the expected distance apart as together.
-  constexpr double kEven = 0.5;
   while (num_parts == 0 || clusters.size() > num_parts) {
     const Clusters::Pair pair = clusters.likeliest();
-    if (pair.a < 0 || (num_parts == 0 && pair.probability < kEven)) break;
+    if (pair.a < 0 || (num_parts == 0 && pair.probability < 0.5)) break;
     clusters.merge(pair.a, pair.b);
   }
   std::map<int, int> number;

@@ -10,7 +10,7 @@ namespace pcl_symmetry {
 /// Cuts a surface into parts that several divisions agree on.
 ///
 /// The Rand distance counts pairs of elements. The parts with the least expected distance therefore hold the pairs
-/// whose mean probability to be one part is above 1/2: neighbours with the highest mean are merged until it falls
+/// whose mean probability to be one part is above 1/2: neighbors with the highest mean are merged until it falls
 /// below.
 /// \param divisions of the same elements, at least one.
 /// \param num_parts 0: ends at 1/2; otherwise at this number of parts, or at pieces that no edge connects.

@@ -6,8 +6,8 @@
 
 namespace pcl_symmetry {
 
-/// Joins segments that are too small to be parts with the neighbour that they share most border with, or with the
-/// closest segment if they have no neighbour; the smallest segment first.
+/// Joins segments that are too small to be parts with the neighbor that they share most border with, or with the
+/// closest segment if they have no neighbor; the smallest segment first.
 /// \param labels one per element, from 0.
 /// \param least_area of a segment that stays, input units squared.
 /// \param most_segments that may stay, >= 1.

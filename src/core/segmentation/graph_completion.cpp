@@ -8,15 +8,11 @@
 
 #include "core/base/constants.h"
 #include "core/segmentation/orientation.h"
+#include "core/segmentation/segmentation_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// chosen: the normal of a point is that of the plane through its neighbours, which spreads the angle of a crease over
-/// several rows of points, where a mesh has it in one edge. Measured on clouds of 33 meshes of the fit part
-/// (`segmentation.py` of test/benchmark): Rand distance 0.128 with 1, 0.118 with 1.5.
-constexpr float kSharpened = 1.5f;
 
 /// Lists the edges of each element.
 void indexEdges(SurfaceGraph& graph) {
@@ -50,7 +46,7 @@ SurfaceGraph completedGraph(SurfaceGraph graph, const std::vector<float>& agreem
   const auto most = static_cast<float>(kPi);
   for (SurfaceGraph::Edge& edge : graph.edges) {
     edge.concavity = concavityOf(graph, edge);
-    if (graph.is_cloud) edge.concavity = std::clamp(kSharpened * edge.concavity, -most, most);
+    if (graph.is_cloud) edge.concavity = std::clamp(kSegmentation.sharpened * edge.concavity, -most, most);
   }
   return graph;
 }

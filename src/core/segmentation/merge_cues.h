@@ -6,7 +6,7 @@
 
 namespace pcl_symmetry {
 
-/// What speaks for or against two neighbouring regions being one part.
+/// What speaks for or against two neighboring regions being one part.
 enum Cue {
   kAlways,             ///< 1
   kContact,            ///< length of the common border over the shorter perimeter, in [0, 1]

@@ -5,18 +5,16 @@
 #include <map>
 #include <utility>
 
+#include "core/segmentation/segmentation_rules.h"
+
 namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: log odds from which on two regions are surely one part, probability 0.73. At 0.5 more decisions are taken
-/// before divisions are compared; at 2 there are more cells, and comparing them takes longer.
-constexpr double kSurelyOne = 1.0;
-
 /// The first merge that is not sure, or that leaves fewer regions than asked for.
 std::size_t firstDoubt(const std::vector<Merge>& merges, std::size_t num_made) {
   std::size_t i = 0;
-  while (i < std::min(merges.size(), num_made) && merges[i].log_odds >= kSurelyOne) ++i;
+  while (i < std::min(merges.size(), num_made) && merges[i].log_odds >= kSegmentation.surely_one) ++i;
   return i;
 }
 

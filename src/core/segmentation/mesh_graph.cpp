@@ -15,7 +15,7 @@ namespace {
 
 using Polygons = std::vector<std::vector<int>>;
 
-/// \return for each vertex the first one at the same place; -1 for a vertex that is not finite.
+/// \return for each vertex the first one at the same position; -1 for a vertex that is not finite.
 std::vector<int> weld(const PointsRef& vertices) {
   std::vector<int> order(vertices.cols());
   std::iota(order.begin(), order.end(), 0);

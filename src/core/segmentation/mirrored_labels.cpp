@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <map>
 
+#include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// chosen: share of the surface that a plane maps onto itself if labels agree across it. Lower values force symmetry on
-/// shapes with parts that have no counterpart; with 1 sampling alone would break the agreement.
-constexpr double kGlobalShare = 0.95;
-/// chosen: share of a segment on the smaller side of a plane that it lies across. At half, a segment that reaches a
-/// little over the plane counts as lying across it; at twice, only a segment that the plane nearly halves does.
-constexpr double kLeastAcross = 0.2;
 
 /// Labels that result from copying one side of a plane to the other.
 struct CopiedLabels {
@@ -33,7 +27,7 @@ std::vector<char> liesAcross(const SurfaceGraph& graph, const std::vector<int>& 
   }
   std::vector<char> across;
   for (std::size_t s = 0; s < areas.size(); ++s)
-    across.push_back(std::min(areas_above[s], areas[s] - areas_above[s]) >= kLeastAcross * areas[s]);
+    across.push_back(std::min(areas_above[s], areas[s] - areas_above[s]) >= kSegmentation.least_across * areas[s]);
   return across;
 }
 
@@ -65,7 +59,7 @@ std::optional<GlobalPlane> globalPlane(const std::vector<PartPlane>& planes) {
   std::size_t index = 0;  // among the planes with images
   for (const PartPlane& plane : planes) {
     if (plane.share < kMappedShare) continue;
-    if (plane.share >= kGlobalShare) return GlobalPlane{plane.plane, index};
+    if (plane.share >= kSegmentation.global_share) return GlobalPlane{plane.plane, index};
     ++index;
   }
   return std::nullopt;

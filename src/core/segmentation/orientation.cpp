@@ -6,26 +6,19 @@
 
 #include "core/base/random.h"
 #include "core/geometry/triangle_tree.h"
+#include "core/segmentation/segmentation_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: rays per connected piece at most. Half as many turn a ragged piece the wrong way more often; twice as many
-/// double the time.
-constexpr int kNumRays = 2000;
-/// chosen: where rays begin, in square roots of the area of their element. The triangles of neighbouring points of a
-/// cloud overlap: rays that begin at half this distance hit them; rays that begin at twice this distance pass through
-/// thin walls.
-constexpr float kRayStart = 2.0f;
-
 struct AlignedNormals {
-  Points normals;          ///< 3 x N, neighbours of a piece agree
+  Points normals;          ///< 3 x N, neighbors of a piece agree
   std::vector<int> piece;  ///< the connected piece of each element
 };
 
-/// Turns normals so that neighbours agree, along the most certain edges first (Hoppe et al. 1992).
-AlignedNormals alignNeighbours(const SurfaceGraph& graph, const std::vector<float>& agreement) {
+/// Turns normals so that neighbors agree, along the most certain edges first (Hoppe et al. 1992).
+AlignedNormals alignNeighbors(const SurfaceGraph& graph, const std::vector<float>& agreement) {
   struct Entry {
     float certainty;
     int element;
@@ -45,9 +38,9 @@ AlignedNormals alignNeighbours(const SurfaceGraph& graph, const std::vector<floa
       if (piece[next.element] >= 0) continue;
       piece[next.element] = num_pieces;
       aligned.normals.col(next.element) *= next.sign;
-      graph.visitNeighbours(next.element, [&](int neighbour, const SurfaceGraph::Edge& edge) {
+      graph.visitNeighbors(next.element, [&](int neighbor, const SurfaceGraph::Edge& edge) {
         const float agrees = agreement[&edge - graph.edges.data()];
-        if (piece[neighbour] < 0) queue.push({std::abs(agrees), neighbour, agrees < 0.0f ? -next.sign : next.sign});
+        if (piece[neighbor] < 0) queue.push({std::abs(agrees), neighbor, agrees < 0.0f ? -next.sign : next.sign});
       });
     }
     ++num_pieces;
@@ -65,12 +58,12 @@ std::vector<std::vector<int>> membersOf(const std::vector<int>& piece) {
 /// Area of the elements whose rays along the normal leave the shape, minus that of those whose rays against it do.
 double escapingArea(const SurfaceGraph& graph, const Points& normals, const TriangleTree& tree,
                     const std::vector<int>& members, RandomStream& random) {
-  const int num_rays = static_cast<int>(std::min<std::size_t>(members.size(), kNumRays));
+  const int num_rays = static_cast<int>(std::min<std::size_t>(members.size(), kSegmentation.orientation_rays));
   double escaped = 0.0;
   for (int k = 0; k < num_rays; ++k) {
     const int element = members[members.size() * k / num_rays];
     const Eigen::Vector3f n = normals.col(element), center = graph.centers.col(element);
-    const float reach = kRayStart * std::sqrt(graph.areas[element]);
+    const float reach = kSegmentation.ray_start * std::sqrt(graph.areas[element]);
     Eigen::Vector3f direction;
     for (int axis = 0; axis < 3; ++axis) direction[axis] = static_cast<float>(random.uniform() - 0.5);
     direction = (n + direction).normalized();
@@ -84,7 +77,7 @@ double escapingArea(const SurfaceGraph& graph, const Points& normals, const Tria
 }  // namespace
 
 Points outwardNormals(const SurfaceGraph& graph, const std::vector<float>& agreement) {
-  auto [normals, piece] = alignNeighbours(graph, agreement);
+  auto [normals, piece] = alignNeighbors(graph, agreement);
   const TriangleTree tree(graph.corners, graph.triangles);
   RandomStream random(1);
   for (const std::vector<int>& members : membersOf(piece)) {

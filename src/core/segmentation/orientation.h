@@ -6,7 +6,7 @@
 
 namespace pcl_symmetry {
 
-/// Outward normals: neighbours agree, and rays along the normals of a connected piece leave the shape more often than
+/// Outward normals: neighbors agree, and rays along the normals of a connected piece leave the shape more often than
 /// rays against them.
 /// \param graph with normals of any sign and with the index of its edges.
 /// \param agreement one per edge: > 0 if the normals at both ends point to the same side, < 0 if they do not; a larger

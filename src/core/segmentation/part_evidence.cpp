@@ -5,16 +5,13 @@
 
 #include "core/base/random.h"
 #include "core/segmentation/body_evidence.h"
+#include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/surface_patches.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// chosen: how much patches avoid growing across concave edges, as growPatches(), per radian. At half, patches reach
-/// around the borders of parts; at twice, they become long and thin along creases.
-constexpr float kConcaveDetour = 4.0f;
 
 SymmetryFeatures featuresOfWhole(const SurfaceGraph& graph, const SegmentationOptions& options) {
   std::vector<int> all(static_cast<std::size_t>(graph.size()));
@@ -61,18 +58,15 @@ int firstSeed(const SurfaceGraph& graph, int division, std::uint64_t seed) {
 }  // namespace
 
 WholeEvidence::WholeEvidence(const SurfaceGraph& graph, const SegmentationOptions& options)
-    : graph_(graph),
-      merging_(options.merging),
-      seed_(options.seed),
-      features_(featuresOfWhole(graph, options)) {
+    : graph_(graph), merging_(options.merging), seed_(options.seed), features_(featuresOfWhole(graph, options)) {
   if (merging_.evidence == MergingEvidence::All) tree_.emplace(graph.corners, graph.triangles);
 }
 
 PartEvidence WholeEvidence::ofDivision(int division) const {
   const std::uint64_t seed = seed_ + static_cast<std::uint64_t>(division);
   PartEvidence evidence;
-  evidence.patches = measuredPatches(
-      graph_, growPatches(graph_, merging_.num_patches, kConcaveDetour, firstSeed(graph_, division, seed)));
+  evidence.patches = measuredPatches(graph_, growPatches(graph_, merging_.num_patches, kSegmentation.concave_detour,
+                                                         firstSeed(graph_, division, seed)));
   evidence.borders = patchBorders(graph_, evidence.patches);
   BodyEvidence body = tree_ ? bodyEvidence(graph_, *tree_, evidence.patches, seed) : noBodyEvidence(evidence.size());
   evidence.thickness = std::move(body.thickness);

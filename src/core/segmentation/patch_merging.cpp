@@ -17,9 +17,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: rough shares of the time after which the planes and the divisions are done. They are for display only.
-constexpr double kPlanesShare = 0.3, kDivisionsShare = 0.8;
-
 /// The plane across which labels have to agree, and the element at the reflection of each.
 struct Mirror {
   GlobalPlane global;
@@ -81,7 +78,7 @@ Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptio
     if (options.progress) options.progress(share);
   };
   const WholeEvidence whole(graph, options);
-  tell(kPlanesShare);
+  tell(0.3);
   const MergeWeights& weights = fittedWeights(options.merging.evidence);
   const auto num_divisions = static_cast<std::size_t>(options.merging.num_divisions);
   std::vector<MergedDivision> divisions(num_divisions);
@@ -91,7 +88,7 @@ Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptio
     divisions[d] = mergedDivision(evidence, weights, options.num_parts);
     if (d == 0) first = std::move(evidence);
   });
-  tell(kDivisionsShare);
+  tell(0.8);
   const std::optional<Mirror> mirror = mirrorOf(whole, options);
   for (std::size_t d = 0; mirror && d < num_divisions; ++d)
     divisions.push_back(reflectedDivision(divisions[d], mirror->reflected));

@@ -17,7 +17,7 @@ struct Patches {
   int size() const { return static_cast<int>(areas.size()); }
 };
 
-/// Two neighbouring patches and their common border.
+/// Two neighboring patches and their common border.
 struct PatchBorder {
   int from, to;
   double length;          ///< input units
@@ -31,7 +31,7 @@ struct PatchBorder {
 /// \param of_element the patch of each element, from 0.
 Patches measuredPatches(const SurfaceGraph& graph, std::vector<int> of_element);
 
-/// \return the borders between neighbouring patches, ordered by patches.
+/// \return the borders between neighboring patches, ordered by patches.
 std::vector<PatchBorder> patchBorders(const SurfaceGraph& graph, const Patches& patches);
 
 }  // namespace pcl_symmetry

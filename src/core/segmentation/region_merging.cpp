@@ -10,7 +10,7 @@ namespace {
 
 using RegionPair = std::pair<int, int>;  // lower number first
 
-/// Pairs of neighbouring regions, ordered by the log odds that they are one part.
+/// Pairs of neighboring regions, ordered by the log odds that they are one part.
 class PairQueue {
 public:
   explicit PairQueue(const MergeWeights& weights) : weights_(weights) {}
@@ -46,7 +46,7 @@ private:
 MergeSequence mergeRegions(Regions regions, const MergeWeights& weights) {
   PairQueue queue(weights);
   for (int a = 0; a < regions.size(); ++a)
-    for (const int b : regions.neighbours(a))
+    for (const int b : regions.neighbors(a))
       if (a < b) queue.update(regions, a, b);
 
   MergeSequence sequence;
@@ -56,10 +56,10 @@ MergeSequence mergeRegions(Regions regions, const MergeWeights& weights) {
     likely = likely && log_odds > 0.0;
     if (likely) ++sequence.num_likely;
     const auto [a, b] = pair;
-    for (const int c : regions.neighbours(b)) queue.remove(b, c);
+    for (const int c : regions.neighbors(b)) queue.remove(b, c);
     regions.merge(a, b);
     sequence.merges.push_back({a, b, log_odds});
-    for (const int c : regions.neighbours(a)) queue.update(regions, a, c);
+    for (const int c : regions.neighbors(a)) queue.update(regions, a, c);
   }
   return sequence;
 }

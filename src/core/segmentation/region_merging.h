@@ -12,7 +12,7 @@ struct Merge {
   double log_odds;  ///< that the two are one part, when they were merged
 };
 
-/// Merges of neighbouring regions, those with the highest log odds first, until no two regions are neighbours.
+/// Merges of neighboring regions, those with the highest log odds first, until no two regions are neighbors.
 struct MergeSequence {
   std::vector<Merge> merges;
   std::size_t num_likely = 0;  ///< Number of merges with positive log odds, before the first one without.

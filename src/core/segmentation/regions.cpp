@@ -2,18 +2,11 @@
 
 #include <cmath>
 
+#include "core/segmentation/segmentation_rules.h"
+
 namespace pcl_symmetry {
 
 namespace {
-
-/// chosen: radii; a bound of the logarithm of the thickness. Twice of it would still be thinner than any part that
-/// patches resolve; at half, a single patch without depth weighs more in its region.
-constexpr double kThinnest = 1e-3;
-/// chosen: share of the surface; keeps regions without area out of 0 / 0. Half and twice differ for such regions only.
-constexpr double kLeastArea = 1e-9;
-/// chosen: bounds of the relative sight. The first keeps it finite where a region does not see itself; the second lets
-/// no ratio of two small shares outweigh the other cues. The weights were fitted with these bounds.
-constexpr double kLeastInnerSight = 0.05, kMostRelativeSight = 1.5;
 
 double ratio(double a, double b) {
   return b > 0.0 ? a / b : 0.0;
@@ -23,7 +16,8 @@ double ratio(double a, double b) {
 std::vector<double> logThickness(const std::vector<double>& thickness) {
   const double thickest = *std::max_element(thickness.begin(), thickness.end());
   std::vector<double> log_thickness;
-  for (const double t : thickness) log_thickness.push_back(std::log(std::max(kThinnest, t > 0.0 ? t : thickest)));
+  for (const double t : thickness)
+    log_thickness.push_back(std::log(std::max(kSegmentation.thinnest, t > 0.0 ? t : thickest)));
   return log_thickness;
 }
 
@@ -43,7 +37,7 @@ Regions::Regions(const PartEvidence& evidence)
       log_thickness_(evidence.patches.areas.size()),
       perimeters_(evidence.patches.areas.size(), 0.0),
       inside_(evidence.patches.areas.size()),
-      neighbours_(evidence.patches.areas.size()) {
+      neighbors_(evidence.patches.areas.size()) {
   const int size = evidence.size();
   const std::vector<double> log_thickness = logThickness(evidence.thickness);
   Eigen::VectorXf areas(size);
@@ -62,8 +56,8 @@ Regions::Regions(const PartEvidence& evidence)
       if (areas[i] <= 0.0f) image_of_.back()[i] = -1;
   }
   for (const PatchBorder& b : evidence.borders) {
-    neighbours_[b.from].push_back(b.to);
-    neighbours_[b.to].push_back(b.from);
+    neighbors_[b.from].push_back(b.to);
+    neighbors_[b.to].push_back(b.from);
     perimeters_[b.from] += b.length;
     perimeters_[b.to] += b.length;
     border(b.from, b.to) = {b.length, b.length * b.edge_concavity, b.length * b.patch_concavity,
@@ -73,7 +67,8 @@ Regions::Regions(const PartEvidence& evidence)
 
 Cues Regions::cues(int a, int b) const {
   const Border& between = borders_.at(std::minmax(a, b));
-  const double area_a = std::max(kLeastArea, areas_[a]), area_b = std::max(kLeastArea, areas_[b]);
+  const double area_a = std::max(kSegmentation.least_area, areas_[a]),
+               area_b = std::max(kSegmentation.least_area, areas_[b]);
   Cues cues{};
   cues[kAlways] = 1.0;
   cues[kContact] = std::min(1.0, ratio(between.length, std::min(perimeters_[a], perimeters_[b])));
@@ -95,7 +90,8 @@ Cues Regions::cues(int a, int b) const {
   cues[kConstriction] = std::min(thickness_a, thickness_b) - ratio(between.log_thickness, between.length);
   const double within = std::sqrt(sight_(a, a) * sight_(b, b)) / (area_a * area_b);
   cues[kSight] = sight_(a, b) / (area_a * area_b);
-  cues[kRelativeSight] = std::min(kMostRelativeSight, cues[kSight] / std::max(kLeastInnerSight, within));
+  cues[kRelativeSight] =
+      std::min(kSegmentation.most_relative_sight, cues[kSight] / std::max(kSegmentation.least_inner_sight, within));
   cues[kSightOfSmall] = cues[kSight] * cues[kSmallArea];
   return cues;
 }
@@ -134,26 +130,26 @@ void Regions::merge(int a, int b) {
   joinImages(a, b);
   std::replace(region_.begin(), region_.end(), b, a);
   exists_[b] = 0;
-  joinNeighbours(a, b);
+  joinNeighbors(a, b);
 }
 
 /// Borders of \p b become borders of \p a.
-void Regions::joinNeighbours(int a, int b) {
+void Regions::joinNeighbors(int a, int b) {
   const auto forget = [](std::vector<int>& list, int region) {
     list.erase(std::remove(list.begin(), list.end(), region), list.end());
   };
-  forget(neighbours_[a], b);
-  for (const int c : neighbours_[b]) {
+  forget(neighbors_[a], b);
+  for (const int c : neighbors_[b]) {
     if (c == a) continue;
-    forget(neighbours_[c], b);
+    forget(neighbors_[c], b);
     if (borders_.find(std::minmax(a, c)) == borders_.end()) {
-      neighbours_[a].push_back(c);
-      neighbours_[c].push_back(a);
+      neighbors_[a].push_back(c);
+      neighbors_[c].push_back(a);
     }
     border(a, c).add(border(b, c));
     borders_.erase(std::minmax(b, c));
   }
-  neighbours_[b].clear();
+  neighbors_[b].clear();
 }
 
 }  // namespace pcl_symmetry

@@ -23,18 +23,18 @@ public:
 
   /// \return share of the surface.
   double area(int region) const { return areas_[region]; }
-  const std::vector<int>& neighbours(int region) const { return neighbours_[region]; }
+  const std::vector<int>& neighbors(int region) const { return neighbors_[region]; }
 
   /// \return the region of each patch.
   const std::vector<int>& ofPatches() const { return region_; }
 
-  /// What speaks for and against two neighbours being one part.
+  /// What speaks for and against two neighbors being one part.
   Cues cues(int a, int b) const;
 
   /// \return the region that holds most of the reflection of a region in a plane of PartEvidence::images; -1 for none.
   int imageOf(int region, std::size_t plane) const { return image_of_[plane][region]; }
 
-  /// Makes \p b part of \p a; they need not be neighbours.
+  /// Makes \p b part of \p a; they need not be neighbors.
   void merge(int a, int b);
 
 private:
@@ -44,7 +44,7 @@ private:
     void add(const Border& other);
   };
   Border& border(int a, int b) { return borders_[std::minmax(a, b)]; }
-  void joinNeighbours(int a, int b);
+  void joinNeighbors(int a, int b);
   void joinImages(int a, int b);
 
   std::vector<char> exists_;
@@ -57,7 +57,7 @@ private:
   Eigen::MatrixXf support_;              ///< planes x regions, sums over patches, weighted by area
   std::vector<Eigen::MatrixXf> images_;  ///< per plane: area of the reflection of a region (column) in a region (row)
   std::vector<std::vector<int>> image_of_;  ///< per plane: of each region; the row with the most area in its column
-  std::vector<std::vector<int>> neighbours_;
+  std::vector<std::vector<int>> neighbors_;
   std::map<std::pair<int, int>, Border> borders_;
 };
 

@@ -18,10 +18,10 @@ std::vector<int> connectedPieces(const SurfaceGraph& graph, const std::vector<in
     while (!stack.empty()) {
       const int element = stack.back();
       stack.pop_back();
-      graph.visitNeighbours(element, [&](int neighbour, const SurfaceGraph::Edge&) {
-        if (pieces[neighbour] >= 0 || labels[neighbour] != labels[start]) return;
-        pieces[neighbour] = num_pieces;
-        stack.push_back(neighbour);
+      graph.visitNeighbors(element, [&](int neighbor, const SurfaceGraph::Edge&) {
+        if (pieces[neighbor] >= 0 || labels[neighbor] != labels[start]) return;
+        pieces[neighbor] = num_pieces;
+        stack.push_back(neighbor);
       });
     }
     ++num_pieces;

@@ -32,7 +32,7 @@ std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_piec
   return elements;
 }
 
-/// Steps between neighbouring elements, element by element as SurfaceGraph::edge_of.
+/// Steps between neighboring elements, element by element as SurfaceGraph::edge_of.
 struct Steps {
   struct Step {
     int to;

@@ -5,23 +5,19 @@
 
 #include "core/base/check.h"
 #include "core/segmentation/patch_merging.h"
+#include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/symmetry_splitting.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: fewest distinct points of a cloud that can have parts. Ten points cut into parts leave one or two in each,
-/// fewer than the three that span a plane; forty or more may well be a coarse cloud of an object with parts. Faces of a
-/// mesh are surface, however few there are.
-constexpr std::size_t kFewestPoints = 20;
-
 bool showsASurface(const SurfaceGraph& graph) {
   if (!graph.is_cloud) return true;
   std::set<std::array<float, 3>> distinct;
-  for (int i = 0; i < graph.size() && distinct.size() < kFewestPoints; ++i)
+  for (int i = 0; i < graph.size() && distinct.size() < kSegmentation.fewest_points; ++i)
     distinct.insert({graph.centers(0, i), graph.centers(1, i), graph.centers(2, i)});
-  return distinct.size() >= kFewestPoints;
+  return distinct.size() >= kSegmentation.fewest_points;
 }
 
 Segmentation oneSegment(const SurfaceGraph& graph) {

@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/mesh_sampling.h"
 #include "core/geometry/surface_normals.h"
+#include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/local_maxima.h"
@@ -15,30 +16,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// chosen: points on the surface of a part. Half as many make planes less exact; twice as many double the time.
-constexpr int kNumSamples = 4000;
-/// chosen: samples that Iterative Symmetric Points reflects. Half as many make planes less exact; twice as many double
-/// the time of the refinement.
-constexpr int kNumRefined = 400;
-/// chosen: neighbours of a sample for its normal. Half as many follow the noise; twice as many round off edges.
-constexpr int kNumNormalNeighbours = 8;
-/// chosen: radians between normals and radii between planes of one basin of the transform. At half, one symmetry
-/// appears several times among the features; at twice, neighbouring symmetries become one.
-constexpr double kSameAngle = 0.1, kSameOffset = 0.06;
-/// chosen: radii that a plane may move in its refinement, within kSameAngle. At half, good planes keep their unrefined
-/// start; at twice, a start can move to another symmetry.
-constexpr double kMostMoved = 2.0 * kSameOffset;
-/// chosen: f from which on an element counts as mapped onto the surface, sigma * sqrt(ln 2) = 0.83 sigma away from it.
-/// At half, shares of planes grow towards 1; at 1, exact reflections alone would count.
-constexpr float kMapped = 0.5f;
-/// chosen: bins over theta, phi and r. Half as many miss narrow maxima; twice as many take eight times the time.
-constexpr int kNumTheta = 32, kNumPhi = 128, kNumRadius = 64;
-/// chosen: samples per bin of the map. Half as many make weak maxima random; twice as many double the time.
-constexpr int kNumMapSamples = 64;
-/// chosen: width of the weights at the end of the refinement, in sigma of the distance transform. Half of it follows
-/// the random gaps between samples; twice of it refines no further than the map.
-constexpr double kFinalSigma = 0.5;
-
 /// Points spread over elements by area.
 Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& elements, std::uint64_t seed) {
   std::vector<char> inside(static_cast<std::size_t>(graph.size()), 0);
@@ -46,24 +23,25 @@ Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& element
   std::vector<Eigen::Vector3i> triangles;
   for (std::size_t t = 0; t < graph.triangles.size(); ++t)
     if (inside[graph.element_of_triangle[t]]) triangles.push_back(graph.triangles[t]);
-  return sampleTriangles(graph.corners, triangles, kNumSamples, seed);
+  return sampleTriangles(graph.corners, triangles, kSegmentation.feature_samples, seed);
 }
 
 bool isNear(const ReflectionPlane& a, const ReflectionPlane& b, const Eigen::Vector3d& center, double most_offset) {
   const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
-  return a.angleTo(b) < kSameAngle &&
+  return a.angleTo(b) < kSegmentation.same_angle &&
          std::abs(a.signedDistance(center) - sign * b.signedDistance(center)) < most_offset;
 }
 
 /// Whether no known plane shares the basin of a plane.
 bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& known, const GaussianEdt& edt) {
   return std::none_of(known.begin(), known.end(), [&](const ReflectionPlane& k) {
-    return isNear(plane, k, edt.center(), kSameOffset * edt.radius());
+    return isNear(plane, k, edt.center(), kSegmentation.same_offset * edt.radius());
   });
 }
 
 PlaneGrid gridOf(const GaussianEdt& edt) {
-  return PlaneGrid(kNumTheta, kNumPhi, kNumRadius, edt.center(), edt.radius());
+  return PlaneGrid(kSegmentation.num_theta, kSegmentation.num_phi, kSegmentation.num_radius, edt.center(),
+                   edt.radius());
 }
 
 /// The strongest significant maxima of the transform, one of each basin (Section 4.4).
@@ -71,7 +49,7 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
                                                const SplittingOptions& options, std::uint64_t seed, int num_threads) {
   const PlaneGrid grid = gridOf(edt);
   PlanarTransformOptions transform;
-  transform.sampled.num_samples = kNumMapSamples;
+  transform.sampled.num_samples = kSegmentation.num_map_samples;
   transform.sampled.seed = seed;
   transform.sampled.num_threads = num_threads;
   LocalMaximaOptions significant;
@@ -98,18 +76,18 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
                                      const GaussianEdt& edt, bool as_published, int num_threads,
                                      const MakeSearch& make_search) {
   const ClosestPointSearch::Ptr search = make_search ? make_search(samples) : makeFlannSearch(samples);
-  const LocalGeometry geometry = localGeometry(samples, *search, kNumNormalNeighbours, num_threads);
+  const LocalGeometry geometry = localGeometry(samples, *search, kSegmentation.normal_neighbors, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
   std::vector<int> reflected;
-  const Eigen::Index stride = std::max<Eigen::Index>(1, samples.cols() / kNumRefined);
+  const Eigen::Index stride = std::max<Eigen::Index>(1, samples.cols() / kSegmentation.refined_samples);
   for (Eigen::Index i = 0; i < samples.cols(); i += stride) reflected.push_back(static_cast<int>(i));
   IspOptions isp;
   isp.sigma = edt.sigma();
-  isp.final_sigma = kFinalSigma * edt.sigma();
+  isp.final_sigma = kSegmentation.final_sigma * edt.sigma();
   std::vector<ReflectionPlane> ends(starts.size()), moved(starts.size());
   parallelBlocks(starts.size(), num_threads, [&](std::size_t i) {
     ends[i] = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;
-    moved[i] = isNear(ends[i], starts[i], edt.center(), kMostMoved * edt.radius()) ? ends[i] : starts[i];
+    moved[i] = isNear(ends[i], starts[i], edt.center(), kSegmentation.most_moved * edt.radius()) ? ends[i] : starts[i];
   });
   std::vector<ReflectionPlane> planes;
   if (as_published) {
@@ -148,7 +126,7 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
       const Eigen::Vector3d center = graph.centers.col(elements[i]).cast<double>();
       const auto f = static_cast<float>(std::clamp(edt(plane.plane.reflect(center)), 0.0, 1.0));
       features.support(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = f;
-      if (f > kMapped) mapped += graph.areas[elements[i]];
+      if (f > kSegmentation.mapped) mapped += graph.areas[elements[i]];
     }
     plane.share = area > 0.0 ? mapped / area : 0.0;
   });

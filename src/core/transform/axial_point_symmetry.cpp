@@ -7,9 +7,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Points at a time. chosen: their values stay in the first cache; half visits the directions more often, twice leaves
-// threads idle with small clouds.
-constexpr std::size_t kPointsAtATime = 1024;
+constexpr std::size_t points_at_a_time = 1024;  // their values stay in the first cache
 
 /// Values of one direction, bilinear between their bins and 0 beyond.
 class DirectionValues {
@@ -47,7 +45,7 @@ std::vector<float> axialPointSymmetry(const AxisMap& map, const PointsRef& point
   std::vector<float> greatest(points.cols(), 0.0f);
   if (map.empty()) return greatest;
   const Points centered = normalizePoints(points, map.grid.center(), 1.0);
-  parallelRanges(greatest.size(), kPointsAtATime, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(greatest.size(), points_at_a_time, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t direction = 0; direction < map.grid.numDirections(); ++direction) {
       const DirectionValues values(map, direction);
       const Eigen::Matrix3f frame = map.grid.frame(direction).cast<float>();

@@ -10,20 +10,16 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "core/transform/free_space.h"
 #include "core/transform/axial_turns.h"
+#include "core/transform/free_space.h"
 #include "core/transform/moved_lines.h"
+#include "core/transform/transform_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// directions; chosen: 16 x 64 directions make 256 blocks. Half sets up arrays more often, twice leaves threads idle.
-constexpr std::size_t kDirectionsPerBlock = 4;
-// D that count as equal. measured: pcl_symmetry_map -of axes; at the axis of a bottle they differ by 0.001, at that of
-// a rim with five broad spokes D of any angle is 0.010 below D_5. Half splits noisy clouds of round bodies, twice takes
-// that rim for round.
-constexpr double kEqual = 0.005;
+constexpr std::size_t directions_per_block = 4;
 
 /// Sums of the table's functions over the turned samples, for all axes of one direction.
 class AxesOfDirection {
@@ -119,7 +115,7 @@ int AxisMap::fold(std::size_t index) const {
 }
 
 int bestFold(const std::vector<int>& folds, const std::vector<double>& values) {
-  const double least = *std::max_element(values.begin(), values.end()) - kEqual;
+  const double least = *std::max_element(values.begin(), values.end()) - kTransform.equal_orders;
   int best = -1;
   for (std::size_t i = 0; i < folds.size(); ++i)
     if (values[i] >= least && best != 0 && (folds[i] == 0 || folds[i] > best)) best = folds[i];
@@ -197,7 +193,7 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
       }
     }
   };
-  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads, run);
+  parallelRanges(grid.numDirections(), directions_per_block, options.num_threads, run);
   return map;
 }
 

@@ -8,26 +8,12 @@
 #include "core/base/parallel.h"
 #include "core/transform/axial_turns.h"
 #include "core/transform/moved_lines.h"
+#include "core/transform/transform_rules.h"
 #include "pcl_symmetry/core/axial_transform.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Bins that are looked at, strongest first. chosen: half may miss small maxima beside large ones, twice takes longer.
-constexpr std::size_t kMostBins = 50'000;
-// Starts for each maximum that is asked for. chosen: half misses maxima whose bins are shoulders of others, twice takes
-// twice the time.
-constexpr int kStartsPerMaximum = 6;
-// Share of min_value that a bin has to reach. chosen: D between bins is up to half as great again as at their centers.
-constexpr double kLeastOfBin = 0.6;
-// Starts, and maxima, this near to a stronger one are left out: radians and sigmas. chosen: the half width of a
-// maximum; half repeats maxima, twice loses axes of polyhedra.
-constexpr double kSameStart = 0.14, kSameMaximum = 15.0 * kDegree, kSameOffset = 3.0;
-// Samples for climbing, times those of the map. chosen: their error is a third of that of the map.
-constexpr int kMoreSamples = 4;
-// Steps are halved this often. chosen: down to 0.05 degrees; once less doubles the error.
-constexpr int kHalvings = 6;
 
 bool isSameAxis(const Line3d& a, const Line3d& b, const Eigen::Vector3d& center, double angle, double distance) {
   const double cosine = std::abs(a.direction().dot(b.direction()));
@@ -41,7 +27,8 @@ public:
       : edt_(edt),
         map_(map),
         turns_(turnsOf(map.folds, options.num_turns, false)),
-        samples_(centeredSamples(edt, kMoreSamples * options.num_samples, options.seed, options.num_threads)) {}
+        samples_(
+            centeredSamples(edt, kTransform.more_samples * options.num_samples, options.seed, options.num_threads)) {}
 
   std::vector<double> valuesAt(const Line3d& axis) const {
     std::vector<double> values(map_.folds.size(), 0.0);
@@ -58,7 +45,7 @@ public:
     const std::size_t place = std::find(map_.folds.begin(), map_.folds.end(), fold) - map_.folds.begin();
     double angle = 0.25 * kPi / map_.grid.numTheta(), offset = 0.5 * map_.grid.offsetStep();
     double best = valueAt(axis, place);
-    for (int halving = 0; halving < kHalvings; angle *= 0.5, offset *= 0.5, ++halving)
+    for (int halving = 0; halving < kTransform.halvings; angle *= 0.5, offset *= 0.5, ++halving)
       for (bool moved = true; moved;) {
         moved = false;
         for (int way = 0; way < 8; ++way) {
@@ -113,7 +100,7 @@ std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double least
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
     if (map.greatest[i] >= least) bins.push_back(i);
-  const std::size_t kept = std::min(bins.size(), kMostBins);
+  const std::size_t kept = std::min(bins.size(), kTransform.most_axis_bins);
   std::partial_sort(bins.begin(), bins.begin() + kept, bins.end(), [&](std::size_t a, std::size_t b) {
     return std::make_pair(-map.greatest[a], a) < std::make_pair(-map.greatest[b], b);
   });
@@ -123,7 +110,7 @@ std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double least
     if (starts.size() == count) break;
     const Line3d axis = map.grid.axis(map.grid.bin(bin));
     if (std::none_of(starts.begin(), starts.end(), [&](const Line3d& other) {
-          return isSameAxis(axis, other, map.grid.center(), kSameStart, kSameOffset * map.sigma);
+          return isSameAxis(axis, other, map.grid.center(), kTransform.same_start, kTransform.same_offset * map.sigma);
         }))
       starts.push_back(axis);
   }
@@ -138,8 +125,8 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
   check(count >= 1, "count", count, ">= 1");
   check(min_value >= 0.0 && min_value <= 1.0, "min_value", min_value, "in [0, 1]");
   if (map.empty()) return {};
-  const std::vector<Line3d> starts =
-      startsOf(map, static_cast<std::size_t>(count) * kStartsPerMaximum, kLeastOfBin * min_value);
+  const std::vector<Line3d> starts = startsOf(map, static_cast<std::size_t>(count) * kTransform.starts_per_maximum,
+                                              kTransform.least_of_bin * min_value);
   const AxisClimb climb(edt, map, options);
   std::vector<AxisMaximum> climbed(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { climbed[i] = climb.climbed(starts[i]); });
@@ -149,7 +136,8 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
   for (const AxisMaximum& maximum : climbed) {
     if (maximum.value < min_value || static_cast<int>(maxima.size()) == count) break;
     if (std::none_of(maxima.begin(), maxima.end(), [&](const AxisMaximum& other) {
-          return isSameAxis(maximum.axis, other.axis, map.grid.center(), kSameMaximum, kSameOffset * map.sigma);
+          return isSameAxis(maximum.axis, other.axis, map.grid.center(), kTransform.same_maximum,
+                            kTransform.same_offset * map.sigma);
         }))
       maxima.push_back(maximum);
   }

@@ -10,10 +10,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kPairs = BundleValues::kPairs;    // derived: of BundleValues
-constexpr int kMargin = BundleValues::kMargin;  // derived: of BundleValues
-// Bits of the second number of a pair. derived: the upper half of 32 bits
-constexpr int kSecond = static_cast<int>(0xFFFF0000);
+constexpr int second_of_pair = static_cast<int>(0xFFFF0000);  // the upper half of 32 bits
 
 /// Where the bytes of each point lie in the rows of cells, worked out side by side where instructions allow it.
 [[gnu::always_inline]] inline void offsetsInRows(const Bundle& bundle, const RowTable::Rows& rows,
@@ -38,7 +35,7 @@ void lookUpScalar(const Bundle& bundle, const RowTable::Rows& rows, BundleValues
     values.aheadAt(l)[2 * j] = values.aheadAt(l - 1)[2 * j + 1] = static_cast<std::int16_t>(2 * value);
     values.backAt(l)[2 * j] = values.backAt(l + 1)[2 * j + 1] = value;
   };
-  for (int l = bundle.first - kMargin + 1; l < bundle.last + kMargin - 1; ++l) {
+  for (int l = bundle.first - BundleValues::kMargin + 1; l < bundle.last + BundleValues::kMargin - 1; ++l) {
     std::uint8_t lanes[kBundleLanes] = {};
     for (int r = 0; l >= bundle.first && l < bundle.last && r < kBundleRows; ++r)
       std::memcpy(lanes + r * kRowLanes,
@@ -87,7 +84,7 @@ __attribute__((target("avx2"))) inline void storePairs(std::int16_t* to, __m256i
 }
 
 __attribute__((target("avx2"))) inline bool areZero(const std::int16_t* pairs) {
-  const __m256i any = _mm256_or_si256(pairsOf(pairs), pairsOf(pairs + kPairs / 2));
+  const __m256i any = _mm256_or_si256(pairsOf(pairs), pairsOf(pairs + BundleValues::kPairs / 2));
   return _mm256_testz_si256(any, any) != 0;
 }
 
@@ -107,15 +104,15 @@ __attribute__((target("avx2"))) void lookUpAvx2(const Bundle& bundle, const RowT
                _mm256_or_si256(high, _mm256_slli_epi32(high_before, 16)));
     low_before = low;
     high_before = high;
-    ahead += kPairs;
-    back += kPairs;
+    ahead += BundleValues::kPairs;
+    back += BundleValues::kPairs;
   };
   for (int l = first; l < last; ++l) {
     const __m128i bytes = lanesAt(rows.bytes, offsets + l - bundle.first, bundle.last - bundle.first);
     store(_mm256_cvtepu8_epi32(bytes), _mm256_cvtepu8_epi32(_mm_srli_si128(bytes, 8)));
   }
   store(zero, zero);
-  for (int i = 0; i < kMargin - 1; ++i) {
+  for (int i = 0; i < BundleValues::kMargin - 1; ++i) {
     storePairs(values.aheadAt(first - 2 - i), zero, zero);
     storePairs(values.aheadAt(last + i), zero, zero);
     storePairs(values.backAt(last + 1 + i), zero, zero);
@@ -129,22 +126,22 @@ __attribute__((target("avx2"))) void lookUpAvx2(const Bundle& bundle, const RowT
 __attribute__((target("avx2"))) void correlateAvx2(const BundleValues& values, std::int32_t* sums) {
   for (int c = values.first; c < values.last; c += 4) {
     const int num_steps = numSteps(values, c);
-    for (int half = 0; half < kPairs; half += kPairs / 2) {
+    for (int half = 0; half < BundleValues::kPairs; half += BundleValues::kPairs / 2) {
       __m256i even[4], odd[4];
       const std::int16_t *a = values.aheadAt(c - 1) + half, *b = values.backAt(c + 1) + half;
       for (int i = 0; i < 4; ++i) {
-        const __m256i ahead = pairsOf(a + i * kPairs);
-        const __m256i self = _mm256_srli_epi32(_mm256_and_si256(ahead, _mm256_set1_epi32(kSecond)), 1);
-        even[i] = _mm256_madd_epi16(_mm256_sub_epi32(ahead, self), pairsOf(b + i * kPairs));
-        odd[i] = _mm256_madd_epi16(ahead, pairsOf(b + (i + 1) * kPairs));
+        const __m256i ahead = pairsOf(a + i * BundleValues::kPairs);
+        const __m256i self = _mm256_srli_epi32(_mm256_and_si256(ahead, _mm256_set1_epi32(second_of_pair)), 1);
+        even[i] = _mm256_madd_epi16(_mm256_sub_epi32(ahead, self), pairsOf(b + i * BundleValues::kPairs));
+        odd[i] = _mm256_madd_epi16(ahead, pairsOf(b + (i + 1) * BundleValues::kPairs));
       }
       for (int k = 1; k < num_steps; ++k) {
-        a -= 2 * kPairs;
-        b += 2 * kPairs;
+        a -= 2 * BundleValues::kPairs;
+        b += 2 * BundleValues::kPairs;
         for (int i = 0; i < 4; ++i) {
-          const __m256i ahead = pairsOf(a + i * kPairs);
-          even[i] = _mm256_add_epi32(even[i], _mm256_madd_epi16(ahead, pairsOf(b + i * kPairs)));
-          odd[i] = _mm256_add_epi32(odd[i], _mm256_madd_epi16(ahead, pairsOf(b + (i + 1) * kPairs)));
+          const __m256i ahead = pairsOf(a + i * BundleValues::kPairs);
+          even[i] = _mm256_add_epi32(even[i], _mm256_madd_epi16(ahead, pairsOf(b + i * BundleValues::kPairs)));
+          odd[i] = _mm256_add_epi32(odd[i], _mm256_madd_epi16(ahead, pairsOf(b + (i + 1) * BundleValues::kPairs)));
         }
       }
       for (int i = 0; i < 4; ++i) {
@@ -169,13 +166,13 @@ __attribute__((target("avx512f,avx512bw"))) void lookUpAvx512(const Bundle& bund
     _mm512_storeu_si512(ahead, _mm512_add_epi32(pairs, pairs));
     _mm512_storeu_si512(back, _mm512_rol_epi32(pairs, 16));
     before = here;
-    ahead += kPairs;
-    back += kPairs;
+    ahead += BundleValues::kPairs;
+    back += BundleValues::kPairs;
   };
   for (int l = first; l < last; ++l)
     store(_mm512_cvtepu8_epi32(lanesAt(rows.bytes, offsets + l - bundle.first, bundle.last - bundle.first)));
   store(zero);
-  for (int i = 0; i < kMargin - 1; ++i) {
+  for (int i = 0; i < BundleValues::kMargin - 1; ++i) {
     _mm512_storeu_si512(values.aheadAt(first - 2 - i), zero);
     _mm512_storeu_si512(values.aheadAt(last + i), zero);
     _mm512_storeu_si512(values.backAt(last + 1 + i), zero);
@@ -196,18 +193,19 @@ __attribute__((target("avx512f,avx512bw"))) void correlateAvx512(const BundleVal
     const int num_steps = numSteps(values, c);
     const std::int16_t *a = values.aheadAt(c - 1), *b = values.backAt(c + 1);
     for (int i = 0; i < 4; ++i) {
-      const __m512i ahead = _mm512_loadu_si512(a + i * kPairs);
-      const __m512i self = _mm512_srli_epi32(_mm512_and_si512(ahead, _mm512_set1_epi32(kSecond)), 1);
-      even[i] = _mm512_madd_epi16(_mm512_sub_epi32(ahead, self), _mm512_loadu_si512(b + i * kPairs));
-      odd[i] = _mm512_madd_epi16(ahead, _mm512_loadu_si512(b + (i + 1) * kPairs));
+      const __m512i ahead = _mm512_loadu_si512(a + i * BundleValues::kPairs);
+      const __m512i self = _mm512_srli_epi32(_mm512_and_si512(ahead, _mm512_set1_epi32(second_of_pair)), 1);
+      even[i] = _mm512_madd_epi16(_mm512_sub_epi32(ahead, self), _mm512_loadu_si512(b + i * BundleValues::kPairs));
+      odd[i] = _mm512_madd_epi16(ahead, _mm512_loadu_si512(b + (i + 1) * BundleValues::kPairs));
     }
     for (int k = 1; k < num_steps; ++k) {
-      a -= 2 * kPairs;
-      b += 2 * kPairs;
+      a -= 2 * BundleValues::kPairs;
+      b += 2 * BundleValues::kPairs;
       for (int i = 0; i < 4; ++i) {
-        const __m512i ahead = _mm512_loadu_si512(a + i * kPairs);
-        even[i] = _mm512_add_epi32(even[i], _mm512_madd_epi16(ahead, _mm512_loadu_si512(b + i * kPairs)));
-        odd[i] = _mm512_add_epi32(odd[i], _mm512_madd_epi16(ahead, _mm512_loadu_si512(b + (i + 1) * kPairs)));
+        const __m512i ahead = _mm512_loadu_si512(a + i * BundleValues::kPairs);
+        even[i] = _mm512_add_epi32(even[i], _mm512_madd_epi16(ahead, _mm512_loadu_si512(b + i * BundleValues::kPairs)));
+        odd[i] =
+            _mm512_add_epi32(odd[i], _mm512_madd_epi16(ahead, _mm512_loadu_si512(b + (i + 1) * BundleValues::kPairs)));
       }
     }
     for (int i = 0; i < 4; ++i) {

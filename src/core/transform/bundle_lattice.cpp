@@ -6,31 +6,24 @@
 
 #include "core/base/simd.h"
 #include "core/transform/lookup_table.h"
+#include "core/transform/transform_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Lines of a bundle may be farther apart by this than what was asked for, where rows are the closer. derived: two whole
-// cells in place of 0.9 sigmas of two cells.
-constexpr double kMostStretch = 1.12;
-// Points that are whole cells apart would all be rounded to the same side along an axis of the cells, and so would
-// rows: distances nearer to a whole number than this are avoided. chosen: over ten points the rest adds up to a cell;
-// twice as much takes more points of more grids.
-constexpr double kNearWhole = 0.1;
-constexpr double kLessThanWhole = 0.87;  // by which rows come closer. chosen: out of reach of kNearWhole, for few more
-constexpr float kFar = 1e6f;             // points. derived: farther than all of a line
-constexpr int kAtOnce = 16;              // bundles that are cut together. derived: floats in an AVX-512 register
-constexpr float kLeastSlope = 1e-5f;     // derived: along 512 cells a slab is left by less than its slack
+constexpr float far_points = 1e6f;    // farther than all of a line
+constexpr int at_once = 16;           // bundles that are cut together: floats in an AVX-512 register
+constexpr float least_slope = 1e-5f;  // along 512 cells a slab is left by less than its slack
 
 bool isNearlyWhole(double cells) {
-  return std::abs(cells - std::round(cells)) < kNearWhole;
+  return std::abs(cells - std::round(cells)) < kTransform.near_whole;
 }
 
 /// Where bundles with their middles at x enter the last slab and leave the first one.
 PCL_SYMMETRY_MULTIVERSION
 void cutAtSlabs(const float* entry, const float* exit, const float* of_x, const float* x, float* first, float* last) {
-  typedef float Lanes __attribute__((vector_size(4 * kAtOnce)));
+  typedef float Lanes __attribute__((vector_size(4 * at_once)));
   Lanes middle, low, high;
   std::memcpy(&middle, x, sizeof middle);
   low = entry[0] - middle * of_x[0];
@@ -54,7 +47,7 @@ BundleLattice::BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, doub
   grid_offset = grid.offset(0) / edt.cellSize();
   radius_step = grid.radiusStep() / edt.cellSize();
   spacing = spacing_in_sigmas * edt.sigma() / edt.cellSize();
-  step = std::max(1, static_cast<int>(kMostStretch * spacing));
+  step = std::max(1, static_cast<int>(kTransform.most_stretch * spacing));
   refine = static_cast<int>(std::ceil(2.0 * radius_step / spacing));
   if (isNearlyWhole(2.0 * radius_step / refine)) ++refine;
   along = 2.0 * radius_step / refine;
@@ -69,7 +62,7 @@ BundlesOfDirection::BundlesOfDirection(const BundleLattice& lattice, const Eigen
   across_ = std::hypot(n_.y(), n_.z());
   v_ = Eigen::Vector3d(0.0, -n_.z(), n_.y()) / across_;
   between_ = std::min(lattice.spacing, lattice.spacing * lattice.spacing / (lattice.step * across_));
-  if (isNearlyWhole(between_)) between_ *= kLessThanWhole;
+  if (isNearlyWhole(between_)) between_ *= kTransform.less_than_whole;
   const double first_offset = normal.dot(lattice.center) + lattice.grid_offset;
   num_skipped_ = std::floor((-lattice.clip - lattice.most_ahead - first_offset) / lattice.radius_step);
   t0_ = first_offset + num_skipped_ * lattice.radius_step;
@@ -82,7 +75,7 @@ void BundlesOfDirection::setSlabs() {
   for (int k = 0; k < kMostSlabs; ++k) {
     const auto all = lattice_.slabs.axes.row(k);
     const Eigen::Vector3f w(all[axis_], all[(axis_ + 1) % 3], all[(axis_ + 2) % 3]);
-    const float slope = std::copysign(std::max(std::abs(w.dot(n)), kLeastSlope), w.dot(n));
+    const float slope = std::copysign(std::max(std::abs(w.dot(n)), least_slope), w.dot(n));
     const float middle = w.sum() * static_cast<float>(lattice_.middle);
     const float reach = std::abs(w.x()) * static_cast<float>(lattice_.half());
     // Cells beyond the ball are 0 as well.
@@ -102,7 +95,7 @@ int BundlesOfDirection::numRows() const {
 
 /// Widens [first, last] to where bundles with their middles at x meet all slabs, in points of a line.
 void BundlesOfDirection::cutRow(const Row& row, const float* x, float* first, float* last) const {
-  float entry[kMostSlabs], exit[kMostSlabs], low[kAtOnce], high[kAtOnce];
+  float entry[kMostSlabs], exit[kMostSlabs], low[at_once], high[at_once];
   for (int k = 0; k < kMostSlabs; ++k) {
     entry[k] = entry_[k] - static_cast<float>(row.b) * of_b_[k];
     exit[k] = exit_[k] - static_cast<float>(row.b) * of_b_[k];
@@ -110,11 +103,11 @@ void BundlesOfDirection::cutRow(const Row& row, const float* x, float* first, fl
   cutAtSlabs(entry, exit, of_x_, x, low, high);
   const auto scale = static_cast<float>(1.0 / lattice_.along), t0 = static_cast<float>(t0_),
              nx = static_cast<float>(n_.x());
-  for (int i = 0; i < kAtOnce; ++i) {
+  for (int i = 0; i < at_once; ++i) {
     const bool meets = low[i] <= high[i];
     const float from = t0 - x[i] * nx;  // tau of point 0
-    first[i] = std::min(first[i], meets ? (low[i] - from) * scale : kFar);
-    last[i] = std::max(last[i], meets ? (high[i] - from) * scale : -kFar);
+    first[i] = std::min(first[i], meets ? (low[i] - from) * scale : far_points);
+    last[i] = std::max(last[i], meets ? (high[i] - from) * scale : -far_points);
   }
 }
 
@@ -122,15 +115,15 @@ void BundlesOfDirection::addBundles(const Row* rows, std::vector<Bundle>& bundle
   // The ball casts an ellipse along n. Rows are shifted by up to half a step.
   const double width = kRowLanes * lattice_.step;
   const int num_side = static_cast<int>(std::ceil(lattice_.clip / (across_ * width) + 0.5 / kRowLanes));
-  for (int c = -num_side; c < num_side; c += kAtOnce) {
-    float x[kBundleRows][kAtOnce], first[kAtOnce], last[kAtOnce];
-    std::fill_n(first, kAtOnce, kFar);
-    std::fill_n(last, kAtOnce, -kFar);
+  for (int c = -num_side; c < num_side; c += at_once) {
+    float x[kBundleRows][at_once], first[at_once], last[at_once];
+    std::fill_n(first, at_once, far_points);
+    std::fill_n(last, at_once, -far_points);
     for (int r = 0; r < kBundleRows; ++r) {
-      for (int i = 0; i < kAtOnce; ++i) x[r][i] = static_cast<float>((c + i + 0.5) * width + rows[r].shift);
+      for (int i = 0; i < at_once; ++i) x[r][i] = static_cast<float>((c + i + 0.5) * width + rows[r].shift);
       cutRow(rows[r], x[r], first, last);
     }
-    for (int i = 0; i < std::min(kAtOnce, num_side - c); ++i) {
+    for (int i = 0; i < std::min(at_once, num_side - c); ++i) {
       Bundle bundle;
       bundle.first = static_cast<int>(std::max(0.0f, first[i])) + 1;
       bundle.last = std::min(lattice_.num_along, static_cast<int>(std::max(-1.0f, last[i])) + 1);

@@ -12,14 +12,14 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kCube = 8;  // cells along a side of a block; chosen: a multiple of a part, whose parts share a list
-constexpr int kPart = 4;  // cells along a side of a part. derived: a slice of a part fills an AVX-512 register
-constexpr int kBin = 4;   // cells along a side of a bin of points; chosen: a block looks at 36 rows of bins
-constexpr int kInSlice = kPart * kPart, kInPart = kInSlice * kPart;  // derived: cells of a slice and of a part
+constexpr int cube_side = 8;  // cells of a block, a multiple of a part
+constexpr int part_side = 4;  // cells; a slice of a part fills an AVX-512 register
+constexpr int bin_side = 4;   // cells of a bin of points
+constexpr int cells_in_slice = part_side * part_side;
+constexpr int cells_in_part = cells_in_slice * part_side;
 
-// Cells, and share of squared distances, by which a point has to be farther off to be left out. derived: more than
-// what they are rounded by, about 1e-6 of them.
-constexpr float kSlack = 1e-3f, kSlackShare = 1e-5f;
+constexpr float slack_of_distance = 1e-3f;  // cells; more than distances are rounded by
+constexpr float slack_share = 1e-5f;        // the same of squared distances
 
 struct Coordinates {
   const float *x, *y, *z;
@@ -53,27 +53,27 @@ PCL_SYMMETRY_MULTIVERSION
 void markNearer(int q, float half, const Coordinates& points, const float* sq_distances, int size,
                 std::int32_t* marks) {
   const float *const x = points.x, *const y = points.y, *const z = points.z;
-  const float qx = x[q], qy = y[q], qz = z[q], most = sq_distances[q] * (1.0f + kSlackShare) + kSlack;
+  const float qx = x[q], qy = y[q], qz = z[q], most = sq_distances[q] * (1.0f + slack_share) + slack_of_distance;
   for (int i = 0; i < size; ++i) {
     // |p - u|^2 - |q - u|^2 is linear in u: least in a corner of the cube.
     const float gain = 2.0f * half * (std::abs(x[i] - qx) + std::abs(y[i] - qy) + std::abs(z[i] - qz));
-    marks[i] = sq_distances[i] * (1.0f - kSlackShare) - gain <= most ? 1 : 0;
+    marks[i] = sq_distances[i] * (1.0f - slack_share) - gain <= most ? 1 : 0;
   }
 }
 
 /// Values of the cells of a slice of a part.
-typedef float SliceOfPart __attribute__((vector_size(kInSlice * sizeof(float))));
+typedef float SliceOfPart __attribute__((vector_size(cells_in_slice * sizeof(float))));
 
 /// Squared distances of the cells of a part from the nearest of some points.
 /// \param first the center of the first cell.
 /// \param chosen the points.
-/// \param[in,out] nearest kInPart values, x slowest, y fastest.
+/// \param[in,out] nearest cells_in_part values, x slowest, y fastest.
 PCL_SYMMETRY_MULTIVERSION
 void lower(const float* first, const Coordinates& points, const std::int32_t* chosen, int size, float* nearest) {
-  SliceOfPart y, z, low[kPart];
-  for (int l = 0; l < kInSlice; ++l) {
-    y[l] = first[1] + static_cast<float>(l % kPart);
-    z[l] = first[2] + static_cast<float>(l / kPart);
+  SliceOfPart y, z, low[part_side];
+  for (int l = 0; l < cells_in_slice; ++l) {
+    y[l] = first[1] + static_cast<float>(l % part_side);
+    z[l] = first[2] + static_cast<float>(l / part_side);
   }
   std::memcpy(low, nearest, sizeof low);
   const float x0 = first[0], x1 = x0 + 1.0f, x2 = x0 + 2.0f, x3 = x0 + 3.0f;
@@ -145,8 +145,8 @@ struct CellDistances::Candidates {
 
 CellDistances::CellDistances(const Points& points, int num_cells, float reach)
     : num_cells_(num_cells),
-      num_blocks_((num_cells + kCube - 1) / kCube),
-      num_bins_((num_cells + kBin - 1) / kBin),
+      num_blocks_((num_cells + cube_side - 1) / cube_side),
+      num_bins_((num_cells + bin_side - 1) / bin_side),
       sq_reach_(reach * reach),
       reach_(reach),
       begin_(static_cast<std::size_t>(num_bins_) * num_bins_ * num_bins_ + 1, 0) {
@@ -171,7 +171,7 @@ CellDistances::CellDistances(const Points& points, int num_cells, float reach)
 
 /// The bin of a coordinate in cells; that at the side for what lies beyond.
 int CellDistances::bin(float coordinate) const {
-  return static_cast<int>(std::clamp(coordinate, 0.0f, static_cast<float>(num_cells_ - 1))) / kBin;
+  return static_cast<int>(std::clamp(coordinate, 0.0f, static_cast<float>(num_cells_ - 1))) / bin_side;
 }
 
 /// The points of the bins within reach of a block.
@@ -180,7 +180,7 @@ void CellDistances::gather(const Block& block, Candidates& found) const {
     int low, high;
   };
   const auto within = [&](int first) {
-    return Range{bin(static_cast<float>(first) - reach_), bin(static_cast<float>(first + kCube - 1) + reach_)};
+    return Range{bin(static_cast<float>(first) - reach_), bin(static_cast<float>(first + cube_side - 1) + reach_)};
   };
   const Range x = within(block.x), y = within(block.y), z = within(block.z);
   found.size = 0;
@@ -200,40 +200,40 @@ void CellDistances::gather(const Block& block, Candidates& found) const {
 
 void CellDistances::fill(int row, float* sq_distances) const {
   Candidates found, near;
-  for (int x = 0; x < num_cells_; x += kCube)
-    fillBlock({x, row % num_blocks_ * kCube, row / num_blocks_ * kCube}, found, near, sq_distances);
+  for (int x = 0; x < num_cells_; x += cube_side)
+    fillBlock({x, row % num_blocks_ * cube_side, row / num_blocks_ * cube_side}, found, near, sq_distances);
 }
 
 void CellDistances::fillBlock(const Block& block, Candidates& found, Candidates& near, float* sq_distances) const {
   const auto choose = [&](const Block& cube, int side, Candidates& from) {
-    const float half = 0.5f * static_cast<float>(side - 1), most = reach_ + std::sqrt(3.0f) * half + kSlack;
+    const float half = 0.5f * static_cast<float>(side - 1), most = reach_ + std::sqrt(3.0f) * half + slack_of_distance;
     const float center[] = {static_cast<float>(cube.x) + half, static_cast<float>(cube.y) + half,
                             static_cast<float>(cube.z) + half};
     from.choose(center, half, most * most);
   };
   gather(block, found);
-  choose(block, kCube, found);
+  choose(block, cube_side, found);
   near.take(found);
-  for (int z = block.z; z < std::min(block.z + kCube, num_cells_); z += kPart)
-    for (int y = block.y; y < std::min(block.y + kCube, num_cells_); y += kPart)
-      for (int x = block.x; x < std::min(block.x + kCube, num_cells_); x += kPart) {
-        choose({x, y, z}, kPart, near);
+  for (int z = block.z; z < std::min(block.z + cube_side, num_cells_); z += part_side)
+    for (int y = block.y; y < std::min(block.y + cube_side, num_cells_); y += part_side)
+      for (int x = block.x; x < std::min(block.x + cube_side, num_cells_); x += part_side) {
+        choose({x, y, z}, part_side, near);
         fillPart({x, y, z}, near, sq_distances);
       }
 }
 
 void CellDistances::fillPart(const Block& part, const Candidates& near, float* sq_distances) const {
-  float nearest[kInPart];
-  std::fill_n(nearest, kInPart, sq_reach_);
+  float nearest[cells_in_part];
+  std::fill_n(nearest, cells_in_part, sq_reach_);
   const float first[] = {static_cast<float>(part.x), static_cast<float>(part.y), static_cast<float>(part.z)};
   if (near.num_chosen > 0) lower(first, near.coordinates(), near.chosen.data(), near.num_chosen, nearest);
-  const int width = std::min(kPart, num_cells_ - part.x), height = std::min(kPart, num_cells_ - part.y),
-            depth = std::min(kPart, num_cells_ - part.z);
+  const int width = std::min(part_side, num_cells_ - part.x), height = std::min(part_side, num_cells_ - part.y),
+            depth = std::min(part_side, num_cells_ - part.z);
   for (int z = 0; z < depth; ++z)
     for (int y = 0; y < height; ++y) {
       float* const row =
           sq_distances + (static_cast<std::size_t>(part.z + z) * num_cells_ + part.y + y) * num_cells_ + part.x;
-      for (int x = 0; x < width; ++x) row[x] = nearest[x * kInSlice + z * kPart + y];
+      for (int x = 0; x < width; ++x) row[x] = nearest[x * cells_in_slice + z * part_side + y];
     }
 }
 

@@ -13,8 +13,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// directions; chosen: half sets up arrays more often, twice leaves threads idle at the end
-constexpr std::size_t kConvolvedPerBlock = 16;
+constexpr std::size_t convolved_per_block = 16;  // directions
 // Steps of the R2 sequence, which fills the unit square evenly. derived: 1 / g and 1 / g^2 with the plastic number
 // g = 1.3247..., the root of g^3 = g + 1.
 constexpr double kPhaseSteps[2] = {0.7548776662466927, 0.5698402909980532};
@@ -118,7 +117,7 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
     for (std::size_t direction = begin; direction < end; ++direction)
       convolution.run(grid.normal(direction), direction, norm, num_radius, map.values.data() + direction * num_radius);
   };
-  parallelRanges(grid.numDirections(), kConvolvedPerBlock, options.num_threads, run);
+  parallelRanges(grid.numDirections(), convolved_per_block, options.num_threads, run);
   return map;
 }
 

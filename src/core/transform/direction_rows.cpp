@@ -10,11 +10,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-// points that go through the directions together; chosen: they stay in the first cache, half of them repeat the rows
-// more often, twice as many leave it
-constexpr std::size_t kBlock = 1024;
-// directions between two looks at the smallest value so far; chosen: each look costs as much as one direction
-constexpr std::size_t kStopEvery = 32;
+constexpr std::size_t points_together = 1024;  // they stay in the first cache
+constexpr std::size_t stop_every = 32;         // directions between two looks at the smallest value
 
 /// Coordinates of points, each in an array of its own.
 struct PointBlock {
@@ -66,13 +63,13 @@ DirectionRows::DirectionRows(const std::vector<float>& values, const std::vector
 
 std::vector<float> DirectionRows::greatestThrough(const Points& points, int num_threads) const {
   std::vector<float> best(points.cols(), 0.0f);
-  parallelRanges(points.cols(), kBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(points.cols(), points_together, num_threads, [&](std::size_t begin, std::size_t end) {
     const int size = static_cast<int>(end - begin);
     const Eigen::MatrixX3f block = points.middleCols(begin, size).transpose();
     const PointBlock coordinates{block.col(0).data(), block.col(1).data(), block.col(2).data(), size};
     for (std::size_t d = 0; d < rows_.size(); ++d) {
       // The directions left can no longer raise anything.
-      if (d % kStopEvery == 0 && rows_[d].greatest <= *std::min_element(best.begin() + begin, best.begin() + end))
+      if (d % stop_every == 0 && rows_[d].greatest <= *std::min_element(best.begin() + begin, best.begin() + end))
         break;
       raise(coordinates, rows_[d], place_, best.data() + begin);
     }

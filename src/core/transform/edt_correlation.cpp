@@ -17,7 +17,7 @@ namespace {
 void productsScalar(const GaussianEdt& edt, const float* f, const ImageOfRow& image, GaussianEdt::Range cells,
                     double* sums) {
   for (int x = cells.begin; x < cells.end; ++x)
-    if (f[x] > 0.0f) sums[(x - cells.begin) % kProductSums] += f[x] * edt.atCell(image.first + x * image.step);
+    if (f[x] > 0.0f) sums[(x - cells.begin) % num_product_sums] += f[x] * edt.atCell(image.first + x * image.step);
 }
 
 #if defined(__x86_64__)
@@ -27,12 +27,12 @@ __attribute__((target("avx512f"))) void productsAvx512(const GaussianEdt& edt, c
                                                        GaussianEdt::Range cells, double* sums) {
   const int n = edt.numCells();
   const float* const table = edt.interpolation().data();
-  const __m512d zero = _mm512_setzero_pd(), last = _mm512_set1_pd(n - 1.0), one_more = _mm512_set1_pd(kProductSums);
+  const __m512d zero = _mm512_setzero_pd(), last = _mm512_set1_pd(n - 1.0), one_more = _mm512_set1_pd(num_product_sums);
   const __m256i side = _mm256_set1_epi32(n);
   __m512d sum = _mm512_loadu_pd(sums);
   __m512d place = _mm512_add_pd(_mm512_set1_pd(cells.begin), _mm512_setr_pd(0, 1, 2, 3, 4, 5, 6, 7));
-  for (int x = cells.begin; x < cells.end; x += kProductSums, place = _mm512_add_pd(place, one_more)) {
-    const auto there = static_cast<__mmask8>((1u << std::min(kProductSums, cells.end - x)) - 1u);
+  for (int x = cells.begin; x < cells.end; x += num_product_sums, place = _mm512_add_pd(place, one_more)) {
+    const auto there = static_cast<__mmask8>((1u << std::min(num_product_sums, cells.end - x)) - 1u);
     const __m512d own = _mm512_cvtps_pd(_mm512_castps512_ps256(_mm512_maskz_loadu_ps(there, f + x)));
     __m512d at[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -51,7 +51,7 @@ __attribute__((target("avx512f"))) void productsAvx512(const GaussianEdt& edt, c
     const __m256i index = _mm256_add_epi32(
         _mm256_mullo_epi32(_mm256_add_epi32(_mm256_mullo_epi32(cell[2], side), cell[1]), side), cell[0]);
     const auto row = [&](int offset) __attribute__((target("avx512f"), always_inline)) {
-      // Two neighbours along x by one load.
+      // Two neighbors along x by one load.
       const __m512i pair = _mm512_mask_i32gather_epi64(_mm512_setzero_si512(), inside, index, table + offset, 4);
       const __m256 here = _mm256_castsi256_ps(_mm512_cvtepi64_epi32(pair));
       const __m256 next = _mm256_castsi256_ps(_mm512_cvtepi64_epi32(_mm512_srli_epi64(pair, 32)));

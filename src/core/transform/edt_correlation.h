@@ -14,14 +14,13 @@ struct ImageOfRow {
   Eigen::Vector3d first, step;
 };
 
-/// Sums that products are added to in turn. derived: doubles in the widest registers
-constexpr int kProductSums = 8;
+constexpr int num_product_sums = 8;  // doubles in the widest registers
 
 /// Adds the products f(x) f(image of x) of some cells of a row: that of the first one to sums[0], of the next one to
 /// sums[1], and so on around.
 /// \param f of the row.
 /// \param cells [begin, end) of the row.
-/// \param[in,out] sums kProductSums of them.
+/// \param[in,out] sums num_product_sums of them.
 using RowProducts = void (*)(const GaussianEdt& edt, const float* f, const ImageOfRow& image, GaussianEdt::Range cells,
                              double* sums);
 
@@ -35,19 +34,19 @@ RowProducts rowProducts();
 /// \return D in [0, 1].
 template <typename Image>
 double correlation(const GaussianEdt& edt, const Image& image, const Eigen::Vector3d& step, int num_threads) {
-  constexpr std::size_t kSlab = 8;  // layers of cells along z. chosen: large enough that threads start seldom
+  constexpr std::size_t slab = 8;  // layers of cells along z
   const auto n = static_cast<std::size_t>(edt.numCells());
-  std::vector<double> slabs((n + kSlab - 1) / kSlab);
+  std::vector<double> slabs((n + slab - 1) / slab);
   const RowProducts add = rowProducts();
   parallelBlocks(slabs.size(), num_threads, [&](std::size_t slab) {
-    double sums[kProductSums] = {};
-    for (std::size_t row = slab * kSlab * n; row < std::min(n, (slab + 1) * kSlab) * n; ++row) {
+    double sums[num_product_sums] = {};
+    for (std::size_t row = slab * slab * n; row < std::min(n, (slab + 1) * slab) * n; ++row) {
       const GaussianEdt::Range filled = edt.filledRanges()[row];
       if (filled.begin == filled.end) continue;
       const Eigen::Vector3d start(0.0, static_cast<double>(row % n), static_cast<double>(row / n));
       add(edt, edt.values().data() + row * n, {image(start), step}, filled, sums);
     }
-    slabs[slab] = std::accumulate(sums, sums + kProductSums, 0.0);
+    slabs[slab] = std::accumulate(sums, sums + num_product_sums, 0.0);
   });
   return std::clamp(std::accumulate(slabs.begin(), slabs.end(), 0.0) / edt.sqNorm(), 0.0, 1.0);
 }

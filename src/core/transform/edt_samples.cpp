@@ -11,8 +11,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kBlockBits = 3;  // chosen: smaller blocks make the list of blocks long, larger ones the search in a block
-constexpr int kBlock = 1 << kBlockBits;  // derived: cells along a side of a block
+constexpr int block_bits = 3;
+constexpr int block_side = 1 << block_bits;  // cells
 
 /// Positions of a cube of 2^kBits cells along the Morton curve: the bits of three coordinates, interleaved.
 template <int kBits>
@@ -40,22 +40,23 @@ struct Block {
 
 /// All blocks along the Morton curve.
 std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
-  const int n = edt.numCells(), side = (n + kBlock - 1) / kBlock;
+  const int n = edt.numCells(), side = (n + block_side - 1) / block_side;
   std::vector<Block> blocks(static_cast<std::size_t>(side) * side * side);
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x)
         blocks[(static_cast<std::size_t>(z) * side + y) * side + x] = {
-            mortonPart(x) | mortonPart(y) << 1 | mortonPart(z) << 2, x * kBlock, y * kBlock, z * kBlock, 0.0};
+            mortonPart(x) | mortonPart(y) << 1 | mortonPart(z) << 2, x * block_side, y * block_side, z * block_side,
+            0.0};
   parallelBlocks(side, num_threads, [&](std::size_t layer) {
-    for (int z = static_cast<int>(layer) * kBlock; z < std::min(n, static_cast<int>(layer + 1) * kBlock); ++z) {
+    for (int z = static_cast<int>(layer) * block_side; z < std::min(n, static_cast<int>(layer + 1) * block_side); ++z) {
       for (int y = 0; y < n; ++y) {
         const float* const f = edt.values().data() + (static_cast<std::size_t>(z) * n + y) * n;
-        Block* const row = &blocks[(layer * side + y / kBlock) * side];
-        for (int x = 0; x < n; x += kBlock) {
+        Block* const row = &blocks[(layer * side + y / block_side) * side];
+        for (int x = 0; x < n; x += block_side) {
           float sum = 0.0f;
-          for (int i = x; i < std::min(n, x + kBlock); ++i) sum += f[i];
-          row[x / kBlock].sum += sum;
+          for (int i = x; i < std::min(n, x + block_side); ++i) sum += f[i];
+          row[x / block_side].sum += sum;
         }
       }
     }
@@ -67,7 +68,7 @@ std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
 /// The cell of a block at which the sum of f along the curve passes \p target.
 /// \param before sum before the block.
 Eigen::Vector3f cellAt(const GaussianEdt& edt, const Block& block, double before, double target) {
-  static const auto kCurve = mortonCurve<kBlockBits>();
+  static const auto kCurve = mortonCurve<block_bits>();
   const int n = edt.numCells();
   double sum = before;
   Eigen::Vector3f chosen = Eigen::Vector3f::Zero();

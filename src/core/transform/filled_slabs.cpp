@@ -6,19 +6,18 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Cells. derived: more than what fixed-point steps add up to, 64 times 2^-17, and what floats about 64 are rounded by.
-constexpr float kSlack = 0.01f;
+constexpr float slab_slack = 0.01f;  // cells; more than fixed-point steps and floats are rounded by
 
 }  // namespace
 
 SlabsOfCells::SlabsOfCells(const GaussianEdt& edt) {
-  // The directions from a cell to its neighbours, one of each pair.
+  // The directions from a cell to its neighbors, one of each pair.
   for (int code = 14; code < 27; ++code)
     axes.row(code - 14) << static_cast<float>(code % 3 - 1), static_cast<float>(code / 3 % 3 - 1),
         static_cast<float>(code / 9 - 1);
-  constexpr float kFar = 1e6f;  // derived: farther than every cell
-  low.setConstant(kFar);
-  high.setConstant(-kFar);
+  constexpr float far = 1e6f;  // farther than every cell
+  low.setConstant(far);
+  high.setConstant(-far);
   const int n = edt.numCells();
   for (int row = 0; row < n * n; ++row) {
     const GaussianEdt::Range filled = edt.filledRanges()[static_cast<std::size_t>(row)];
@@ -31,7 +30,7 @@ SlabsOfCells::SlabsOfCells(const GaussianEdt& edt) {
     }
   }
   // A look-up takes the whole cell.
-  const Eigen::Matrix<float, kMostSlabs, 1> of_cell = 0.5f * axes.cwiseAbs().rowwise().sum().array() + kSlack;
+  const Eigen::Matrix<float, kMostSlabs, 1> of_cell = 0.5f * axes.cwiseAbs().rowwise().sum().array() + slab_slack;
   low -= of_cell;
   high += of_cell;
 }

@@ -7,7 +7,7 @@
 
 namespace pcl_symmetry {
 
-/// Slabs around the cells in which f is not 0, along the thirteen directions to the neighbours of a cell:
+/// Slabs around the cells in which f is not 0, along the thirteen directions to the neighbors of a cell:
 /// low <= axes . p <= high for all p in one of them, in cells from the center of cell (0, 0, 0). Most shapes fill a
 /// small part of their ball.
 struct SlabsOfCells {

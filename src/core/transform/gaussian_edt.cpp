@@ -10,19 +10,11 @@
 #include "core/base/simd.h"
 #include "core/transform/cell_distances.h"
 #include "core/transform/gaussian_width.h"
+#include "core/transform/transform_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// points; chosen: larger clouds are dense enough for usual grids, and probing them takes long
-constexpr Eigen::Index kNumDense = 200'000;
-// points for each cell of a slice; chosen: fewer than that cost less than thinning
-constexpr std::size_t kDensePerCell = 8;
-// slots along a cell; chosen: thinning adds up to sqrt(3) / 4 cells to a distance; half adds twice as much, twice keeps
-// eight times as many points
-constexpr int kSlotsPerCell = 4;
-constexpr double kOfInterpolation = 1.0 / 12.0;  // derived: a value between cells is a mean over a box of one cell
 
 /// A float clamped to [low, high], as an integer; rounded towards zero.
 int clampedInt(float value, int low, int high) {
@@ -42,13 +34,13 @@ void sharpenRow(const float* f, std::ptrdiff_t num_cells, std::ptrdiff_t slice_s
 /// Keeps the first point in each slot of 1/64 cell.
 /// \param points in cells.
 Points thin(const Points& points, int num_cells) {
-  const int side = kSlotsPerCell * num_cells;
+  const int side = kTransform.slots_per_cell * num_cells;
   std::vector<bool> taken(static_cast<std::size_t>(side) * side * side);
   Points kept(3, points.cols());
   Eigen::Index num_kept = 0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const auto at = [&](int axis) {
-      return static_cast<std::size_t>(clampedInt(kSlotsPerCell * (points(axis, i) + 0.5f), 0, side - 1));
+      return static_cast<std::size_t>(clampedInt(kTransform.slots_per_cell * (points(axis, i) + 0.5f), 0, side - 1));
     };
     const std::size_t slot = (at(2) * side + at(1)) * side + at(0);
     if (taken[slot]) continue;
@@ -86,7 +78,7 @@ GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& opti
   chooseWidth(points, options.sigma);
   origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
   computeValues(points, options.num_threads);
-  interpolation_ = sharpened(kOfInterpolation, options.num_threads);
+  interpolation_ = sharpened(kTransform.of_interpolation, options.num_threads);
 }
 
 void GaussianEdt::chooseWidth(const PointsRef& points, double sigma) {
@@ -98,7 +90,8 @@ void GaussianEdt::chooseWidth(const PointsRef& points, double sigma) {
   if (sigma > 0.0) return take(sigma);
   cell_size_ = radius_ / std::max(half - kMarginInSigmas * kSigmaInCells, 0.5 * half);
   sigma_ = kSigmaInCells * cell_size_;
-  const double spacing = points.cols() > kNumDense ? 0.0 : std::min(sampleSpacing(points), kMostSpacing * radius_);
+  const double spacing =
+      points.cols() > kTransform.num_dense ? 0.0 : std::min(sampleSpacing(points), kMostSpacing * radius_);
   if (spacing > sigma_) take(spacing);
 }
 
@@ -106,7 +99,7 @@ void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
   const int n = num_cells_;
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;
   Points cells = normalizePoints(points, origin_, cell_size_);
-  if (static_cast<std::size_t>(cells.cols()) > kDensePerCell * slice_size) cells = thin(cells, n);
+  if (static_cast<std::size_t>(cells.cols()) > kTransform.dense_per_cell * slice_size) cells = thin(cells, n);
   const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_), sq_reach = reach * reach;
   filled_.assign(slice_size, {0, 0});
   const CellDistances distances(cells, n, reach);
@@ -150,7 +143,7 @@ Eigen::Vector3d GaussianEdt::cellCenter(std::size_t index) const {
 std::vector<float> GaussianEdt::sharpened(double c, int num_threads) const {
   const int n = num_cells_;
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;
-  if (c == kOfInterpolation && !interpolation_.empty()) return interpolation_;
+  if (c == kTransform.of_interpolation && !interpolation_.empty()) return interpolation_;
   std::vector<float> result(values_);
   parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
     for (int y = 1; y + 1 < n; ++y) {

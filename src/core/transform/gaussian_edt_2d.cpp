@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "core/base/check.h"
-#include "core/transform/gaussian_width.h"
 #include "core/geometry/principal_axes.h"
+#include "core/transform/gaussian_width.h"
 #include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {

@@ -47,7 +47,7 @@ inline float sqNearestOther(const float* coordinates, int num_axes, Eigen::Index
   return sq_nearest;
 }
 
-/// Typical distance between neighbouring samples: twice the median distance to the nearest other point, over a fixed
+/// Typical distance between neighboring samples: twice the median distance to the nearest other point, over a fixed
 /// number of probes. For random samples this is 0.94 / sqrt(density) on a surface, and the median gap on a curve.
 /// \param points 2 x N or 3 x N, finite.
 /// \return input units; 0 if all points coincide.

@@ -26,8 +26,8 @@ typedef float FloatLanes __attribute__((vector_size(4 * kLineLanes)));
   for (int s = 0; s < slabs.count; ++s) {
     const float* const axis = slabs.axes + 3 * s;
     const float slope = normal[0] * axis[0] + normal[1] * axis[1] + normal[2] * axis[2];
-    constexpr float kLeastSlope = 1e-3f;  // chosen: a line along a slab leaves it farther away than the ball
-    if (std::abs(slope) < kLeastSlope) continue;
+    constexpr float least_slope = 1e-3f;  // a line along a slab leaves it farther away than the ball
+    if (std::abs(slope) < least_slope) continue;
     const float *const low = slabs.low + slabs.stride * s, *const high = slabs.high + slabs.stride * s;
     halves[num_slabs] = 0.5f / slope;
     entries[num_slabs] = slope > 0.0f ? low : high;
@@ -119,7 +119,7 @@ void accumulateScalar(const Lines& lines, const std::uint8_t* table, int bits, s
 template <int kFunctions>
 __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const std::uint8_t* table, int bits,
                                                     std::int32_t* const* sums) {
-  constexpr int kLanes = 8;  // derived: 32-bit integers in a register
+  constexpr int num_lanes = 8;
   const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   const __m256i byte = _mm256_set1_epi32(0xFF);
   const __m256i zero = _mm256_setzero_si256();
@@ -128,16 +128,16 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
   __m256i ramp[3], stride[3];
   for (int axis = 0; axis < 3; ++axis) {
     ramp[axis] = _mm256_mullo_epi32(lane, _mm256_set1_epi32(lines.step[axis]));
-    stride[axis] = _mm256_set1_epi32(kLanes * lines.step[axis]);
+    stride[axis] = _mm256_set1_epi32(num_lanes * lines.step[axis]);
   }
   for (int i = 0; i < lines.size; ++i) {
     const std::int32_t k_begin = lines.k_begin[i], k_end = lines.k_end[i];
-    std::int32_t k = k_begin & ~(kLanes - 1);
+    std::int32_t k = k_begin & ~(num_lanes - 1);
     __m256i x = _mm256_add_epi32(_mm256_set1_epi32(lines.x[i] + k * lines.step[0]), ramp[0]);
     __m256i y = _mm256_add_epi32(_mm256_set1_epi32(lines.y[i] + k * lines.step[1]), ramp[1]);
     __m256i z = _mm256_add_epi32(_mm256_set1_epi32(lines.z[i] + k * lines.step[2]), ramp[2]);
     const __m256i before = _mm256_set1_epi32(k_begin - 1), behind = _mm256_set1_epi32(k_end);
-    for (; k < k_end; k += kLanes) {
+    for (; k < k_end; k += num_lanes) {
       const __m256i at = _mm256_add_epi32(_mm256_set1_epi32(k), lane);
       const __m256i inside = _mm256_and_si256(_mm256_cmpgt_epi32(at, before), _mm256_cmpgt_epi32(behind, at));
       const __m256i index = _mm256_add_epi32(_mm256_add_epi32(_mm256_sll_epi32(_mm256_sra_epi32(z, fraction), slice),
@@ -162,7 +162,7 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
 template <int kFunctions>
 __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, const std::uint8_t* table, int bits,
                                                          std::int32_t* const* sums) {
-  constexpr int kLanes = kLineLanes;  // derived: 32-bit integers in a register
+  constexpr int num_lanes = kLineLanes;
   const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   const __m512i byte = _mm512_set1_epi32(0xFF);
   const __m512i zero = _mm512_setzero_si512();
@@ -170,12 +170,12 @@ __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, con
   // Whole cells along y go to their place in the index by one shift.
   const __m128i to_row = _mm_cvtsi32_si128(LookupTable::kFractionBits - bits), slice = _mm_cvtsi32_si128(2 * bits);
   const __m512i of_row = _mm512_set1_epi32(((1 << bits) - 1) << bits);
-  std::int32_t chosen[kMostLines + kLanes];
-  for (std::int32_t first = 0; first < lines.count; first += kLanes) {
-    const __m512i begin = _mm512_set1_epi32(first), end = _mm512_set1_epi32(first + kLanes);
+  std::int32_t chosen[kMostLines + num_lanes];
+  for (std::int32_t first = 0; first < lines.count; first += num_lanes) {
+    const __m512i begin = _mm512_set1_epi32(first), end = _mm512_set1_epi32(first + num_lanes);
     int num_chosen = 0;
-    for (int i = 0; i < lines.size; i += kLanes) {
-      const auto there = static_cast<__mmask16>((1u << std::min(kLanes, lines.size - i)) - 1u);
+    for (int i = 0; i < lines.size; i += num_lanes) {
+      const auto there = static_cast<__mmask16>((1u << std::min(num_lanes, lines.size - i)) - 1u);
       const __m512i k_begin = _mm512_maskz_loadu_epi32(there, lines.k_begin + i),
                     k_end = _mm512_maskz_loadu_epi32(there, lines.k_end + i);
       const __mmask16 some =
@@ -195,9 +195,9 @@ __attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, con
       const __m512i z = _mm512_add_epi32(_mm512_set1_epi32(lines.z[i]), moved[2]);
       const __mmask16 inside = _mm512_mask_cmplt_epi32_mask(
           _mm512_cmpge_epi32_mask(at, _mm512_set1_epi32(lines.k_begin[i])), at, _mm512_set1_epi32(lines.k_end[i]));
-      constexpr int kAndOr = 0xEA;  // derived: the table of (a and b) or c
+      constexpr int and_or = 0xEA;  // the table of (a and b) or c
       const __m512i in_row =
-          _mm512_ternarylogic_epi32(_mm512_sra_epi32(y, to_row), of_row, _mm512_sra_epi32(x, fraction), kAndOr);
+          _mm512_ternarylogic_epi32(_mm512_sra_epi32(y, to_row), of_row, _mm512_sra_epi32(x, fraction), and_or);
       const __m512i index = _mm512_add_epi32(_mm512_sll_epi32(_mm512_sra_epi32(z, fraction), slice), in_row);
       __m512i values = _mm512_mask_i32gather_epi32(zero, inside, index, table, kFunctions);
       for (__m512i& sum : total) {

@@ -48,7 +48,7 @@ struct SampleCoordinates {
   const float *x, *y, *z;
 };
 
-/// Slabs around what is not 0, at most. derived: pairs of the 26 neighbours of a cell.
+/// Slabs around what is not 0, at most. derived: pairs of the 26 neighbors of a cell.
 constexpr int kMostSlabs = 13;
 
 /// Slabs that hold all that is not 0 in a table, as samples see them: low <= axis . (x - sample) <= high for each.

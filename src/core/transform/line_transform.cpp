@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/transform/transform_rules.h"
 
 namespace pcl_symmetry {
 
@@ -101,8 +102,8 @@ bool isLocalMaximum(const LineMap& map, const LineGrid::Bin& bin) {
     for (int dk = -1; dk <= 1; ++dk) {
       const auto to = map.grid.step(bin, dt, dk);
       if (!to || map.grid.index(*to) == index) continue;
-      const std::size_t neighbour = map.grid.index(*to);
-      if (map[neighbour] > map[index] || (map[neighbour] == map[index] && neighbour < index)) return false;
+      const std::size_t neighbor = map.grid.index(*to);
+      if (map[neighbor] > map[index] || (map[neighbor] == map[index] && neighbor < index)) return false;
     }
   }
   return true;
@@ -117,12 +118,6 @@ double laplacian(const LineMap& map, const LineGrid::Bin& bin) {
   return value(-1, 0) + value(1, 0) + value(0, -1) + value(0, 1) - 4.0 * value(0, 0);
 }
 
-// bins, steps of the search for a maximum of D; chosen: half a bin reaches all that belongs to a maximum of the map, a
-// 500th of one is 0.003 degrees at 128 bins
-constexpr double kFirstStep = 0.5, kLastStep = 0.002;
-// moves with one step size; chosen: fewer may stop short of the maximum, more take longer on flat ridges
-constexpr int kMaxMoves = 8;
-
 /// Climbs to the maximum of D by a compass search over theta and r about the center of the grid.
 LineMaximum climb(const FullSum& sum, const GaussianEdt2D& edt, const LineGrid& grid, const ReflectionLine& start) {
   const Eigen::Vector2d about = grid.center();
@@ -131,8 +126,8 @@ LineMaximum climb(const FullSum& sum, const GaussianEdt2D& edt, const LineGrid& 
   };
   double theta = start.theta(), r = -start.signedDistance(about);
   double value = symmetryAt(sum, edt, start);
-  for (double share = kFirstStep; share > kLastStep; share *= 0.5) {
-    for (int move = 0; move < kMaxMoves; ++move) {
+  for (double share = kTransform.first_line_step; share > kTransform.last_line_step; share *= 0.5) {
+    for (int move = 0; move < kTransform.max_line_moves; ++move) {
       double best_theta = theta, best_r = r;
       for (const auto& [dt, dr] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
         const double to_theta = theta + share * dt * grid.thetaStep(), to_r = r + share * dr * grid.radiusStep();

@@ -12,16 +12,16 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Whether no neighbour is higher; of equal neighbours, the one with the lowest index is the maximum.
+/// Whether no neighbor is higher; of equal neighbors, the one with the lowest index is the maximum.
 bool isLocalMaximum(const SymmetryMap& map, std::size_t index) {
   const float value = map[index];
-  return map.grid.visitNeighbours(map.grid.bin(index), [&](std::size_t neighbour) {
-    return map[neighbour] < value || (map[neighbour] == value && neighbour > index);
+  return map.grid.visitNeighbors(map.grid.bin(index), [&](std::size_t neighbor) {
+    return map[neighbor] < value || (map[neighbor] == value && neighbor > index);
   });
 }
 
 /// Marks the bins of one direction that are above 0 and not below a bin beside them: most bins fail at one of the
-/// neighbours that need no step across a seam.
+/// neighbors that need no step across a seam.
 /// \param beside the same offsets in the directions one step away; \p row itself where there is none.
 /// \param[out] marks size of them.
 PCL_SYMMETRY_MULTIVERSION
@@ -37,7 +37,7 @@ void markHighBins(const float* row, const float* const* beside, int size, std::u
 
 /// Whether a bin is below one of those a step away in theta, phi and r that lie on its side of the seams of theta: a
 /// quick test that most bins fail which pass markHighBins().
-bool isBelowNeighbour(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
+bool isBelowNeighbor(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
   const PlaneGrid& grid = map.grid;
   const float value = map[grid.index(bin)];
   const int num_phi = grid.numPhi(), first_k = std::max(0, bin.radius - 1);
@@ -95,7 +95,7 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
         if (!marks[k]) continue;
         const PlaneGrid::Bin bin{t, p, k};
         const double share = 1.0 - std::abs(grid.offset(k) - center_offset) / grid.radius();
-        if (values[k] < strength * share || isBelowNeighbour(map, bin)) continue;
+        if (values[k] < strength * share || isBelowNeighbor(map, bin)) continue;
         if (!isLocalMaximum(map, grid.index(bin)) || -laplacian(map, bin) < curvature) continue;
         rows[row].push_back({bin, grid.plane(bin), values[k]});
       }

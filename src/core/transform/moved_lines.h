@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/transform/lookup_table.h"
 #include "core/transform/line_kernel.h"
+#include "core/transform/lookup_table.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/visibility.h"
 

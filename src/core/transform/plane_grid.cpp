@@ -82,9 +82,9 @@ std::optional<PlaneGrid::Bin> PlaneGrid::step(const Bin& bin, int dt, int dp, in
   return to;
 }
 
-std::vector<std::size_t> PlaneGrid::neighbours(const Bin& bin) const {
+std::vector<std::size_t> PlaneGrid::neighbors(const Bin& bin) const {
   std::vector<std::size_t> found;
-  visitNeighbours(bin, [&](std::size_t index) {
+  visitNeighbors(bin, [&](std::size_t index) {
     found.push_back(index);
     return true;
   });

@@ -15,8 +15,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// directions; chosen: 64 x 64 directions make 128 blocks. Half sets up arrays more often, twice leaves threads idle.
-constexpr std::size_t kSampledPerBlock = 32;
+constexpr std::size_t sampled_per_block = 32;  // directions
 
 /// Points, the coordinates along each axis side by side.
 using CoordinateRows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
@@ -119,7 +118,7 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
           means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
     }
   };
-  parallelRanges(grid.numDirections(), kSampledPerBlock, options.num_threads, run);
+  parallelRanges(grid.numDirections(), sampled_per_block, options.num_threads, run);
   return means;
 }
 

@@ -12,12 +12,12 @@ namespace {
 /// \return the greatest of some values, all of them numbers.
 PCL_SYMMETRY_MULTIVERSION
 float greatestOf(const float* values, std::size_t size) {
-  constexpr std::size_t kLanes = 32;  // derived: two AVX-512 registers of floats, which do not wait for each other
-  float lanes[kLanes];
+  constexpr std::size_t num_lanes = 32;  // two AVX-512 registers, which do not wait for each other
+  float lanes[num_lanes];
   for (float& lane : lanes) lane = values[0];
   std::size_t i = 0;
-  for (; i + kLanes <= size; i += kLanes)
-    for (std::size_t k = 0; k < kLanes; ++k) lanes[k] = lanes[k] < values[i + k] ? values[i + k] : lanes[k];
+  for (; i + num_lanes <= size; i += num_lanes)
+    for (std::size_t k = 0; k < num_lanes; ++k) lanes[k] = lanes[k] < values[i + k] ? values[i + k] : lanes[k];
   float greatest = lanes[0];
   for (const float lane : lanes) greatest = std::max(greatest, lane);
   for (; i < size; ++i) greatest = std::max(greatest, values[i]);

@@ -1,3 +1,4 @@
+#include "core/transform/transform_rules.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 #include <algorithm>
@@ -12,12 +13,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-// partial maps, added up in their order; chosen: fewer leave threads idle, more cost memory: 1 MB each at 64^3 bins
-constexpr std::size_t kNumBlocks = 8;
-// Bounds the weight of pairs along z. chosen: about one pair in 10^12 is closer to the pole, where its vote would be
-// infinite.
-constexpr double kLeastSine = 1e-6;
 
 /// Draws indices with given probabilities in constant time, by Walker's alias method.
 class AliasTable {
@@ -99,7 +94,7 @@ public:
     const double cell = edt.cellSize(), cell_volume = cell * cell * cell, sum = sampler_.sum();
     const double bin_measure = grid.thetaStep() * grid.phiStep() * grid.radiusStep();
     // S^2 h^3 / (N V |f|^2), the factor of sum 1 / (2 d^2 sin theta): the estimator of Section 4.3 for f that are not
-    // normalised, on cells of volume h^3 and bins of measure V = dtheta dphi dr.
+    // normalized, on cells of volume h^3 and bins of measure V = dtheta dphi dr.
     if (num_far_ > 0) far_weight_ = sum * sum * cell_volume / (num_far_ * bin_measure * edt.sqNorm());
     // S V_near / (N V |f|^2), the factor of sum f(x').
     if (num_near_ > 0) near_weight_ = sum * (0.5 * kPi * 2.0 * kPi * near_) / (num_near_ * bin_measure * edt.sqNorm());
@@ -119,7 +114,7 @@ public:
     const ReflectionPlane plane = ReflectionPlane::between(x, y);
     const auto bin = grid_.find(plane);
     if (!bin) return;
-    const double sine = std::max(kLeastSine, std::hypot(plane.normal().x(), plane.normal().y()));
+    const double sine = std::max(kTransform.least_sine, std::hypot(plane.normal().x(), plane.normal().y()));
     values[grid_.index(*bin)] += static_cast<float>(far_weight_ / (2.0 * sq_distance * sine));
   }
 
@@ -146,7 +141,7 @@ private:
 /// Number of a block's pairs if \p total pairs are shared among all blocks.
 std::int64_t shareOf(std::size_t block, std::int64_t total) {
   const auto upTo = [&](std::size_t b) {
-    return total * static_cast<std::int64_t>(b) / static_cast<std::int64_t>(kNumBlocks);
+    return total * static_cast<std::int64_t>(b) / static_cast<std::int64_t>(kTransform.num_vote_blocks);
   };
   return upTo(block + 1) - upTo(block);
 }
@@ -163,8 +158,8 @@ void VotingTransformOptions::validate() const {
 SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options) {
   options.validate();
   const Votes votes(edt, grid, options);
-  std::vector<std::vector<float>> partial(kNumBlocks);
-  parallelBlocks(kNumBlocks, options.num_threads, [&](std::size_t block) {
+  std::vector<std::vector<float>> partial(kTransform.num_vote_blocks);
+  parallelBlocks(kTransform.num_vote_blocks, options.num_threads, [&](std::size_t block) {
     std::vector<float>& values = partial[block];
     values.assign(grid.size(), 0.0f);
     RandomStream random(options.seed, block);

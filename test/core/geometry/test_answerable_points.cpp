@@ -36,7 +36,7 @@ TEST(WhyUnanswerable, KnowsOnePlace) {
   Points points(3, 27);
   for (int i = 0; i < 27; ++i)
     points.col(i) = Eigen::Vector3f::Constant(1e9f) + 64.0f * Eigen::Vector3f(i % 3, i / 3 % 3, i / 9);
-  EXPECT_EQ(whyUnanswerable(points), "all points are at one place, up to the rounding of their coordinates");
+  EXPECT_EQ(whyUnanswerable(points), "all points are at one position, up to the rounding of their coordinates");
 }
 
 TEST(WhyUnanswerable, KnowsLinesUpToRounding) {

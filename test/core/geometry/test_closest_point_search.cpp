@@ -41,9 +41,9 @@ TEST(ClosestPointSearch, FindsWithinTheLimitWhateverWasGuessed) {
   /// Only search(): searchWithin() is that of the base class.
   struct Plain : ClosestPointSearch {
     explicit Plain(const Points& points) : all(makeFlannSearch(points)) {}
-    void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+    void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
                 std::vector<float>& sq_distances) const override {
-      all->search(queries, num_neighbours, indices, sq_distances);
+      all->search(queries, num_neighbors, indices, sq_distances);
     }
     Ptr all;
   };

@@ -40,7 +40,7 @@ std::vector<NamedPoints> pointSets() {
   return {{"blob", blob}, {"lattice", lattice(9)}, {"copies", copies}, {"spiral", spiral}, {"one", blob.leftCols(1)}};
 }
 
-/// Places on, near and far from the points.
+/// Positions on, near and far from the points.
 Points queriesFor(const Points& points) {
   RandomStream random(3);
   const float extent = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).maxCoeff();

@@ -79,7 +79,7 @@ TEST(ReflectionPlane, CanonicalFormIsOneOfTwo) {
     const ReflectionPlane a = plane.canonical();
     const ReflectionPlane b = ReflectionPlane(-plane.normal(), -plane.offset()).canonical();
     EXPECT_GE(a.normal().z(), 0.0);
-    EXPECT_LT((a.normal() - b.normal()).norm(), kRounding);  // the normal was normalised once more
+    EXPECT_LT((a.normal() - b.normal()).norm(), kRounding);  // the normal was normalized once more
     EXPECT_NEAR(a.offset(), b.offset(), kRounding);
     const Eigen::Vector3d x = randomPoint(random);
     EXPECT_LT((a.reflect(x) - plane.reflect(x)).norm(), 10.0 * kRounding);

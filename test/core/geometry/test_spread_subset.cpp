@@ -1,4 +1,4 @@
-/// A subset of a cloud that keeps the share of each neighbourhood.
+/// A subset of a cloud that keeps the share of each neighborhood.
 #include "core/geometry/spread_subset.h"
 
 #include <gtest/gtest.h>

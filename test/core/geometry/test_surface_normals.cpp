@@ -16,7 +16,7 @@ using namespace pcl_symmetry::test;
 TEST(LocalGeometry, NormalsOfASphereAreRadial) {
   const Points points = sphere(4000, 4).cloud();
   const LocalGeometry geometry = localGeometry(points, *makeFlannSearch(points), 8, 0);
-  // Eight neighbours span a cap of angle sqrt(8 * 4 / 4000) = 0.09; the fitted normal is off by a fraction of it.
+  // Eight neighbors span a cap of angle sqrt(8 * 4 / 4000) = 0.09; the fitted normal is off by a fraction of it.
   double mean = 0.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     EXPECT_NEAR(geometry.normals.col(i).norm(), 1.0f, 1e-5f);
@@ -28,8 +28,8 @@ TEST(LocalGeometry, NormalsOfASphereAreRadial) {
 
 TEST(LocalGeometry, SpacingMeasuresDensity) {
   // spacing^2 * density = pi r_k^2 density / k; the count within r is Poisson, so that pi r_k^2 density is Gamma(k)
-  // with mean k: the mean of the ratio is 1, that of n samples of 8 neighbours each (every point counts in about 8
-  // neighbourhoods, so there are n / 8 independent ones) has a standard error of about 1 / sqrt(n).
+  // with mean k: the mean of the ratio is 1, that of n samples of 8 neighbors each (every point counts in about 8
+  // neighborhoods, so there are n / 8 independent ones) has a standard error of about 1 / sqrt(n).
   for (const int num_points : {2000, 8000}) {
     const Points points = sphere(num_points, 6).cloud();
     const LocalGeometry geometry = localGeometry(points, *makeFlannSearch(points), 8, 0);

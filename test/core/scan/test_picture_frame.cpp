@@ -23,11 +23,11 @@ Eigen::Array2d turned(double x, double y, double roll = kRoll) {
 
 /// Pixels of a disc of 40 pixels, at most \p right columns to the right of its middle and \p up rows above it.
 std::vector<Eigen::Array2d> disc(int right, int up) {
-  std::vector<Eigen::Array2d> places;
+  std::vector<Eigen::Array2d> positions;
   for (int v = -40; v <= up; ++v)
     for (int u = -40; u <= right; ++u)
-      if (std::hypot(u, v) <= 40.3) places.push_back(turned(kPixel * u, kPixel * v));
-  return places;
+      if (std::hypot(u, v) <= 40.3) positions.push_back(turned(kPixel * u, kPixel * v));
+  return positions;
 }
 
 TEST(FrameSides, ARoundObjectThatIsSeenAsAWholeHasNone) {
@@ -45,22 +45,22 @@ TEST(FrameSides, AreWhereTheLastRowIsAsLongAsTheOnesBefore) {
 
 TEST(FrameSides, CutLegsAreEnough) {
   // Four bars of twelve pixels that leave the picture, below a disc.
-  std::vector<Eigen::Array2d> places = disc(40, 40);
+  std::vector<Eigen::Array2d> positions = disc(40, 40);
   for (int bar = 0; bar < 4; ++bar)
     for (int v = -70; v < -20; ++v)
-      for (int u = 0; u < 12; ++u) places.push_back(turned(kPixel * (-33 + 18 * bar + u), kPixel * v));
-  const std::vector<FrameSide> sides = frameSides(places);
+      for (int u = 0; u < 12; ++u) positions.push_back(turned(kPixel * (-33 + 18 * bar + u), kPixel * v));
+  const std::vector<FrameSide> sides = frameSides(positions);
   ASSERT_EQ(sides.size(), 1u);
   EXPECT_NEAR(sides[0].normal.dot(turned(0.0, -1.0).matrix()), 1.0, 1e-3);
 }
 
 TEST(FrameSides, PlacesWithoutRowsHaveNone) {
-  std::vector<Eigen::Array2d> places;
+  std::vector<Eigen::Array2d> positions;
   RandomStream random(1);
   for (int i = 0; i < 5000; ++i)
     if (const Eigen::Array2d p(symmetric(random), symmetric(random)); p.matrix().norm() < 1.0 && p.x() < 0.6)
-      places.push_back(p);
-  EXPECT_TRUE(frameSides(places).empty());
+      positions.push_back(p);
+  EXPECT_TRUE(frameSides(positions).empty());
   EXPECT_TRUE(frameSides({}).empty());
   EXPECT_TRUE(frameSides({{0.0, 0.0}}).empty());
   EXPECT_TRUE(frameSides(std::vector<Eigen::Array2d>(100, {1.0, 2.0})).empty());

@@ -32,9 +32,10 @@ TEST(ScanDensity, TwoFlatFacesAreAsDenseFromSeveralPlaces) {
     const ScanDensity density(scan(blockBox(), viewpoint).cloud());
     const std::vector<Eigen::Vector3d> found = density.viewpoints(density.unexplained(viewpoint) + 2e-3);
     double nearest = -1.0;
-    for (const Eigen::Vector3d& place : found)
+    for (const Eigen::Vector3d& position : found)
       nearest = std::max(
-          nearest, (place - density.ball().center).normalized().dot((viewpoint - density.ball().center).normalized()));
+          nearest,
+          (position - density.ball().center).normalized().dot((viewpoint - density.ball().center).normalized()));
     // Measured: at most 9 degrees.
     EXPECT_GT(nearest, std::cos(15.0 * kDegree)) << seed << ": " << found.size();
   }
@@ -54,7 +55,7 @@ TEST(ScanDensity, MovesWithThePoints) {
 }
 
 TEST(ScanDensity, EvenPointsHaveNothingToExplain) {
-  // The density of 16 neighbours of random points has a variance of 1 / 16, less without its tails.
+  // The density of 16 neighbors of random points has a variance of 1 / 16, less without its tails.
   const ScanDensity density(box(10'000, Sampling::Random, 1).cloud());
   EXPECT_LT(density.variance(), 1.0 / 16.0);
   RandomStream random(4);

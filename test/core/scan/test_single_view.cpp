@@ -69,7 +69,7 @@ TEST(LayeredShare, CountsLayers) {
   EXPECT_EQ(layeredShare(points, viewpoint), 0.0) << "a flat sheet";
   for (Eigen::Index i = 0; i < points.cols(); i += 2) points(2, i) = -0.5f;
   // Two layers of equal density: the next point in the picture is of the other one every second time. Its error is
-  // that of 2000 throws, 0.011, and neighbours in pairs.
+  // that of 2000 throws, 0.011, and neighbors in pairs.
   EXPECT_NEAR(layeredShare(points, viewpoint), 0.5, 0.05);
   EXPECT_EQ(layeredShare(Points::Ones(3, 1), viewpoint), 0.0);
   EXPECT_EQ(layeredShare(Points::Ones(3, 10), viewpoint), 0.0) << "no extent";

@@ -70,7 +70,7 @@ TEST(InferView, FindsNoneForWholeObjects) {
 }
 
 TEST(InferView, FindsNoneForOpenShellsAndSheets) {
-  // Half a sphere and a sheet are seen once from many places. Their even density is not that of a scan.
+  // Half a sphere and a sheet are seen once from many positions. Their even density is not that of a scan.
   const Points whole = sphere(20'000, 1).cloud();
   EXPECT_FALSE(inferView(facing(whole, whole, {0.0, 0.0, 100.0}), {0.0, 0.0, 4.0}));
   RandomStream random(6);

@@ -8,14 +8,14 @@
 #include <stdexcept>
 
 #include "shapes/meshes.h"
-#include "shapes/neighbours.h"
+#include "shapes/neighbors.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry {
 namespace {
 
 using test::Mesh;
-using test::neighboursOf;
+using test::neighborsOf;
 
 Mesh cube() {
   return test::voxelMesh(4, [](int, int, int) { return true; });
@@ -26,7 +26,7 @@ Mesh step() {
   return test::voxelMesh(4, [](int x, int, int z) { return x < 2 || z < 2; });
 }
 
-TEST(SurfaceGraph, EveryFaceOfACubeHasFourNeighboursAndItsArea) {
+TEST(SurfaceGraph, EveryFaceOfACubeHasFourNeighborsAndItsArea) {
   const Mesh mesh = cube();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
   ASSERT_EQ(graph.size(), 6 * 16);
@@ -79,11 +79,11 @@ TEST(SurfaceGraph, BrokenFacesAreElementsToo) {
   mesh.polygons.push_back({0, 1, nowhere});
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
   ASSERT_EQ(graph.size(), num_faces + 3);
-  const auto num_neighbours = [&](int i) { return graph.first_edge[i + 1] - graph.first_edge[i]; };
-  EXPECT_GT(num_neighbours(num_faces), 0) << "the copy joins the faces of its edges";
-  EXPECT_GT(num_neighbours(num_faces + 1), 0);
+  const auto num_neighbors = [&](int i) { return graph.first_edge[i + 1] - graph.first_edge[i]; };
+  EXPECT_GT(num_neighbors(num_faces), 0) << "the copy joins the faces of its edges";
+  EXPECT_GT(num_neighbors(num_faces + 1), 0);
   EXPECT_EQ(graph.areas[num_faces + 1], 0.0f);
-  EXPECT_EQ(num_neighbours(num_faces + 2), 0);
+  EXPECT_EQ(num_neighbors(num_faces + 2), 0);
   EXPECT_TRUE(graph.centers.allFinite());
   EXPECT_TRUE(graph.normals.allFinite());
 }
@@ -93,17 +93,17 @@ TEST(SurfaceGraph, RefusesMissingVerticesAndNoArea) {
   EXPECT_THROW(meshGraph(mesh.vertices, {{0, 1, 1000}}), std::invalid_argument);
   EXPECT_THROW(meshGraph(mesh.vertices, {{0, 1, 1}}), std::invalid_argument);
   EXPECT_THROW(meshGraph(mesh.vertices, {}), std::invalid_argument);
-  EXPECT_THROW(cloudGraph(Points::Ones(3, 5), neighboursOf(Points::Ones(3, 5), 2)), std::invalid_argument);
+  EXPECT_THROW(cloudGraph(Points::Ones(3, 5), neighborsOf(Points::Ones(3, 5), 2)), std::invalid_argument);
   const Points corners = mesh.vertices.cast<float>();
-  auto neighbours = neighboursOf(corners, 2);
-  EXPECT_NO_THROW(cloudGraph(corners, neighbours));
+  auto neighbors = neighborsOf(corners, 2);
+  EXPECT_NO_THROW(cloudGraph(corners, neighbors));
   for (const int wrong : {-1, static_cast<int>(corners.cols())}) {
-    neighbours[0][0] = wrong;
-    EXPECT_THROW(cloudGraph(corners, neighbours), std::invalid_argument) << wrong;
+    neighbors[0][0] = wrong;
+    EXPECT_THROW(cloudGraph(corners, neighbors), std::invalid_argument) << wrong;
   }
   EXPECT_THROW(cloudGraph(corners, {{1, 2}}), std::invalid_argument) << "one list for all points";
   for (const float scale : {1e-20f, 1e20f}) {  // no squares in float
-    EXPECT_THROW(cloudGraph(scale * corners, neighboursOf(corners, 2)), std::invalid_argument) << scale;
+    EXPECT_THROW(cloudGraph(scale * corners, neighborsOf(corners, 2)), std::invalid_argument) << scale;
     EXPECT_THROW(meshGraph(scale * mesh.vertices, mesh.polygons), std::invalid_argument) << scale;
   }
   for (const float scale : {1e-12f, 1e12f}) EXPECT_GT(meshGraph(scale * mesh.vertices, mesh.polygons).area(), 0.0);
@@ -111,7 +111,7 @@ TEST(SurfaceGraph, RefusesMissingVerticesAndNoArea) {
 
 TEST(SurfaceGraph, CloudOfABoxHasItsAreaAndOutwardNormals) {
   const Points points = test::box({1.0, 0.7, 0.45}, 4000, test::Sampling::Random, 3).cloud();
-  const SurfaceGraph graph = cloudGraph(points, neighboursOf(points, 12));
+  const SurfaceGraph graph = cloudGraph(points, neighborsOf(points, 12));
   const double area = 8 * (0.7 + 0.45 + 0.7 * 0.45);
   EXPECT_NEAR(graph.area(), area, 0.15 * area);
   int num_outward = 0;

@@ -7,13 +7,13 @@
 #include <stdexcept>
 
 #include "shapes/meshes.h"
-#include "shapes/neighbours.h"
+#include "shapes/neighbors.h"
 
 namespace pcl_symmetry {
 namespace {
 
 using test::Mesh;
-using test::neighboursOf;
+using test::neighborsOf;
 
 SegmentationOptions splittingTo(int depth) {
   SegmentationOptions options;
@@ -101,10 +101,10 @@ TEST(Splitting, SameForAnyNumberOfThreads) {
   EXPECT_EQ(segmentSurface(graph, options).labels, labels);
 }
 
-/// Segment of the face whose center is closest to a place.
-int segmentAt(const SurfaceGraph& graph, const Segmentation& segmentation, const Eigen::Vector3f& place) {
+/// Segment of the face whose center is closest to a position.
+int segmentAt(const SurfaceGraph& graph, const Segmentation& segmentation, const Eigen::Vector3f& position) {
   Eigen::Index closest = 0;
-  (graph.centers.colwise() - place).colwise().squaredNorm().minCoeff(&closest);
+  (graph.centers.colwise() - position).colwise().squaredNorm().minCoeff(&closest);
   return segmentation.labels[closest];
 }
 
@@ -243,7 +243,7 @@ TEST(SurfaceSegmentation, FewDistinctPointsAreOneSegment) {
       options.method = method;
       for (const int num_parts : {0, 5}) {
         options.num_parts = num_parts;
-        const Segmentation segmentation = segmentSurface(cloudGraph(points, neighboursOf(points, 6)), options);
+        const Segmentation segmentation = segmentSurface(cloudGraph(points, neighborsOf(points, 6)), options);
         EXPECT_EQ(segmentation.num_segments, 1);
         EXPECT_EQ(segmentation.labels, std::vector<int>(static_cast<std::size_t>(points.cols()), 0));
         expectTreeOf(segmentation);
@@ -257,7 +257,7 @@ TEST(SurfaceSegmentation, TwentyPointsAndSmallMeshesMayHaveParts) {
   SegmentationOptions two;
   two.num_parts = 2;
   const Points points = dumbbellPoints(20);
-  EXPECT_EQ(segmentSurface(cloudGraph(points, neighboursOf(points, 6)), two).num_segments, 2);
+  EXPECT_EQ(segmentSurface(cloudGraph(points, neighborsOf(points, 6)), two).num_segments, 2);
   Mesh cube;
   for (int corner = 0; corner < 8; ++corner)
     cube.add(Eigen::Vector3f(static_cast<float>(corner & 1), static_cast<float>(corner >> 1 & 1),

@@ -129,7 +129,7 @@ TEST(LineTransform, LinesMoveTurnAndScaleWithTheContour) {
   }
 }
 
-// Section 3, "it is not sensitive to noise and varies continuously with deformations". With f and g normalised,
+// Section 3, "it is not sensitive to noise and varies continuously with deformations". With f and g normalized,
 // |f.Rf - g.Rg| = |(f - g).Rf + g.R(f - g)| <= 2 |f - g|, for every line at once. 0.01 is left for the cells.
 double boundOf(const GaussianEdt2D& f, const GaussianEdt2D& g) {
   return 2.0 * distance(f, g) + 0.01;

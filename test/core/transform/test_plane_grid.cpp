@@ -145,7 +145,7 @@ int expectedReach(const PlaneGrid& g, int t) {
   return std::min(g.numPhi() / 2, static_cast<int>(std::ceil(g.thetaStep() / (g.phiStep() * std::sin(g.theta(t))))));
 }
 
-TEST(PlaneGrid, TwentySixNeighboursWhereBinsAreNoSlivers) {
+TEST(PlaneGrid, TwentySixNeighborsWhereBinsAreNoSlivers) {
   const PlaneGrid g = planeGrid(16, 16, 16);  // phi steps are four theta steps wide: no slivers where sin(theta) > 1/4
   int num_checked = 0;
   for (std::size_t i = 0; i < g.size(); ++i) {
@@ -153,47 +153,47 @@ TEST(PlaneGrid, TwentySixNeighboursWhereBinsAreNoSlivers) {
     const int above = std::max(0, bin.theta - 1);
     if (bin.radius == 0 || bin.radius + 1 == g.numRadius() || expectedReach(g, above) != 1) continue;
     ++num_checked;
-    const auto neighbours = g.neighbours(bin);
-    ASSERT_EQ(neighbours.size(), 26u);
-    ASSERT_TRUE(std::is_sorted(neighbours.begin(), neighbours.end()));
-    for (const std::size_t n : neighbours) {
+    const auto neighbors = g.neighbors(bin);
+    ASSERT_EQ(neighbors.size(), 26u);
+    ASSERT_TRUE(std::is_sorted(neighbors.begin(), neighbors.end()));
+    for (const std::size_t n : neighbors) {
       const Bin other = g.bin(n);
       if (expectedReach(g, std::max(0, other.theta - 1)) != 1) continue;
-      const auto back = g.neighbours(other);
+      const auto back = g.neighbors(other);
       ASSERT_TRUE(std::binary_search(back.begin(), back.end(), i)) << i << " and " << n;
     }
   }
   EXPECT_EQ(num_checked, 12 * 16 * 14);  // rows 4 ... 15: sin of the row above, 3.5 * 5.625 degrees, is 0.337
 }
 
-TEST(PlaneGrid, NeighboursCoverAStepOfThetaAllAround) {
+TEST(PlaneGrid, NeighborsCoverAStepOfThetaAllAround) {
   // Near the pole too: every bin of the same r whose normal lies within a step of theta along a circle of latitude.
   const PlaneGrid g = planeGrid(32, 128, 3);
   for (int t = 0; t < g.numTheta(); ++t) {
     const Bin bin{t, 5, 1};
-    const auto neighbours = g.neighbours(bin);
-    EXPECT_FALSE(std::binary_search(neighbours.begin(), neighbours.end(), g.index(bin)));
+    const auto neighbors = g.neighbors(bin);
+    EXPECT_FALSE(std::binary_search(neighbors.begin(), neighbors.end(), g.index(bin)));
     for (int p = 0; p < g.numPhi(); ++p) {
       const int steps = std::min(std::abs(p - 5), g.numPhi() - std::abs(p - 5));
       if (p == 5 || steps * g.phiStep() * std::sin(g.theta(t)) > g.thetaStep()) continue;
-      EXPECT_TRUE(std::binary_search(neighbours.begin(), neighbours.end(), g.index({t, p, 1}))) << t << ", " << p;
+      EXPECT_TRUE(std::binary_search(neighbors.begin(), neighbors.end(), g.index({t, p, 1}))) << t << ", " << p;
     }
   }
 }
 
-TEST(PlaneGrid, VisitsItsNeighboursAndStopsWhenTold) {
+TEST(PlaneGrid, VisitsItsNeighborsAndStopsWhenTold) {
   const PlaneGrid g = planeGrid(8, 8, 8);
   for (const Bin& bin : {Bin{0, 0, 0}, Bin{7, 3, 7}, Bin{4, 7, 3}}) {
     std::vector<std::size_t> visited;
-    EXPECT_TRUE(g.visitNeighbours(bin, [&](std::size_t i) {
+    EXPECT_TRUE(g.visitNeighbors(bin, [&](std::size_t i) {
       visited.push_back(i);
       return true;
     }));
     std::sort(visited.begin(), visited.end());
     visited.erase(std::unique(visited.begin(), visited.end()), visited.end());
-    EXPECT_EQ(visited, g.neighbours(bin));
+    EXPECT_EQ(visited, g.neighbors(bin));
     int num_visited = 0;
-    EXPECT_FALSE(g.visitNeighbours(bin, [&](std::size_t) { return ++num_visited < 3; }));
+    EXPECT_FALSE(g.visitNeighbors(bin, [&](std::size_t) { return ++num_visited < 3; }));
     EXPECT_EQ(num_visited, 3);
   }
 }

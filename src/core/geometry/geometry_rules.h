@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include "core/base/constants.h"
+
+namespace pcl_symmetry {
+
+/// The numbers of this room that change answers.
+struct GeometryRules {
+  // Points that can have an answer
+  /// Share of the length of a line: five times the rounding of a line about the origin.
+  double line_thickness = 1e-6;
+
+  // Normals
+  int fewest_cell_points = 6;  ///< around a cell that make a normal: twice the three that span a plane
+
+  // Open borders
+  int border_neighbors = 16;  ///< among which a gap is looked for
+  /// Radians; inside the surface, 0.5 % of the gaps between 16 random directions are greater.
+  float border_gap = 150.0f * static_cast<float>(kPi) / 180.0f;
+  float off_plane = 0.5f;  ///< share of the distance by which a neighbor is off the tangent plane: 30 degrees
+  int most_off_plane = 2;  ///< neighbors off the plane; the surface folds where there are more
+
+  // Balls
+  Eigen::Index ball_points = 2'500;  ///< that are tried as the outermost ones
+  int ball_iterations = 60;          ///< leave the radius within 1 % of the smallest
+
+  // Axes
+  float flat = 1e-6f;  ///< share of the extent: some roundings of a float
+
+  // Axes of normals
+  /// Radians by which a normal may miss at half its weight: noise of a third of the spacing.
+  double normal_miss = 0.1;
+  int reweightings = 8;             ///< bodies with a base need as many
+  double least_lever = 0.05;        ///< radii; the speed of points nearer to the axis does not divide
+  double translation_ridge = 1e-6;  ///< share of the trace; keeps the translation along a cylinder at rest
+  double position_ridge = 1e-9;     ///< parallel normals leave the position along them open
+
+  // Discs
+  float disc_cell = 1.5f;          ///< spacings, edge of a cell
+  float most_disc_spacing = 3.0f;  ///< median spacings, greatest spacing that makes a disc
+  float most_disc_cells = 96.0f;   ///< along the longest edge
+
+  // Local geometry
+  /// Of the neighbors' mean, in distances to the last one; 0.25 by chance, 0.42 beside half a disc.
+  double border_offset = 0.38;
+};
+
+inline constexpr GeometryRules kGeometry{};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "core/base/constants.h"
+
+namespace pcl_symmetry {
+
+/// The numbers of this room that change answers.
+struct RegistrationRules {
+  // Starts from frames
+  int num_rotations = 8;                  ///< about an axis of revolution, steps of 45 degrees
+  double same_rotation = 10.0 * kDegree;  ///< radians between rotations that are one: the search reaches further
+
+  // Steps
+  /// Of the greatest entry, added to the diagonal: directions that nothing fixes stay where they are.
+  double relative_inertia = 1e-4;
+  double inertia = 1e-6;          ///< the same, absolute
+  double least_deviation = 1e-7;  ///< radii; standard deviation of a residual, the rounding of floats
+
+  // Merit of a pose
+  float normal_share = 0.7f;      ///< of a point's support that depends on its normal
+  double point_share = 0.1;       ///< of a residual along the surface: poses do not slide away on plain surfaces
+  double least_judged = 0.05;     ///< share of the model's points that the scan must be able to judge
+  double silhouette_share = 0.5;  ///< weight of a model point in free space against one of the scan
+
+  // Search
+  int screen_points = 80;   ///< of each cloud that poses are screened by
+  int coarse_points = 120;  ///< that poses are improved coarsely by
+  int fine_points = 400;    ///< that poses are improved finely by
+  /// Radii, width of the Gaussian: half the gap between 1000 rotations at the rim, and as much for the positions.
+  double screen_width = 0.2;
+  int coarse_steps = 10;     ///< over which the Gaussian shrinks
+  int fine_steps = 10;       ///< the same
+  int outline_points = 200;  ///< of the model
+
+  // Surfaces
+  double rough_share = 0.15;     ///< of the spacing; rougher surfaces take normals from more neighbors
+  int num_rough_neighbors = 32;  ///< they halve the error of the normals
+  int cells = 48;                ///< along each side of the grid of closest points
+  int few_cells = 24;            ///< the same for few points, as wide as a thousand points of a surface are apart
+};
+
+inline constexpr RegistrationRules kRegistration{};
+
+}  // namespace pcl_symmetry

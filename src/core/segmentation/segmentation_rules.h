@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+namespace pcl_symmetry {
+
+/// The numbers of this room that change answers.
+struct SegmentationRules {
+  // Thickness of the body behind a patch
+  int samples_of_patch = 6;   ///< for one median per patch
+  int rays_of_sample = 6;     ///< into the body
+  double cone_angle = 0.61;   ///< radians between the rays and the inward normal: 35 degrees
+  float least_reach = 1e-4f;  ///< radii from the surface at which rays begin: beyond rounding, thinner than walls
+  float cloud_reach = 2.5f;   ///< the same for clouds, square roots of the area of a point, whose triangles overlap
+
+  // Divisions
+  /// Share of the surface; smaller intersections of divisions join the closest larger one.
+  double least_cell = 0.0005;
+  /// Angles of a cloud over those of a mesh: normals of points spread a crease over several rows.
+  float sharpened = 1.5f;
+  double surely_one = 1.0;  ///< log odds from which on two regions are one part: probability 0.73
+
+  // Labels that agree across a plane
+  double global_share = 0.95;  ///< of the surface that such a plane maps onto itself
+  double least_across = 0.2;   ///< share of a segment on the smaller side of a plane that it lies across
+
+  // Orientation
+  int orientation_rays = 2000;  ///< for each connected piece at most
+  float ray_start = 2.0f;       ///< square roots of the area of an element, as cloud_reach
+
+  // Patches
+  float concave_detour = 4.0f;  ///< length that a radian of a concave edge adds
+
+  // Regions
+  double thinnest = 1e-3;            ///< radii; bound of the logarithm of the thickness
+  double least_area = 1e-9;          ///< share of the surface; keeps regions without area out of 0 / 0
+  double least_inner_sight = 0.05;   ///< the fitted weights know this bound
+  double most_relative_sight = 1.5;  ///< the fitted weights know this bound
+
+  // Clouds that can have parts
+  std::size_t fewest_points = 20;  ///< distinct ones
+
+  // Symmetries of parts
+  int feature_samples = 4000;             ///< on the surface of a part
+  int refined_samples = 400;              ///< that Iterative Symmetric Points reflects
+  int normal_neighbors = 8;               ///< of a sample
+  double same_angle = 0.1;                ///< radians between the normals of planes of one basin of the transform
+  double same_offset = 0.06;              ///< radii between them
+  double most_moved = 2.0 * same_offset;  ///< radii that a plane may move in its refinement
+  float mapped = 0.5f;       ///< f from which on an element counts as mapped onto the surface, 0.83 sigma away from it
+  int num_theta = 32;        ///< bins of the map
+  int num_phi = 128;         ///< the same
+  int num_radius = 64;       ///< the same
+  int num_map_samples = 64;  ///< of each bin
+  /// Sigmas of the distance transform, width of the weights at the end of the refinement.
+  double final_sigma = 0.5;
+};
+
+inline constexpr SegmentationRules kSegmentation{};
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include "core/base/constants.h"
+
+namespace pcl_symmetry {
+
+/// The numbers of this room that change answers.
+struct TransformRules {
+  // Axes
+  /// D that count as equal: at the axis of a bottle they differ by 0.001, of a rim with five spokes by 0.010.
+  double equal_orders = 0.005;
+  std::size_t most_axis_bins = 50'000;  ///< that are looked at, strongest first
+  int starts_per_maximum = 6;           ///< bins may be shoulders of others
+  /// Share of min_value that a bin has to reach: D between bins is up to half as great again.
+  double least_of_bin = 0.6;
+  double same_start = 0.14;              ///< radians between starts of one maximum, its half width
+  double same_maximum = 15.0 * kDegree;  ///< the same between maxima
+  double same_offset = 3.0;              ///< sigmas between both
+  int more_samples = 4;                  ///< for climbing, times those of the map
+  int halvings = 6;                      ///< of steps, down to 0.05 degrees
+
+  // Bundles of lines
+  /// Of the distance between lines, where rows are the closer: two whole cells in place of 0.9 sigmas.
+  double most_stretch = 1.12;
+  double near_whole = 0.1;        ///< cells; at whole distances, all points of a row would be rounded to one side
+  double less_than_whole = 0.87;  ///< by which rows then come closer
+
+  // Distance transform
+  Eigen::Index num_dense = 200'000;      ///< points of clouds that are dense enough for usual grids
+  std::size_t dense_per_cell = 8;        ///< points for each cell of a slice from which thinning pays
+  int slots_per_cell = 4;                ///< along a cell; thinning adds up to sqrt(3) / 4 cells to a distance
+  double of_interpolation = 1.0 / 12.0;  ///< variance of a value between cells, a mean over a box of one cell
+
+  // Lines
+  double first_line_step = 0.5;   ///< bins, of the search for a maximum of D
+  double last_line_step = 0.002;  ///< bins, 0.003 degrees at 128 bins
+  int max_line_moves = 8;         ///< with one step size
+
+  // Votes
+  std::size_t num_vote_blocks = 8;  ///< partial maps, added up in their order
+  double least_sine = 1e-6;         ///< bounds the weight of pairs along z: one in 10^12 is closer to the pole
+};
+
+inline constexpr TransformRules kTransform{};
+
+}  // namespace pcl_symmetry
