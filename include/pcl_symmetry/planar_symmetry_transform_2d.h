@@ -88,7 +88,7 @@ private:
 template <typename PointT>
 LineMap PlanarSymmetryTransform2D<PointT>::compute() {
   return detail::withBadArguments([&] {
-    constexpr std::uint64_t kSeed = 1;  // chosen: any other draws other points of a larger cloud
+    constexpr std::uint64_t kSeed = 1;  // any other draws other points of a larger cloud
     const Points points = this->selectInput(kSeed);
     if (points.cols() == 0) return LineMap();
     sheet_ = flattened(points);

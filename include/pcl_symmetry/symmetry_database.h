@@ -26,16 +26,16 @@ struct DatabaseParts;
 
 /// How a database is made and used.
 struct DatabaseOptions {
-  /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1. chosen: fewer
+  /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1: fewer
   /// show less of the variety of the models, twice takes four times the time and memory of the fit; README measures 200
   /// for 904 models.
   int num_references = 200;
-  /// Views of a model that scans are compared with, >= 1. chosen: of 80 views the nearest is within 12 degrees of any
+  /// Views of a model that scans are compared with, >= 1: of 80 views the nearest is within 12 degrees of any
   /// direction; half makes that 17 degrees, twice 8.5 (gaps shrink with the square root).
   int num_views = 80;
-  std::size_t max_points = 20'000;  ///< points of a cloud that are kept, >= 100. chosen: time grows with them
+  std::size_t max_points = 20'000;  ///< points of a cloud that are kept, >= 100: time grows with them
   int num_threads = 0;              ///< >= 0; 0 = one per core
-  /// Seconds that a change waits while another program writes, >= 0. chosen: a program that builds a database writes
+  /// Seconds that a change waits while another program writes, >= 0: a program that builds a database writes
   /// for milliseconds at a time; half and twice are as good.
   double lock_timeout = 30.0;
   std::string unit;  ///< of the coordinates of all models, such as "m"; stored when the database is made
@@ -48,20 +48,20 @@ struct DatabaseOptions {
 
 /// What SymmetryDatabase::recognize() tries, and what it accepts.
 struct RecognitionOptions {
-  /// Models that are brought to the scan coarsely, >= 1. chosen: half misses more models, twice takes twice the time.
+  /// Models that are brought to the scan coarsely, >= 1: half misses more models, twice takes twice the time.
   int num_candidates = 10;
   /// For scans from a viewpoint, in databases of more than 300 models: models that are brought to it where none of
   /// these is accepted, with these, >= 1; a number below num_candidates counts as that. Unknown objects take the time
-  /// of all. chosen: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of the training half) among
+  /// of all: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of the training half) among
   /// 100 000 models, 103 are right with 40 and 107 with 100, which take up to 1.3 and 1.9 s of processor time.
   int max_candidates = 70;
   /// For scans from a viewpoint: models with the best coarse poses, whose poses are refined, >= 1, of num_candidates
-  /// and again of the others. chosen: as num_candidates.
+  /// and again of the others: as num_candidates.
   int num_refined = 4;
   /// Added to the distance of two views if their radii differ by a factor of e, >= 0. A smaller value is better where
-  /// other objects hide much of the object. chosen: 0 ignores the size.
+  /// other objects hide much of the object: 0 ignores the size.
   double size_weight = 0.25;
-  /// Least confidence of a model that is accepted, in [0, 1], see RecognizedModel::confidence. chosen: an answer is as
+  /// Least confidence of a model that is accepted, in [0, 1], see RecognizedModel::confidence: an answer is as
   /// often right as wrong there; README has a curve of what other values accept.
   double min_confidence = 0.5;
   /// Least merit of a pose that is accepted whatever its confidence, in [-1, 1], see RecognizedModel::score. chosen:

@@ -281,7 +281,7 @@ private:
   SeenSpace::ConstPtr source_seen_space_, target_seen_space_;
   CloudRegistrationOptions options_;
   std::optional<RegistrationTarget> prepared_target_;
-  // chosen: a lower value calls models of other kinds a fit, a higher one refuses scans with noise and holes.
+  // A lower value calls models of other kinds a fit, a higher one refuses scans with noise and holes.
   double min_merit_ = 0.4;
   std::size_t max_points_ = 10'000;
   PoseScore score_;

@@ -28,11 +28,11 @@ struct SceneOptions {
   double plane_distance = 0.0;
   /// Points closer than this are of one object, input units, >= 0; 0 = from the spacing of the points.
   double cluster_distance = 0.0;
-  /// Clusters of fewer points are left out, >= 20. chosen: half reports specks, twice misses small things far away.
+  /// Clusters of fewer points are left out, >= 20: half reports specks, twice misses small things far away.
   int min_points = 300;
   /// Points at a greater depth than this, seen from the viewpoint, are background, input units, >= 0; 0 = none is.
   double max_range = 0.0;
-  /// Points of a cluster that are analysed, >= 100. chosen: time grows with them; half makes weak planes less certain.
+  /// Points of a cluster that are analysed, >= 100: time grows with them; half makes weak planes less certain.
   int max_points = 5'000;
   /// Cuts objects that touch apart where their surface bends inwards. In coarse frames, faces that are seen at a slant
   /// may come off, too.

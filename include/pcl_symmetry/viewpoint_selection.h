@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/viewpoint_score.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -95,7 +95,7 @@ private:
   Points points_ = Points(3, 0);
   BoundingBall ball_;
   Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
-  double separation_ = 0.7;  // radians. chosen: a smaller angle gives views that look alike, a larger one fewer views
+  double separation_ = 0.7;  // radians: a smaller angle gives views that look alike, a larger one fewer views
 };
 
 }  // namespace pcl_symmetry

@@ -67,13 +67,12 @@ struct DetectionOptions {
 
   /// What only experts change.
   struct Expert {
-    /// Bins of the map that candidates come from. chosen: as many as the paper's 64 x 64 directions, but as fine in phi
+    /// Bins of the map that candidates come from: as many as the paper's 64 x 64 directions, but as fine in phi
     /// at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
-    int num_theta = 32;   ///< >= 1
-    int num_phi = 128;    ///< even, >= 2
-    int num_radius = 64;  ///< >= 1
-    int num_samples =
-        64;  ///< samples of the transform, >= 1. measured: the error is 1 % of PRST, enough to find maxima
+    int num_theta = 32;            ///< >= 1
+    int num_phi = 128;             ///< even, >= 2
+    int num_radius = 64;           ///< >= 1
+    int num_samples = 64;          ///< samples of the transform, >= 1: the error is 1 % of PRST, enough to find maxima
     LocalMaximaOptions maxima;     ///< of the maxima of the map that become candidates
     int max_candidates = 24;       ///< strongest maxima that are refined, >= 1
     bool principal_planes = true;  ///< planes across the principal axes are candidates too

@@ -30,7 +30,7 @@ struct PoseScore {
 
   /// Merit of a pose, by which poses are compared: support minus half the conflict, in [-1, 1]. A perfect pose has
   /// merit
-  /// 1. measured: scans of benchmark models, also noisy ones and ones with holes, reach 0.5 at their own model and stay
+  /// 1: scans of benchmark models, also noisy ones and ones with holes, reach 0.5 at their own model and stay
   /// below 0.32 at models of other kinds. Conflict counts half, because holes in a scan look like space that the
   /// scanner saw through.
   double merit() const { return support - 0.5 * conflict; }

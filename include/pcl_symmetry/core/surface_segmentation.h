@@ -29,17 +29,14 @@ enum class MergingEvidence {
 struct MergingOptions {
   MergingEvidence evidence = MergingEvidence::All;  ///< what the costs of merging are made of
 
-  /// Patches at the beginning, >= 1.
-  /// chosen: half as many blur borders and lose small parts; twice as many take four times the time and memory.
+  /// Patches at the beginning, >= 1. Fewer lose small parts; time and memory grow with the square.
   int num_patches = 200;
 
-  /// Divisions into patches, each grown from other seeds, whose merges are averaged, >= 1.
-  /// chosen: with one, borders and parts depend on where patches happen to lie (measured on 65 models: Rand distance
-  /// 0.134 with one, 0.124 with four divisions into 300 patches); twice as many take twice the time.
+  /// Divisions into patches, each grown from other seeds, whose merges are averaged, >= 1. With one, borders and parts
+  /// depend on where patches happen to lie: a Rand distance of 0.134 on 65 models, 0.124 with four.
   int num_divisions = 4;
 
-  /// Smaller regions join a neighbor; share of the surface, in [0, 1).
-  /// chosen: at half, fragments of noise remain; at twice, small parts such as ears are lost.
+  /// Smaller regions join a neighbor; share of the surface, in [0, 1). Ears are larger, fragments of noise smaller.
   double least_area = 0.003;
 
   /// Whether parts on one side of a plane that maps nearly all of the surface onto itself become the reflections of
@@ -47,12 +44,11 @@ struct MergingOptions {
   bool agree_across_planes = true;
 
   /// Borders between parts move to a minimum cut within this distance, in square roots of the area of the surface, >=
-  /// 0. With 0 they stay along the patches. chosen: at half, borders still show the patches; at twice, they may leave
-  /// the place that the evidence found.
+  /// 0. With 0 they stay along the patches.
   double cut_band = 0.03;
 
   /// Preference of that cut for concave edges, as SplittingOptions::concavity_weight, >= 0.
-  /// chosen: smaller values shorten borders across creases; larger values let them follow every crease.
+  /// Smaller values shorten borders across creases; larger values let them follow every crease.
   double concavity_weight = 3.0;
 
   /// \throws std::invalid_argument naming field, value and rule.
@@ -63,23 +59,19 @@ struct MergingOptions {
 /// most max_share of it onto itself. This rule hardly ever ends the splitting, so that the depth decides.
 struct SplittingOptions {
   /// Splits in a row at most, in [0, 30]: the paper's "user-supplied depth". There are up to 2^depth parts.
-  /// measured: 1 - Rand index is 0.339, 0.295 and 0.284 at depths 2, 3 and 4 (`segmentation.py`,
+  /// 1 - Rand index is 0.339, 0.295 and 0.284 at depths 2, 3 and 4 (`segmentation.py`,
   /// models of the Princeton Segmentation Benchmark with ids 1 modulo 4).
   int depth = 3;
   double min_share = 0.1;  ///< of the area of a part, in [0, max_share]; the paper's 10 %
   double max_share = 0.9;  ///< of the area of a part, in [min_share, 1]; the paper's 90 %
 
   /// Maxima are significant if D >= strength * (1 - r / R) * strongest D, as LocalMaximaOptions; in [0, 1].
-  /// chosen: at half, more weak planes are features; at twice, planes of small parts are lost.
   double strength = 0.1;
 
   /// Strongest maxima that serve as features, >= 1.
-  /// chosen: half as many may lack the planes of small parts; twice as many add weak planes and time.
   int max_planes = 20;
 
   /// The minimum cut may lie within this distance of the border of the clusters, in radii of the part, > 0.
-  /// chosen: at half, the cut keeps the ragged border of the clusters; at twice, it may drift to a shorter
-  /// border elsewhere.
   double cut_band = 0.1;
 
   /// An edge of concavity c > 0 radians costs length * exp(-concavity_weight * c) to cut; >= 0. With the paper's 0 the
@@ -127,7 +119,7 @@ struct SegmentNode {
 };
 
 /// A plane of the whole surface that maps at least this share of it onto itself has an image for every segment.
-/// chosen: at half, planes pair segments that are not alike; towards 1, only nearly symmetric shapes have pairs.
+/// At half, planes pair segments that are not alike; towards 1, only nearly symmetric shapes have pairs.
 constexpr double kMappedShare = 0.75;
 
 /// The result of segmentSurface().

@@ -11,11 +11,9 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Options of the completion of a scan by its reflection.
 struct CompletionOptions {
-  /// Reflected points within this distance of a measured point add nothing; local spacings of the points, > 0. chosen:
-  /// half doubles parts of the surface, twice leaves gaps beside it.
+  /// Reflected points within this distance of a measured point add nothing; local spacings of the points, > 0.
   double overlap = 1.5;
   /// Reflected points more than this in front of what was seen lie in free space; local spacings of the points, >= 0.
-  /// chosen: half drops points next to the surface, twice keeps points in front of it.
   double margin = 3.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "pcl_symmetry/core/detect_planes.h"
-#include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/visibility.h"
 
@@ -24,9 +24,8 @@ struct FrameOptions {
   int num_phi = 128;     ///< even, >= 2
   int num_radius = 64;   ///< >= 1
   int num_samples = 64;  ///< samples of that map's transform, >= 1
-  /// Scores that differ by no more than this are equal, >= 0. The scores are D of whole clouds. measured: the sampled D
-  /// of a symmetry varies by 0.02 to 0.03 with the angle of the plane; half separates equal planes, twice makes planes
-  /// of different symmetry equal.
+  /// Scores that differ by no more than this are equal, >= 0. The scores are D of whole clouds: the sampled D
+  /// of a symmetry varies by 0.02 to 0.03 with the angle of the plane.
   double tie = 0.06;
   /// The paper's own method: three planes picked greedily by D, through bin centers of the map and at num_phi angles
   /// within the plane across the first axis. It ignores what a scanner saw, and no scores tie.

@@ -34,8 +34,7 @@ double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3
 /// the direction of the sum is repeated until no sign changes; no step lowers S.
 /// \param planes W.
 /// \param num_directions
-/// starts of the search, >= 1. chosen: half as many may miss a maximum of a small cell between many planes; twice as
-/// many double the time.
+/// starts of the search, >= 1: fewer may miss a maximum of a small cell between many planes.
 /// \return none if no plane has a weight > 0: then all directions are equal.
 /// \throws
 /// std::invalid_argument if num_directions < 1 and a plane has a weight > 0.

@@ -24,9 +24,9 @@ class Visibility {
 public:
   using Projection = Eigen::Matrix<double, 3, 4>;
 
-  /// Depth of a ray that met nothing: all of its space is free. derived: farther than every point.
+  /// Depth of a ray that met nothing: all of its space is free. Farther than every point.
   static constexpr float kBackground = std::numeric_limits<float>::infinity();
-  /// Depth of a pixel without a ray: all of its space is unknown. derived: nearer than every point.
+  /// Depth of a pixel without a ray: all of its space is unknown. Nearer than every point.
   static constexpr float kNoRay = -std::numeric_limits<float>::infinity();
 
   /// The rays of an organized cloud or a depth image.
@@ -80,8 +80,7 @@ public:
   /// \return these planes with their margins: below n . x + d = 0 is no object.
   const std::vector<Eigen::Vector4d>& supports() const { return supports_; }
 
-  /// Pixels of a picture that is made from points. chosen: 4 MB a picture; half as many pixels blur clouds of more than
-  /// two million points, twice as many need 8 MB.
+  /// Pixels of a picture that is made from points: 4 MB a picture.
   static constexpr std::size_t kMaxPixels = 1u << 20;
 
   /// \param x in the frame of the points.

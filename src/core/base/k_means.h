@@ -7,14 +7,10 @@
 namespace pcl_symmetry {
 
 struct KMeansOptions {
-  int num_clusters = 2;  ///< k, >= 1
-  /// Greatest number of iterations of each try, >= 1.
-  /// chosen: a guard against endless runs; a lower limit may stop before the clusters rest.
-  int max_iterations = 100;
-  /// >= 1; the try with the least error counts.
-  /// chosen: half as many find worse clusters more often; twice as many double the time.
-  int num_tries = 4;
-  std::uint64_t seed = 1;  ///< of the starts
+  int num_clusters = 2;      ///< k, >= 1
+  int max_iterations = 100;  ///< of each try, >= 1
+  int num_tries = 4;         ///< >= 1; the one with the least error counts
+  std::uint64_t seed = 1;    ///< of the starts
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

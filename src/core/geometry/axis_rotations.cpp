@@ -5,7 +5,7 @@ namespace pcl_symmetry {
 namespace {
 
 std::array<Eigen::Matrix3i, kNumAxisRotations> makeRotations() {
-  // derived: all orders of three axes, the three cyclic (even) ones first
+  // All orders of three axes, the three cyclic (even) ones first
   constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   std::array<Eigen::Matrix3i, kNumAxisRotations> rotations;
   std::size_t count = 0;

@@ -6,7 +6,7 @@
 namespace pcl_symmetry {
 
 /// Number of rotations that map the coordinate axes onto each other.
-/// derived: 6 orders of the axes times 8 choices of sign, half of which are reflections.
+/// 6 orders of the axes times 8 choices of sign, half of which are reflections.
 constexpr int kNumAxisRotations = 24;
 
 /// All rotations that map the coordinate axes onto each other. A frame whose axes have no known order and sign can be

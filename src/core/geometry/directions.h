@@ -5,18 +5,18 @@
 
 namespace pcl_symmetry {
 
-/// Fractional part of the golden ratio. derived: (sqrt(5) - 1) / 2; its multiples modulo 1 fill [0, 1) evenly after any
+/// Fractional part of the golden ratio: (sqrt(5) - 1) / 2; its multiples modulo 1 fill [0, 1) evenly after any
 /// number of terms.
 constexpr double kGoldenSection = 0.61803398874989485;
 
-/// Turn from one point of a Fibonacci lattice to the next, radians. derived: 2 pi (1 - kGoldenSection).
+/// Turn from one point of a Fibonacci lattice to the next, radians: 2 pi (1 - kGoldenSection).
 constexpr double kGoldenAngle = 2.39996322972865332;
 
 /// Term \p k of the golden-ratio sequence, which spreads evenly over an interval however many terms are used.
 /// \return fractional part of k * kGoldenSection, in [0, 1).
 double goldenFraction(int k);
 
-/// A direction of a spiral over the upper half sphere, which stands for all lines through a point.
+/// A direction of a spiral over the upper half sphere, which represents all lines through a point.
 ///
 /// The heights z = (k + 1/2) / count cut the half sphere into rings of equal area. An even spiral (Fibonacci lattice)
 /// has angles that advance by kGoldenAngle, or 2 pi times goldenFraction().

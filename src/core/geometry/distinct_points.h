@@ -39,7 +39,7 @@ struct DistinctPoints {
 
 private:
   static std::uint64_t hash(const Eigen::Vector3f& point) {
-    constexpr std::uint64_t kFactor = 0x9E3779B97F4A7C15u;  // derived: 2^64 divided by the golden ratio, made odd
+    constexpr std::uint64_t kFactor = 0x9E3779B97F4A7C15u;  // 2^64 divided by the golden ratio, made odd
     std::uint64_t result = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const float coordinate = point[axis] + 0.0f;  // 0 and -0 are equal

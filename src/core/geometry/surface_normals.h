@@ -8,7 +8,7 @@
 namespace pcl_symmetry {
 
 /// Samples beside the closest one that are asked whether a point lies on the surface.
-/// derived: a sample is within reach at 1.25 spacings, and that circle holds pi 1.25^2 = 5 samples on average.
+/// A sample is within reach at 1.25 spacings, and that circle holds pi 1.25^2 = 5 samples on average.
 constexpr int kNumWitnesses = 4;
 
 /// What the neighborhood of each sample says about the surface.
@@ -23,7 +23,7 @@ struct LocalGeometry {
 };
 
 /// Neighbors that give normals and spacing.
-/// derived: the error of the spacing from k neighbors is 1 / (2 sqrt(k)), 18 % for 8; fewer exceed 20 %.
+/// The error of the spacing from k neighbors is 1 / (2 sqrt(k)), 18 % for 8; fewer exceed 20 %.
 constexpr int kNumSupportNeighbours = 8;
 
 /// The closest points of each sample.

@@ -125,7 +125,7 @@ void TriangleTree::distancesTo(const Node& node, const Ray& ray, float farthest,
 /// Intersections of a ray with triangles (Moeller and Trumbore 1997), in lengths of its direction; infinity where it
 /// misses the triangle.
 void TriangleTree::distancesTo(const Leaf& leaf, const Ray& ray, Lanes& distances) {
-  constexpr float kMiss = std::numeric_limits<float>::infinity();  // derived: farther than every hit
+  constexpr float kMiss = std::numeric_limits<float>::infinity();  // farther than every hit
   const float d0 = ray.direction[0], d1 = ray.direction[1], d2 = ray.direction[2];
   for (int k = 0; k < kWidth; ++k) {
     const float u0 = leaf.u[0][k], u1 = leaf.u[1][k], u2 = leaf.u[2][k];
@@ -144,7 +144,7 @@ void TriangleTree::distancesTo(const Leaf& leaf, const Ray& ray, Lanes& distance
 
 RayHit TriangleTree::search(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
                             float farthest, bool any) const {
-  // derived: 2^31 triangles have 16 levels of four children; each leaves at most three behind
+  // 2^31 triangles have 16 levels of four children; each leaves at most three behind
   constexpr int kMostOpen = 64;
   RayHit hit;
   hit.distance = farthest;

@@ -33,7 +33,7 @@ public:
   bool blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
 private:
-  static constexpr int kWidth = 4;  // derived: floats in the smallest vector register of current processors
+  static constexpr int kWidth = 4;  // floats in the smallest vector register of current processors
   using Lanes = float[kWidth];
 
   struct Node {

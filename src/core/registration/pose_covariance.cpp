@@ -54,7 +54,7 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
 /// What the residuals know of the motion: their Hessian without what noise of the normals adds, which would fix
 /// directions along which the surface slides on itself.
 MotionCovariance hessianWithoutNoise(Residuals residuals) {
-  // derived: the squares of errors in two directions have an exponential distribution; its mean is the median over
+  // The squares of errors in two directions have an exponential distribution; its mean is the median over
   // log 2.
   const double sq_noise = median(std::move(residuals.sq_sines)) / std::log(2.0);
   const Eigen::SelfAdjointEigenSolver<MotionCovariance> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
@@ -71,7 +71,7 @@ Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x) {
 
 MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& model,
                                 const Eigen::Isometry3d& T_model_scan, int num_points, double reach) {
-  // derived: the variance of an angle that is uniform in (-pi, pi), and a translation by the radius of the model.
+  // The variance of an angle that is uniform in (-pi, pi), and a translation by the radius of the model.
   const double sq_turn = kPi * kPi / 3.0, sq_way = 1.0;
   MotionCovariance information = MotionCovariance::Zero();
   information.diagonal().head<3>().setConstant(1.0 / sq_turn);

@@ -131,7 +131,7 @@ double inverseDepthError(const DepthImage& image) {
   std::nth_element(bends.begin(), bends.begin() + size - 1, bends.end());
   double sum = 0.0;
   for (std::ptrdiff_t i = 0; i < size; ++i) sum += static_cast<double>(bends[i]) * bends[i];
-  // derived: a second difference has 1 + 4 + 1 times the variance of a pixel.
+  // A second difference has 1 + 4 + 1 times the variance of a pixel.
   return std::sqrt(sum / static_cast<double>(size) / 6.0) / kScan.trimmed_deviation;
 }
 

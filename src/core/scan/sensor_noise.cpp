@@ -9,7 +9,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// derived: 97 % of a normal distribution lie within 2.17 standard deviations; the difference of two errors has the root
+// 97 % of a normal distribution lie within 2.17 standard deviations; the difference of two errors has the root
 // of 2 times that of one.
 const double kResolvedDeviations = 2.17 * std::sqrt(2.0);
 

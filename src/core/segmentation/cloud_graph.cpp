@@ -38,7 +38,7 @@ LocalSurface localSurface(const PointsRef& points, Eigen::Index i, const std::ve
 
 /// Adds an equilateral triangle in the tangent plane whose incircle has the area of the point.
 void addTriangle(SurfaceGraph& graph, Eigen::Index i, const LocalSurface& local) {
-  // derived: the circumradius of an equilateral triangle is twice its inradius
+  // The circumradius of an equilateral triangle is twice its inradius
   const float circumradius = 2.0f * std::sqrt(local.area / static_cast<float>(kPi));
   for (int k = 0; k < 3; ++k) {
     const float angle = static_cast<float>(2.0 * kPi * k / 3.0);

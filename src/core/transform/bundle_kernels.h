@@ -20,8 +20,8 @@ struct Bundle {
 /// Values v of the points of a bundle, in pairs whose products are added up by one instruction. What lies outside of
 /// [first, last) is 0.
 struct BundleValues {
-  static constexpr int kPairs = 2 * kBundleLanes;  ///< numbers of a point. derived: a pair for each lane
-  /// Points before the first and behind the last one that kernels read, at most. derived: sums about four points are
+  static constexpr int kPairs = 2 * kBundleLanes;  ///< numbers of a point: a pair for each lane
+  /// Points before the first and behind the last one that kernels read, at most: sums about four points are
   /// worked out together, in as many steps of two as the longest of them needs.
   static constexpr int kMargin = 6;
 
@@ -49,7 +49,7 @@ using LookUpBundle = void (*)(const Bundle& bundle, const RowTable::Rows& rows, 
 /// orders. Up to kPlacesBehind s behind the last one are read and written as well, where 0 is added.
 using CorrelateBundle = void (*)(const BundleValues& values, std::int32_t* sums);
 
-constexpr int kPlacesBehind = 8;  // derived: two for each of four points
+constexpr int kPlacesBehind = 8;  // two for each of four points
 
 /// The inner loops of the convolution for one instruction set. All give the same bytes.
 struct BundleKernels {

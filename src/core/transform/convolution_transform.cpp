@@ -14,7 +14,7 @@ namespace pcl_symmetry {
 namespace {
 
 constexpr std::size_t convolved_per_block = 16;  // directions
-// Steps of the R2 sequence, which fills the unit square evenly. derived: 1 / g and 1 / g^2 with the plastic number
+// Steps of the R2 sequence, which fills the unit square evenly: 1 / g and 1 / g^2 with the plastic number
 // g = 1.3247..., the root of g^3 = g + 1.
 constexpr double kPhaseSteps[2] = {0.7548776662466927, 0.5698402909980532};
 
@@ -36,7 +36,7 @@ public:
         kernels_(kernels),
         values_(lattice.num_along),
         sums_(2 * lattice.num_along, 2.0 * lattice.most_ahead / lattice.along) {
-    // derived: the sums of these fit in 32 bits
+    // The sums of these fit in 32 bits
     most_bundles_ = static_cast<int>(std::max<std::int64_t>(
         1, std::numeric_limits<std::int32_t>::max() / (std::int64_t{255} * 255 * lattice.num_along)));
   }

@@ -34,13 +34,13 @@ RowProducts rowProducts();
 /// \return D in [0, 1].
 template <typename Image>
 double correlation(const GaussianEdt& edt, const Image& image, const Eigen::Vector3d& step, int num_threads) {
-  constexpr std::size_t slab = 8;  // layers of cells along z
+  constexpr std::size_t layers = 8;  // of cells along z, a slab
   const auto n = static_cast<std::size_t>(edt.numCells());
-  std::vector<double> slabs((n + slab - 1) / slab);
+  std::vector<double> slabs((n + layers - 1) / layers);
   const RowProducts add = rowProducts();
   parallelBlocks(slabs.size(), num_threads, [&](std::size_t slab) {
     double sums[num_product_sums] = {};
-    for (std::size_t row = slab * slab * n; row < std::min(n, (slab + 1) * slab) * n; ++row) {
+    for (std::size_t row = slab * layers * n; row < std::min(n, (slab + 1) * layers) * n; ++row) {
       const GaussianEdt::Range filled = edt.filledRanges()[row];
       if (filled.begin == filled.end) continue;
       const Eigen::Vector3d start(0.0, static_cast<double>(row % n), static_cast<double>(row / n));

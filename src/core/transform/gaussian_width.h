@@ -15,14 +15,13 @@
 namespace pcl_symmetry {
 
 // Width of the Gaussian in cells, unless the points are sparse. The paper: "according to the maximal frequency of the
-// grid in order to avoid aliasing". chosen: at one cell look-ups alias, at four the peaks of D are twice as wide.
+// grid in order to avoid aliasing". At one cell look-ups alias, at four the peaks of D are twice as wide.
 constexpr double kSigmaInCells = 2.0;
-// Empty margin around the ball. derived: f = exp(-2^2) = 0.018 at most outside the grid
+// Empty margin around the ball: f = exp(-2^2) = 0.018 at most outside the grid
 constexpr double kMarginInSigmas = 2.0;
-// Distance beyond which f is 0. derived: f = exp(-2.6^2) = 1.16e-3 there, less than 3e-4 of its integral lies beyond
+// Distance beyond which f is 0: f = exp(-2.6^2) = 1.16e-3 there, less than 3e-4 of its integral lies beyond
 constexpr double kReachInSigmas = 2.6;
-// Greatest width for sparse points, of the radius. chosen: half leaves gaps in a surface of a dozen points, twice blurs
-// the shape to a ball.
+// Greatest width for sparse points, of the radius: a surface of a dozen points has no gaps, and the shape is no ball.
 constexpr double kMostSpacing = 0.25;
 
 /// \param coordinates of size points, an axis after the other: two or three.
@@ -53,7 +52,7 @@ inline float sqNearestOther(const float* coordinates, int num_axes, Eigen::Index
 /// \return input units; 0 if all points coincide.
 template <typename PointMatrix>
 double sampleSpacing(const PointMatrix& points) {
-  // chosen: a standard error of 13 % for random samples of a surface; 18 % for half as many, 9 % for twice as many
+  // A standard error of 13 % for random samples of a surface; 18 % for half as many, 9 % for twice as many
   constexpr Eigen::Index kNumProbes = 32;
   const Eigen::Index size = points.cols(), num_probes = std::min(kNumProbes, size);
   const Eigen::Matrix<float, Eigen::Dynamic, PointMatrix::RowsAtCompileTime> axes = points.transpose();

@@ -7,11 +7,11 @@
 
 namespace pcl_symmetry {
 
-/// Lanes of the widest kernel; arrays of results are padded by twice as many. derived: 32-bit integers in an AVX-512
+/// Lanes of the widest kernel; arrays of results are padded by twice as many: 32-bit integers in an AVX-512
 /// register.
 constexpr int kLineLanes = 16;
 
-/// Lines that a kernel adds up at a time, at most. chosen: they stay in the first cache (30 kB), and sums of bytes fit
+/// Lines that a kernel adds up at a time, at most: they stay in the first cache (30 kB), and sums of bytes fit
 /// in 32 bits.
 constexpr int kMostLines = 1024;
 
@@ -48,7 +48,7 @@ struct SampleCoordinates {
   const float *x, *y, *z;
 };
 
-/// Slabs around what is not 0, at most. derived: pairs of the 26 neighbors of a cell.
+/// Slabs around what is not 0, at most: pairs of the 26 neighbors of a cell.
 constexpr int kMostSlabs = 13;
 
 /// Slabs that hold all that is not 0 in a table, as samples see them: low <= axis . (x - sample) <= high for each.

@@ -13,11 +13,11 @@ namespace pcl_symmetry {
 /// functions share a table, byte by byte, so that one load gets both.
 class LookupTable {
 public:
-  static constexpr int kFractionBits = 16;  ///< derived: 32 bits hold up to 2^15 cells with 1 / 65536 of a cell
-  /// Byte of f = 1. derived: with a sigma of two cells, sharpening lifts f to 1.11 at most (an isolated point); 255 /
+  static constexpr int kFractionBits = 16;  ///< 32 bits hold up to 2^15 cells with 1 / 65536 of a cell
+  /// Byte of f = 1: with a sigma of two cells, sharpening lifts f to 1.11 at most (an isolated point); 255 /
   /// 200 leaves room.
   static constexpr double kOne = 200.0;
-  static constexpr int kMaxFunctions = 2;  ///< derived: f and the free space of a scan
+  static constexpr int kMaxFunctions = 2;  ///< f and the free space of a scan
 
   /// \param functions one or two functions, each num_cells^3 values in [0, 255 / kOne], x fastest; f is to be sharpened
   /// for the blur of the look-ups.

@@ -5,12 +5,12 @@
 
 namespace pcl_symmetry {
 
-/// Lines of a bundle. derived: 32-bit integers in an AVX-512 register.
+/// Lines of a bundle: 32-bit integers in an AVX-512 register.
 constexpr int kBundleLanes = 16;
-/// Lines of a bundle through cells of the same row, which are looked up by one load. chosen: 4 take a quarter more
+/// Lines of a bundle through cells of the same row, which are looked up by one load: 4 take a quarter more
 /// time, of 16 more lie outside of small shapes.
 constexpr int kRowLanes = 8;
-constexpr int kBundleRows = kBundleLanes / kRowLanes;  // derived: lanes of each of these rows make a bundle
+constexpr int kBundleRows = kBundleLanes / kRowLanes;  // lanes of each of these rows make a bundle
 
 /// The cells of an EDT as bytes in rows along each of the three axes, for points that are many cells of a row: of every
 /// step-th cell of a row, kRowLanes lie side by side, whichever is the first. Values are multiplied by
