@@ -114,7 +114,7 @@ TEST(FlannSearch, QueriesThatAreNoNumbersEndWithoutHarm) {
   std::vector<float> sq_distances, sq_reach;
   search.search(points, kCount, indices, sq_distances);
   for (std::size_t i = kCount - 1; i < sq_distances.size(); i += kCount) sq_reach.push_back(sq_distances[i]);
-  if (NeighborLists::isUseful(points.cols())) search.use(NeighborLists(points, indices, sq_reach, 1));
+  if (NeighborLists::isUseful(points.cols())) search.use(NeighborLists(points, indices, sq_reach));
   const Points queries = Points::Constant(3, 4, std::numeric_limits<float>::quiet_NaN());
   for (const int count : {1, kCount}) {
     search.search(queries, count, indices, sq_distances);
