@@ -25,10 +25,7 @@ constexpr int kNumTurns = 8;
 constexpr int kMaxFold = 24;
 
 Eigen::Isometry3d turnAbout(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& center) {
-  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
-  turn.linear() = rotationAbout(axis, angle);
-  turn.translation() = center - turn.linear() * center;
-  return turn;
+  return motionFixing(center, rotationAbout(axis, angle));
 }
 
 /// The motions that keep the colours and are a group: the worst one goes until the rest is.

@@ -26,7 +26,7 @@ void shiftBack(ObjectSymmetries& symmetries, const Eigen::Vector3d& shift) {
   for (Eigen::Isometry3d& symmetry : symmetries.discrete) symmetry = shiftedBack(symmetry, shift, shift);
   for (ContinuousSymmetry& symmetry : symmetries.continuous) symmetry.offset += shift;
   for (RejectedRotation& rejected : symmetries.rejected) {
-    rejected.turn = shiftedBack(rejected.turn, shift, shift);
+    rejected.motion = shiftedBack(rejected.motion, shift, shift);
     rejected.where += shift;
   }
 }

@@ -23,10 +23,7 @@ constexpr int kNumAngles = 8;
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
 Eigen::Isometry3d turnOf(const ContinuousSymmetry& symmetry, double angle) {
-  Eigen::Isometry3d turn = kIdentity;
-  turn.linear() = rotationAbout(symmetry.axis, angle);
-  turn.translation() = symmetry.offset - turn.linear() * symmetry.offset;
-  return turn;
+  return motionFixing(symmetry.offset, rotationAbout(symmetry.axis, angle));
 }
 
 /// A point that a turn fixes, as close to the origin as there is one.

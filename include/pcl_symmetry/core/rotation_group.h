@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -10,13 +10,13 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The groups of rotations about a point that shapes can have: there are no others.
 enum class RotationGroupKind {
-  Cyclic,       ///< C_n: turns about one axis by multiples of 2 pi / n; C_1 is the identity alone
-  Dihedral,     ///< D_n: C_n, and half turns about n axes across it
+  Cyclic,       ///< C_n: rotations about one axis by multiples of 2 pi / n; C_1 is the identity alone
+  Dihedral,     ///< D_n: C_n, and half turns about n axes perpendicular to it
   Tetrahedral,  ///< T: the regular tetrahedron, 12 rotations
   Octahedral,   ///< O: the cube and the regular octahedron, 24 rotations
   Icosahedral,  ///< I: the regular dodecahedron and icosahedron, 60 rotations
-  Revolution,   ///< turns by any angle about one axis
-  Cylindrical,  ///< Revolution, and half turns about every axis across it
+  Revolution,   ///< rotations by any angle about one axis
+  Cylindrical,  ///< Revolution, and half turns about every axis perpendicular to it
   Spherical     ///< every rotation
 };
 
@@ -29,6 +29,9 @@ inline bool isContinuous(RotationGroupKind kind) {
 /// \param axis unit.
 /// \param angle radians.
 Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle);
+
+/// The rotation R about a point c as a motion, x -> R (x - c) + c.
+Eigen::Isometry3d motionFixing(const Eigen::Vector3d& center, const Eigen::Matrix3d& rotation);
 
 /// A line as a direction: the one of its two directions whose largest coordinate is positive.
 Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction);
@@ -52,10 +55,10 @@ struct RotationGroup {
   std::vector<Eigen::Matrix3d> generators() const;
 };
 
-/// A line through the center that a group turns about.
+/// An axis of a group, through its center.
 struct RotationAxis {
   Eigen::Vector3d direction;  ///< unit, its largest coordinate positive
-  int order;                  ///< n of the turns by 2 pi / n about it
+  int order;                  ///< n of the rotations by 2 pi / n about it
 };
 
 /// The axes of a group.

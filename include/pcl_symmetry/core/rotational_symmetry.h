@@ -37,7 +37,7 @@ struct ObjectSymmetryOptions {
   void validate() const;
 };
 
-/// An axis of revolution: turns by every angle about it are symmetries.
+/// An axis of revolution: rotations by every angle about it are symmetries.
 struct ContinuousSymmetry {
   Eigen::Vector3d axis;    ///< unit, input frame
   Eigen::Vector3d offset;  ///< a point of the axis, input frame
@@ -46,17 +46,17 @@ struct ContinuousSymmetry {
 /// How far two poses of an object are from each other, whatever its symmetries hide.
 struct PoseDistance {
   double angle;   ///< radians, in [0, pi]: the least angle between the first pose and all that look like the second
-  double offset;  ///< input units: between the two places of ObjectSymmetries::center
+  double offset;  ///< input units: between the two positions of ObjectSymmetries::center
 };
 
-/// Turns about a line that are no symmetries, and why.
+/// Rotations about a line that are no symmetries, and why.
 struct RejectedRotation {
-  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();  ///< one of them, x -> T x in the input frame
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();         ///< unit
-  int fold = 0;                                            ///< order of the turns; 0: by any angle
-  double off = 0.0;                                        ///< share of the surface beyond the tolerance, in [0, 1]
-  double far = 0.0;                                        ///< share beyond ten tolerances, in [0, 1]
-  Eigen::Vector3d where = Eigen::Vector3d::Zero();         ///< center of what is off, input frame
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  ///< one of them, x -> T x in the input frame
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();           ///< unit
+  int fold = 0;                                              ///< order of the rotations; 0: by any angle
+  double off = 0.0;                                          ///< share of the surface beyond the tolerance, in [0, 1]
+  double far = 0.0;                                          ///< share beyond ten tolerances, in [0, 1]
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();           ///< center of what is off, input frame
 };
 
 /// A group by its name.
@@ -70,7 +70,7 @@ struct GroupName {
 /// The rotations that map a shape onto itself.
 ///
 /// A pose T maps the input frame to any other one, such as that of a camera. The pose T S looks like T for every
-/// symmetry S. The methods below take all symmetries into account: the turns of a continuous group in closed form,
+/// symmetry S. The methods below take all symmetries into account: the rotations of a continuous group in closed form,
 /// without samples of their angles. discrete and continuous are a group, as detection and from() leave them.
 struct ObjectSymmetries {
   RotationGroupKind kind = RotationGroupKind::Cyclic;  ///< which of the finite or continuous groups
@@ -78,9 +78,9 @@ struct ObjectSymmetries {
   /// The point that all axes pass through, input frame; the center of the bounding ball where there is no axis.
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   /// Rotations as motions x -> T x in the input frame, without the identity. Together with it they are a group, exactly
-  /// but for rounding. A cylinder has one: a half turn about an axis across its own.
+  /// but for rounding. A cylinder has one: a half turn about an axis perpendicular to its own.
   std::vector<Eigen::Isometry3d> discrete;
-  /// One axis for a body of revolution, three perpendicular ones for a sphere: turns about two of them generate all
+  /// One axis for a body of revolution, three perpendicular ones for a sphere: rotations about two of them generate all
   /// rotations.
   std::vector<ContinuousSymmetry> continuous;
   /// Share of the surface that each rotation maps to within the tolerance of the surface, relative to what sampling and
@@ -107,50 +107,42 @@ struct ObjectSymmetries {
                                const std::vector<ContinuousSymmetry>& continuous);
 
   /// The poses that look like T.
-  /// \param step radians, > 0: turns about an axis of revolution are at most this far apart. For a sphere, every
+  /// \param step radians, > 0: rotations about an axis of revolution are at most this far apart. For a sphere, every
   /// rotation lies within half a step of one of the result; their number grows with its third power.
   /// \return T first.
   /// \throws std::invalid_argument for a step that is not > 0.
   std::vector<Eigen::Isometry3d> equivalents(const Eigen::Isometry3d& T, double step = 0.5) const;
 
-  /// The pose that looks like T and is turned least from another one: the pose that continues a track. The step from
+  /// The pose that looks like T and is rotated least from another one: the pose that continues a track. The step from
   /// \p T_previous is never greater than that of the object, whichever of the equivalent poses T is.
   Eigen::Isometry3d closestTo(const Eigen::Isometry3d& T, const Eigen::Isometry3d& T_previous) const;
 
-  /// One pose for all that look the same: the one that is turned least, among equals the one whose matrix is greatest
-  /// column by column (a body of revolution upside down: a fixed one of its half turns). Poses that look the same have
-  /// the same result but for rounding. No such choice can be continuous: use closestTo() along a track.
+  /// One pose for all that look the same: the one with the smallest rotation, among equals the one whose matrix is
+  /// greatest column by column (a body of revolution upside down: a fixed one of its half turns). Poses that look the
+  /// same have the same result but for rounding. No such choice can be continuous: use closestTo() along a track.
   Eigen::Isometry3d canonical(const Eigen::Isometry3d& T) const;
 
   /// Difference between two poses as it looks.
   PoseDistance distance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2) const;
 
   /// Maximum symmetry-aware surface distance (MSSD of the BOP benchmark): how far the worst of the points is, in the
-  /// pose that looks like T_2 for which that is least. Exact for turns about an axis; for spheres, the distance of the
-  /// centers.
+  /// pose that looks like T_2 for which that is least. Exact for rotations about an axis; for spheres, the distance of
+  /// the centers.
   /// \param points 3 x N, finite, input frame; N >= 1. The vertices of a mesh, or of its convex hull, are enough.
   /// \return distance, input units.
   /// \throws std::invalid_argument without a point.
   double surfaceDistance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2, const PointsRef& points) const;
 
-  /// Whether two poses look the same within an angle in radians and a distance in input units.
-  bool sameUpTo(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2, double max_angle, double max_offset) const;
-
-  /// Mean of poses of which each may be any of those that look like it: it has the least sum of sin^2 of half the
-  /// angles to them, as far as a descent from each of at most 32 of the poses finds it, and their mean center.
-  /// \return of all that look the same, the pose closest to the first one.
-  /// \throws std::invalid_argument without a pose.
-  Eigen::Isometry3d mean(const std::vector<Eigen::Isometry3d>& poses) const;
 };
 
 /// Finds the group of rotations of a shape: both the rotations that planes of symmetry generate and those of shapes
 /// without any plane, such as propellers. It carries the paper's transform and refinement over from reflections to
 /// rotations, as its future work suggests (Section 6).
 ///
-/// The distance transform tells in which directions axes through the center of mass are likely. Turns about these axes
-/// are refined as planes are, and judged by the share of the surface that they map to within the tolerance of the
-/// surface. A fold has to beat the turns halfway between its own; where all turns hold, the axis is one of revolution.
-/// The greatest group that explains the axes is then fitted as a whole, and has to hold as a whole.
+/// The distance transform tells in which directions axes through the center of mass are likely. Rotations about these
+/// axes are refined as planes are, and judged by the share of the surface that they map to within the tolerance of the
+/// surface. A fold has to beat the rotations halfway between its own; where all rotations hold, the axis is one of
+/// revolution. The greatest group that explains the axes is then fitted as a whole, and has to hold as a whole.
 /// \param points 3 x N, finite, input units; at least 20 distinct ones, not all on a line, that show the object from all
 /// sides.
 /// \param options what symmetric means, and limits of the search.

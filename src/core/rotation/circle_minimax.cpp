@@ -11,14 +11,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Pieces of the circle to begin with. chosen: half or twice takes as long.
-constexpr int kNumArcs = 8;
-// Relative precision of squared distances. derived: a thousand times the rounding of double.
-constexpr double kPrecision = 2e-13;
-// Least length of an arc that is cut in two, radians. derived: beyond it angles differ by their rounding.
-constexpr double kLeastArc = 1e-14;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();  // derived: no wave is higher
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// 1, cos and sin of an angle.
 Eigen::Vector3d termsAt(double phi) {
@@ -39,7 +32,7 @@ Crest crestOf(const CircleWave& wave) {
   return {std::atan2(wave.sine, wave.cosine), std::hypot(wave.cosine, wave.sine)};
 }
 
-/// The angle, moved by turns of 2 pi to where it is at most the end of the arc.
+/// The angle, moved by multiples of 2 pi to where it is at most the end of the arc.
 double towards(const Arc& arc, double phi) {
   return phi - 2.0 * kPi * std::ceil((phi - arc.end) / (2.0 * kPi));
 }
@@ -58,18 +51,19 @@ public:
       crests_.push_back(crestOf(wave));
       scale = std::max(scale, std::abs(wave.mean) + crests_.back().swing);
     }
-    precision_ = kPrecision * scale;
+    precision_ = 2e-13 * scale;  // a thousand times the rounding of double
   }
 
   double best() {
     std::vector<int> all(waves_.size());
     std::iota(all.begin(), all.end(), 0);
     std::vector<Arc> open;
-    for (int k = 0; k < kNumArcs; ++k) open.push_back({2.0 * kPi * k / kNumArcs, 2.0 * kPi * (k + 1) / kNumArcs, all});
+    const int num_arcs = 8;
+    for (int k = 0; k < num_arcs; ++k) open.push_back({2.0 * kPi * k / num_arcs, 2.0 * kPi * (k + 1) / num_arcs, all});
     while (!open.empty()) {
       Arc arc = std::move(open.back());
       open.pop_back();
-      if (!narrow(arc) || arc.end - arc.begin < kLeastArc) continue;
+      if (!narrow(arc) || arc.end - arc.begin < 1e-14) continue;
       const double middle = 0.5 * (arc.begin + arc.end);
       open.push_back({middle, arc.end, arc.waves});
       open.push_back({arc.begin, middle, std::move(arc.waves)});

@@ -5,7 +5,7 @@
 
 namespace pcl_symmetry {
 
-/// mean + cosine cos(phi) + sine sin(phi): the squared distance of a point from one that turns about an axis.
+/// mean + cosine cos(phi) + sine sin(phi): the squared distance of a point from one that rotates about an axis.
 struct CircleWave {
   double mean, cosine, sine;
 

@@ -1,7 +1,6 @@
 /// The group of rotations that motions and axes generate, placed exactly.
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,27 +9,20 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "pcl_symmetry/core/rotational_symmetry.h"
+#include "core/rotation/placed_group.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Angle up to which rotations are one. chosen: half refuses files that people rounded, twice takes folds of 180 as one.
+// Rotations that differ by less than this are one: files are rounded, and folds go up to 120.
 constexpr double kOneRotation = 1.0 * kDegree;
-// Rotations of a group at most. chosen: D_120; half refuses fine gears, twice takes four times as long to refuse.
-constexpr std::size_t kMostRotations = 240;
-// Distance of a motion's fixed points from the center, as a share of how far its translation is from none. chosen: half
-// refuses coarsely rounded files, twice takes screws for rotations.
-constexpr double kOffCenter = 0.02;
 
 using Rotations = std::vector<Eigen::Matrix3d>;
 using Kind = RotationGroupKind;
 
 Eigen::Matrix3d closestRotation(const Eigen::Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
+  return Eigen::Affine3d(matrix).rotation();
 }
 
 bool isListed(const Rotations& rotations, const Eigen::Matrix3d& rotation) {
@@ -41,23 +33,24 @@ bool isListed(const Rotations& rotations, const Eigen::Matrix3d& rotation) {
 }
 
 /// All products, the identity first.
-/// \throws std::invalid_argument where there is no end of them.
+/// \throws std::invalid_argument where there are more than those of D_120.
 Rotations productsOf(const Rotations& generators) {
+  const std::size_t max_rotations = 240;
   Rotations elements{Eigen::Matrix3d::Identity()};
   for (std::size_t i = 0; i < elements.size(); ++i) {
     for (const Eigen::Matrix3d& generator : generators) {
       const Eigen::Matrix3d product = generator * elements[i];
       if (isListed(elements, product)) continue;
       elements.push_back(product);
-      if (elements.size() > kMostRotations)
+      if (elements.size() > max_rotations)
         throw std::invalid_argument("discrete: the rotations generate no group of at most " +
-                                    std::to_string(kMostRotations) + " rotations");
+                                    std::to_string(max_rotations) + " rotations");
     }
   }
   return elements;
 }
 
-/// An axis of the products, whose rounding errors differ.
+/// An axis of products that differ by rounding.
 struct GeneratedAxis {
   Eigen::Vector3d direction;
   int order;
@@ -67,8 +60,7 @@ std::vector<GeneratedAxis> axesOfProducts(const Rotations& elements) {
   std::vector<GeneratedAxis> axes;
   for (std::size_t i = 1; i < elements.size(); ++i) {
     const Eigen::Vector3d direction = Eigen::AngleAxisd(elements[i]).axis();
-    // derived: axes of a group with at most 240 rotations are at least 1.5 degrees apart, and each is better known than
-    // its rotations.
+    // Axes of a group with at most 240 rotations are at least 1.5 degrees apart.
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const GeneratedAxis& axis) {
       return axis.direction.cross(direction).norm() < std::sin(0.7 * kDegree);
     });
@@ -109,11 +101,7 @@ Eigen::Matrix3d roughFrame(const RotationGroup& group, const std::vector<Generat
       x = axis.direction;
     }
   }
-  Eigen::Matrix3d frame;
-  frame.col(2) = z;
-  frame.col(1) = z.cross(x).normalized();
-  frame.col(0) = frame.col(1).cross(z);
-  return frame;
+  return frameAlong(z, x);
 }
 
 const Eigen::Matrix3d& closestOf(const Rotations& rotations, const Eigen::Matrix3d& rotation) {
@@ -139,7 +127,7 @@ Eigen::Matrix3d closeFrame(const Rotations& own, const Rotations& generated, con
     sum += (moved.dot(to.vec()) < 0.0 ? -1.0 : 1.0) * to.vec() * from.vec().transpose();
   }
   if (sum.norm() == 0.0) return frame;
-  // One axis alone leaves the turn about it open; the part of the frame across it decides.
+  // One axis alone leaves the rotation about it free: there the frame stays as it is.
   return closestRotation(sum / sum.norm() + 1e-6 * frame);
 }
 
@@ -180,19 +168,14 @@ Eigen::Vector3d fixedPoint(const std::vector<Eigen::Isometry3d>& motions, const 
     row += 3;
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
-  solver.setThreshold(kOffCenter);
+  const double off_center =
+      0.02;  // misfit as a share of the translations: files are rounded, but a screw is no rotation
+  solver.setThreshold(off_center);
   solver.compute(rows);
   const Eigen::Vector3d center = solver.solve(right);
-  if ((rows * center - right).cwiseAbs().maxCoeff() > kOffCenter * size)
+  if ((rows * center - right).cwiseAbs().maxCoeff() > off_center * size)
     throw std::invalid_argument("discrete: the motions and axes have no fixed point in common");
   return center;
-}
-
-Eigen::Isometry3d motionFixing(const Eigen::Vector3d& center, const Eigen::Matrix3d& rotation) {
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.linear() = rotation;
-  motion.translation() = center - rotation * center;
-  return motion;
 }
 
 /// The axis that all axes of revolution share; nothing where motions or other axes tilt it, as on a sphere.
@@ -215,8 +198,8 @@ void setRound(ObjectSymmetries& result, const std::vector<ContinuousSymmetry>& a
     return;
   }
   result.continuous.push_back({*axis, result.center});
-  const auto turns_over = [&](const Eigen::Matrix3d& rotation) { return axis->dot(rotation * *axis) < 0.0; };
-  const bool is_cylinder = std::any_of(rotations.begin(), rotations.end(), turns_over);
+  const auto flips = [&](const Eigen::Matrix3d& rotation) { return axis->dot(rotation * *axis) < 0.0; };
+  const bool is_cylinder = std::any_of(rotations.begin(), rotations.end(), flips);
   result.kind = is_cylinder ? Kind::Cylindrical : Kind::Revolution;
   if (is_cylinder) result.discrete.push_back(motionFixing(result.center, rotationAbout(axis->unitOrthogonal(), kPi)));
 }

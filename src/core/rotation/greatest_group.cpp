@@ -1,51 +1,42 @@
-#include "core/rotation/greatest_group.h"
-
+/// The greatest group that axes of symmetry are part of.
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "core/base/constants.h"
+#include "core/rotation/rotation_axes.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Radians, angles between two axes of a group and between two that were found agree within this. chosen: half misses
-// groups whose axes were found roughly, twice tries groups in vain.
-constexpr double kMeets = 0.1;
-// Radii, radians: steps of the search for half turns across an axis. chosen: half takes twice the time, twice may leave
-// the basin of the fit.
-constexpr double kStepAcross = 0.02;
-// Steps to each side along the axis of a cylinder. derived: up to half the radius, as its center may lie off the center
-// of mass where the points are unevenly dense.
-constexpr int kNumStepsAlong = 25;
-
-/// Turns about axes in all directions have to hold: two axes of revolution could be one.
+/// Rotations about axes in all directions have to hold: two axes of revolution could be one.
 std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                          const TurningAxis& main) {
+                                          const FoldAxis& main) {
   // The center lies on the axis; the samples, whose mean is about there, tell where.
   const Eigen::Vector3d mass = centerOfMass(fit.points());
   const Eigen::Vector3d center =
       main.line.origin() + main.line.direction().dot(mass - main.line.origin()) * main.line.direction();
-  return placedGroup(fit, options, RotationGroupKind::Spherical, 0, turnsOfSphere(center));
+  return placedGroup(fit, options, RotationGroupKind::Spherical, 0, rotationsOfSphere(center));
 }
 
 std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                            const TurningAxis& main) {
+                                            const FoldAxis& main) {
   std::vector<double> offsets;
-  for (int k = -kNumStepsAlong; k <= kNumStepsAlong; ++k) offsets.push_back(kStepAcross * k);
+  // Up to half the radius: where points are unevenly dense, the center of a cylinder lies off the center of mass.
+  for (int k = -25; k <= 25; ++k) offsets.push_back(kRotationRules.across_step * k);
   const Line3d across = bestAcross(fit, main.line, kPi, 1, offsets);
-  RotationSet set = turnsAbout({across.origin(), main.line.direction()});
+  RotationSet set = rotationsAbout({across.origin(), main.line.direction()});
   set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction(), kPi));
   set.num_judged = 2;
   return placedGroup(fit, options, RotationGroupKind::Cylindrical, 0, set);
 }
 
 std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                         const TurningAxis& main) {
+                                         const FoldAxis& main) {
   const RotationGroup group{RotationGroupKind::Dihedral, main.fold};
   const double width = kPi / main.fold;
-  const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kStepAcross)));
+  const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kRotationRules.across_step)));
   const Line3d across = bestAcross(fit, main.line, width, num_angles, {0.0, -0.04, 0.04, -0.08, 0.08, -0.12, 0.12});
   const Eigen::Matrix3d frame = frameAlong(main.line.direction(), across.direction());
   return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
@@ -55,15 +46,16 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
 /// \param first,second axes that were found.
 /// \param a,b axes of the group that these are taken for.
 std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                        const RotationGroup& group, const TurningAxis& first, const TurningAxis& second,
-                                        const RotationAxis& a, const RotationAxis& b) {
+                                        const RotationGroup& group, const FoldAxis& first,
+                                        const FoldAxis& second, const RotationAxis& a, const RotationAxis& b) {
   if (a.order % first.fold != 0 || b.order % second.fold != 0) return std::nullopt;
   const double cosine = a.direction.dot(b.direction);
   const Eigen::Vector3d direction = first.line.direction().dot(second.line.direction()) * cosine < 0.0
                                         ? -second.line.direction()
                                         : second.line.direction();
   const double expected = angleBetweenLines(a.direction, b.direction);
-  if (expected < kMeets || std::abs(angleBetweenLines(first.line.direction(), direction) - expected) > kMeets)
+  if (expected < kRotationRules.axes_meet ||
+      std::abs(angleBetweenLines(first.line.direction(), direction) - expected) > kRotationRules.axes_meet)
     return std::nullopt;
   const Eigen::Matrix3d frame =
       frameAlong(first.line.direction(), direction) * frameAlong(a.direction, b.direction).transpose();
@@ -71,9 +63,9 @@ std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymm
 }
 
 std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                           const RotationGroup& group, const std::vector<TurningAxis>& axes) {
+                                           const RotationGroup& group, const std::vector<FoldAxis>& axes) {
   const std::vector<RotationAxis> own = axesOf(group.elements());
-  // Axes of one order are images of each other: one of each order stands for the first.
+  // Axes of one order are images of each other: one of each order represents the first.
   std::vector<RotationAxis> firsts;
   for (const RotationAxis& axis : own)
     if (std::none_of(firsts.begin(), firsts.end(), [&](const RotationAxis& a) { return a.order == axis.order; }))
@@ -88,21 +80,21 @@ std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectS
 
 /// The greatest group of a body of revolution.
 PlacedGroup continuousGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                            const std::vector<TurningAxis>& axes) {
+                            const std::vector<FoldAxis>& axes) {
   if (auto sphere = sphericalGroup(fit, options, axes.front())) return *sphere;
   if (auto cylinder = cylindricalGroup(fit, options, axes.front())) return *cylinder;
   return axes.front().group;
 }
 
-/// The greatest group with axes of finite order: the regular solids, then prisms, then the turns about one axis.
+/// The greatest group with axes of finite order: the regular solids, then prisms, then the rotations about one axis.
 PlacedGroup finiteGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                        const std::vector<TurningAxis>& axes) {
+                        const std::vector<FoldAxis>& axes) {
   for (const RotationGroup& group :
        {RotationGroup{RotationGroupKind::Icosahedral, 5}, RotationGroup{RotationGroupKind::Octahedral, 4},
         RotationGroup{RotationGroupKind::Tetrahedral, 3}})
     if (auto solid = polyhedralGroup(fit, options, group, axes)) return *solid;
-  for (const TurningAxis& axis : axes) {
-    // A dihedral group about this axis would have no more elements than the turns about the main one.
+  for (const FoldAxis& axis : axes) {
+    // A dihedral group about this axis would have no more elements than the rotations about the main one.
     if (2 * axis.fold <= axes.front().fold) break;
     if (auto prism = dihedralGroup(fit, options, axis)) return *prism;
   }
@@ -112,7 +104,7 @@ PlacedGroup finiteGroup(const RotationFit& fit, const ObjectSymmetryOptions& opt
 }  // namespace
 
 PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                          const std::vector<TurningAxis>& axes) {
+                          const std::vector<FoldAxis>& axes) {
   if (axes.empty()) return {};
   return axes.front().fold == 0 ? continuousGroup(fit, options, axes) : finiteGroup(fit, options, axes);
 }

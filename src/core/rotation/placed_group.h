@@ -2,25 +2,20 @@
 
 #include <optional>
 
-#include "core/rotation/rotation_search.h"
+#include "core/rotation/rotation_fit.h"
+#include "pcl_symmetry/core/axial_transform.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace pcl_symmetry {
 
-/// A group of rotations in place, in the normalised frame.
+/// A group of rotations in place, in the normalized frame.
 struct PlacedGroup {
   RotationGroupKind kind = RotationGroupKind::Cyclic;
   int fold = 1;
-  RotationSet set;  ///< all elements but the identity; for continuous groups, turns that stand for all
+  RotationSet set;  ///< all elements but the identity; for continuous groups, rotations that represent all
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the first rotation
   OffShares shares;                                 ///< of the worst rotation; of rotations by any angle the mean
 };
-
-/// Overlap with the surface that a set of rotations has to reach before its fit, and after its rough fit. chosen: half
-/// fits many sets in vain, at 4/3 features that may be ignored drop true ones.
-constexpr double kRoughOverlap = 0.6, kFairOverlap = 0.7;
-/// Points that tell whether a set is worth its fit. chosen: half drops true ones by chance, twice takes twice the time.
-constexpr int kSomeSamples = 600;
 
 /// The excess beyond which a set is given up that was judged by some of the points: three standard errors above 1.
 double greatestExcess(const RotationLimits& limits, int num_samples);
@@ -40,21 +35,21 @@ Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x);
 Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
 
 /// All elements of a group but the identity, placed by \p frame. The generators are judged and, about a main axis, the
-/// turns of about a quarter and a half: where there are many folds, one step cannot be told from that of one fold more
-/// or less.
+/// rotations by about a quarter and a half of a full one: where there are many folds, one step cannot be told from that
+/// of one fold more or less.
 /// \param frame rotation from the frame of the group to that of the points.
 RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame, const Eigen::Vector3d& center);
 
-/// The turns by multiples of 2 pi / \p fold about a line.
+/// The rotations by multiples of 2 pi / \p fold about a line.
 RotationSet cyclicSet(const Line3d& line, int fold);
 
-/// The turn by 2 pi / \p fold about a line.
-RotationSet singleTurn(const Line3d& line, int fold);
+/// The rotation by 2 pi / \p fold about a line.
+RotationSet singleRotation(const Line3d& line, int fold);
 
-/// Turns about a line that stand for all turns about it: their angles fit no polygon.
-RotationSet turnsAbout(const Line3d& line);
+/// Rotations about a line that represent all about it: their angles fit no polygon.
+RotationSet rotationsAbout(const Line3d& line);
 
-/// Rotations about a center that stand for all: axes in all directions, angles from a third of a turn to a half.
-RotationSet turnsOfSphere(const Eigen::Vector3d& center);
+/// Rotations about a center that represent all: axes in all directions, angles from 120 to 180 degrees.
+RotationSet rotationsOfSphere(const Eigen::Vector3d& center);
 
 }  // namespace pcl_symmetry

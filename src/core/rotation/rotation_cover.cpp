@@ -50,8 +50,8 @@ double sizeOf(const std::vector<Ring>& rings) {
 std::vector<Ring> fewestRings(double angle) {
   if (angle >= kPi) return {{0.0, 1}};
   if (angle >= 0.5 * kPi) return {{0.0, 1}, {kPi, 1}};
-  // derived: bands wider than twice the angle are not covered; square cells, sqrt(2) times the angle wide, are best for
-  // small angles, and bands half as wide never are.
+  // Bands wider than twice the angle are not covered. Square cells, sqrt(2) times the angle wide, are best for small
+  // angles, and bands half as wide never are.
   const int least = std::max(1, static_cast<int>(std::ceil((kPi - 2.0 * angle) / (2.0 * angle))));
   std::vector<Ring> best = ringsOf(least, angle);
   for (int num_bands = least + 1; num_bands <= 2 * least + 2; ++num_bands) {
@@ -70,8 +70,8 @@ std::vector<Eigen::Matrix3d> tiltsCovering(const Eigen::Vector3d& axis, double a
   for (const Ring& ring : fewestRings(angle)) {
     for (int k = 0; k < ring.size; ++k) {
       const double phi = 2.0 * kPi * k / ring.size;
-      const Eigen::Vector3d turned_about = std::cos(phi) * x + std::sin(phi) * y;
-      tilts.push_back(Eigen::AngleAxisd(ring.theta, turned_about).toRotationMatrix());
+      const Eigen::Vector3d tilt_axis = std::cos(phi) * x + std::sin(phi) * y;
+      tilts.push_back(Eigen::AngleAxisd(ring.theta, tilt_axis).toRotationMatrix());
     }
   }
   return tilts;

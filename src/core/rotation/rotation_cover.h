@@ -5,8 +5,9 @@
 
 namespace pcl_symmetry {
 
-/// Rotations D that tilt an axis everywhere: every rotation is C D H with a turn C about the axis and a rotation H by
-/// at most an angle. With one axis of revolution they stand for a sphere where axes cannot be combined with each other.
+/// Rotations D that tilt an axis everywhere: every rotation is C D H with a rotation C about the axis and a rotation H
+/// by at most an angle. With one axis of revolution they represent a sphere where axes cannot be combined with each
+/// other.
 ///
 /// The directions D^-1 a lie on rings. The bands around the rings fill the sphere, and the number of directions of each
 /// ring follows from its width, so that the angle is a bound and no estimate.

@@ -12,7 +12,67 @@
 
 namespace pcl_symmetry {
 
-/// Rotations about one center that move together: a group, a part of a group, or turns about one axis.
+/// Numbers of the search for rotations that decide the answers. Lengths are radii of the bounding ball, angles radians.
+struct RotationRules {
+  // What fails, as shares of the surface
+  double far_tolerances = 10.0;   // beyond these a piece of surface sticks out: 10 % of the diameter, as in BOP
+  double far_of_feature = 0.125;  // share that may stick out, of max_feature
+  double min_far = 0.002;         // the least of that share: single samples at sharp edges are far by chance
+  double optimism = 1.3;          // true excess over that of the fitted cloud; 1.28 on 98 groups of 354 models of PSB
+  double share_unit = 0.02;       // uncertainty of a share: with it, the confidences of these groups come true
+  double share_errors = 0.5;      // standard errors that it grows by for few points
+  double max_worst = 1.25;        // excess of the worst of the rotations that represent all; their mean may be 1
+  double max_errors = 3.0;        // standard errors that a share of some of the points may be off by
+  double gain_of_fit = 0.03;      // share that a close fit gains
+  double clear_factor = 1.5;      // rotations between those of a fold fail by this factor more,
+  double clear_excess = 0.2;      // and by this much of what is allowed
+
+  // Fits
+  int num_overlap_points = 256;   // points of overlap()
+  int num_rough_points = 200;     // points of rough fits
+  int num_close_points = 1000;    // points of close fits
+  int num_some_points = 600;      // points that tell whether a close fit is worth judging by all
+  int rough_iterations = 8;       // at most, in rough fits
+  int close_iterations = 12;      // at most, in close fits
+  double first_tolerances = 2.0;  // width of the weights at first, the greater of this many tolerances
+  double first_spacings = 1.0;    // and spacings of the points
+  double last_tolerances = 0.7;   // width at last, the greater of this many tolerances
+  double last_roughnesses = 3.0;  // and roughnesses
+  double reach_sigmas = 3.0;      // farther pairs have no weight
+  double min_stiffness = 1e-3;    // of the greatest eigenvalue: below, a direction is free, as about a cylinder's axis
+  double max_step = 0.2;          // longer steps leave the basin
+  double rest_step = 0.1;         // sigmas: a shorter step halves the width of the weights
+  double settled_step = 2e-4;     // a shorter step ends the fit: a hundredth of the default tolerance
+  std::size_t max_fitted = 6;     // rotations of a large group that are fitted, spread over it
+  float new_sample_factor =
+      1.41421356f;             // distance from a disc of new samples to that of fitted ones: 3 of 9 are used up
+  double rough_overlap = 0.6;  // that a set has to reach before its fit,
+  double fair_overlap = 0.7;   // and after its rough fit
+
+  // Axes
+  double same_line = 0.05;         // closer lines are one
+  double min_line_overlap = 0.6;   // of a line that is tried
+  int num_first_points = 48;       // points that rule out most lines,
+  double first_overlap = 0.42;     // and the overlap they need: min_line_overlap less three standard errors
+  std::size_t max_directions = 6;  // kept for each order: as many as axes of order 5 of the icosahedron
+  double min_angle = 0.17;         // between kept directions
+  double near_best = 0.05;         // overlap behind the best at which a smaller fold is as likely
+  int small_fold = 6;              // folds up to this one are tried whatever the greater ones reach
+  double half_allowance = 0.03;    // overlap that the rotation by half the angle may have beyond that of a fold
+  double min_overlap = 0.5;        // of the likeliest rotation about a line before its fit
+  double clearly_better = 0.02;    // overlap that a smaller angle needs beyond a greater one
+  std::size_t max_axes = 12;       // enough to place any finite group
+  std::size_t max_folds = 3;       // folds of a line that are fitted, the greatest first
+  int min_pattern = 3;             // equal pieces around a line that are a pattern, not features,
+  double pattern_excess = 0.5;     // where other rotations exceed this
+
+  // Groups
+  double axes_meet = 0.1;     // angles between two found axes and two of a group agree within this
+  double across_step = 0.02;  // of the search for half turns about axes perpendicular to the main one
+};
+inline constexpr RotationRules kRotationRules;
+
+/// Rotations about one center that move together: a group, a part of a group, or rotations about one axis.
 struct RotationSet {
   std::vector<Eigen::Matrix3d> rotations;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -30,7 +90,7 @@ struct OffShares {
 
 /// What symmetric means: tolerance tau and feature share phi (ObjectSymmetryOptions).
 struct RotationLimits {
-  double tolerance;    ///< normalised frame
+  double tolerance;    ///< normalized frame
   double max_feature;  ///< share of the surface that may be off
 
   /// By how much a rotation fails: the greater of its two shares over what is allowed of each.
@@ -44,13 +104,13 @@ struct RotationLimits {
 /// The surface that rotations are compared with, fitted to and judged on.
 ///
 /// Rotations are fitted as planes are: ISP (Section 4.4) with rotations in place of reflections. They are judged by the
-/// share of the surface that they map to within the tolerance of the surface. All lengths are in the normalised frame.
+/// share of the surface that they map to within the tolerance of the surface. All lengths are in the normalized frame.
 class RotationFit {
 public:
-  /// \param points 3 x N, normalised to the unit ball about 0.
+  /// \param points 3 x N, normalized to the unit ball about 0.
   /// \param edt distance transform of these points; must outlive this object.
-  /// \param tolerance normalised frame; the greatest that judges, unless fitsAt() says otherwise.
-  /// \param reach greatest tolerance that fits derived from this one judge at.
+  /// \param limits what symmetric means; tolerance at most \p reach.
+  /// \param reach greatest tolerance of withLimits().
   /// \param seed of the samples.
   /// \param num_threads >= 0; 0 = one per core.
   RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
@@ -70,7 +130,7 @@ public:
   /// The least overlap of any rotation of a set, at most 1.
   double overlap(const RotationSet& set) const;
 
-  /// The set turned and moved as a whole to where the rotated samples lie closest to the surface: few samples, wide
+  /// The set rotated and moved as a whole to where the rotated samples lie closest to the surface: few samples, wide
   /// weights.
   RotationSet roughlyFitted(const RotationSet& set) const;
   /// The same with many samples and narrow weights: what is off by more than the tolerance hardly counts.

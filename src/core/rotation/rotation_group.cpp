@@ -11,11 +11,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Frobenius norm of the difference of equal matrices. derived: far above rounding; elements of C_n differ by
-// 2 sqrt(2) sin(pi / n), 0.15 for n = 60.
+// Frobenius norm of the difference of equal matrices: elements of C_n differ by 2 sqrt(2) sin(pi / n).
 constexpr double kSameRotation = 1e-6;
-// Cosine of the angle between equal axes. derived: rounding leaves 1e-15; axes of one group are degrees apart.
-constexpr double kParallel = 1.0 - 1e-9;
 
 bool holds(const std::vector<Eigen::Matrix3d>& rotations, const Eigen::Matrix3d& rotation) {
   return std::any_of(rotations.begin(), rotations.end(),
@@ -38,6 +35,13 @@ std::vector<Eigen::Matrix3d> closureOf(const std::vector<Eigen::Matrix3d>& gener
 
 Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+Eigen::Isometry3d motionFixing(const Eigen::Vector3d& center, const Eigen::Matrix3d& rotation) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = rotation;
+  motion.translation() = center - rotation * center;
+  return motion;
 }
 
 Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction) {
@@ -76,13 +80,13 @@ std::vector<Eigen::Matrix3d> RotationGroup::elements() const {
 std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements) {
   std::vector<RotationAxis> axes;
   for (const Eigen::Matrix3d& element : elements) {
-    const Eigen::AngleAxisd turn(element);
-    if (std::abs(turn.angle()) < kSameRotation) continue;
+    const Eigen::AngleAxisd rotation(element);
+    if (std::abs(rotation.angle()) < kSameRotation) continue;
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const RotationAxis& axis) {
-      return std::abs(axis.direction.dot(turn.axis())) > kParallel;
+      return std::abs(axis.direction.dot(rotation.axis())) > 1.0 - 1e-9;
     });
     if (known == axes.end())
-      axes.push_back({signedDirection(turn.axis()), 2});
+      axes.push_back({signedDirection(rotation.axis()), 2});
     else
       ++known->order;
   }

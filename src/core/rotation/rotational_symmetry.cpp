@@ -11,18 +11,12 @@
 #include "core/geometry/diameter.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"
-#include "core/rotation/greatest_group.h"
-#include "core/rotation/rotation_fit.h"
-#include "core/rotation/rotation_search.h"
-#include "core/rotation/turning_axes.h"
+#include "core/rotation/rotation_axes.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Rejected rotations that are reported. chosen: a reader looks at a few.
-constexpr std::size_t kMostRejected = 5;
 
 /// The direction across an axis that is closest to a coordinate axis.
 Eigen::Vector3d directionAcross(const Eigen::Vector3d& axis) {
@@ -41,12 +35,7 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, 
   if (group.kind == RotationGroupKind::Cyclic && group.fold == 1) return result;
   result.support = 1.0 - group.shares.off;
   result.confidence = fit.confidence(group.shares);
-  const auto motion = [&](const Eigen::Matrix3d& rotation) {
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.linear() = rotation;
-    T.translation() = result.center - rotation * result.center;
-    return T;
-  };
+  const auto motion = [&](const Eigen::Matrix3d& rotation) { return motionFixing(result.center, rotation); };
   if (group.kind == RotationGroupKind::Spherical) {
     for (int k = 0; k < 3; ++k) result.continuous.push_back({Eigen::Vector3d::Unit(k), result.center});
   } else if (isContinuous(group.kind)) {
@@ -60,24 +49,23 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, 
 }
 
 /// What was tried and failed in the input frame, the least failure first.
-std::vector<RejectedRotation> inInputFrame(std::vector<RejectedTurn> turns, const RotationFit& fit,
+std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const RotationFit& fit,
                                            const BoundingBall& ball) {
-  std::stable_sort(turns.begin(), turns.end(), [&](const RejectedTurn& a, const RejectedTurn& b) {
+  std::stable_sort(axes.begin(), axes.end(), [&](const RejectedAxis& a, const RejectedAxis& b) {
     return fit.limits().excess(a.shares) < fit.limits().excess(b.shares);
   });
-  if (turns.size() > kMostRejected) turns.resize(kMostRejected);
+  const std::size_t max_reported = 5;
+  if (axes.size() > max_reported) axes.resize(max_reported);
   std::vector<RejectedRotation> rejected;
-  for (const RejectedTurn& turn : turns) {
-    const Eigen::Matrix3d rotation = rotationAbout(turn.line.direction(), turn.angle);
-    const Eigen::Vector3d center = ball.center + ball.radius * turn.line.origin();
+  for (const RejectedAxis& axis : axes) {
+    const Eigen::Matrix3d rotation = rotationAbout(axis.line.direction(), axis.angle);
     RejectedRotation entry;
-    entry.turn.linear() = rotation;
-    entry.turn.translation() = center - rotation * center;
-    entry.axis = turn.line.direction();
-    entry.fold = turn.fold;
-    entry.off = turn.shares.off;
-    entry.far = turn.shares.far;
-    entry.where = ball.center + ball.radius * fit.whereOff(rotation, turn.line.origin());
+    entry.motion = motionFixing(ball.center + ball.radius * axis.line.origin(), rotation);
+    entry.axis = axis.line.direction();
+    entry.fold = axis.fold;
+    entry.off = axis.shares.off;
+    entry.far = axis.shares.far;
+    entry.where = ball.center + ball.radius * fit.whereOff(rotation, axis.line.origin());
     rejected.push_back(entry);
   }
   return rejected;
@@ -90,7 +78,7 @@ public:
 
   struct Found {
     PlacedGroup group;
-    std::vector<RejectedTurn> rejected;
+    std::vector<RejectedAxis> rejected;
   };
 
   Found at(const RotationFit& fit) {

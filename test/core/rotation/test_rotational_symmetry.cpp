@@ -82,9 +82,9 @@ protected:
     }
     for (const Eigen::Isometry3d& motion : found.discrete) {
       EXPECT_LT((motion * origin - origin).norm(), 0.02 * scale) << "every axis passes through the origin of the shape";
-      const Eigen::Vector3d turned_about = Eigen::AngleAxisd(motion.linear()).axis();
+      const Eigen::Vector3d rotation_axis = Eigen::AngleAxisd(motion.linear()).axis();
       if (cylinder) {
-        EXPECT_LT(std::abs(turned_about.dot(axis)), std::sin(kAngleError));
+        EXPECT_LT(std::abs(rotation_axis.dot(axis)), std::sin(kAngleError));
       }
     }
   }
@@ -200,8 +200,8 @@ TEST(ObjectSymmetries, IgnoreKeywaysUpToTheStatedShare) {
   EXPECT_EQ(groupOf(keyedShaftShape(), 10'000, 1, [](auto& o) { o.max_feature = 0.01; }), "C2");
 }
 
-/// A plate whose sides differ by 2 x 4 % of 1: a quarter turn maps the faces of two sides 4 % of 1 off, 1.4 % of the
-/// diameter.
+/// A plate whose sides differ by 2 x 4 % of 1: a rotation by 90 degrees maps the faces of two sides 4 % of 1 off, 1.4 %
+/// of the diameter.
 TEST(ObjectSymmetries, DependOnTheTolerance) {
   const TurningShape plate = boxShape("plate", {1.0, 0.96, 0.4}, RotationGroupKind::Dihedral, 2);
   const auto at = [&](double tolerance) { return groupOf(plate, 5000, 1, [=](auto& o) { o.tolerance = tolerance; }); };
@@ -218,7 +218,7 @@ TEST(ObjectSymmetries, DependOnTheTolerance) {
   EXPECT_NEAR(found.tolerance, 0.01 * 2.0 * std::sqrt(1.0 + 0.96 * 0.96 + 0.16), 0.0005);
 }
 
-/// The handle is what a turn about the axis of a cup maps off its surface.
+/// The handle is what a rotation about the axis of a cup maps off its surface.
 TEST(ObjectSymmetries, SayWhatFailedAndWhere) {
   const TurningShape cup = cupShape(true);
   const ObjectSymmetries found = objectSymmetries(cup.sampled(10'000, 1).cloud());

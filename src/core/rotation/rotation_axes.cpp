@@ -1,0 +1,310 @@
+#include "core/rotation/rotation_axes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
+#include "core/geometry/directions.h"
+#include "core/geometry/principal_axes.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+Eigen::Vector3d directionAt(int k, int count) {
+  return spiralDirection(k, count, kGoldenAngle * k);
+}
+
+/// The overlap of a rotation; 0 where a part of the points shows that it is too small.
+double overlapOrLess(const RotationFit& fit, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) {
+  return fit.overlap(rotation, center, kRotationRules.num_first_points) < kRotationRules.first_overlap
+             ? 0.0
+             : fit.overlap(rotation, center);
+}
+
+/// The directions of the greatest values, apart from each other.
+std::vector<int> peaks(const std::vector<double>& values) {
+  const int size = static_cast<int>(values.size());
+  std::vector<int> order(values.size()), kept;
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return values[a] > values[b]; });
+  for (const int k : order) {
+    if (kept.size() >= kRotationRules.max_directions || values[k] < kRotationRules.min_line_overlap) break;
+    const bool near = std::any_of(kept.begin(), kept.end(), [&](int other) {
+      return std::abs(directionAt(k, size).dot(directionAt(other, size))) > std::cos(kRotationRules.min_angle);
+    });
+    if (!near) kept.push_back(k);
+  }
+  return kept;
+}
+
+/// Overlaps of the rotations by 2 pi / n about a line, at index n; 0 where half of that overlaps better. Rotations by
+/// small angles overlap well with any shape, and better the smaller they are.
+std::vector<double> foldOverlaps(const RotationFit& fit, const Line3d& line, int max_fold) {
+  std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
+  for (int n = 2; n <= max_fold; ++n) {
+    const double own = fit.overlap(rotationAbout(line.direction(), 2.0 * kPi / n), line.origin());
+    const double half = fit.overlap(rotationAbout(line.direction(), kPi / n), line.origin());
+    overlaps[n] = own >= half - kRotationRules.half_allowance ? own : 0.0;
+  }
+  return overlaps;
+}
+
+/// Lines through one center about which a rotation of prime order overlaps most. A rotation of any order has a power of
+/// prime order; an axis with greater primes only is the single one of its shape, hence a principal axis of the points.
+std::vector<Line3d> linesThrough(const Eigen::Vector3d& center, const RotationFit& fit, int num_directions,
+                                 int max_fold, int num_threads) {
+  std::vector<Line3d> lines;
+  for (const int prime : {2, 3, 5, 7}) {
+    if (prime > max_fold) break;
+    std::vector<double> overlaps(static_cast<std::size_t>(num_directions));
+    parallelRanges(overlaps.size(), 100, num_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        overlaps[k] = overlapOrLess(
+            fit, rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * kPi / prime), center);
+    });
+    for (const int k : peaks(overlaps)) lines.emplace_back(center, directionAt(k, num_directions));
+  }
+  return lines;
+}
+
+/// Centers that axes may pass through: the center of mass and, where it lies elsewhere because points are unevenly
+/// dense, that of the bounding ball, which is 0.
+std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit) {
+  const Eigen::Vector3d mass = centerOfMass(fit.points());
+  return mass.norm() > kRotationRules.same_line ? std::vector<Eigen::Vector3d>{mass, Eigen::Vector3d::Zero()}
+                                                : std::vector{mass};
+}
+
+/// Whether a line is one of \p lines.
+bool isKnown(const std::vector<Line3d>& lines, const Line3d& line) {
+  return std::any_of(lines.begin(), lines.end(), [&](const Line3d& other) {
+    return angleBetweenLines(other.direction(), line.direction()) < kRotationRules.same_line &&
+           (line.origin() - other.origin()).cross(other.direction()).norm() < kRotationRules.same_line;
+  });
+}
+
+/// Folds in [2, \p max_fold] whose rotations by 2 pi / n overlap best with the surface, of those that overlap as well
+/// as half the rotation: one of at most small_fold, and one of all where that is another.
+/// \return one or two, rising.
+std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max_fold) {
+  const std::vector<double> overlaps = foldOverlaps(fit, line, max_fold);
+  const auto least_near_best = [&](int last) {
+    const double best = *std::max_element(overlaps.begin(), overlaps.begin() + last + 1);
+    int n = 2;
+    while (overlaps[n] < best - kRotationRules.near_best) ++n;
+    return n;
+  };
+  const int small = least_near_best(std::min(kRotationRules.small_fold, max_fold)), any = least_near_best(max_fold);
+  return any == small ? std::vector{small} : std::vector{small, any};
+}
+
+// Multiples of 1/97 of a full rotation tell whether a line is an axis of revolution: 97 is prime, so that they lie at
+// all phases of every fold up to 60.
+constexpr int kNumPhases = 97;
+
+/// What rotations about a line map off the surface, judged by some of the points. Each is computed once.
+class RotationProfile {
+public:
+  RotationProfile(const RotationFit& fit, const Line3d& line) : fit_(fit), line_(line) {}
+
+  /// \return shares of the rotation by \p part / \p whole of a full one.
+  const OffShares& shares(int part, int whole) {
+    const int divisor = std::gcd(part, whole);
+    part = std::min(part / divisor, (whole - part) / divisor);  // a rotation and its inverse fail alike
+    whole /= divisor;
+    const auto [entry, is_new] = shares_.insert({{part, whole}, {}});
+    if (is_new) entry->second = fit_.offShares(rotation(part, whole), line_.origin(), kRotationRules.num_some_points);
+    return entry->second;
+  }
+
+  double excess(int part, int whole) { return fit_.limits().excess(shares(part, whole)); }
+
+  Eigen::Matrix3d rotation(int part, int whole) const {
+    return rotationAbout(line_.direction(), 2.0 * kPi * part / whole);
+  }
+
+private:
+  const RotationFit& fit_;
+  const Line3d& line_;
+  std::map<std::pair<int, int>, OffShares> shares_;
+};
+
+/// The axis of a rotation, near the point where the search for it began.
+Line3d lineOf(const RotationSet& rotation, const Line3d& start) {
+  const Eigen::Vector3d direction = axisOf(rotation.rotations[0]);
+  return {rotation.center + direction.dot(start.origin() - rotation.center) * direction, direction};
+}
+
+/// The likeliest rotation about a line moved to where it fits best; nothing where none fits, or where it ends at a line
+/// that was tried.
+std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& start, int max_fold,
+                                          const std::vector<Line3d>& tried) {
+  RotationSet best;
+  double overlap = 0.0;
+  for (const int fold : likelyFolds(fit, start, max_fold)) {
+    RotationSet other = singleRotation(start, fold);
+    if (fit.overlap(other) < kRotationRules.min_overlap) continue;
+    other = fit.roughlyFitted(other);
+    const double its_overlap = fit.overlap(other);
+    if (its_overlap <= overlap + kRotationRules.clearly_better) continue;
+    overlap = its_overlap;
+    best = std::move(other);
+  }
+  if (overlap < kRotationRules.rough_overlap || isKnown(tried, lineOf(best, start))) return std::nullopt;
+  best = fit.closelyFitted(best);
+  return fit.overlap(best) < kRotationRules.fair_overlap ? std::nullopt : std::optional(best);
+}
+
+/// A rotation about a line that fails: the first that does so clearly, else the worst.
+std::pair<int, double> failingRotation(RotationProfile& profile, double most) {
+  std::pair<int, double> worst{1, 0.0};
+  for (int k = 1; 2 * k < kNumPhases && worst.second <= most; ++k) {
+    const int part = 1 + (k * 19) % (kNumPhases / 2);  // the first ones are spread over half a rotation
+    if (const double excess = profile.excess(part, kNumPhases); excess > worst.second) worst = {part, excess};
+  }
+  return worst;
+}
+
+/// The worst excess of the rotations by multiples of 1 / \p fold, or a greater one than \p most.
+double excessOfFold(RotationProfile& profile, int fold, double most) {
+  double worst = 0.0;
+  for (int k = 1; 2 * k <= fold && worst <= most; ++k) worst = std::max(worst, profile.excess(k, fold));
+  return worst;
+}
+
+/// The least excess of the rotations halfway between those of a fold.
+double excessBetween(RotationProfile& profile, int fold) {
+  double least = profile.excess(1, 2 * fold);
+  for (int k = 3; k <= fold; k += 2) least = std::min(least, profile.excess(k, 2 * fold));
+  return least;
+}
+
+/// The n for which the rotations by 2 pi / n and its multiples are symmetries, and are clearly better than those
+/// halfway between. A multiple of a true fold fails that: half its rotations are no symmetries, or as good as any.
+/// \return the greatest first.
+std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const Line3d& line, int max_fold) {
+  const double most = greatestExcess(fit.limits(), kRotationRules.num_some_points);
+  std::vector<int> folds;
+  for (int n = max_fold; n >= 2; --n) {
+    if (fit.overlap(profile.rotation(1, n), line.origin()) < kRotationRules.rough_overlap) continue;
+    const double excess = excessOfFold(profile, n, most);
+    if (excess <= most && beatsOthers(excess, excessBetween(profile, n))) folds.push_back(n);
+  }
+  return folds;
+}
+
+/// The axis of a group that was placed about a line.
+std::optional<FoldAxis> axisFrom(std::optional<PlacedGroup> group, int fold) {
+  if (!group) return std::nullopt;
+  const Line3d fitted(group->set.center, group->axis);
+  return FoldAxis{fitted, fold, std::move(*group)};
+}
+
+}  // namespace
+
+std::vector<Line3d> principalLines(const RotationFit& fit) {
+  const PrincipalAxes principal = principalAxes(fit.points());
+  std::vector<Line3d> lines;
+  const std::vector<Eigen::Vector3d> centers = axisCenters(fit);
+  if (centers.size() > 1) lines.emplace_back(principal.center, principal.center.normalized());
+  for (const Eigen::Vector3d& center : centers)
+    for (int k = 0; k < 3; ++k) lines.emplace_back(center, principal.axes.col(k));
+  return lines;
+}
+
+std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads) {
+  std::vector<Line3d> lines;
+  for (const Eigen::Vector3d& center : axisCenters(fit)) {
+    const auto found = linesThrough(center, fit, num_directions, max_fold, num_threads);
+    lines.insert(lines.end(), found.begin(), found.end());
+  }
+  return lines;
+}
+
+double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
+}
+
+Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int num_angles,
+                  const std::vector<double>& offsets) {
+  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
+  Line3d best(line.origin(), u);
+  double best_overlap = -1.0;
+  for (const double offset : offsets) {
+    const Eigen::Vector3d center = line.origin() + offset * line.direction();
+    for (int k = 0; k < num_angles; ++k) {
+      const double angle = width * k / num_angles;
+      const Eigen::Vector3d direction = std::cos(angle) * u + std::sin(angle) * v;
+      const double overlap = fit.overlap(rotationAbout(direction, kPi), center);
+      if (overlap <= best_overlap) continue;
+      best_overlap = overlap;
+      best = Line3d(center, direction);
+    }
+  }
+  return best;
+}
+
+std::optional<FoldAxis> AxisFinder::foldAbout(const Line3d& line, const std::vector<int>& folds) const {
+  for (std::size_t i = 0; i < folds.size() && i < kRotationRules.max_folds; ++i) {
+    const RotationSet rotations = cyclicSet(line, folds[i]);
+    auto axis = axisFrom(placedGroup(fit_, options_, RotationGroupKind::Cyclic, folds[i], rotations), folds[i]);
+    if (axis) return axis;
+  }
+  return std::nullopt;
+}
+
+/// The line with all rotations about it that are symmetries. Three or more equal pieces around a line are a pattern:
+/// their fold comes before rotations by all angles, though the pieces together be small enough for a feature.
+std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
+  RotationProfile profile(fit_, line);
+  const double most = greatestExcess(fit_.limits(), kRotationRules.num_some_points);
+  const auto failing = failingRotation(profile, most);
+  const int worst = failing.first;
+  const double excess = failing.second;
+  const auto revolution = [&]() -> std::optional<FoldAxis> {
+    if (excess > kRotationRules.max_worst * most) return std::nullopt;
+    return axisFrom(placedGroup(fit_, options_, RotationGroupKind::Revolution, 0, rotationsAbout(line)), 0);
+  };
+  std::vector<int> folds;
+  if (excess >= kRotationRules.pattern_excess) folds = foldsOf(fit_, profile, line, options_.max_fold);
+  const bool is_pattern = !folds.empty() && (folds.front() >= kRotationRules.min_pattern || excess > 1.0);
+  std::optional<FoldAxis> axis = is_pattern ? foldAbout(line, folds) : revolution();
+  if (!axis) axis = is_pattern ? revolution() : foldAbout(line, folds);
+  if (!axis || axis->fold > 0)
+    rejected_.push_back({line, 0, 2.0 * kPi * worst / kNumPhases, profile.shares(worst, kNumPhases)});
+  return axis;
+}
+
+void AxisFinder::judge(const std::vector<Line3d>& lines) {
+  for (const Line3d& start : lines) {
+    if (isRound() || axes_.size() >= kRotationRules.max_axes) break;
+    if (isKnown(tried_, start)) continue;
+    const std::optional<RotationSet> rotation = fittedRotation(fit_, start, options_.max_fold, tried_);
+    const bool is_new = rotation && !isKnown(tried_, lineOf(*rotation, start));
+    tried_.push_back(start);
+    if (!is_new) continue;
+    const Line3d line = lineOf(*rotation, start);
+    tried_.push_back(line);
+    const OffShares shares = fit_.offShares(rotation->rotations[0], rotation->center, kRotationRules.num_some_points);
+    if (fit_.limits().excess(shares) > greatestExcess(fit_.limits(), kRotationRules.num_some_points)) {
+      const double angle = Eigen::AngleAxisd(rotation->rotations[0]).angle();
+      rejected_.push_back({line, static_cast<int>(std::lround(2.0 * kPi / angle)), angle, shares});
+      continue;
+    }
+    std::optional<FoldAxis> axis = axisAbout(line);
+    if (!axis) continue;
+    if (axis->fold == 0) axes_.clear();
+    axes_.push_back(std::move(*axis));
+  }
+  std::stable_sort(axes_.begin(), axes_.end(),
+                   [](const FoldAxis& a, const FoldAxis& b) { return a.fold > b.fold; });
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/rotation/placed_group.h"
+
+namespace pcl_symmetry {
+
+/// An axis with the rotations about it that are symmetries, in the normalized frame.
+struct FoldAxis {
+  Line3d line;
+  int fold;  ///< 0: every rotation
+  PlacedGroup group;
+};
+
+/// A line with rotations about it that are no symmetries, in the normalized frame.
+struct RejectedAxis {
+  Line3d line;
+  int fold;          ///< 0: rotations by any angle
+  double angle;      ///< of the rotation that fails, radians
+  OffShares shares;  ///< of this rotation
+};
+
+/// The principal axes of the points through their center of mass and, where points are unevenly dense, that of the
+/// bounding ball, and the line through both centers. A shape of revolution and one with a fold of 3 or more about a
+/// single axis have it there.
+std::vector<Line3d> principalLines(const RotationFit& fit);
+
+/// Lines through these centers, in all directions, about which a rotation of prime order overlaps most with the
+/// surface.
+/// \param num_directions of lines through each center, on a half sphere.
+/// \param max_fold greatest order of a rotation.
+/// \param num_threads >= 0; 0 = one per core.
+std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads);
+
+/// Angle between two lines, in [0, pi/2].
+double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+/// The half turn, among those about axes perpendicular to a line, that overlaps most with the surface.
+/// \param width the axes have \p num_angles angles in [0, width), radians.
+/// \param offsets positions of the axis along the line, from its origin.
+Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int num_angles,
+                  const std::vector<double>& offsets);
+
+/// Finds the lines about which rotations are symmetries, each once.
+class AxisFinder {
+public:
+  /// \param fit,options must outlive this object.
+  AxisFinder(const RotationFit& fit, const ObjectSymmetryOptions& options) : fit_(fit), options_(options) {}
+
+  /// Judges lines, the likeliest first. Axes of finite order are dropped once an axis of revolution is found, which
+  /// ends the search.
+  void judge(const std::vector<Line3d>& lines);
+
+  bool isRound() const { return !axes_.empty() && axes_.front().fold == 0; }
+  /// An axis of revolution alone, or axes of finite order, the greatest order first.
+  const std::vector<FoldAxis>& axes() const { return axes_; }
+  const std::vector<RejectedAxis>& rejected() const { return rejected_; }
+
+private:
+  std::optional<FoldAxis> axisAbout(const Line3d& line);
+  std::optional<FoldAxis> foldAbout(const Line3d& line, const std::vector<int>& folds) const;
+
+  const RotationFit& fit_;
+  const ObjectSymmetryOptions& options_;
+  std::vector<Line3d> tried_;
+  std::vector<FoldAxis> axes_;
+  std::vector<RejectedAxis> rejected_;
+};
+
+/// The greatest group that axes are part of and that the surface supports as a whole.
+/// \param axes from AxisFinder.
+/// \return C_1 where there is no axis.
+PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
+                          const std::vector<FoldAxis>& axes);
+
+}  // namespace pcl_symmetry
