@@ -21,16 +21,13 @@ struct FrameOptions {
   /// Its width, input units, >= 0; 0 = 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more.
   double sigma = 0.0;
   int num_theta = 32;    ///< bins of the map that candidates for the first plane come from, >= 1
-  int num_phi = 128;     ///< even, >= 2
-  int num_radius = 64;   ///< >= 1
-  int num_samples = 64;  ///< samples of that map's transform, >= 1
-  /// Scores that differ by no more than this are equal, >= 0. The scores are D of whole clouds: the sampled D
-  /// of a symmetry varies by 0.02 to 0.03 with the angle of the plane.
+  int num_phi = 128;       ///< even, >= 2
+  int num_radius = 64;     ///< >= 1
+  int num_samples = 64;    ///< samples of that map's transform, >= 1
+  /// Scores that differ by no more than this are equal, >= 0. The sampled D of a symmetry varies by 0.02 to 0.03 with
+  /// the angle of the plane.
   double tie = 0.06;
-  /// The paper's own method: three planes picked greedily by D, through bin centers of the map and at num_phi angles
-  /// within the plane across the first axis. It ignores what a scanner saw, and no scores tie.
-  bool as_published = false;
-  /// Axes of turns of scans are searched too, SymmetryFrame::turns; false saves about a third of the time.
+  /// Searches the axes of rotation of scans too, SymmetryFrame::turns; false saves about a third of the time.
   bool turns = true;
   bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes about a seventh of the time
   std::uint64_t seed = 1;     ///< of all random draws
@@ -46,7 +43,7 @@ struct ProbableFrame {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: as of SymmetryFrame
   int revolution_axis = -1;                            ///< as of SymmetryFrame
   /// That the axes, in any order and sign, are within 5 degrees of the own axes of the shape, in [0, 1]; a frame with
-  /// an axis of revolution may be turned about it. Fitted to models whose files tell the own axes
+  /// an axis of revolution may be rotated about it. Fitted to models whose files tell the own axes
   /// (test/benchmark/fit_frames.py).
   double probability = 0.0;
   /// What the probability was taken from: 1; value less that of the best frame; score of the first plane; contact of
@@ -60,25 +57,26 @@ struct SymmetryFrame {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of symmetry: where the three planes meet, input frame
   /// Principal symmetry axes in columns: normals of the planes, orthonormal, right-handed, best first.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  /// Score of the plane across each axis, in [0, 1]. For a whole cloud it is D; for a scan it is seenSymmetry() of D
-  /// and free space, for the second and third plane on the scan completed by its reflection across the first.
+  /// Score of the plane perpendicular to each axis, in [0, 1]. For a whole cloud it is D; for a scan it is
+  /// seenSymmetry() of D and free space, for the second and third plane on the scan completed by its reflection across
+  /// the first.
   Eigen::Vector3d scores = Eigen::Vector3d::Zero();
-  int revolution_axis =
-      -1;  ///< column that is an axis of revolution; -1: none, 3: every line through the center is one
+  /// Column that is an axis of revolution; -1: none, 3: every line through the center is one.
+  int revolution_axis = -1;
   Eigen::Isometry3d T_canonical_input = Eigen::Isometry3d::Identity();  ///< center to 0, axes to x, y, z
   /// T_canonical_input of all frames that symmetry leaves equally good, this one first. A plane has no sign, so every
   /// choice of signs that is a rotation is listed. Where scores tie, other orders and other axes are listed too: first
-  /// those that are maxima, then the angles between them in steps of 6 degrees. Turns about an axis of revolution are
-  /// equally good as well and not listed.
+  /// those that are maxima, then the angles between them in steps of 6 degrees. Rotations about an axis of
+  /// revolution are equally good as well and not listed.
   std::vector<Eigen::Isometry3d> equivalent;
   std::size_t num_maxima = 0;  ///< frames at the front of equivalent that are maxima
-  /// Frames that may be the shape's own, each once up to order, signs and turns about an axis of revolution: this frame
-  /// first, the others by falling probability. Besides maxima of symmetry they are levelled ones, which stand on an
-  /// edge of the outline, fit the smallest box or follow faces. The probabilities add up to less than 1: the rest is
-  /// that of none of them. Empty for FrameOptions::as_published and without FrameOptions::probabilities.
+  /// Frames that may be the shape's own, each once up to order, signs and rotations about an axis of revolution: this
+  /// frame first, the others by falling probability. Besides maxima of symmetry they are leveled ones, which stand on
+  /// an edge of the outline, fit the smallest box or follow faces. The probabilities add up to less than 1: the rest is
+  /// that of none of them. Empty without FrameOptions::probabilities.
   std::vector<ProbableFrame> probable;
-  /// Of scans: axes of turns, through the center or not, most confident first. They say which poses look the same where
-  /// the planes alone do not, as of a propeller.
+  /// Axes of rotation of a scan, through the center or not, most confident first: which poses look the same where the
+  /// planes alone do not tell, as for a propeller.
   std::vector<SymmetryTurn> turns;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
@@ -89,32 +87,23 @@ struct SymmetryFrame {
 /// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. The
 /// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points. Where
 /// faces about the first axis make the shape stand level at little loss of symmetry, the other two axes follow them. A
-/// scan is completed by its reflection across the first plane before the other two are searched, and free space speaks
-/// against planes. The center is a mean over frames that are nearly as good.
+/// scan is completed by its reflection across the first plane before the other two are searched, and free space
+/// counts against planes. The center is a mean over frames that are nearly as good.
 ///
 /// Order: the first plane is that of the frame that is best as a whole. The second scores more than the third or, where
 /// the two tie, the points spread more along it.
 ///
 /// Signs: the third central moment of the points along the second and third axis is positive: these axes point to the
-/// side where less of the shape reaches further. The sign of the first makes the frame right-handed, because the first
-/// axis has the least direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan
+/// side where less of the shape reaches further. The sign of the first makes the frame right-handed, as the first axis
+/// has no direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan
 /// has the moments of the side that was seen. SymmetryFrame::equivalent lists all signs.
 /// \param points 3 x N, finite, input units; at least two different ones.
 /// \param options numbers of bins and samples, tie, threads.
 /// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
-/// \param make_search makes the search that looks for the axes of turns of a scan; null = FLANN's.
+/// \param make_search makes the search that looks for the axes of rotation of a scan; null = FLANN's.
 /// \return the frame, in the input frame.
 /// \throws std::invalid_argument for bad options or points without extent.
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options = {},
                             const Visibility* visibility = nullptr, const MakeSearch& make_search = nullptr);
-
-/// Judges given frames: is another frame as symmetric as the one that was found?
-/// \param points 3 x N, finite, input units; at least two different ones, that show the object from all sides.
-/// \param frames each with unit axes in its columns.
-/// \param options as for symmetryFrame().
-/// \return for each frame the greatest D of the planes across each of its axes, whatever their offset.
-/// \throws std::invalid_argument for bad options or points without extent.
-std::vector<Eigen::Vector3d> axisScores(const PointsRef& points, const std::vector<Eigen::Matrix3d>& frames,
-                                        const FrameOptions& options = {});
 
 }  // namespace pcl_symmetry

@@ -1,6 +1,7 @@
 #include "core/frame/canonical_frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -9,35 +10,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-// Radians, frames closer than this are one. derived: less than two steps of 3 degrees in the angle of the second plane.
-constexpr double kSameFrame = 5.0 * kDegree;
-// Weight exp(kSharpness s) of an offset of score s. chosen: half lets poor offsets pull the center, twice follows the
-// noise of flat profiles.
-constexpr double kSharpness = 15.0;
-// Radii, standard deviation of the offsets of second and third planes about the middle of the extent. chosen: half
-// follows the extent alone, as that of a mug with its handle, twice lets flat profiles drift.
-constexpr double kOffsetWidth = 0.07;
-// Radii, from the middle of a scan to its first plane, half-way between which the center then lies. measured: on 356
-// scans of 178 models of fold 0, 0.15 to 0.3 leave centers 3.93 times nearer than the center of mass (3.92 without), on
-// 276 of fold 1 3.44, 3.43 and 3.39 times at 0.15, 0.2 and 0.3 (3.24).
-constexpr double kDoubtfulOffset = 0.2;
-// Radii, the same for a whole whose first plane has a score of 0, growing as 1 / (1 - score): the plane of a true
-// symmetry stays where it is, also where a part of the cloud is missing. measured: of 356 models of fold 0, two scans
-// each, 98.0 % have centers nearer than the center of mass without it, 98.6 % at 0.03, 0.06 and 0.12; 3.92 times
-// nearer, and 4.13, 4.06 and 3.99 times.
-constexpr double kDoubtfulWhole = 0.06;
-// 1 - score, at least. chosen: far below what tells symmetries from others; half or twice moves a plane that is 0.3
-// radii from the middle by less than 0.003 radii.
-constexpr double kLeastDoubt = 0.01;
-// Weight exp(kCenterSharpness v) of the center of a frame whose value is v below that of the first. measured: on the
-// same models 98.6, 98.6 and 98.3 % are nearer with 15, 30 and 60, 4.06, 4.06 and 4.04 times; with the first frame of
-// wholes alone 97.8 % and 4.04 times. Of scans before FrameEvidence pushed their middle: 3.26 and 3.53 times with 15
-// and 30, 3.46 times with the first frame alone.
-constexpr double kCenterSharpness = 30.0;
-// Angles at which a revolution is tested, in the half-turn. chosen: half takes square prisms for round ones, twice
-// takes twice the time.
-constexpr int kNumRevolutionAngles = 8;
 
 /// Exactly orthonormal, and right-handed.
 Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
@@ -52,7 +24,7 @@ Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
 /// \param score of the plane.
 float firstOffset(const FrameEvidence& evidence, const CellPlane& first, double score) {
   const double doubtful_radii =
-      evidence.scanned() ? kDoubtfulOffset : kDoubtfulWhole / std::max(1.0 - score, kLeastDoubt);
+      evidence.scanned() ? kFrameRules.scan_first_radius : kFrameRules.whole_first_radius / std::max(1.0 - score, 0.01);
   const double away = evidence.middleAlong(first.normal) - first.offset;
   const double doubtful = doubtful_radii * evidence.reach();
   return first.offset + static_cast<float>(away * away * away / (away * away + doubtful * doubtful));
@@ -83,8 +55,8 @@ Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandi
     double sum = 0.0, moment = 0.0;
     for (std::size_t i = 0; i < s.size(); ++i) {
       const double r = static_cast<double>(i) - std::floor(evidence.reach());
-      const double away = (r - middle) / (kOffsetWidth * evidence.reach());
-      const double weight = std::exp(kSharpness * (s[i] - top) - 0.5 * away * away);
+      const double away = (r - middle) / (kFrameRules.offset_width * evidence.reach());
+      const double weight = std::exp(kFrameRules.offset_sharpness * (s[i] - top) - 0.5 * away * away);
       sum += weight;
       moment += weight * r;
     }
@@ -97,7 +69,8 @@ Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const st
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double sum = 0.0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const double weight = std::exp(kCenterSharpness * std::min(frames[i].value - frames.front().value, 0.0));
+    const double weight =
+        std::exp(kFrameRules.center_sharpness * std::min(frames[i].value - frames.front().value, 0.0));
     mean += weight * (centers[i] - centers.front());
     sum += weight;
   }
@@ -110,8 +83,8 @@ int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, d
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3f u = frame.axes.col((k + 1) % 3), v = frame.axes.col((k + 2) % 3);
     float lowest = std::numeric_limits<float>::infinity(), highest = 0.0f;
-    for (int a = 0; a < kNumRevolutionAngles; ++a) {
-      const float angle = static_cast<float>(kPi * a / kNumRevolutionAngles);
+    for (int a = 0; a < kFrameRules.num_revolution_angles; ++a) {
+      const float angle = static_cast<float>(kPi * a / kFrameRules.num_revolution_angles);
       const Eigen::Vector3f normal = std::cos(angle) * u + std::sin(angle) * v;
       const float score = evidence.nearbyOffset(normal, normal.dot(center)).score;
       lowest = std::min(lowest, score);
@@ -137,7 +110,7 @@ void EquivalentFrames::addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Ve
     if (kept >= 0) signs[kept] = 1.0;
     const Eigen::Isometry3d T = canonicalPose(axes * signs.asDiagonal(), center);
     const bool known = std::any_of(poses_.begin(), poses_.end(), [&](const Eigen::Isometry3d& other) {
-      return Eigen::AngleAxisd(T.linear() * other.linear().transpose()).angle() < kSameFrame;
+      return Eigen::AngleAxisd(T.linear() * other.linear().transpose()).angle() < kFrameRules.same_frame;
     });
     if (!known) poses_.push_back(T);
   }
@@ -145,8 +118,8 @@ void EquivalentFrames::addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Ve
 
 void EquivalentFrames::addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, double tie,
                                const Eigen::Vector3d& center) {
-  constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};  // derived: all
-  for (const auto& order : kOrders) {
+  std::array<int, 3> order{0, 1, 2};
+  do {
     bool tied = true;
     Eigen::Matrix3f axes;
     for (int k = 0; k < 3; ++k) {
@@ -154,14 +127,14 @@ void EquivalentFrames::addTied(const FrameCandidate& frame, const Eigen::Vector3
       axes.col(k) = frame.axes.col(order[k]);
     }
     if (tied) addWithSigns(orthonormal(axes), center);
-  }
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
-bool isTurnAboutRevolution(const SymmetryFrame& result, const FrameCandidate& frame) {
+bool isRotatedAboutRevolution(const SymmetryFrame& result, const FrameCandidate& frame) {
   if (result.revolution_axis < 0) return false;
   if (result.revolution_axis == 3) return true;
   const Eigen::Vector3f axis = result.axes.col(result.revolution_axis).cast<float>();
-  return (frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kSameFrame);
+  return (frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kFrameRules.same_frame);
 }
 
 }  // namespace pcl_symmetry

@@ -57,7 +57,7 @@ private:
   std::vector<Eigen::Isometry3d> poses_;
 };
 
-/// Whether a frame is a turn of the result about its axis of revolution: all of these are equally good and not listed.
-bool isTurnAboutRevolution(const SymmetryFrame& result, const FrameCandidate& frame);
+/// Whether a frame is the result rotated about its axis of revolution: all of these are equally good and not listed.
+bool isRotatedAboutRevolution(const SymmetryFrame& result, const FrameCandidate& frame);
 
 }  // namespace pcl_symmetry

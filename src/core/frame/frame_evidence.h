@@ -3,24 +3,65 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "core/base/constants.h"
 #include "core/frame/plane_profiles.h"
 #include "core/frame/surface_directions.h"
 #include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
-#include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
 
-/// Samples of the profiles that scores come from. chosen: D within about 1 %; half raises the error by a factor of
-/// sqrt(2), twice takes twice the time.
-constexpr int kNumProfileSamples = 256;
+/// Numbers of the search for frames that decide the answers.
+struct FrameRules {
+  // Evidence
+  double whole_sigma = 1.5;       // cells, width of the Gaussian for whole clouds: as narrow as the grid resolves
+  double scan_sigma = 2.25;       // cells, for scans: wider, as the other side of a plane was hardly seen
+  double min_sigma = 1.5;         // spacings of the points, for sparse clouds
+  int num_profile_samples = 256;  // of the profiles that scores come from: D to about 1 %
+  double whole_weight = 0.6;      // of the second and third plane, and of agreement, in the value of a frame:
+  double scan_weight = 0.3;       // they break ties, as between planes along faces and along edges of a square box
+  double tail = 0.005;            // share of the points beyond either end of their extent: outliers
+  double push = 0.05;  // radii that the middle of a scan lies farther from the scanner than that of its points
+  double face_width = 6.0 * kDegree;      // of the agreement of normals with an axis
+  double peak_width = 5.0 * kDegree;      // normals that belong to one face
+  double peak_distance = 15.0 * kDegree;  // least angle between two faces
+  double min_peak = 0.03;                 // share of the surface in a face
+  int num_peak_starts = 150;              // normals that the search for faces starts from
+  int num_peak_steps = 5;                 // of each search
+
+  // Search
+  double candidate_angle = 9.0 * kDegree;  // maxima of the map with closer normals share one basin
+  std::size_t max_candidates = 24;         // maxima of the map
+  std::size_t num_angles = 30;             // of the second plane about the first axis, within 90 degrees
+  int max_faces = 6;                       // three directions of a box, and of a second part that stands askew
+  std::size_t max_first_planes = 6;        // that are completed to frames
+  int max_plane_moves = 4;                 // steps of one size of a first plane
+  std::size_t max_refined = 6;             // frames that are refined
+  int max_frame_moves = 3;                 // steps of one size of a frame
+  double half_way_weight = 0.15;           // of the half-way plane of scans
+  double same_frame = 5.0 * kDegree;       // closer frames are one
+
+  // Center, measured on models of PSB
+  double offset_sharpness = 15.0;    // weight exp(15 s) of an offset of score s
+  double offset_width = 0.07;        // radii, deviation of second and third planes from the middle of the extent
+  double scan_first_radius = 0.2;    // radii: a first plane this far from the middle of a scan counts half
+  double whole_first_radius = 0.06;  // radii over 1 - score: the same for wholes
+  double center_sharpness = 30.0;    // weight exp(30 v) of the center of a frame whose value is v less than the best
+  int num_revolution_angles = 8;     // at which a revolution is tested
+
+  // Leveled frames, measured on models of PSB
+  double touch = 0.01;                         // longer sides of the box: depth within which the outline touches a side
+  double outline_step = 1.0 * kDegree;         // of the angle about the first axis
+  double max_lost_value = 0.1;                 // that a leveled frame may lose to be the first,
+  double min_gained_contact = 0.1;             // and contact that it must gain
+  double same_outline = 10.0 * kDegree;        // first axes this close have one outline
+  std::size_t max_outlines = 2;                // first axes whose outline is tried
+  double far_from_principal = 20.0 * kDegree;  // angle to the principal axes at which the term of the fit ends
+};
+inline constexpr FrameRules kFrameRules;
 
 /// \return those of the distance transform; sigma is 0 where the width is not given.
 GaussianEdtOptions edtOptionsOf(const FrameOptions& options);
-
-/// The coarse map over all planes that candidates for the first plane come from (Section 4.3).
-/// \param free_space from freeSpace(), one value per cell; empty: the points show the object from all sides.
-SymmetryMap coarseMap(const GaussianEdt& edt, const std::vector<float>& free_space, const FrameOptions& options);
 
 /// The offset of a plane of some normal, and its score.
 struct ScoredOffset {
@@ -28,11 +69,11 @@ struct ScoredOffset {
   float score = 0.0f;
 };
 
-/// What the points say about planes of a frame (Section 5.1).
+/// What the points show about planes of a frame (Section 5.1).
 ///
 /// The score of a plane is D, or seenSymmetry() of D and free space for a scan. Departures from the paper: free space
-/// counts, and the surface has a say: of nearly equal planes the one that the faces of the surface agree with is
-/// better. Offsets and places are in cells from the middle of the grid, unless they are called input.
+/// counts, and of nearly equal planes the one that the faces of the surface agree with is better. Offsets and positions
+/// are in cells from the middle of the grid, unless they are called input.
 class FrameEvidence {
 public:
   /// \param points 3 x N, finite, input units; must outlive this object.
@@ -54,14 +95,14 @@ public:
 
   float score(const CellPlane& plane) const { return profiles_.score(plane); }
   /// Weighted agreement of the surface with an axis.
-  double agreement(const Eigen::Vector3f& axis) const { return weights_.agreement * directions_.agreement(axis); }
+  double agreement(const Eigen::Vector3f& axis) const { return weight_ * directions_.agreement(axis); }
   /// By which candidates for the first plane are compared.
   double quality(const CellPlane& plane) const { return score(plane) + agreement(plane.normal); }
   /// By which frames are compared: the score of the first plane, a share of those of the others, and agreement.
   /// \param scores of the first, second and third plane.
   /// \param agreement sum of agreement() of the three axes.
   double value(const Eigen::Vector3f& scores, double agreement) const {
-    return scores[0] + weights_.others * (scores[1] + scores[2]) + agreement;
+    return scores[0] + weight_ * (scores[1] + scores[2]) + agreement;
   }
 
   /// The cloud that planes perpendicular to \p first are judged on: a scan is completed across the first plane.
@@ -84,19 +125,13 @@ public:
   double middleAlong(const Eigen::Vector3f& axis) const;
 
 private:
-  /// Shares of the second and third plane and of agreement in the value of a frame. Both break ties, as between the
-  /// planes across the faces and across the edges of a box with square sides.
-  struct Weights {
-    double others, agreement;
-  };
-  static Weights weightsOf(bool scanned);
   /// What the middle of a scan's extent is pushed by, cells; 0 for whole clouds.
   Eigen::Vector3f push(const Visibility* visibility) const;
   static GaussianEdtOptions edtOptions(const PointsRef& points, GaussianEdtOptions options, bool scanned);
 
   const PointsRef& points_;
   const bool scanned_;
-  const Weights weights_;
+  const double weight_;
   const GaussianEdt edt_;
   const std::vector<float> free_space_;
   const PlaneProfiles profiles_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/frame/frame_evidence.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
 
@@ -13,10 +14,10 @@ struct FrameCandidate {
   Eigen::Matrix3f axes;     ///< columns: unit normals of the first, second and third plane
   Eigen::Vector3f offsets;  ///< of these planes
   Eigen::Vector3f scores;   ///< of these planes
-  /// Scans: the axis, 1 or 2, about which the first plane turns best to another symmetry; -1 for whole clouds. A body
-  /// of revolution hides half of itself from each of its planes, but none of them is in conflict with what was seen. So
-  /// the plane half-way between the first plane and the other one about this axis adds to the value.
-  int turning_axis = -1;
+  /// Scans: the axis, 1 or 2, about which a rotation takes the first plane best to another symmetry; -1 for whole
+  /// clouds. A body of revolution hides half of itself from each of its planes, but none of them is in conflict with
+  /// what was seen. So the plane half-way between the first plane and the other one about this axis adds to the value.
+  int rotation_axis = -1;
   float half_way_offset = 0.0f;  ///< of that plane
   double value = 0.0;            ///< the greater, the better
 };
@@ -24,25 +25,21 @@ struct FrameCandidate {
 /// The steps of the search for principal symmetry axes (Section 5.1). The paper picks the three planes greedily by D;
 /// here the first plane is chosen with regard to the frame that it leads to.
 
-/// Candidates for the first plane: maxima of the map, planes across the principal axes of the points and planes across
-/// faces of the surface, each moved to the nearest maximum of quality().
+/// Candidates for the first plane: maxima of the map, planes perpendicular to the principal axes of the points and
+/// planes parallel to faces of the surface, each moved to the nearest maximum of quality().
 std::vector<CellPlane> firstPlaneCandidates(const FrameEvidence& evidence, const SymmetryMap& map, int num_threads);
 
 /// The candidates of the greatest quality, each direction once, best first.
 std::vector<CellPlane> bestFirstPlanes(const FrameEvidence& evidence, const std::vector<CellPlane>& candidates);
 
-/// Angles of the second plane about the normal of the first one, within a quarter turn: one third plane belongs to
-/// each. chosen: steps of 3 degrees; half skips narrow maxima, twice takes twice the time.
-constexpr std::size_t kNumFrameAngles = 30;
-
 /// Second and third planes of each first plane, on the completed cloud.
-/// \return kNumFrameAngles frames for each first plane, in order of the angle.
+/// \return num_angles frames for each first plane, in order of the angle.
 std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std::vector<CellPlane>& first_planes,
                                         int num_threads);
 
 /// The frames whose value is a local maximum over the angle about their first axis, best first; at least one.
-/// \param turned result of framesAbout() for at least one first plane.
-std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& turned);
+/// \param rotated result of framesAbout() for at least one first plane.
+std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotated);
 
 /// The frame of given axes, each plane at its best offset, in the order of refinedFrames().
 /// \param axes orthonormal columns, the first that of the first plane.
@@ -50,15 +47,14 @@ FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f&
 
 /// Moves each frame to the nearest maximum of its value, all three planes together. Then orders the second and third
 /// axis by score, or where scores tie by the spread of the points.
-/// \param tie scores that differ by no more than this
-/// are equal, >= 0.
+/// \param tie scores that differ by no more than this are equal, >= 0.
 /// \return the frames, best first.
 std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames, double tie,
                                           int num_threads);
 
 /// All frames of a search.
 struct FoundFrames {
-  std::vector<FrameCandidate> turned;   ///< result of framesAbout()
+  std::vector<FrameCandidate> rotated;  ///< result of framesAbout()
   std::vector<FrameCandidate> refined;  ///< their maxima, best first, or before them the best one when it is leveled
 };
 

@@ -9,32 +9,19 @@
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_fit.h"
 #include "core/frame/leveled_frames.h"
-#include "core/frame/outline.h"
 #include "core/geometry/axis_rotations.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Radians, frames closer than this are one. derived: a frame within 5 degrees of the right one is right.
-constexpr double kOneFrame = 5.0 * kDegree;
-// Radians, first axes that differ by less have one outline. chosen: half tries nearly the same frames twice, twice
-// leaves out the second of two planes.
-constexpr double kOneOutline = 10.0 * kDegree;
-// First axes whose outline is tried. measured: on 150 models of fold 0 the two best lead to the own axes of 86 % of the
-// wholes; more were not tried.
-constexpr std::size_t kMaxOutlines = 2;
-// Radians, angle to the principal axes at which the term ends. chosen: half ends it where slender shapes still differ,
-// twice lets square shapes count.
-constexpr double kFarFromPrincipal = 20.0 * kDegree;
-
 /// The rotation between two frames, the smallest over any order and signs of the axes, radians.
 double angleBetween(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
-  Eigen::Matrix3f turn = a.transpose() * b;
-  if (turn.determinant() < 0.0f) turn.col(2) *= -1.0f;
+  Eigen::Matrix3f rotation = a.transpose() * b;
+  if (rotation.determinant() < 0.0f) rotation.col(2) *= -1.0f;
   float trace = -1.0f;
   for (const Eigen::Matrix3i& order : axisRotations())
-    trace = std::max(trace, turn.cwiseProduct(order.cast<float>()).sum());
+    trace = std::max(trace, rotation.cwiseProduct(order.cast<float>()).sum());
   return std::acos(std::clamp(0.5 * (static_cast<double>(trace) - 1.0), -1.0, 1.0));
 }
 
@@ -43,19 +30,19 @@ bool isKnown(const std::vector<FrameChoice>& known, const FrameCandidate& frame)
     if (other.revolution_axis == 3) return true;
     if (other.revolution_axis >= 0) {
       const Eigen::Vector3f axis = other.frame.axes.col(other.revolution_axis);
-      if ((frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kOneFrame)) return true;
+      if ((frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kFrameRules.same_frame)) return true;
     }
-    return angleBetween(frame.axes, other.frame.axes) < kOneFrame;
+    return angleBetween(frame.axes, other.frame.axes) < kFrameRules.same_frame;
   });
 }
 
 std::vector<Eigen::Vector3f> firstAxes(const std::vector<FrameCandidate>& frames) {
   std::vector<Eigen::Vector3f> axes;
   for (const FrameCandidate& frame : frames) {
-    if (axes.size() >= kMaxOutlines) break;
+    if (axes.size() >= kFrameRules.max_outlines) break;
     const Eigen::Vector3f first = frame.axes.col(0);
     const bool known = std::any_of(axes.begin(), axes.end(), [&](const Eigen::Vector3f& other) {
-      return std::abs(other.dot(first)) > std::cos(kOneOutline);
+      return std::abs(other.dot(first)) > std::cos(kFrameRules.same_outline);
     });
     if (!known) axes.push_back(first);
   }
@@ -68,9 +55,9 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
                                       double tie, int num_threads) {
   std::vector<FrameCandidate> tried = frames;
   const std::vector<Eigen::Vector3f> axes = firstAxes(frames);
-  std::vector<std::vector<FrameCandidate>> turned(axes.size());
-  parallelBlocks(axes.size(), num_threads, [&](std::size_t i) { turned[i] = leveledFrames(evidence, axes[i], tie); });
-  for (const std::vector<FrameCandidate>& some : turned) tried.insert(tried.end(), some.begin(), some.end());
+  std::vector<std::vector<FrameCandidate>> leveled(axes.size());
+  parallelBlocks(axes.size(), num_threads, [&](std::size_t i) { leveled[i] = leveledFrames(evidence, axes[i], tie); });
+  for (const std::vector<FrameCandidate>& some : leveled) tried.insert(tried.end(), some.begin(), some.end());
 
   std::vector<FrameChoice> choices;
   double best = -std::numeric_limits<double>::infinity();
@@ -80,12 +67,12 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
     best = std::max(best, frame.value);
   }
   const Eigen::Matrix3f principal = evidence.principalAxes().axes.cast<float>();
-  for (FrameChoice& h : choices) {
-    const Outline outline(evidence.points(), h.frame.axes.col(0));
-    h.terms << 1.0, h.frame.value - best, h.frame.scores[0],
-        outline.boxAt(outline.angleOf(h.frame.axes.col(1))).contact,
-        std::min(angleBetween(h.frame.axes, principal) / kFarFromPrincipal, 1.0), 0.0,
-        h.frame.scores[1] + h.frame.scores[2], 0.0;
+  for (FrameChoice& choice : choices) {
+    const Outline outline(evidence.points(), choice.frame.axes.col(0));
+    choice.terms << 1.0, choice.frame.value - best, choice.frame.scores[0],
+        outline.boxAt(outline.angleOf(choice.frame.axes.col(1))).contact,
+        std::min(angleBetween(choice.frame.axes, principal) / kFrameRules.far_from_principal, 1.0), 0.0,
+        choice.frame.scores[1] + choice.frame.scores[2], 0.0;
   }
   if (!choices.empty()) {
     choices.front().terms[5] = 1.0;
@@ -96,11 +83,11 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
 
 std::vector<double> frameProbabilities(const std::vector<FrameChoice>& choices, const FrameTerms& weights) {
   double top = 0.0;  // of "none of them"
-  for (const FrameChoice& h : choices) top = std::max(top, weights.dot(h.terms));
+  for (const FrameChoice& choice : choices) top = std::max(top, weights.dot(choice.terms));
   std::vector<double> probabilities;
   double sum = std::exp(-top);
-  for (const FrameChoice& h : choices) {
-    probabilities.push_back(std::exp(weights.dot(h.terms) - top));
+  for (const FrameChoice& choice : choices) {
+    probabilities.push_back(std::exp(weights.dot(choice.terms) - top));
     sum += probabilities.back();
   }
   for (double& p : probabilities) p /= sum;

@@ -10,12 +10,11 @@ namespace pcl_symmetry {
 /// Which of several frames is the shape's own: each with a probability. Not in the paper, which gives one frame.
 ///
 /// A frame is right if its axes, in any order and with any sign, are within 5 degrees of those that people gave the
-/// shape; a frame with an axis of revolution may be turned about it by any angle. The probability of a frame is
-/// exp(w.x) / (1 + the sum of exp(w.x) over all frames of the shape), a conditional logit whose 1 stands for "none of
-/// them" (McFadden 1974). test/benchmark/fit_frames.py fits the
-/// weights w.
+/// shape; a frame with an axis of revolution may be rotated about it by any angle. The probability of a frame is
+/// exp(w.x) / (1 + the sum of exp(w.x) over all frames of the shape), a conditional logit whose 1 represents "none
+/// of them" (McFadden 1974). test/benchmark/fit_frames.py fits the weights w.
 
-/// What speaks for a frame: x above.
+/// The evidence for a frame: x above.
 ///   0  1
 ///   1  value less that of the best frame of the shape, <= 0
 ///   2  score of the first plane
@@ -24,8 +23,7 @@ namespace pcl_symmetry {
 ///   5  1 for the frame that the search put first
 ///   6  sum of the scores of the second and third plane
 ///   7  score of the first plane for the frame that the search put first, else 0
-constexpr int kNumFrameTerms = 8;  // derived: the list above
-using FrameTerms = Eigen::Matrix<double, kNumFrameTerms, 1>;
+using FrameTerms = Eigen::Matrix<double, 8, 1>;
 
 /// A frame that may be the shape's own.
 struct FrameChoice {
@@ -34,9 +32,9 @@ struct FrameChoice {
   FrameTerms terms = FrameTerms::Zero();
 };
 
-/// The frames of a search, each once up to order, signs and turns about an axis of revolution, and frames turned about
-/// their first axes: to the smallest box around the outline, to its longest contact, to the faces, and to the principal
-/// axes of the outline.
+/// The frames of a search, each once up to order, signs and rotations about an axis of revolution, and frames rotated
+/// about their first axes: to the smallest box around the outline, to its longest contact, to the faces, and to the
+/// principal axes of the outline.
 /// \param frames from refinedFrames(), best first.
 /// \param tie scores that differ by no more than this are equal.
 /// \return the best frame first; all that was found by the search before all others.

@@ -4,31 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/constants.h"
+#include "core/frame/frame_evidence.h"
 #include "core/geometry/cell_normals.h"
 
 namespace pcl_symmetry {
-
-namespace {
-
-// Radians, angle from an axis at which agreement falls to 0. chosen: half counts only very flat faces, twice lets round
-// surfaces agree with every axis.
-const float kWidth = 6.0f * kDegree;
-// Radians, normals within this of a direction belong to its peak. chosen: half splits the faces of noisy clouds, twice
-// merges faces of round bodies.
-const float kPeakWidth = 5.0 * kDegree;
-// Normals that a search for a peak starts from. chosen: half misses small faces, twice takes twice the time.
-constexpr int kPeakStarts = 150;
-// Steps of each search. chosen: half ends short of the mean, twice takes twice the time.
-constexpr int kPeakSteps = 5;
-// Radians, least angle between two peaks. chosen: half reports one face twice, twice merges the faces of prisms with 12
-// sides and more.
-const double kPeakDistance = 15.0 * kDegree;
-// Least share of the surface in a peak. chosen: half reports patches of round surfaces, twice loses the ends of long
-// boxes.
-constexpr double kLeastPeak = 0.03;
-
-}  // namespace
 
 SurfaceDirections::SurfaceDirections(const PointsRef& points, const GaussianEdt& edt) {
   const Eigen::Vector3d corner = edt.origin() - Eigen::Vector3d::Constant(0.5 * edt.cellSize());
@@ -40,7 +19,8 @@ SurfaceDirections::SurfaceDirections(const PointsRef& points, const GaussianEdt&
 }
 
 double SurfaceDirections::agreement(const Eigen::Vector3f& axis) const {
-  const float inverse = 1.0f / (kWidth * kWidth);
+  const auto width = static_cast<float>(kFrameRules.face_width);
+  const float inverse = 1.0f / (width * width);
   const Eigen::ArrayXf cosines = (normals_.transpose() * axis).array().abs();
   const Eigen::ArrayXf across = (1.0f - inverse * cosines.square()).max(0.0f);
   const Eigen::ArrayXf along = (1.0f - 2.0f * inverse * (1.0f - cosines)).max(0.0f);
@@ -53,24 +33,24 @@ std::vector<Eigen::Vector3f> SurfaceDirections::peaks(int max_peaks) const {
     double share;
   };
   std::vector<Peak> found;
-  const Eigen::Index stride = std::max<Eigen::Index>(1, normals_.cols() / kPeakStarts);
-  const float least = std::cos(kPeakWidth);
+  const Eigen::Index stride = std::max<Eigen::Index>(1, normals_.cols() / kFrameRules.num_peak_starts);
+  const float least = std::cos(static_cast<float>(kFrameRules.peak_width));
   for (Eigen::Index start = 0; start < normals_.cols(); start += stride) {
     Eigen::Vector3f direction = normals_.col(start);
     double share = 0.0;
-    for (int step = 0; step < kPeakSteps; ++step) {
+    for (int step = 0; step < kFrameRules.num_peak_steps; ++step) {
       const Eigen::ArrayXf cosines = (normals_.transpose() * direction).array();
       const Eigen::ArrayXf weights =
           (cosines.abs() >= least).select(weights_.array(), Eigen::ArrayXf::Zero(cosines.size()));
       share = weights.sum();
-      if (share < kLeastPeak) break;
+      if (share < kFrameRules.min_peak) break;
       direction = (normals_ * (weights * cosines.sign()).matrix()).normalized();
     }
-    if (share >= kLeastPeak) found.push_back({direction, share});
+    if (share >= kFrameRules.min_peak) found.push_back({direction, share});
   }
   std::stable_sort(found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.share > b.share; });
   std::vector<Eigen::Vector3f> peaks;
-  const float same = static_cast<float>(std::cos(kPeakDistance));
+  const float same = static_cast<float>(std::cos(kFrameRules.peak_distance));
   for (const Peak& peak : found) {
     if (static_cast<int>(peaks.size()) >= max_peaks) break;
     const bool known = std::any_of(peaks.begin(), peaks.end(), [&](const Eigen::Vector3f& other) {

@@ -19,8 +19,7 @@ public:
 
   /// How well the surface agrees with an axis: the mean over the cells of 1 where the normal is parallel or
   /// perpendicular to the axis, falling to 0 within 6 degrees. A box agrees with its own axes everywhere.
-  /// \param axis
-  /// unit.
+  /// \param axis unit.
   /// \return in [0, 1].
   double agreement(const Eigen::Vector3f& axis) const;
 

@@ -15,68 +15,13 @@
 #include "core/frame/frame_search.h"
 #include "core/frame/leveled_frames.h"
 #include "core/frame/probable_frames.h"
+#include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// An offset from the center of the grid, input units, and D of the plane there.
-struct OffsetAndScore {
-  double offset = 0.0, score = 0.0;
-};
-
-/// Section 5.1 as it stands: each axis is the normal of the plane of greatest D among those that are left.
-SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& options) {
-  const GaussianEdt edt(points, edtOptionsOf(options));
-  const SymmetryMap map = coarseMap(edt, {}, options);
-  const PlaneGrid& grid = map.grid;
-  const PlaneProfiles profiles(edt, {}, kNumProfileSamples, options.seed, options.num_threads);
-  const Eigen::Vector3d middle = edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize());
-  const auto best_offset = [&](const Eigen::Vector3d& normal) -> OffsetAndScore {
-    const double first = (normal.dot(grid.center() - middle) + grid.offset(0)) / edt.cellSize();
-    const std::vector<float> s =
-        profiles.scores(normal.cast<float>(), static_cast<float>(first),
-                        static_cast<float>(grid.radiusStep() / edt.cellSize()), grid.numRadius());
-    const auto at = std::max_element(s.begin(), s.end()) - s.begin();
-    return {grid.offset(static_cast<int>(at)), s[at]};
-  };
-
-  // First: the plane of greatest D.
-  const PlaneGrid::Bin strongest = grid.bin(map.strongest());
-  SymmetryFrame frame;
-  frame.axes.col(0) = grid.normal(strongest.theta, strongest.phi);
-
-  // Second: the greatest among those perpendicular to it.
-  const Eigen::Vector3d u = frame.axes.col(0).unitOrthogonal(), v = frame.axes.col(0).cross(u);
-  const auto turned = [&](std::size_t i) -> Eigen::Vector3d {
-    const double angle = kPi * static_cast<double>(i) / grid.numPhi();
-    return std::cos(angle) * u + std::sin(angle) * v;
-  };
-  std::vector<OffsetAndScore> perpendicular(static_cast<std::size_t>(grid.numPhi()));
-  parallelBlocks(perpendicular.size(), options.num_threads,
-                 [&](std::size_t i) { perpendicular[i] = best_offset(turned(i)); });
-  const auto second =
-      std::max_element(perpendicular.begin(), perpendicular.end(),
-                       [](const OffsetAndScore& a, const OffsetAndScore& b) { return a.score < b.score; });
-  frame.axes.col(1) = turned(static_cast<std::size_t>(second - perpendicular.begin()));
-
-  // Third: the greatest among those perpendicular to both.
-  frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
-  const OffsetAndScore third = best_offset(frame.axes.col(2));
-
-  // The center of symmetry is where the three meet.
-  frame.center =
-      grid.center() + frame.axes * Eigen::Vector3d(grid.offset(strongest.radius), second->offset, third.offset);
-  frame.scores << map[map.strongest()], second->score, third.score;
-  frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
-  EquivalentFrames equivalent;
-  equivalent.addWithSigns(frame.axes, frame.center);
-  frame.equivalent = equivalent.poses();
-  frame.num_maxima = frame.equivalent.size();
-  return frame;
-}
-
-/// Axes of turns of a scan; the axes of its frame are tried first.
+/// Axes of rotation of a scan; the axes of its frame are tried first.
 std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef& points, const GaussianEdt& edt,
                                      const FrameOptions& options, const Visibility& visibility,
                                      const MakeSearch& make_search) {
@@ -91,12 +36,6 @@ std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef
   return turnsOfScan(points, edt, visibility, axes, detection, make_search);
 }
 
-std::array<double, kNumFrameTerms> evidenceOf(const FrameChoice& choice) {
-  std::array<double, kNumFrameTerms> evidence;
-  std::copy(choice.terms.data(), choice.terms.data() + kNumFrameTerms, evidence.begin());
-  return evidence;
-}
-
 /// The frame itself, then the others by falling probability.
 std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const SymmetryFrame& frame,
                                           const std::vector<FrameChoice>& choices) {
@@ -104,12 +43,13 @@ std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const S
   std::vector<ProbableFrame> probable;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const FrameChoice& choice = choices[i];
-    if (i == 0)
-      probable.push_back({frame.center, frame.axes, frame.revolution_axis, probabilities[i], evidenceOf(choice)});
-    else
-      probable.push_back({centerOfSymmetry(evidence, choice.frame),
-                          principalSymmetryAxes(evidence.points(), choice.frame.axes), choice.revolution_axis,
-                          probabilities[i], evidenceOf(choice)});
+    ProbableFrame entry{frame.center, frame.axes, choice.revolution_axis, probabilities[i], {}};
+    if (i > 0) {
+      entry.center = centerOfSymmetry(evidence, choice.frame);
+      entry.axes = principalSymmetryAxes(evidence.points(), choice.frame.axes);
+    }
+    std::copy(choice.terms.data(), choice.terms.data() + choice.terms.size(), entry.evidence.begin());
+    probable.push_back(entry);
   }
   if (!probable.empty())
     std::stable_sort(probable.begin() + 1, probable.end(),
@@ -131,7 +71,13 @@ void FrameOptions::validate() const {
 
 FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& options,
                        const std::function<void(const char*)>& done) {
-  SymmetryMap map = coarseMap(evidence.edt(), evidence.freeSpace(), options);
+  const GaussianEdt& edt = evidence.edt();
+  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
+  SampledTransformOptions sampling;
+  sampling.num_samples = options.num_samples;
+  sampling.seed = options.seed;
+  sampling.num_threads = options.num_threads;
+  SymmetryMap map = sampledTransform(edt, grid, sampling, evidence.freeSpace());
   map.center_of_mass = centerOfMass(evidence.points());
   done("transform");
 
@@ -142,8 +88,8 @@ FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& option
   // Second and third plane: perpendicular to the first, at all angles, on the completed cloud of a scan. The best
   // frames are refined as a whole.
   FoundFrames found;
-  found.turned = framesAbout(evidence, bestFirstPlanes(evidence, candidates), options.num_threads);
-  found.refined = refinedFrames(evidence, frameMaxima(found.turned), options.tie, options.num_threads);
+  found.rotated = framesAbout(evidence, bestFirstPlanes(evidence, candidates), options.num_threads);
+  found.refined = refinedFrames(evidence, frameMaxima(found.rotated), options.tie, options.num_threads);
   found.refined = leveledFirst(evidence, std::move(found.refined), options.tie);
   done("frames");
   return found;
@@ -152,14 +98,13 @@ FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& option
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options, const Visibility* visibility,
                             const MakeSearch& make_search) {
   options.validate();
-  if (options.as_published) return publishedFrame(points, options);
   SymmetryFrame frame;
   Stopwatch watch;
   const auto done = [&](const char* stage) { frame.timing_ms.emplace_back(stage, watch.lap()); };
 
   const FrameEvidence evidence(points, options, visibility);
   done("surface");
-  const auto [turned, frames] = findFrames(evidence, options, done);
+  const auto [rotated, frames] = findFrames(evidence, options, done);
 
   // Principal symmetry axes, center of symmetry and axis of revolution of the best frame.
   const FrameCandidate& best = frames.front();
@@ -177,8 +122,8 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   for (std::size_t i = 0; i < frames.size(); ++i)
     equivalent.addTied(frames[i], best.scores, options.tie, i == 0 ? frame.center : centers[i]);
   frame.num_maxima = equivalent.poses().size();
-  for (const FrameCandidate& other : turned)
-    if (!isTurnAboutRevolution(frame, other)) equivalent.addTied(other, best.scores, options.tie, frame.center);
+  for (const FrameCandidate& other : rotated)
+    if (!isRotatedAboutRevolution(frame, other)) equivalent.addTied(other, best.scores, options.tie, frame.center);
   frame.equivalent = equivalent.poses();
   done("equivalent");
   if (visibility && options.turns) {
@@ -190,18 +135,6 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
     done("probabilities");
   }
   return frame;
-}
-
-std::vector<Eigen::Vector3d> axisScores(const PointsRef& points, const std::vector<Eigen::Matrix3d>& frames,
-                                        const FrameOptions& options) {
-  options.validate();
-  const FrameEvidence evidence(points, options, nullptr);
-  std::vector<Eigen::Vector3d> scores;
-  for (const Eigen::Matrix3d& axes : frames) {
-    scores.emplace_back();
-    for (int k = 0; k < 3; ++k) scores.back()[k] = evidence.bestOffset(axes.col(k).cast<float>()).score;
-  }
-  return scores;
 }
 
 }  // namespace pcl_symmetry

@@ -99,17 +99,17 @@ TEST(EquivalentFrames, LeaveOutFramesThatScoreLess) {
   EXPECT_EQ(frames.poses().size(), 4u) << "in the order that scores enough";
 }
 
-TEST(TurnsAboutRevolution, AreNotListed) {
+TEST(RotationsAboutRevolution, AreNotListed) {
   SymmetryFrame result;
-  const Eigen::Matrix3d turned = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const Eigen::Matrix3d rotated = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const Eigen::Matrix3d tilted = Eigen::AngleAxisd(0.7, Eigen::Vector3d::Ones().normalized()).toRotationMatrix();
   const Eigen::Vector3f scores = Eigen::Vector3f::Ones();
-  EXPECT_FALSE(isTurnAboutRevolution(result, candidate(turned, scores)));
+  EXPECT_FALSE(isRotatedAboutRevolution(result, candidate(rotated, scores)));
   result.revolution_axis = 1;
-  EXPECT_TRUE(isTurnAboutRevolution(result, candidate(turned, scores)));
-  EXPECT_FALSE(isTurnAboutRevolution(result, candidate(tilted, scores)));
+  EXPECT_TRUE(isRotatedAboutRevolution(result, candidate(rotated, scores)));
+  EXPECT_FALSE(isRotatedAboutRevolution(result, candidate(tilted, scores)));
   result.revolution_axis = 3;
-  EXPECT_TRUE(isTurnAboutRevolution(result, candidate(tilted, scores)));
+  EXPECT_TRUE(isRotatedAboutRevolution(result, candidate(tilted, scores)));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 /// The outline of points seen along an axis.
-#include "core/frame/outline.h"
+#include "core/frame/leveled_frames.h"
 
 #include <gtest/gtest.h>
 
