@@ -12,32 +12,39 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double view_angle = 25.0 * kPi / 180.0;  // radians
-constexpr double near_best = 0.98;                 // share of the best score: views as close to it show as much
-constexpr std::size_t max_points = 20'000;         // for the count of hidden points
+struct ViewRules {
+  double view_angle = 25.0 * kPi / 180.0;  // of the camera
+  double near_best = 0.98;                 // of the best score: views that show as much
+  double camera_distance = 5.0;            // radii: from farther away, the same points are hidden
+  double hidden_margin = 0.05;             // radii: depth behind others that hides a point
+  double min_score = 0.2;                  // of the best score: below, a direction is not seen
+  double max_across = 0.5;                 // cosine between a maximum that counts too and the planes so far
+  double perpendicular = 0.05;             // cosine between two planes that were found with errors
+  double near_up = 0.8;                    // cosine: axes farther from the given direction would tilt the object
+  double from_above = 0.98;                // cosine between the direction of a view and up
+  double level = -0.05;                    // sine of the elevation of the lowest view from above
+};
+constexpr ViewRules kViewRules;
 
 /// \return the share of the points that others hide from a camera in this direction, in [0, 1].
 double hiddenShare(const Points& points, const BoundingBall& ball, const Eigen::Vector3d& direction) {
-  constexpr double distance = 5.0;  // radii
-  constexpr double margin = 0.05;   // radii; points on rough or slanted surfaces are not hidden by their neighbors
-  const auto seen = Visibility::fromPoints(points, ball.center + distance * ball.radius * direction);
-  return seen ? seen->hiddenShare(points, margin * ball.radius) : 1.0;
+  const auto seen = Visibility::fromPoints(points, ball.center + kViewRules.camera_distance * ball.radius * direction);
+  return seen ? seen->hiddenShare(points, kViewRules.hidden_margin * ball.radius) : 1.0;
 }
 
-/// \return the direction and its images under up to three reflections in a row.
+/// \return the direction and its images under up to three reflections in a row: with three perpendicular
+/// planes, all eight.
 std::vector<Eigen::Vector3d> mirrorImages(const Eigen::Vector3d& direction,
                                           const std::vector<Eigen::Vector3d>& normals) {
-  constexpr int num_reflections = 3;   // give all eight images in three perpendicular planes
-  constexpr double same = 1.0 - 1e-6;  // cosine
   std::vector<Eigen::Vector3d> images{direction};
   std::size_t first = 0;
-  for (int round = 0; round < num_reflections; ++round) {
+  for (int round = 0; round < 3; ++round) {
     const std::size_t last = images.size();
     for (std::size_t i = first; i < last; ++i) {
       for (const Eigen::Vector3d& n : normals) {
         const Eigen::Vector3d image = images[i] - 2.0 * images[i].dot(n) * n;
         const bool known =
-            std::any_of(images.begin(), images.end(), [&](const auto& d) { return d.dot(image) > same; });
+            std::any_of(images.begin(), images.end(), [&](const auto& d) { return d.dot(image) > 1.0 - 1e-6; });
         if (!known) images.push_back(image);
       }
     }
@@ -46,11 +53,10 @@ std::vector<Eigen::Vector3d> mirrorImages(const Eigen::Vector3d& direction,
   return images;
 }
 
-/// \return whether no direction has less than a fifth of the best score.
+/// \return whether no direction has less than min_score of the best score.
 bool seenFromEverywhere(const std::vector<ViewPlane>& planes) {
-  constexpr double least = 0.2;  // share of the best score; a mug has a plane across its axis with that
   const std::vector<RankedView> best = bestViews(planes);
-  return !best.empty() && worstView(planes).score >= least * best[0].score;
+  return !best.empty() && worstView(planes).score >= kViewRules.min_score * best[0].score;
 }
 
 SelectedView noView() {
@@ -67,20 +73,19 @@ void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, con
     planes_.push_back({plane.normal(), plane.score});
     if (plane.kind == PlaneKind::Symmetry) symmetries_.push_back(plane.normal());
   }
-  constexpr int num_planes_of_axis = 8;  // S varies about the axis by 1 - cos(pi / 16) = 2 %
+  const int fan = 8;  // planes that represent an axis: S varies about it by 2 %
   for (const SymmetryAxis& axis : axes) {
     const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
-    for (int k = 0; k < num_planes_of_axis; ++k) {
-      const double angle = kPi * k / num_planes_of_axis;
-      planes_.push_back({std::cos(angle) * u + std::sin(angle) * v, 2.0 * axis.score / num_planes_of_axis});
+    for (int k = 0; k < fan; ++k) {
+      const double angle = kPi * k / fan;
+      planes_.push_back({std::cos(angle) * u + std::sin(angle) * v, 2.0 * axis.score / fan});
     }
   }
   for (const LocalMaximum& maximum : maxima) {
     if (seenFromEverywhere(planes_)) break;
     const Eigen::Vector3d n = maximum.plane.normal();
-    constexpr double across_cosine = 0.5;
     const bool near = std::any_of(planes_.begin(), planes_.end(), [&](const ViewPlane& plane) {
-      return std::abs(plane.normal.dot(n)) > across_cosine;
+      return std::abs(plane.normal.dot(n)) > kViewRules.max_across;
     });
     if (!near) planes_.push_back({n, maximum.value});
   }
@@ -88,7 +93,7 @@ void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, con
 }
 
 void ViewpointSelection::setInputCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud) {
-  points_ = cloud ? detail::selectPoints(*cloud, nullptr, max_points, 1).points : Points(3, 0);
+  points_ = cloud ? detail::selectPoints(*cloud, nullptr, 20'000, 1).points : Points(3, 0);
   ball_ = boundingBall(points_);
 }
 
@@ -107,9 +112,8 @@ void ViewpointSelection::setSeparation(double separation) {
 Eigen::Vector3d ViewpointSelection::getUpAxis() const {
   if (planes_.empty()) return up_;
   const Eigen::Vector3d first = planes_[0].normal;
-  constexpr double across_cosine = 0.05;
   const auto second = std::find_if(planes_.begin(), planes_.end(), [&](const ViewPlane& plane) {
-    return std::abs(plane.normal.dot(first)) < across_cosine;
+    return std::abs(plane.normal.dot(first)) < kViewRules.perpendicular;
   });
   Eigen::Vector3d best = first;
   const auto consider = [&](const Eigen::Vector3d& axis) {
@@ -120,11 +124,10 @@ Eigen::Vector3d ViewpointSelection::getUpAxis() const {
     const Eigen::Vector3d across = (second->normal - second->normal.dot(first) * first).normalized();
     consider(across);
     consider(first.cross(across));
-  } else if (in_plane.norm() > across_cosine) {
+  } else if (in_plane.norm() > kViewRules.perpendicular) {
     consider(in_plane.normalized());
   }
-  constexpr double far = 0.8;  // cosine of 37 degrees: an axis farther from the given direction would tilt the object
-  return std::abs(best.dot(up_)) < far ? up_ : Eigen::Vector3d(std::copysign(1.0, best.dot(up_)) * best);
+  return std::abs(best.dot(up_)) < kViewRules.near_up ? up_ : Eigen::Vector3d(std::copysign(1.0, best.dot(up_)) * best);
 }
 
 Eigen::Affine3f ViewpointSelection::computePose(const Eigen::Vector3d& direction) const {
@@ -133,18 +136,16 @@ Eigen::Affine3f ViewpointSelection::computePose(const Eigen::Vector3d& direction
   });
   const Eigen::Vector3d forward = -direction.normalized();
   Eigen::Vector3d up = getUpAxis();
-  constexpr double along_cosine = 0.98;  // of 11 degrees: cameras near the axis would spin
-  if (std::abs(up.dot(forward)) > along_cosine) {
+  if (std::abs(up.dot(forward)) > kViewRules.from_above) {
     // From above or below: the strongest plane stands upright in the picture.
     const Eigen::Vector3d across = planes_.empty() ? up.unitOrthogonal() : Eigen::Vector3d(planes_[0].normal);
     const Eigen::Vector3d along = forward.cross(across);
-    constexpr double least_along = 0.1;  // sine of 6 degrees
-    up = along.norm() > least_along ? along : up.unitOrthogonal();
+    up = along.norm() > 0.1 ? along : up.unitOrthogonal();
   }
   const Eigen::Vector3d right = forward.cross(up).normalized();
   Eigen::Matrix3d axes;
   axes << right, forward.cross(right), forward;
-  const double distance = ball_.radius / std::sin(0.5 * view_angle);
+  const double distance = ball_.radius / std::sin(0.5 * kViewRules.view_angle);
   Eigen::Affine3d pose = Eigen::Affine3d::Identity();
   pose.linear() = axes;
   pose.translation() = ball_.center - distance * forward;
@@ -152,11 +153,10 @@ Eigen::Affine3f ViewpointSelection::computePose(const Eigen::Vector3d& direction
 }
 
 RankedView ViewpointSelection::leastHidden(const std::vector<RankedView>& views) const {
-  constexpr double above = -0.05;  // sine of the elevation: level views have rounding to either side
   const Eigen::Vector3d up = getUpAxis();
   std::vector<RankedView> from_above;
   for (const RankedView& view : views)
-    if (view.direction.dot(up) > above) from_above.push_back(view);
+    if (view.direction.dot(up) > kViewRules.level) from_above.push_back(view);
   const std::vector<RankedView>& candidates = from_above.empty() ? views : from_above;
   std::vector<double> hidden;
   for (const RankedView& view : candidates) hidden.push_back(hiddenShare(points_, ball_, view.direction));
@@ -194,7 +194,7 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
   while (!remaining.empty() && static_cast<int>(views.size()) < num_views) {
     std::vector<RankedView> equal;
     for (const RankedView& view : remaining)
-      if (view.score >= near_best * remaining[0].score) equal.push_back(view);
+      if (view.score >= kViewRules.near_best * remaining[0].score) equal.push_back(view);
     const RankedView view = leastHidden(equal);
     views.push_back({view, computePose(view.direction)});
     const std::vector<Eigen::Vector3d> shown = mirrorImages(view.direction, symmetries_);

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/viewpoint_score.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -41,10 +41,10 @@ public:
   /// Sets the planes of S, weighted by their score. An axis counts as a fan of planes that weighs as much as two
   /// planes.
   /// \param planes of SymmetryMaximaRefinement with setApproximate(true).
-  /// \param maxima of the map. As long as
-  /// some direction has less than a fifth of the best score, the strongest maximum whose normal is more than 60 degrees
-  /// from all planes so far counts too. (Refinement drops maxima that are no symmetry of any part, but without the weak
-  /// maximum across its axis a mug would be best seen level from the side.)
+  /// \param maxima of the map. As long as some direction has less than a fifth of the best score, the strongest maximum
+  /// whose normal is more than 60 degrees from all planes so far counts too. (Refinement drops maxima that are no
+  /// symmetry of any part, but without the weak maximum of the plane perpendicular to its axis a mug would be best seen
+  /// level from the side.)
   void setPlanes(const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes = {},
                  const std::vector<LocalMaximum>& maxima = {});
 
@@ -53,7 +53,7 @@ public:
   void setInputCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud);
 
   /// Sets about where up is. Cameras stand upright along the nearest principal symmetry axis: the normal of the
-  /// strongest plane, or of a plane across it.
+  /// strongest plane, or of a plane perpendicular to it.
   /// \param up input frame, finite, of any length but zero; default z.
   /// \throws pcl::BadArgumentException for other values.
   void setUp(const Eigen::Vector3d& up);
@@ -95,7 +95,7 @@ private:
   Points points_ = Points(3, 0);
   BoundingBall ball_;
   Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
-  double separation_ = 0.7;  // radians: a smaller angle gives views that look alike, a larger one fewer views
+  double separation_ = 0.7;  // radians
 };
 
 }  // namespace pcl_symmetry

@@ -11,20 +11,13 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kSameView = 1.0 - 1e-9;  // derived: cosine of 4.5e-5 radians, far above the rounding of a climb
-constexpr double kAtRest = 1.0 - 1e-15;   // derived: cosine of equal directions but for a few roundings of doubles
-/// chosen: steps of a climb at most. It only guards against endless runs by rounding: a climb that reaches it would end
-/// short of the maximum.
-constexpr int kMaxSteps = 100;
-constexpr double kParallel = 1e-6;  // chosen: sine below which rounding decides the line that two planes share
-
 /// Climbs from a direction to the local maximum of S.
 Eigen::Vector3d climb(const std::vector<ViewPlane>& planes, Eigen::Vector3d v) {
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < 100; ++step) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const ViewPlane& plane : planes) sum += std::copysign(plane.weight, v.dot(plane.normal)) * plane.normal;
     const Eigen::Vector3d next = sum.normalized();
-    if (next.dot(v) > kAtRest) break;
+    if (next.dot(v) > 1.0 - 1e-15) break;
     v = next;
   }
   return v;
@@ -45,7 +38,7 @@ std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes, int num_
   for (const Eigen::Vector3d& start : evenDirections(num_directions)) {
     const Eigen::Vector3d v = climb(planes, start);
     const bool known = std::any_of(views.begin(), views.end(),
-                                   [&](const RankedView& view) { return view.direction.dot(v) > kSameView; });
+                                   [&](const RankedView& view) { return view.direction.dot(v) > 1.0 - 1e-9; });
     if (known) continue;
     const double score = viewpointScore(planes, v);
     views.push_back({v, score});
@@ -62,7 +55,7 @@ RankedView worstView(const std::vector<ViewPlane>& planes) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
     for (std::size_t j = i + 1; j < planes.size(); ++j) {
       const Eigen::Vector3d along = planes[i].normal.cross(planes[j].normal);
-      if (along.norm() < kParallel) continue;
+      if (along.norm() < 1e-6) continue;
       const double score = viewpointScore(planes, along.normalized());
       if (score < worst.score) worst = {along.normalized(), score};
     }
