@@ -22,7 +22,7 @@
 #include "command_line/input_files.h"
 #include "command_line/run_tool.h"
 #include "core/base/parallel.h"
-#include "core/matching/shape_description.h"
+#include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "io/exact_coordinates.h"
 #include "io/file_text.h"

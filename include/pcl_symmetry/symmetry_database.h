@@ -26,19 +26,15 @@ struct DatabaseParts;
 
 /// How a database is made and used.
 struct DatabaseOptions {
-  /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1: fewer
-  /// show less of the variety of the models, twice takes four times the time and memory of the fit; README measures 200
-  /// for 904 models.
+  /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1. Twice as many
+  /// take four times the time and memory of the fit.
   int num_references = 200;
-  /// Views of a model that scans are compared with, >= 1: of 80 views the nearest is within 12 degrees of any
-  /// direction; half makes that 17 degrees, twice 8.5 (gaps shrink with the square root).
+  /// Views of a model that scans are compared with, >= 1: one of 80 is within 12 degrees of any direction.
   int num_views = 80;
-  std::size_t max_points = 20'000;  ///< points of a cloud that are kept, >= 100: time grows with them
+  std::size_t max_points = 20'000;  ///< points of a cloud that are kept, >= 100
   int num_threads = 0;              ///< >= 0; 0 = one per core
-  /// Seconds that a change waits while another program writes, >= 0: a program that builds a database writes
-  /// for milliseconds at a time; half and twice are as good.
-  double lock_timeout = 30.0;
-  std::string unit;  ///< of the coordinates of all models, such as "m"; stored when the database is made
+  double lock_timeout = 30.0;       ///< seconds that a change waits while another program writes, >= 0
+  std::string unit;                 ///< of the coordinates of all models, such as "m"; stored when the database is made
   /// build() fits no compact forms: for a part of a database, as merge() fits those of the whole.
   bool is_part = false;
 
@@ -48,25 +44,18 @@ struct DatabaseOptions {
 
 /// What SymmetryDatabase::recognize() tries, and what it accepts.
 struct RecognitionOptions {
-  /// Models that are brought to the scan coarsely, >= 1: half misses more models, twice takes twice the time.
-  int num_candidates = 10;
-  /// For scans from a viewpoint, in databases of more than 300 models: models that are brought to it where none of
-  /// these is accepted, with these, >= 1; a number below num_candidates counts as that. Unknown objects take the time
-  /// of all: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of the training half) among
-  /// 100 000 models, 103 are right with 40 and 107 with 100, which take up to 1.3 and 1.9 s of processor time.
+  int num_candidates = 10;  ///< models that are brought to the scan coarsely, >= 1
+  /// For scans from a viewpoint, in databases of more than 300 models: models that are tried where none of the first
+  /// num_candidates is accepted, those included, >= 1. Unknown objects take the time of all.
   int max_candidates = 70;
   /// For scans from a viewpoint: models with the best coarse poses, whose poses are refined, >= 1, of num_candidates
-  /// and again of the others: as num_candidates.
+  /// and again of the others.
   int num_refined = 4;
-  /// Added to the distance of two views if their radii differ by a factor of e, >= 0. A smaller value is better where
-  /// other objects hide much of the object: 0 ignores the size.
+  /// Added to the distance of two views if their radii differ by a factor of e, >= 0; 0 ignores the size. A smaller
+  /// value is better where other objects hide much of the object.
   double size_weight = 0.25;
-  /// Least confidence of a model that is accepted, in [0, 1], see RecognizedModel::confidence: an answer is as
-  /// often right as wrong there; README has a curve of what other values accept.
-  double min_confidence = 0.5;
-  /// Least merit of a pose that is accepted whatever its confidence, in [-1, 1], see RecognizedModel::score. chosen:
-  /// below that a scan hardly fits; the confidence asks for more.
-  double min_merit = 0.5;
+  double min_confidence = 0.5;  ///< of an accepted model, in [0, 1], see RecognizedModel::confidence
+  double min_merit = 0.5;       ///< of the pose of an accepted model, in [-1, 1], see RecognizedModel::score
   CloudRegistrationOptions registration = quickRegistration();  ///< search for poses and their refinement
   int num_threads = 0;                                          ///< >= 0; 0 = one per core
 
@@ -76,11 +65,11 @@ struct RecognitionOptions {
   void validate() const;
 };
 
-/// A model that is like a query.
+/// A model that is similar to a query.
 struct ModelMatch {
   std::string name;  ///< of the model
   /// L2 distance of the compact signatures, divided by the root of the product of the two mean distances to the ten
-  /// nearest references: 1 between shapes that are as far from each other as from what is most like them.
+  /// nearest references: 1 between shapes that are as far from each other as from the most similar ones.
   double distance;
 };
 
@@ -94,8 +83,8 @@ struct RecognizedModel {
   /// Probability that the scan shows this model or one of the same shape, in [0, 1]: a logistic function of the merit
   /// and of how far it is ahead of the best model of another shape, fitted to scenes with objects that are not in the
   /// database. The sum over shapes is at most 1. Two models are of the same shape if they share 90 % of their surfaces
-  /// where the scan puts them. The best model is judged before it is turned about its axes for a better pose, so that
-  /// its score may be higher than its confidence says.
+  /// where the scan puts them. The best model is judged before rotations about its axes are tried for a better pose, so
+  /// that its score may be higher than its confidence suggests.
   double confidence = 0.0;
 };
 
@@ -135,8 +124,8 @@ struct BuildReport {
 /// Told the share of the work that is done, in [0, 1]. Returns whether to go on.
 using BuildProgress = std::function<bool(double)>;
 
-/// Models in a file, found by their symmetry (Section 5.2): match() finds models of like shape, recognize() the model
-/// that a scan shows.
+/// Models in a file, found by their symmetry (Section 5.2): match() finds models of similar shape, recognize() the
+/// model that a scan shows.
 ///
 /// The file is a database of SQLite. What a function changes is on the disk when it returns, whole or not at all, also
 /// if the program is killed. Several programs may read while one writes; a second writer waits, see
@@ -198,8 +187,8 @@ public:
   /// \throws pcl::IOException naming file and reason: missing, damaged, of another version or unit, or with a model whose
   /// name is that of another one; this database is unchanged then.
   std::size_t merge(const std::vector<std::string>& files, const BuildProgress& progress = {});
-  /// Fits the compact forms anew if they have less than half of the references that DatabaseOptions::num_references
-  /// asks for, and stores those that are missing. Without it, each program that asks has to do so for itself.
+  /// Fits the compact forms anew if they have less than half of the references of DatabaseOptions::num_references,
+  /// and stores those that are missing. Without it, each program that asks has to do so for itself.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void save();
   /// Fits the compact forms anew to the models that are there now.
@@ -216,7 +205,7 @@ public:
   /// \throws pcl::IOException naming file and reason.
   Cloud cloud(const std::string& name) const;
 
-  /// Models of like shape, whatever their size and pose.
+  /// Models of similar shape, whatever their size and pose.
   /// \param cloud the object seen from all sides, or a scan.
   /// \param num_nearest >= 0.
   /// \param viewpoint where the scanner stood.
@@ -231,7 +220,7 @@ public:
   void prepare() const;
 
   /// The models that a scan can show, in the unit of the models. Candidates look like the scan from some side; without
-  /// a viewpoint, candidates are of like shape.
+  /// a viewpoint, candidates are of similar shape.
   /// \param scan at least two different finite points.
   /// \param viewpoint where the scanner stood.
   /// \return accepted models, best first.
@@ -248,12 +237,7 @@ public:
   Recognition recognize(const Cloud& scene, const pcl::Indices& cluster, const RecognitionOptions& options = {},
                         const SeenSpace::ConstPtr& seen = nullptr) const;
 
-  /// The same for each of many clusters.
-  /// \param progress after each; where it returns false the rest stays unknown.
-  std::vector<Recognition> recognize(const std::vector<Cloud>& clusters, const RecognitionOptions& options = {},
-                                     const Viewpoint& viewpoint = {}, const BuildProgress& progress = {}) const;
-
-  /// The same for clouds of other point types; colours and other fields are not used.
+  /// The same for clouds of other point types; colors and other fields are not used.
   template <typename PointT>
   void add(const std::string& name, const pcl::PointCloud<PointT>& cloud, const ModelSource& source = {}) {
     add(name, positionsOf(cloud), source);

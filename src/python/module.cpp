@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/geometry/mesh_sampling.h"
-#include "core/matching/shape_description.h"
+#include "core/matching/shape_signature.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/surface_segmentation.h"

@@ -13,94 +13,66 @@ namespace pcl_symmetry {
 
 namespace {
 
-using detail::DatabaseParts;
-
-/// Describes models on all threads, a model on one, and stores each when it is described.
-class DatabaseBuild {
-public:
-  DatabaseBuild(DatabaseParts& parts, const std::vector<ModelInput>& inputs, const BuildProgress& progress)
-      : parts_(parts), inputs_(inputs), progress_(progress), options_(parts.options) {
-    options_.num_threads = 1;
-  }
-
-  BuildReport run() {
-    std::set<std::string> names;
-    std::vector<std::size_t> used;
-    for (std::size_t i = 0; i < inputs_.size(); ++i) {
-      if (names.insert(inputs_[i].name).second)
-        used.push_back(i);
-      else
-        failures_[i] = "name = '" + inputs_[i].name + "' is that of an earlier model, names must differ";
-    }
-    parallelBlocks(used.size(), parts_.options.num_threads, [&](std::size_t i) {
-      if (stopped_) return;
-      try {
-        use(used[i]);
-      } catch (...) {
-        stopped_ = true;
-        throw;
-      }
-      told(static_cast<double>(++num_done_) / static_cast<double>(used.size()));
-    });
-    for (const auto& [i, reason] : failures_) report_.failures.emplace_back(inputs_[i].name, reason);
-    return report_;
-  }
-
-private:
-  void use(std::size_t i) {
-    const ModelInput& input = inputs_[i];
-    ModelInfo info{input.name, 0, {}, 0};
-    detail::DescribedModel model;
-    try {
-      detail::checkModelName(input.name);
-      if (input.source) info.source = input.source();
-      if (isStored(info)) return count(report_.num_kept);
-      const Points points = detail::finitePoints(input.load(), options_.max_points);
-      model = detail::describedModel(points, options_);
-    } catch (const std::exception& error) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      failures_[i] = error.what();
-      return;
-    }
-    info.time = detail::currentTime();
-    info.num_points = model.packed.num_points;
-    parts_.add(info, model.packed, model.signatures);
-    count(report_.num_added);
-  }
-
-  bool isStored(const ModelInfo& info) {
-    if (info.source.checksum.empty()) return false;
-    const std::lock_guard<std::mutex> lock(parts_.mutex);
-    const auto stored = parts_.store.find(info.name);
-    return stored && stored->second.source.checksum == info.source.checksum;
-  }
-
-  void count(std::size_t& counter) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++counter;
-  }
-
-  void told(double share) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!progress_ || stopped_ || progress_(share)) return;
-    stopped_ = report_.cancelled = true;
-  }
-
-  DatabaseParts& parts_;
-  const std::vector<ModelInput>& inputs_;
-  const BuildProgress& progress_;
-  DatabaseOptions options_;  // of one model
-  std::mutex mutex_;         // of what follows, and of calls of progress_
-  BuildReport report_;
-  std::map<std::size_t, std::string> failures_;  // by number of the input
-  std::atomic<bool> stopped_{false};
-  std::atomic<std::size_t> num_done_{0};
-};
+bool isStored(detail::DatabaseParts& parts, const ModelInfo& info) {
+  if (info.source.checksum.empty()) return false;
+  const std::lock_guard<std::mutex> lock(parts.mutex);
+  const auto stored = parts.store.find(info.name);
+  return stored && stored->second.source.checksum == info.source.checksum;
+}
 
 }  // namespace
 
+/// Describes models on all threads, a model on one, and stores each when it is described.
 BuildReport SymmetryDatabase::build(const std::vector<ModelInput>& models, const BuildProgress& progress) {
-  BuildReport report = DatabaseBuild(*parts_, models, progress).run();
+  DatabaseOptions options = parts_->options;
+  options.num_threads = 1;
+  BuildReport report;
+  std::map<std::size_t, std::string> failures;  // by index of the input
+  std::set<std::string> names;
+  std::vector<std::size_t> used;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (names.insert(models[i].name).second)
+      used.push_back(i);
+    else
+      failures[i] = "name = '" + models[i].name + "' is that of an earlier model, names must differ";
+  }
+
+  std::mutex mutex;  // of the report, the failures and calls of progress
+  std::atomic<bool> stopped{false};
+  std::size_t num_done = 0;
+  parallelBlocks(used.size(), parts_->options.num_threads, [&](std::size_t k) {
+    if (stopped) return;
+    const ModelInput& input = models[used[k]];
+    ModelInfo info{input.name, 0, {}, 0};
+    std::optional<detail::DescribedModel> model;  // nothing where it is stored already
+    std::optional<std::string> failure;
+    try {
+      detail::checkModelName(input.name);
+      if (input.source) info.source = input.source();
+      if (!isStored(*parts_, info))
+        model = detail::describedModel(detail::finitePoints(input.load(), options.max_points), options);
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+    if (model) {
+      info.time = detail::currentTime();
+      info.num_points = model->packed.num_points;
+      try {
+        parts_->add(info, model->packed, model->signatures);
+      } catch (...) {
+        stopped = true;
+        throw;
+      }
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (failure)
+      failures[used[k]] = *failure;
+    else
+      ++(model ? report.num_added : report.num_kept);
+    const double share = static_cast<double>(++num_done) / static_cast<double>(used.size());
+    if (progress && !stopped && !progress(share)) stopped = report.cancelled = true;
+  });
+  for (const auto& [i, reason] : failures) report.failures.emplace_back(models[i].name, reason);
   if (!report.cancelled && !parts_->options.is_part) save();
   return report;
 }

@@ -3,17 +3,12 @@
 #include <ctime>
 #include <utility>
 
-#include "core/matching/shape_description.h"
+#include "core/matching/shape_signature.h"
 #include "core/matching/view_signature.h"
-#include "recognition/io_error.h"
 
 namespace pcl_symmetry::detail {
 
 namespace {
-
-// Bytes. chosen: with an ending they stay below the 255 of file systems; half would be enough for most names.
-constexpr std::size_t kLongestName = 200;
-constexpr std::size_t kShownOfName = 40;  // characters of a wrong name in its message. chosen: the line stays readable
 
 bool isUTF8(const std::string& text) {
   for (std::size_t i = 0; i < text.size();) {
@@ -34,10 +29,10 @@ std::int64_t currentTime() {
 }
 
 void checkModelName(const std::string& name) {
-  bool good = !name.empty() && name.size() <= kLongestName && name.front() != '.' && isUTF8(name);
+  bool good = !name.empty() && name.size() <= 200 && name.front() != '.' && isUTF8(name);
   for (const unsigned char c : name) good = good && c >= 0x20 && c != 0x7f && c != '/';
   if (good) return;
-  std::string shown = name.substr(0, kShownOfName) + (name.size() > kShownOfName ? "..." : "");
+  std::string shown = name.substr(0, 40) + (name.size() > 40 ? "..." : "");
   for (char& c : shown)
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
   throw std::invalid_argument(
@@ -92,13 +87,14 @@ std::shared_ptr<const PairSearch> DatabaseParts::pairs() {
   std::unique_lock<std::mutex> lock(mutex);
   const std::uint64_t version = store.version();
   if (pairs_version_ == version) return pairs_;
-  if (store.models().size() > PairSearch::kMostModels) return pairs_ = nullptr;
+  if (store.models().size() > kRecognitionRules.max_pair_models) return pairs_ = nullptr;
   const std::vector<StoredModel> models = store.models();
   const std::shared_ptr<const PairSearch> before = pairs_;
   lock.unlock();  // clouds are read under it, one at a time
   const auto read = [&](const StoredModel& model) {
     const PositionCloud stored = cloud(model);
-    return ModelPoints{finitePoints(stored, ModelPoints::kFine), finitePoints(stored, ModelPoints::kCoarse)};
+    return ModelPoints{finitePoints(stored, kRecognitionRules.num_fine_points),
+                       finitePoints(stored, kRecognitionRules.num_coarse_points)};
   };
   const auto made = std::make_shared<const PairSearch>(models, read, before.get(), options.num_threads);
   lock.lock();

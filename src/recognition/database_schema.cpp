@@ -7,8 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "recognition/packed_bytes.h"
-#include "recognition/io_error.h"
+#include "recognition/packed_model.h"
 
 namespace pcl_symmetry::detail {
 
@@ -16,19 +15,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The letters PSyD. chosen: a number that no other program uses, see the list in magic.txt of SQLite.
-constexpr std::int64_t kApplicationId = 0x50537944;
-constexpr std::size_t kApplicationIdPlace = 68;                // derived: file format of SQLite
-constexpr const char* kFirstBytes = "SQLite format 3";         // derived: the same
-constexpr std::size_t kHeaderSize = 100;                       // derived: the same
-constexpr const char* kLibraryVersion = PCL_SYMMETRY_VERSION;  // derived: of the project
+constexpr std::int64_t kApplicationId = 0x50537944;  // the letters PSyD
 
 struct Table {
   const char* name;
   const char* definition;
 };
-// chosen: a table for each part of a model, so that a query reads what it needs. Columns: the model, the bytes, their
-// checksum.
+// A table for each part of a model, so that a query reads what it needs.
 constexpr std::array<Table, 9> kTables = {{
     {"facts", "CREATE TABLE facts (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
     {"models",
@@ -86,7 +79,7 @@ void compareBlobs(const SQLiteConnection& connection, const std::string& table, 
 void createSchema(const SQLiteConnection& connection, const std::string& unit) {
   for (const Table& table : kTables) connection.run(table.definition);
   SQLiteStatement fact = connection.prepare("INSERT INTO facts VALUES (?, ?)");
-  const std::string values[][2] = {{"library_version", kLibraryVersion}, {"unit", unit}};
+  const std::string values[][2] = {{"library_version", PCL_SYMMETRY_VERSION}, {"unit", unit}};
   for (const auto& [key, value] : values) fact.bind(1, key).bind(2, value).run();
   connection.run("PRAGMA application_id = " + std::to_string(kApplicationId));
   connection.run("PRAGMA user_version = " + std::to_string(kSchemaVersion));
@@ -97,13 +90,13 @@ void refuseForeignFile(const std::string& file) {
   if (fs::is_directory(file, error)) failIO(file, "is a folder, must be a file");
   if (!fs::is_regular_file(file, error)) failIO(file, "must be a file");
   std::ifstream stream(file, std::ios::binary);
-  std::array<unsigned char, kHeaderSize> header{};
+  std::array<unsigned char, 100> header{};
   stream.read(reinterpret_cast<char*>(header.data()), static_cast<std::streamsize>(header.size()));
   if (!stream && !stream.eof()) failIO(file, "cannot be read");
   std::int64_t id = 0;
-  for (std::size_t i = 0; i < 4; ++i) id = id << 8 | header[kApplicationIdPlace + i];
+  for (std::size_t i = 0; i < 4; ++i) id = id << 8 | header[68 + i];
   if (stream.bad() || !stream.is_open()) failIO(file, "cannot be read");
-  if (std::memcmp(header.data(), kFirstBytes, std::strlen(kFirstBytes) + 1) != 0 || id != kApplicationId)
+  if (std::memcmp(header.data(), "SQLite format 3", 16) != 0 || id != kApplicationId)
     failIO(file, "is no database of pcl_symmetry, or its first 100 bytes are damaged; it is left as it is");
 }
 
@@ -111,11 +104,11 @@ void refuseOtherSchema(const SQLiteConnection& connection) {
   const std::int64_t version = connection.integer("PRAGMA user_version");
   if (version > kSchemaVersion)
     failIO(connection.file(), "has version " + std::to_string(version) +
-                                  " of the tables, which a newer library wrote; " + kLibraryVersion +
+                                  " of the tables, which a newer library wrote; " + PCL_SYMMETRY_VERSION +
                                   " reads version " + std::to_string(kSchemaVersion));
   if (version < kSchemaVersion)
     failIO(connection.file(), "has version " + std::to_string(version) +
-                                  " of the tables, which an older library wrote; " + kLibraryVersion +
+                                  " of the tables, which an older library wrote; " + PCL_SYMMETRY_VERSION +
                                   " reads version " + std::to_string(kSchemaVersion) + ": build the database again");
 }
 

@@ -11,13 +11,12 @@ namespace pcl_symmetry::detail {
 
 /// Tables of a database, and what may be opened. Every function throws pcl::IOException, which names file and reason.
 
-/// Grows by 1 when tables or the bytes in them change. derived: 1 and 2 were folders of files, 3
-/// had no codes of views.
+/// Grows by 1 when tables or the bytes in them change.
 constexpr int kSchemaVersion = 4;
-/// The name of a database that has no file. chosen: SQLite's own.
+/// The name of a database that has no file.
 constexpr const char* kNoFile = ":memory:";
 constexpr const char* kSelectModels =
-    "SELECT id, name, time, source, source_checksum, tags, num_points, checksum FROM models";  // chosen: all columns
+    "SELECT id, name, time, source, source_checksum, tags, num_points, checksum FROM models";
 
 void createSchema(const SQLiteConnection& connection, const std::string& unit);
 

@@ -1,19 +1,30 @@
 #include "recognition/fitted_forms.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/matching/compact_index.h"
 #include "core/matching/shape_signature.h"
-#include "recognition/packed_bytes.h"
 #include "recognition/packed_model.h"
-#include "recognition/io_error.h"
 
 namespace pcl_symmetry::detail {
 
 namespace {
+
+/// Rows of a projection's numbers that belong together: mean and basis, then rotations.
+Eigen::Map<const Eigen::MatrixXf> columnsOf(const std::vector<float>& values, std::size_t first, Eigen::Index rows) {
+  return {values.data() + first, rows, static_cast<Eigen::Index>(values.size() - first) / rows};
+}
+
+void append(const Eigen::MatrixXf& matrix, std::vector<float>& values) {
+  values.insert(values.end(), matrix.data(), matrix.data() + matrix.size());
+}
 
 std::string partOf(ModelStore& store, ModelPart part, const StoredModel& model, std::mutex& mutex) {
   const std::lock_guard<std::mutex> lock(mutex);
@@ -41,6 +52,80 @@ std::vector<StoredModel> referencesOf(ModelStore& store, int max_references) {
 }
 
 }  // namespace
+
+std::string CompactForm::packed() const {
+  PackedBytes bytes;
+  bytes.put(typical);
+  bytes.append(packedMatrix(compact, MatrixBits::Sixteen));
+  return bytes.bytes();
+}
+
+CompactForm CompactForm::unpacked(const std::string& bytes) {
+  UnpackedBytes packed(bytes);
+  CompactForm form;
+  form.typical = packed.get<float>();
+  form.compact = unpackedMatrix(bytes.substr(sizeof(float)));
+  check(form.compact.cols() == kFormsPerModel && form.typical > 0.0f, "compact form", form.compact.cols(),
+        "kFormsPerModel columns");
+  return form;
+}
+
+CompactForms CompactForms::fit(std::vector<std::int64_t> ids, const Eigen::MatrixXf& signatures, int num_threads) {
+  const auto count = static_cast<Eigen::Index>(ids.size());
+  Eigen::MatrixXf first(signatures.rows(), count);
+  for (Eigen::Index i = 0; i < count; ++i) first.col(i) = signatures.col(kFormsPerModel * i);
+  ProjectionOptions options;
+  options.num_threads = num_threads;
+  CompactForms forms;
+  forms.projection_ = SignatureProjection::fit(first, options);
+  forms.ids_ = std::move(ids);
+  forms.references_ = forms.projection_.project(signatures);
+  return unpacked(forms.packed());  // the same as those who read it
+}
+
+CompactForm CompactForms::formOf(const Eigen::MatrixXf& signatures, std::int64_t id) const {
+  CompactForm form;
+  form.compact = projection_.project(signatures);
+  const Eigen::RowVectorXf cosines = (rotations(form).transpose() * references_).colwise().maxCoeff();
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    const float cosine = cosines.segment<kFormsPerModel>(kFormsPerModel * static_cast<Eigen::Index>(i)).maxCoeff();
+    distances.push_back(ids_[i] == id ? std::numeric_limits<float>::infinity()
+                                      : std::sqrt(std::max(0.0f, 2.0f - 2.0f * cosine)));
+  }
+  form.typical = typicalDistance(std::move(distances));
+  return form;
+}
+
+std::string CompactForms::packed() const {
+  const std::vector<float> values = projection_.toValues();
+  const Eigen::Index k = numDimensions();
+  const std::size_t num_basis = static_cast<std::size_t>(kSignatureSize * (1 + k));
+  PackedBytes bytes;
+  bytes.put(static_cast<std::uint32_t>(ids_.size()));
+  for (const std::int64_t id : ids_) bytes.put(id);
+  const std::vector<float> basis(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(num_basis));
+  bytes.putText(packedMatrix(columnsOf(basis, 0, kSignatureSize), MatrixBits::Sixteen));
+  bytes.putText(packedMatrix(columnsOf(values, num_basis, k), MatrixBits::Sixteen));
+  bytes.putText(packedMatrix(references_, MatrixBits::Sixteen));
+  return bytes.bytes();
+}
+
+CompactForms CompactForms::unpacked(const std::string& bytes) {
+  UnpackedBytes packed(bytes);
+  CompactForms forms;
+  const std::size_t count = packed.get<std::uint32_t>();
+  if (count > packed.left() / sizeof(std::int64_t)) throw std::invalid_argument("is incomplete");
+  for (std::size_t i = 0; i < count; ++i) forms.ids_.push_back(packed.get<std::int64_t>());
+  std::vector<float> values;
+  for (int i = 0; i < 2; ++i) append(unpackedMatrix(packed.text()), values);
+  forms.projection_ = SignatureProjection::fromValues(values);
+  forms.references_ = unpackedMatrix(packed.text());
+  check(forms.references_.rows() == forms.numDimensions() &&
+            forms.references_.cols() == kFormsPerModel * static_cast<Eigen::Index>(count),
+        "number of references", forms.references_.cols(), "that of their compact forms");
+  return forms;
+}
 
 PackedProjection FittedForms::packed() const {
   return {id, forms->numReferences(), forms->packed(), packedMatrix(coder->toValues(), MatrixBits::Sixteen)};
@@ -92,6 +177,29 @@ std::vector<PackedForms> formsOfModels(ModelStore& store, const std::vector<Stor
     if (coder) packed[i].view_codes = coder->codesOf(viewsOf(store, models[i], mutex));
   });
   return packed;
+}
+
+std::vector<std::string> allForms(ModelStore& store, const std::vector<StoredModel>& models, std::int64_t stored,
+                                  const CompactForms* forms, const ViewCoder* coder, int num_threads) {
+  std::vector<std::string> all(models.size());
+  const auto fail = [&](std::int64_t id, const std::string& reason) {
+    failIO(store.file(), (forms ? "the compact form of model " : "the code of views of model ") + std::to_string(id) +
+                             reason + ", pcl_symmetry_database rebuild makes new ones");
+  };
+  const auto take = [&](std::int64_t id, const std::string& bytes) {
+    const auto model =
+        std::lower_bound(models.begin(), models.end(), id, [](const auto& a, std::int64_t b) { return a.id < b; });
+    if (model == models.end() || model->id != id) fail(id, " is that of another model");
+    all[static_cast<std::size_t>(model - models.begin())] = bytes;
+  };
+  if (stored != 0 && forms) store.eachForms(stored, take);
+  if (stored != 0 && coder) store.eachViewCodes(stored, take);
+  const std::vector<StoredModel> without = stored != 0 ? store.modelsWithoutForms() : models;
+  for (const PackedForms& made : formsOfModels(store, without, forms, coder, num_threads))
+    take(made.model, forms ? made.forms : made.view_codes);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].empty()) fail(models[i].id, " is missing");
+  return all;
 }
 
 std::vector<View> viewsOf(ModelStore& store, const StoredModel& model, std::mutex& mutex) {

@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "recognition/database_schema.h"
-#include "recognition/io_error.h"
 
 namespace pcl_symmetry::detail {
 
@@ -171,9 +170,7 @@ const std::vector<StoredModel>& ModelStore::models() {
   if (!startReading() || models_version_ == version_) return models_;
   std::vector<StoredModel> models;
   SQLiteStatement row = connection_->prepare(kSelectModels);
-  while (row.next()) {
-    models.push_back({row.integer(0), checkedInfo(row, file_).name});
-  }
+  while (row.next()) models.push_back({row.integer(0), checkedInfo(row, file_).name});
   std::sort(models.begin(), models.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   models_ = std::move(models);
   models_version_ = version_;

@@ -13,7 +13,7 @@
 
 namespace pcl_symmetry::detail {
 
-/// What a model is found and recognized by, as bytes of packing/packed_model.h.
+/// What a model is found and recognized by, as bytes of packed_model.h.
 struct PackedModel {
   std::string cloud, signatures, views;
   std::size_t num_points = 0;
@@ -106,7 +106,6 @@ private:
 
   void create(const Fill& fill = {});
   void makeTables(const SQLiteConnection& connection, const Fill& fill) const;
-  void checkSchema() const;
   template <typename Body>
   void change(const Body& body);
   std::size_t checkBeforeMerge(const std::vector<std::string>& files);

@@ -1,50 +1,73 @@
 #include "recognition/packed_model.h"
 
+#include <zlib.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-
-#include "recognition/packed_bytes.h"
+#include <limits>
+#include <new>
 
 namespace pcl_symmetry::detail {
 
 namespace {
 
-constexpr int kCoordinateBits = 16;  // chosen: half is coarser than clouds are dense, twice is more than float holds
-constexpr double kLargestCoordinate = (1 << kCoordinateBits) - 1;  // derived: of that number of bits
-// Steps of the value 1. measured: 80 views of the training models of the Princeton Shape Benchmark take 11.7 kB on
-// average, 10.4 kB at two thirds of the steps, 8.6 kB at half of them. The error of a view has a norm of 0.05.
-constexpr float kViewSteps = 96.0f;
-constexpr double kRotationSteps = 32767.0;  // derived: 16 bits
+// Bytes of the largest part of a model: a damaged length must not ask for more memory.
+constexpr std::uint32_t kMaxPart = 1u << 30;
 
-using Quantised = std::array<std::uint16_t, 3>;
-
-/// The bits of the three coordinates in turn, so that neighbours in space are neighbours in order.
-std::uint64_t placeOf(const Quantised& x) {
-  std::uint64_t place = 0;
-  for (int bit = kCoordinateBits - 1; bit >= 0; --bit)
-    for (const std::uint16_t coordinate : x) place = 2 * place + (coordinate >> bit & 1u);
-  return place;
+template <typename Integer>
+void putColumn(const Eigen::Ref<const Eigen::VectorXf>& column, PackedBytes& packed) {
+  const float greatest = column.size() > 0 ? column.cwiseAbs().maxCoeff() : 0.0f;
+  const float step = greatest / static_cast<float>(std::numeric_limits<Integer>::max());
+  packed.put(step);
+  for (const float value : column)
+    packed.put(static_cast<Integer>(step > 0.0f ? std::lround(static_cast<double>(value) / step) : 0));
 }
 
-std::vector<Quantised> sortedSteps(const PositionCloud& cloud, const Eigen::Vector3f& corner, double step) {
-  std::vector<std::pair<std::uint64_t, Quantised>> placed;
-  placed.reserve(cloud.size());
+template <typename Integer>
+void getColumn(UnpackedBytes& packed, Eigen::Ref<Eigen::VectorXf> column) {
+  const auto step = packed.get<float>();
+  const char* values = packed.take(static_cast<std::size_t>(column.size()) * sizeof(Integer));
+  for (Eigen::Index i = 0; i < column.size(); ++i) {
+    Integer value;
+    std::memcpy(&value, values + static_cast<std::size_t>(i) * sizeof(Integer), sizeof(Integer));
+    column[i] = step * static_cast<float>(value);
+  }
+}
+
+constexpr int kCoordinateBits = 16;
+constexpr double kMaxCoordinate = (1 << kCoordinateBits) - 1;
+constexpr float kViewSteps = 96.0f;         // of the value 1: the error of a view has a norm of 0.05
+constexpr double kRotationSteps = 32767.0;  // 16 bits
+
+using Quantized = std::array<std::uint16_t, 3>;
+
+/// Morton code: points that are near in space are near in order.
+std::uint64_t mortonCode(const Quantized& x) {
+  std::uint64_t code = 0;
+  for (int bit = kCoordinateBits - 1; bit >= 0; --bit)
+    for (const std::uint16_t coordinate : x) code = 2 * code + (coordinate >> bit & 1u);
+  return code;
+}
+
+std::vector<Quantized> sortedSteps(const PositionCloud& cloud, const Eigen::Vector3f& corner, double step) {
+  std::vector<std::pair<std::uint64_t, Quantized>> coded;
+  coded.reserve(cloud.size());
   for (const pcl::PointXYZ& point : cloud) {
     const Eigen::Vector3d x = point.getVector3fMap().cast<double>() - corner.cast<double>();
-    Quantised steps{};
+    Quantized steps{};
     for (std::size_t k = 0; k < 3; ++k) {
       const double value = step > 0.0 ? std::round(x[static_cast<Eigen::Index>(k)] / step) : 0.0;
-      steps[k] = static_cast<std::uint16_t>(std::clamp(value, 0.0, kLargestCoordinate));
+      steps[k] = static_cast<std::uint16_t>(std::clamp(value, 0.0, kMaxCoordinate));
     }
-    placed.emplace_back(placeOf(steps), steps);
+    coded.emplace_back(mortonCode(steps), steps);
   }
-  std::sort(placed.begin(), placed.end());
-  std::vector<Quantised> sorted;
-  sorted.reserve(placed.size());
-  for (const auto& [place, steps] : placed) sorted.push_back(steps);
+  std::sort(coded.begin(), coded.end());
+  std::vector<Quantized> sorted;
+  sorted.reserve(coded.size());
+  for (const auto& [code, steps] : coded) sorted.push_back(steps);
   return sorted;
 }
 
@@ -64,24 +87,100 @@ std::int16_t rotationSteps(double value) {
 
 }  // namespace
 
+std::string compressed(const std::string& bytes, Effort effort) {
+  if (bytes.size() > kMaxPart) throw std::invalid_argument("is too large to be stored");
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string result(sizeof(std::uint32_t) + size, '\0');
+  const auto length = static_cast<std::uint32_t>(bytes.size());
+  std::memcpy(result.data(), &length, sizeof(length));
+  if (compress2(reinterpret_cast<Bytef*>(result.data() + sizeof(length)), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
+                static_cast<int>(effort)) != Z_OK)
+    throw std::bad_alloc();
+  result.resize(sizeof(length) + size);
+  return result;
+}
+
+std::string decompressed(const std::string& bytes) {
+  UnpackedBytes packed(bytes);
+  const auto length = packed.get<std::uint32_t>();
+  if (length > kMaxPart) throw std::invalid_argument("is too large");
+  // zlib packs at most 1032 bytes into one.
+  const std::size_t packed_size = bytes.size() - sizeof(length);
+  if (length / 1032 > packed_size) throw std::invalid_argument("has fewer bytes than it says");
+  std::string result(length, '\0');
+  uLongf size = length;
+  const auto* data = reinterpret_cast<const Bytef*>(packed.take(packed_size));
+  if (uncompress(reinterpret_cast<Bytef*>(result.data()), &size, data, static_cast<uLong>(packed_size)) != Z_OK ||
+      size != length)
+    throw std::invalid_argument("cannot be decompressed");
+  return result;
+}
+
+Checksum& Checksum::add(const std::string& bytes) {
+  add(static_cast<std::int64_t>(bytes.size()));
+  value_ = static_cast<std::uint32_t>(
+      crc32_z(value_, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
+  return *this;
+}
+
+Checksum& Checksum::add(std::int64_t number) {
+  Bytef bytes[sizeof(number)];
+  std::memcpy(bytes, &number, sizeof(number));
+  value_ = static_cast<std::uint32_t>(crc32_z(value_, bytes, sizeof(bytes)));
+  return *this;
+}
+
+std::string packedMatrix(const Eigen::Ref<const Eigen::MatrixXf>& matrix, MatrixBits bits) {
+  PackedBytes packed;
+  packed.put(static_cast<std::uint8_t>(bits));
+  packed.put(static_cast<std::uint32_t>(matrix.rows()));
+  packed.put(static_cast<std::uint32_t>(matrix.cols()));
+  for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
+    if (bits == MatrixBits::Eight)
+      putColumn<std::int8_t>(matrix.col(i), packed);
+    else
+      putColumn<std::int16_t>(matrix.col(i), packed);
+  }
+  return packed.bytes();
+}
+
+Eigen::MatrixXf unpackedMatrix(const std::string& bytes) {
+  UnpackedBytes packed(bytes);
+  const auto size_of_value = packed.get<std::uint8_t>();
+  const std::size_t rows = packed.get<std::uint32_t>(), cols = packed.get<std::uint32_t>();
+  // The first condition keeps the product in range.
+  if (cols > packed.left() / sizeof(float) || (size_of_value != 1 && size_of_value != 2) ||
+      rows * cols * size_of_value + cols * sizeof(float) != packed.left())
+    throw std::invalid_argument("has another size than it says");
+  Eigen::MatrixXf matrix(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
+  for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
+    if (size_of_value == 1)
+      getColumn<std::int8_t>(packed, matrix.col(i));
+    else
+      getColumn<std::int16_t>(packed, matrix.col(i));
+  }
+  return matrix;
+}
+
 std::string packedCloud(const PositionCloud& cloud) {
   const auto points = cloud.getMatrixXfMap(3, 4, 0);
   Eigen::Vector3f corner = Eigen::Vector3f::Zero();
   double step = 0.0;
   if (!cloud.empty()) {
     corner = points.rowwise().minCoeff();
-    step = (points.rowwise().maxCoeff().cast<double>() - corner.cast<double>()).maxCoeff() / kLargestCoordinate;
+    step = (points.rowwise().maxCoeff().cast<double>() - corner.cast<double>()).maxCoeff() / kMaxCoordinate;
   }
   PackedBytes packed;
   packed.put(static_cast<std::uint32_t>(cloud.size()));
   for (const float coordinate : corner) packed.put(coordinate);
   packed.put(step);
-  const std::vector<Quantised> sorted = sortedSteps(cloud, corner, step);
+  const std::vector<Quantized> sorted = sortedSteps(cloud, corner, step);
   // Bytes of the same meaning side by side compress better.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const int shift : {8, 0}) {
       std::uint16_t last = 0;
-      for (const Quantised& steps : sorted) {
+      for (const Quantized& steps : sorted) {
         packed.put(static_cast<std::uint8_t>(folded(last, steps[k]) >> shift));
         last = steps[k];
       }
@@ -138,8 +237,8 @@ std::vector<View> unpackedViews(const std::string& bytes) {
   const std::string plain = decompressed(bytes);
   UnpackedBytes packed(plain);
   const auto count = packed.get<std::uint32_t>();
-  constexpr std::size_t kPoseBytes = 4 * sizeof(float) + 4 * sizeof(std::int16_t);  // derived: see packedViews()
-  if (packed.left() != count * (kPoseBytes + kViewSignatureSize))
+  const std::size_t pose_bytes = 4 * sizeof(float) + 4 * sizeof(std::int16_t);
+  if (packed.left() != count * (pose_bytes + kViewSignatureSize))
     throw std::invalid_argument("has another size than it says");
   std::vector<View> views(count);
   for (View& view : views) {

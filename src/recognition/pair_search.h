@@ -9,39 +9,29 @@
 
 #include "core/matching/point_pair_index.h"
 #include "core/matching/pose_screening.h"
-#include "recognition/view_search.h"
 #include "recognition/model_store.h"
+#include "recognition/recognition_rules.h"
+#include "recognition/view_search.h"
 
 namespace pcl_symmetry::detail {
 
 /// Points of a model, drawn at random from those that are stored.
 struct ModelPoints {
-  /// Points that poses are judged by, and that give normals. chosen: half loses accuracy of the pose and blurs edges,
-  /// twice takes twice the time.
-  static constexpr std::size_t kFine = 5'000;
-  /// Points that poses are searched by. measured: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of
-  /// the training half) among 100 000 models, 103 are right with 1250 and with 5000, in 0.38 and 0.49 s.
-  static constexpr std::size_t kCoarse = 1'250;
-
-  Points fine, coarse;
+  Points fine, coarse;  ///< by which poses are judged, and searched
 };
 
 /// Finds models that a scan can show, also where much of the object is hidden: by poses that pairs of its points
 /// suggest, see PointPairIndex, and that are tried, see screenPoses().
 class PairSearch {
 public:
-  /// Models of a database from which on there is no such search. chosen: the pairs of a model take 0.4 MB and 5 ms to
-  /// make, each time that a database is opened; twice takes twice the memory and time.
-  static constexpr std::size_t kMostModels = 300;
-
   /// Reads points of a model, called by several threads at once.
   using PointReader = std::function<ModelPoints(const StoredModel&)>;
 
   /// \param before whose points are taken over for the models that it has; null: none.
   PairSearch(std::vector<StoredModel> models, const PointReader& read, const PairSearch* before, int num_threads);
 
-  /// Models that have poses in which they fit a scan best, best first. Poses that have pairs as the scan has are tried
-  /// for all models.
+  /// Models that have poses in which they fit a scan best, best first. Poses that pairs of points suggest are tried for
+  /// all models.
   /// \param scan 3 x N, finite, N >= 1, unit of the models.
   /// \param seen what the scanner saw.
   /// \param others more poses to try.

@@ -10,6 +10,7 @@
 #include "core/registration/posed_surface.h"
 #include "core/registration/ranked_poses.h"
 #include "pcl_symmetry/symmetry_database.h"
+#include "recognition/recognition_rules.h"
 #include "registration/pose_refinement.h"
 
 namespace pcl_symmetry::detail {
@@ -50,10 +51,10 @@ public:
   /// \return these models, in any order.
   std::vector<PosedModel> refined(int num_refined);
 
-  /// Turns a model about its principal axes: a mug fits nearly as well with its handle elsewhere, and no step leads
-  /// from there to the true pose.
+  /// Tries rotations of a model about its principal axes: a mug fits nearly as well with its handle elsewhere, and no
+  /// step leads from there to the true pose.
   /// \return the best pose, with the confidence of the model as it was.
-  PosedModel turned(const PosedModel& found) const;
+  PosedModel rotated(const PosedModel& found) const;
 
   /// Judges a pose that was found elsewhere, as refined() does: by the distances of the scan from the surface between
   /// the points of the model, so that it does not count how densely the model was sampled.

@@ -16,26 +16,10 @@ namespace pcl_symmetry {
 namespace {
 
 using detail::DatabaseParts;
+using detail::kRecognitionRules;
 using detail::PosedModel;
 using detail::PosedScan;
 using detail::StoredModel;
-
-// An answer is judged by its merit and by its lead over the best model of another shape, which count alike: the sum at
-// which it is right as often as wrong, and by how much more its odds grow by a factor of e. chosen: after 267 answers
-// in scenes of fold 0, 66 of them for objects that are not in the database: too few for a fit of their own weights.
-constexpr double kEvenMeritAndLead = 0.894, kStepOfOdds = 1.0 / 30.0;
-
-// Greatest lead that counts. derived: with it, a merit of 0.6 decides; a scan that only one model was brought to leads
-// by as much. Unbounded, a poor fit would be certain where all others fit worse.
-constexpr double kMostLead = 0.3;
-// Share of their surfaces that models of the same shape have in common, see sharedSurface(). chosen: of different
-// models that fit one scan best (119 scans of fold 0), one pair in fifty shares more; of models and their noisy
-// variants of half to twice the size half do. With 0.8 one in twenty does, and of 27 unknown objects of fold 1 one more
-// gets a name.
-constexpr double kSameShape = 0.9;
-// Points of the scan that poses are judged by. chosen: time grows with them; half loses accuracy of the pose, twice
-// gains little as fine steps use a few hundred points.
-constexpr std::size_t kScanPoints = 10'000;
 
 /// Models that look like the scan from some side, each with poses to try. With a search by pairs: of all models those
 /// that fit best in some pose that pairs of points or the looks of the scan suggest.
@@ -63,7 +47,9 @@ std::vector<std::size_t> firstsOfShapes(const std::vector<PosedModel>& found) {
   std::vector<std::size_t> firsts;
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::size_t first = 0;
-    while (first < i && (firsts[first] != first || detail::sharedSurface(found[first], found[i]) < kSameShape)) ++first;
+    while (first < i &&
+           (firsts[first] != first || detail::sharedSurface(found[first], found[i]) < kRecognitionRules.same_shape))
+      ++first;
     firsts.push_back(first);
   }
   return firsts;
@@ -78,8 +64,10 @@ void fillConfidences(std::vector<PosedModel>& found) {
     const double merit = found[i].model.score.merit();
     std::size_t other = 0;
     while (other < found.size() && firsts[other] == firsts[i]) ++other;
-    const double lead = std::min(merit - (other < found.size() ? found[other].model.score.merit() : 0.0), kMostLead);
-    found[i].model.confidence = 1.0 / (1.0 + std::exp((kEvenMeritAndLead - merit - lead) / kStepOfOdds));
+    const double lead =
+        std::min(merit - (other < found.size() ? found[other].model.score.merit() : 0.0), kRecognitionRules.max_lead);
+    found[i].model.confidence =
+        1.0 / (1.0 + std::exp((kRecognitionRules.even_sum - merit - lead) / kRecognitionRules.odds_step));
     if (firsts[i] == i) sum += found[i].model.confidence;
   }
   if (sum > 1.0)
@@ -116,9 +104,9 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   const auto fit = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const StoredModel& model = candidates[i].model;
-      scan.bringTo(model.name, points_of(model, &detail::ModelPoints::coarse, detail::ModelPoints::kCoarse),
+      scan.bringTo(model.name, points_of(model, &detail::ModelPoints::coarse, kRecognitionRules.num_coarse_points),
                    candidates[i].T_model_scan,
-                   [&] { return points_of(model, &detail::ModelPoints::fine, detail::ModelPoints::kFine); });
+                   [&] { return points_of(model, &detail::ModelPoints::fine, kRecognitionRules.num_fine_points); });
     }
     const std::vector<PosedModel> fitted = scan.refined(options.num_refined);
     found.insert(found.end(), fitted.begin(), fitted.end());
@@ -130,17 +118,17 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   if (first < candidates.size() && (found.empty() || !isAccepted(found.front().model, options)))
     fit(first, candidates.size());
   // The confidence is that of the merit before this step.
-  if (!found.empty() && isAccepted(found.front().model, options)) found.front() = scan.turned(found.front());
+  if (!found.empty() && isAccepted(found.front().model, options)) found.front() = scan.rotated(found.front());
   return found;
 }
 
-/// Models of like shape, registered to the scan.
+/// Models of similar shape, registered to the scan.
 std::vector<PosedModel> fitLikeShapes(DatabaseParts& database, const Points& points, const Points& scan_points,
                                       const RecognitionOptions& options) {
   std::vector<PosedModel> found;
   const PosedScan scan(scan_points, std::nullopt, options.registration);
   for (const auto& [model, distance] : database.shapes()->nearest(points, nullptr, options.num_candidates)) {
-    const Points model_points = database.points(model, kScanPoints);
+    const Points model_points = database.points(model, kRecognitionRules.num_scan_points);
     const CloudRegistration posed = registerClouds(scan_points, std::nullopt, model_points, std::nullopt,
                                                    Eigen::Isometry3d::Identity(), options.registration);
     found.push_back(scan.judged(model.name, model_points, posed.T_target_source));
@@ -170,8 +158,7 @@ Recognition recognizeIn(DatabaseParts& database, const Points& points, const Poi
 }  // namespace
 
 CloudRegistrationOptions RecognitionOptions::quickRegistration() {
-  // chosen: a fifth to a third of the defaults of the search, as candidates come with poses or frames of their own.
-  // Half misses poses, twice takes twice the time.
+  // Less than the defaults of the search, as candidates come with poses or frames of their own.
   CloudRegistrationOptions options;
   options.frame = signatureFrameOptions();
   options.search.num_rotations = 200;
@@ -200,26 +187,16 @@ void SymmetryDatabase::prepare() const {
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
                                         const Viewpoint& viewpoint) const {
   const Points points = detail::finitePoints(scan, parts_->options.max_points);
-  return recognizeIn(*parts_, points, detail::finitePoints(scan, kScanPoints), options,
+  return recognizeIn(*parts_, points, detail::finitePoints(scan, kRecognitionRules.num_scan_points), options,
                      [&] { return detail::seenSpace(scan, points, viewpoint); });
 }
 
 Recognition SymmetryDatabase::recognize(const Cloud& scene, const pcl::Indices& cluster,
                                         const RecognitionOptions& options, const SeenSpace::ConstPtr& seen) const {
   const Points points = detail::selectPoints(scene, &cluster, parts_->options.max_points, 1).points;
-  return recognizeIn(*parts_, points, detail::selectPoints(scene, &cluster, kScanPoints, 1).points, options,
+  return recognizeIn(*parts_, points,
+                     detail::selectPoints(scene, &cluster, kRecognitionRules.num_scan_points, 1).points, options,
                      [&] { return detail::visibilityOf(seen ? *seen : SeenSpace(scene)); });
-}
-
-std::vector<Recognition> SymmetryDatabase::recognize(const std::vector<Cloud>& clusters,
-                                                     const RecognitionOptions& options, const Viewpoint& viewpoint,
-                                                     const BuildProgress& progress) const {
-  std::vector<Recognition> found(clusters.size());
-  for (std::size_t i = 0; i < clusters.size(); ++i) {
-    found[i] = recognize(clusters[i], options, viewpoint);
-    if (progress && !progress(static_cast<double>(i + 1) / static_cast<double>(clusters.size()))) break;
-  }
-  return found;
 }
 
 }  // namespace pcl_symmetry

@@ -6,18 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "core/matching/shape_description.h"
-#include "recognition/io_error.h"
+#include "core/matching/shape_signature.h"
+#include "recognition/recognition_rules.h"
 
 namespace pcl_symmetry::detail {
-
-namespace {
-
-// Forms, at least, whose components are all compared. chosen: exact up to 1024 models; of more, half loses true
-// neighbours of noisy queries, twice takes 5 ms more.
-constexpr int kShapeCandidates = 2048;
-
-}  // namespace
 
 ShapeSearch::ShapeSearch(ModelStore& store, const FittedForms& stored, const DatabaseOptions& options)
     : num_threads_(options.num_threads), forms_(stored.forms), models_(store.models()) {
@@ -32,33 +24,20 @@ ShapeSearch::ShapeSearch(ModelStore& store, const FittedForms& stored, const Dat
 /// \param stored the projection whose forms are read, 0: all forms are made.
 void ShapeSearch::makeIndex(ModelStore& store, std::int64_t stored, const DatabaseOptions& options) {
   Eigen::MatrixXf compact(forms_->numDimensions(), kFormsPerModel * static_cast<Eigen::Index>(models_.size()));
-  std::vector<float> typical(models_.size(), 0.0f);
-  const auto take = [&](std::int64_t id, const std::string& bytes) {
-    const auto model =
-        std::lower_bound(models_.begin(), models_.end(), id, [](const auto& a, std::int64_t b) { return a.id < b; });
+  std::vector<float> typical;
+  for (const std::string& bytes : allForms(store, models_, stored, forms_.get(), nullptr, num_threads_)) {
+    const std::size_t i = typical.size();
     try {
       const CompactForm form = CompactForm::unpacked(bytes);
-      if (model == models_.end() || model->id != id || form.compact.rows() != compact.rows())
-        throw std::invalid_argument("is that of another model or projection");
-      const auto i = model - models_.begin();
-      compact.middleCols<kFormsPerModel>(kFormsPerModel * i) = form.compact;
-      typical[static_cast<std::size_t>(i)] = form.typical;
+      if (form.compact.rows() != compact.rows()) throw std::invalid_argument("is that of another projection");
+      compact.middleCols<kFormsPerModel>(kFormsPerModel * static_cast<Eigen::Index>(i)) = form.compact;
+      typical.push_back(form.typical);
     } catch (const std::invalid_argument& error) {
-      failIO(store.file(), "the compact form of model " + std::to_string(id) + " " + error.what());
+      failIO(store.file(), "the compact form of model " + std::to_string(models_[i].id) + " " + error.what());
     }
-  };
-  if (stored != 0) store.eachForms(stored, take);
-  const std::vector<StoredModel> without = stored != 0 ? store.modelsWithoutForms() : models_;
-  for (std::size_t first = 0; first < without.size(); first += kModelsAtOnce) {
-    const auto begin = without.begin() + static_cast<std::ptrdiff_t>(first);
-    const std::vector<StoredModel> part(begin, begin + std::min(kModelsAtOnce, without.size() - first));
-    for (const PackedForms& made : formsOfModels(store, part, forms_.get(), nullptr, num_threads_))
-      take(made.model, made.forms);
   }
-  if (std::count(typical.begin(), typical.end(), 0.0f) > 0)
-    failIO(store.file(), "has other compact forms than models, pcl_symmetry_database rebuild makes new ones");
   CompactIndexOptions index;
-  index.num_candidates = kShapeCandidates;
+  index.num_candidates = kRecognitionRules.num_shape_forms;
   index.num_threads = options.num_threads;
   index_ = CompactIndex(std::move(compact), kFormsPerModel, index, std::move(typical));
 }

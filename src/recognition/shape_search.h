@@ -12,7 +12,7 @@
 
 namespace pcl_symmetry::detail {
 
-/// Finds models of like shape by their compact forms.
+/// Finds models of similar shape by their compact forms.
 class ShapeSearch {
 public:
   /// Reads the compact forms of all models, and makes those that are missing.
@@ -24,7 +24,7 @@ public:
     StoredModel model;
     double distance;  ///< see ModelMatch
   };
-  /// Models of like shape, nearest first.
+  /// Models of similar shape, nearest first.
   /// \param points 3 x N, finite, input units, at least two different ones.
   /// \param seen what a scanner saw; null = the points show the object from all sides.
   /// \param num_nearest >= 0.

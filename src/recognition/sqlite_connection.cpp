@@ -1,5 +1,6 @@
 #include "recognition/sqlite_connection.h"
 
+#include <pcl/exceptions.h>
 #include <sqlite3.h>
 
 #include <cctype>
@@ -8,11 +9,18 @@
 #include <filesystem>
 #include <system_error>
 
-#include "recognition/io_error.h"
-
 namespace pcl_symmetry::detail {
 
 namespace {
+
+class PlainIOException : public pcl::IOException {
+public:
+  explicit PlainIOException(const std::string& message) : pcl::IOException(message), message_(message) {}
+  const char* what() const noexcept override { return message_.c_str(); }
+
+private:
+  std::string message_;
+};
 
 /// What an error of SQLite means to the user of a file.
 std::string reasonOf(sqlite3* database) {
@@ -46,16 +54,20 @@ std::string reasonOf(sqlite3* database) {
 std::string immutableName(const std::string& file) {
   std::string name = "file:";
   for (const unsigned char c : std::filesystem::absolute(file).string()) {
-    static const char* const kDigits = "0123456789ABCDEF";
+    static const char* const digits = "0123456789ABCDEF";
     if (std::isalnum(c) || c == '/' || c == '_' || c == '-' || c == '.')
       name += static_cast<char>(c);
     else
-      name += std::string("%") + kDigits[c >> 4] + kDigits[c & 15];
+      name += std::string("%") + digits[c >> 4] + digits[c & 15];
   }
   return name + "?immutable=1";
 }
 
 }  // namespace
+
+void failIO(const std::string& file, const std::string& reason) {
+  throw PlainIOException(file + ": " + reason);
+}
 
 void SQLiteStatement::Finalizer::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);

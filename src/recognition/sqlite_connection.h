@@ -9,6 +9,9 @@ struct sqlite3_stmt;
 
 namespace pcl_symmetry::detail {
 
+/// Throws pcl::IOException "file: reason" and nothing else. (PCL puts " : " before its text.)
+[[noreturn]] void failIO(const std::string& file, const std::string& reason);
+
 /// A statement of SQLite with its values. Every function throws pcl::IOException, which names the file and the reason.
 class SQLiteStatement {
 public:

@@ -7,7 +7,6 @@
 #include "core/base/check.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "recognition/database_parts.h"
-#include "recognition/io_error.h"
 
 namespace pcl_symmetry {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/matching/view_code_index.h"
+#include "core/matching/view_code.h"
 #include "core/matching/view_index.h"
 #include "recognition/fitted_forms.h"
 #include "recognition/model_store.h"
@@ -34,8 +34,6 @@ public:
   std::vector<ModelOfView> nearest(const View& scan, const ViewSearchOptions& options, const ViewReader& read) const;
 
 private:
-  void readCodes(ModelStore& store, std::int64_t stored, int num_threads);
-
   std::vector<StoredModel> models_;         // in the order of the indexes
   ViewIndex all_;                           // of a small database
   std::shared_ptr<const ViewCoder> coder_;  // of a large one

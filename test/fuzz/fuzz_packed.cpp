@@ -1,10 +1,9 @@
 /// The parts of models that are stored in a database, as any bytes; the first byte chooses the part.
 #include <stdexcept>
 
-#include "core/matching/view_code_index.h"
+#include "core/matching/view_code.h"
 #include "fuzz/byte_source.h"
-#include "recognition/compact_forms.h"
-#include "recognition/packed_bytes.h"
+#include "recognition/fitted_forms.h"
 #include "recognition/packed_model.h"
 
 namespace {

@@ -6,7 +6,6 @@
 
 #include "core/matching/shape_signature.h"
 #include "pcl/kinds.h"
-#include "recognition/packed_bytes.h"
 
 namespace pcl_symmetry {
 

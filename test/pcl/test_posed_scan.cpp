@@ -34,7 +34,7 @@ double angleOf(const detail::PosedModel& posed) {
 }  // namespace
 
 /// From a pose with the handle elsewhere no step leads to the true one, as the cylinder fits in both.
-TEST(PosedScan, TurnsAModelAboutItsAxes) {
+TEST(PosedScan, TriesRotationsAboutTheAxesOfAModel) {
   const Points points = mug();
   for (const double degrees : {50.0, 120.0, 180.0}) {
     detail::PosedScan scan(points, std::nullopt, RecognitionOptions::quickRegistration());
@@ -43,9 +43,9 @@ TEST(PosedScan, TurnsAModelAboutItsAxes) {
     const std::vector<detail::PosedModel> found = scan.refined(1);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_GT(angleOf(found.front()), 45.0 * kDegree) << degrees;
-    const detail::PosedModel turned = scan.turned(found.front());
-    EXPECT_LT(angleOf(turned), 2.0 * kDegree) << degrees;
-    EXPECT_GT(turned.model.score.support, 0.95) << degrees;
+    const detail::PosedModel rotated = scan.rotated(found.front());
+    EXPECT_LT(angleOf(rotated), 2.0 * kDegree) << degrees;
+    EXPECT_GT(rotated.model.score.support, 0.95) << degrees;
   }
 }
 

@@ -1,49 +1,16 @@
 #include "core/matching/compact_index.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/base/simd.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Forms whose leading components are compared at once. chosen: half has too few sums at a time for the processor, twice
-// too many for its registers.
-constexpr std::size_t kForms = 64;
-constexpr std::size_t kBlock =
-    64;  // times kForms: work of a thread. chosen: half costs overhead, twice leaves threads idle
-
-/// Rotations of a query, as the leading components are compared with them.
-struct LeadingQueries {
-  std::size_t count, rows;      // rows: the leading components, and one for the squared norm of the form
-  std::vector<float> values;    // count x rows
-  std::vector<float> sq_norms;  // halves
-};
-
-/// -1/2 of the squared distances of kForms forms to the nearest query.
-/// \param leading rows x kForms.
-PCL_SYMMETRY_MULTIVERSION
-void nearnessOfForms(const float* leading, const LeadingQueries& queries, float* nearness) {
-  for (std::size_t i = 0; i < kForms; ++i) nearness[i] = -std::numeric_limits<float>::max();
-  for (std::size_t q = 0; q < queries.count; ++q) {
-    float sums[kForms];
-    for (std::size_t i = 0; i < kForms; ++i) sums[i] = -queries.sq_norms[q];
-    const float* values = queries.values.data() + q * queries.rows;
-    for (std::size_t row = 0; row < queries.rows; ++row) {
-      const float value = values[row];
-      const float* forms = leading + row * kForms;
-      for (std::size_t i = 0; i < kForms; ++i) sums[i] += value * forms[i];
-    }
-    for (std::size_t i = 0; i < kForms; ++i) nearness[i] = nearness[i] < sums[i] ? sums[i] : nearness[i];
-  }
-}
 
 /// The least distance of each shape among the forms.
 /// \param forms rising indices of forms.
@@ -65,17 +32,19 @@ std::vector<std::pair<int, float>> leastDistances(const std::vector<int>& forms,
 
 }  // namespace
 
-void CompactIndexOptions::validate() const {
-  check(num_leading >= 1, "num_leading", num_leading, ">= 1");
-  check(num_candidates >= 1, "num_candidates", num_candidates, ">= 1");
-  check(candidate_share >= 0.0 && candidate_share <= 1.0, "candidate_share", candidate_share, "in [0, 1]");
-  checkNumThreads(num_threads);
+float typicalDistance(std::vector<float> distances, std::size_t num_nearest) {
+  distances.erase(std::remove(distances.begin(), distances.end(), std::numeric_limits<float>::infinity()),
+                  distances.end());
+  const std::size_t count = std::min(num_nearest, distances.size());
+  if (count == 0) return 1.0f;
+  std::partial_sort(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(count), distances.end());
+  const float sum = std::accumulate(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(count), 0.0f);
+  return std::max(sum / static_cast<float>(count), std::numeric_limits<float>::min());
 }
 
 CompactIndex::CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options,
                            std::vector<float> typical)
     : compact_(std::move(compact)), forms_per_shape_(forms_per_shape), typical_(std::move(typical)), options_(options) {
-  options.validate();
   check(forms_per_shape >= 1, "forms_per_shape", forms_per_shape, ">= 1");
   check(compact_.cols() % forms_per_shape == 0, "number of compact forms", compact_.cols(),
         "a multiple of those of a shape");
@@ -83,16 +52,7 @@ CompactIndex::CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const C
   check(typical_.size() == static_cast<std::size_t>(numShapes()), "number of typical distances",
         static_cast<double>(typical_.size()), "that of the shapes");
   for (const float distance : typical_) check(distance > 0.0f, "typical distance", distance, "> 0");
-  num_leading_ = std::min<Eigen::Index>(compact_.rows(), options.num_leading);
-  const auto rows = static_cast<std::size_t>(num_leading_) + 1;
-  leading_.assign((static_cast<std::size_t>(compact_.cols()) + kForms - 1) / kForms * kForms * rows, 0.0f);
-  for (Eigen::Index i = 0; i < compact_.cols(); ++i) {
-    const auto form = static_cast<std::size_t>(i);
-    float* values = leading_.data() + form / kForms * kForms * rows + form % kForms;
-    for (Eigen::Index row = 0; row < num_leading_; ++row)
-      values[static_cast<std::size_t>(row) * kForms] = compact_(row, i);
-    values[(rows - 1) * kForms] = -0.5f * compact_.col(i).head(num_leading_).squaredNorm();
-  }
+  leading_ = compact_.topRows(std::min<Eigen::Index>(compact_.rows(), options.num_leading));
 }
 
 Eigen::Index CompactIndex::numShapes() const {
@@ -104,23 +64,18 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
   std::vector<int> forms(static_cast<std::size_t>(compact_.cols()));
   std::iota(forms.begin(), forms.end(), 0);
   if (count >= forms.size()) return forms;
-  LeadingQueries queries{
-      static_cast<std::size_t>(rotations.cols()), static_cast<std::size_t>(num_leading_) + 1, {}, {}};
-  for (Eigen::Index q = 0; q < rotations.cols(); ++q) {
-    const auto values = rotations.col(q).head(num_leading_);
-    queries.values.insert(queries.values.end(), values.data(), values.data() + num_leading_);
-    queries.values.push_back(1.0f);
-    queries.sq_norms.push_back(0.5f * values.squaredNorm());
-  }
-  std::vector<float> nearness(forms.size());  // -1/2 of the squared scaled distance to the nearest rotation
-  const std::size_t num_pieces = (forms.size() + kForms - 1) / kForms;
-  parallelRanges(num_pieces, kBlock, options_.num_threads, [&](std::size_t begin, std::size_t end) {
-    std::array<float, kForms> nearest;
-    for (std::size_t piece = begin; piece < end; ++piece) {
-      nearnessOfForms(leading_.data() + piece * kForms * queries.rows, queries, nearest.data());
-      for (std::size_t i = piece * kForms; i < std::min(forms.size(), (piece + 1) * kForms); ++i)
-        nearness[i] = nearest[i % kForms] / typical_[i / static_cast<std::size_t>(forms_per_shape_)];
-    }
+  // -1/2 of the squared distance to the nearest rotation, scaled.
+  const Eigen::MatrixXf queries = rotations.topRows(leading_.rows());
+  const Eigen::VectorXf sq_norms = 0.5f * queries.colwise().squaredNorm().transpose();
+  std::vector<float> nearness(forms.size());
+  parallelRanges(forms.size(), 4096, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto block = leading_.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+    Eigen::MatrixXf products = queries.transpose() * block;
+    products.colwise() -= sq_norms;
+    const Eigen::RowVectorXf nearest = products.colwise().maxCoeff() - 0.5f * block.colwise().squaredNorm();
+    for (std::size_t i = begin; i < end; ++i)
+      nearness[i] =
+          nearest[static_cast<Eigen::Index>(i - begin)] / typical_[i / static_cast<std::size_t>(forms_per_shape_)];
   });
   std::nth_element(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(count), forms.end(), [&](int a, int b) {
     const float near_a = nearness[static_cast<std::size_t>(a)], near_b = nearness[static_cast<std::size_t>(b)];

@@ -7,25 +7,24 @@
 namespace pcl_symmetry {
 
 struct CompactIndexOptions {
-  /// Leading components, those of greatest variance, by which candidates are chosen, >= 1. chosen: half loses true
-  /// neighbours of noisy queries, twice takes twice the time.
-  int num_leading = 24;
-  /// Compact forms, at least, whose components are all compared, >= 1. chosen: as num_leading.
-  int num_candidates = 512;
-  /// The same as a share of all forms, in [0, 1]: among more forms, more share their leading components. measured:
-  /// benchmark_matching 1000000, see there.
-  double candidate_share = 0.02;
-  int num_threads = 0;  ///< >= 0; 0 = one per core
-
-  /// \throws std::invalid_argument naming field, value and rule.
-  void validate() const;
+  int num_leading = 24;           ///< components of greatest variance, by which candidates are chosen, >= 1
+  int num_candidates = 512;       ///< forms, at least, whose components are all compared, >= 1
+  double candidate_share = 0.02;  ///< the same as a share of all forms, in [0, 1]
+  int num_threads = 0;            ///< >= 0; 0 = one per core
 };
+
+/// The mean distance of a shape to the nearest shapes of a fixed reference set.
+///
+/// d(a, b) / sqrt(typical(a) typical(b)) compares distances of shapes that many others resemble with distances of
+/// shapes that stand apart. The classes of the references need not be known.
+/// \param distances to the references; infinite ones, as to the shape itself, are left out.
+/// \return > 0; 1 where no distance is left.
+float typicalDistance(std::vector<float> distances, std::size_t num_nearest = 10);
 
 /// Finds the nearest of many shapes by their compact forms, see SignatureProjection.
 ///
-/// The leading components of all forms are compared, then all components of the candidates.
-/// Randomised k-d trees (FLANN) take longer and find fewer of the true neighbours, as each query has 24 rotations in
-/// hundreds of dimensions.
+/// The leading components of all forms are compared, then all components of the candidates. Randomized k-d trees
+/// (FLANN) take longer and find fewer of the true neighbors, as each query has 24 rotations in hundreds of dimensions.
 class CompactIndex {
 public:
   CompactIndex() = default;
@@ -34,7 +33,7 @@ public:
   /// \param forms_per_shape >= 1.
   /// \param typical distances of the N shapes, each > 0: distances to a shape are divided by the root of its own, see
   /// typicalDistance(); empty: all are 1.
-  /// \throws std::invalid_argument for bad options, a number of columns that is no multiple of forms_per_shape, or
+  /// \throws std::invalid_argument for a number of columns that is no multiple of forms_per_shape, or
   /// another number of typical distances.
   CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options = {},
                std::vector<float> typical = {});
@@ -52,9 +51,7 @@ private:
   std::vector<int> candidates(const Eigen::MatrixXf& rotations, std::size_t count) const;
 
   Eigen::MatrixXf compact_;
-  Eigen::Index num_leading_ = 0;
-  // Leading components and -1/2 of their squared norm: of the first forms one number after the other, and so on.
-  std::vector<float> leading_;
+  Eigen::MatrixXf leading_;  // the first components of compact_
   int forms_per_shape_ = 1;
   std::vector<float> typical_;  // of the shapes
   CompactIndexOptions options_;

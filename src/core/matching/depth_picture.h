@@ -6,20 +6,20 @@
 
 namespace pcl_symmetry {
 
-/// Points by coordinates, N x 3: all x, then all y, then all z, as loops over many points read them fastest.
+/// Points by coordinates, N x 3: all x, then all y, then all z.
 using PointColumns = Eigen::Matrix<float, Eigen::Dynamic, 3>;
 
 /// Points seen from far away: the nearest depth in each cell of a square picture. The viewer looks along z.
 class DepthPicture {
 public:
   /// Depth of a cell where nothing is seen.
-  static constexpr float kNothing = std::numeric_limits<float>::infinity();  // derived: beyond every depth
+  static constexpr float kNothing = std::numeric_limits<float>::infinity();
 
   /// \param side cells along each side, >= 1.
   /// \param corner least x and y of the picture.
   /// \param cell width of a cell, > 0, units of the points.
   DepthPicture(int side, const Eigen::Array2f& corner, float cell)
-      : side_(side), corner_(corner), cell_(cell), depths_(static_cast<std::size_t>(side) * side + 1, kNothing) {}
+      : side_(side), corner_(corner), cell_(cell), depths_(static_cast<std::size_t>(side) * side, kNothing) {}
 
   /// Points beyond the picture are left out.
   void add(const PointColumns& points);
@@ -36,20 +36,20 @@ private:
   int side_;
   Eigen::Array2f corner_;
   float cell_;
-  std::vector<float> depths_;  // x fastest; the last one is of the points beyond the picture
+  std::vector<float> depths_;  // x fastest
 };
 
 /// The outline of what is seen.
-struct Outline {
+struct ViewOutline {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< mean of the cells inside the outline, and of their depths
-  double radius = 0.0;  ///< root mean square distance of the inside from the middle, across the view
+  double radius = 0.0;  ///< root mean square distance of the inside from the middle, in the picture
 };
 
 /// \param in_view N >= 1 points, z away from the viewer.
-/// \throws std::invalid_argument for points without extent across the view.
-Outline outlineOf(const PointColumns& in_view);
+/// \throws std::invalid_argument for points that are seen as one.
+ViewOutline outlineOf(const PointColumns& in_view);
 
-/// A picture smoothed over neighbouring cells, sampled between their centers.
+/// A picture smoothed over neighboring cells, sampled between their centers.
 class SmoothPicture {
 public:
   /// \param middle the depth that becomes 0.

@@ -16,35 +16,16 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Radii of a shape below which pairs are left out. chosen: nearer than that the places of the points are too uncertain
-// for a distance; twice misses pairs of small parts that are seen.
-constexpr double kLeastDistance = 0.2;
-// Turns about a normal that are told apart. chosen: 22.5 degrees; half mixes poses up, twice spreads their votes.
-constexpr int kTurns = 16;
-constexpr int kTurnBits = 8, kStepBits = 4;                 // derived: a turn is stored in 1/256, kTurns have 4 bits
-constexpr std::uint32_t kTurnMask = (1u << kTurnBits) - 1;  // derived: see above
-// Points of a scan that vote, each with all others. measured: of 119 objects of scenes of fold 0 that are hidden by 30
-// to 70 %, with the noise of a depth camera, 114 get their names with 20 and with 30, 104 and 105 the right pose.
-constexpr int kReferences = 20;
-// Poses of one shape that a point of the scan votes for. chosen: half loses that of the true place among those that
-// look alike, twice takes four times as long to compare them.
-constexpr int kPosesOfPoint = 3;
-// Poses that are one: radians, radii of the shape. chosen: a step of the turn; half splits the votes of a pose, twice
-// joins different ones.
-constexpr double kSameAngle = 0.4, kSamePlace = 0.15;
-// Weight of a pair that as many points have as the mean of all, and greatest weight. chosen: weights fall with the root
-// of their number; all weights alike give the votes to flat shapes.
-constexpr double kMeanWeight = 8.0, kMostWeight = 64.0;
-// Shapes of a block: their votes, 16 kB each, and their pairs, 250 kB each, stay in a cache of 2 MB. chosen: half
-// visits each key twice as often, twice fills the cache.
-constexpr int kShapesOfBlock = 4;
-constexpr std::uint32_t kPairsTogether = 128;  // chosen: half and twice change little: 26 are usual
+// Rotations about a normal that are distinguished: 22.5 degrees, 4 of the 8 bits that store one.
+constexpr int kNumRotations = 16;
+constexpr std::uint32_t kRotationMask = 255;
+constexpr std::uint32_t kPairsAtOnce = 128;
 
-/// Where the votes of pairs are counted: for each the first point and the step of the turn that it needs.
-PCL_SYMMETRY_MULTIVERSION void findPlaces(const std::uint32_t* __restrict pairs, std::uint32_t size, std::uint32_t turn,
-                                          std::uint32_t* __restrict places) {
+/// Where the votes of pairs are counted: for each the first point and the step of the rotation that it needs.
+PCL_SYMMETRY_MULTIVERSION void findCounters(const std::uint32_t* __restrict pairs, std::uint32_t size,
+                                            std::uint32_t rotation, std::uint32_t* __restrict counters) {
   for (std::uint32_t i = 0; i < size; ++i)
-    places[i] = ((pairs[i] & ~kTurnMask) | ((pairs[i] - turn) & kTurnMask)) >> (kTurnBits - kStepBits);
+    counters[i] = ((pairs[i] & ~kRotationMask) | ((pairs[i] - rotation) & kRotationMask)) >> 4;
 }
 
 }  // namespace
@@ -65,14 +46,14 @@ PointPairIndex::PointPairIndex(const std::vector<SurfacePoints>& shapes, int num
     normals_.middleCols(begins_[k], size) = shapes[k].normals;
     radii_.push_back(boundingBall(shapes[k].points).radius);
     if (!(radii_.back() > 0.0)) continue;
-    nearest = std::min(nearest, kLeastDistance * radii_.back());
+    nearest = std::min(nearest, kMatchingRules.min_pair_distance * radii_.back());
     farthest = std::max(farthest, 2.1 * radii_.back());
   }
   if (!(farthest > 0.0)) return;
   first_distance_ = static_cast<int>(std::floor(std::log(nearest) / kPairDistanceStep));
   num_distances_ = static_cast<int>(std::floor(std::log(farthest) / kPairDistanceStep)) - first_distance_ + 1;
   weights_.resize(static_cast<std::size_t>(keyOf(first_distance_ + num_distances_, 0, 0, 0)));
-  const auto block_size = static_cast<std::size_t>(kShapesOfBlock);
+  const std::size_t block_size = 4;  // shapes whose votes and pairs fit into a cache
   blocks_.resize((shapes.size() + block_size - 1) / block_size);
   parallelRanges(shapes.size(), block_size, num_threads, [&](std::size_t begin, std::size_t end) {
     blocks_[begin / block_size] = blockOf(static_cast<int>(begin), static_cast<int>(end));
@@ -92,10 +73,10 @@ PointPairIndex::Block PointPairIndex::blockOf(int first_shape, int end_shape) co
       surface.fillRow(i, row);
       const auto point = static_cast<std::uint32_t>(begin + i - begins_[static_cast<std::size_t>(first_shape)]);
       for (std::size_t j = 0; j < static_cast<std::size_t>(size); ++j) {
-        if (!(row.distance[j] > kLeastDistance)) continue;
+        if (!(row.distance[j] > kMatchingRules.min_pair_distance)) continue;
         keys.push_back(static_cast<std::uint32_t>(keyOf(std::max(row.distance_step[j], first_distance_),
                                                         row.angle_step[j], row.other_step[j], row.between_step[j])));
-        pairs.push_back(point << kTurnBits | static_cast<std::uint32_t>(row.turn[j]));
+        pairs.push_back(point << 8 | static_cast<std::uint32_t>(row.rotation[j]));
       }
     }
   }
@@ -120,7 +101,8 @@ void PointPairIndex::fillWeights() {
                           static_cast<double>(std::count(sizes.begin(), sizes.end(), std::uint32_t{0}));
   for (std::size_t key = 0; key < sizes.size(); ++key) {
     const double share = static_cast<double>(num_pairs) / num_used / std::max<std::uint32_t>(1, sizes[key]);
-    weights_[key] = static_cast<std::uint8_t>(std::clamp(kMeanWeight * std::sqrt(share), 1.0, kMostWeight));
+    weights_[key] = static_cast<std::uint8_t>(
+        std::clamp(kMatchingRules.mean_weight * std::sqrt(share), 1.0, kMatchingRules.max_weight));
   }
 }
 
@@ -139,26 +121,26 @@ PointPairIndex::Reference PointPairIndex::referenceOf(const SurfacePoints& scan,
          ++d)
       for (int a = std::max(0, angle); a <= std::min(angle + 1, kPairAngles - 1); ++a)
         reference.look_ups.push_back(
-            {static_cast<std::uint32_t>(keyOf(d, a, pair.other_angle, pair.between)), pair.turn});
+            {static_cast<std::uint32_t>(keyOf(d, a, pair.other_angle, pair.between)), pair.rotation});
   }
-  // Neighbours in memory one after the other.
+  // Neighbors in memory one after the other.
   std::sort(reference.look_ups.begin(), reference.look_ups.end(),
             [](const LookUp& a, const LookUp& b) { return a.key < b.key; });
   return reference;
 }
 
-/// Votes of one point of the scan: for each point of the shapes that it may be, and each turn about its normal.
+/// Votes of one point of the scan: for each point of the shapes that it may be, and each rotation about its normal.
 void PointPairIndex::count(const Block& block, const std::vector<LookUp>& look_ups,
                            std::vector<std::int32_t>& votes) const {
   std::fill(votes.begin(), votes.end(), 0);
-  std::array<std::uint32_t, kPairsTogether> places;
+  std::array<std::uint32_t, kPairsAtOnce> counters;
   for (const LookUp& look_up : look_ups) {
     const std::int32_t weight = weights_[look_up.key];
     const std::uint32_t end = block.key_begins[look_up.key + 1];
-    for (std::uint32_t at = block.key_begins[look_up.key]; at < end; at += kPairsTogether) {
-      const std::uint32_t size = std::min(kPairsTogether, end - at);
-      findPlaces(block.pairs.data() + at, size, look_up.turn, places.data());
-      for (std::uint32_t i = 0; i < size; ++i) votes[places[i]] += weight;
+    for (std::uint32_t at = block.key_begins[look_up.key]; at < end; at += kPairsAtOnce) {
+      const std::uint32_t size = std::min(kPairsAtOnce, end - at);
+      findCounters(block.pairs.data() + at, size, look_up.rotation, counters.data());
+      for (std::uint32_t i = 0; i < size; ++i) votes[counters[i]] += weight;
     }
   }
 }
@@ -168,17 +150,17 @@ void PointPairIndex::count(const Block& block, const std::vector<LookUp>& look_u
 void PointPairIndex::collect(int shape, const Reference& reference, const Eigen::Vector3d& center,
                              const std::int32_t* votes, std::vector<Vote>& poses) const {
   struct Peak {
-    int weight, point, turn;
+    int weight, point, rotation;
   };
-  std::array<Peak, kPosesOfPoint> best{};
+  std::array<Peak, 3> best{};
   const int begin = begins_[static_cast<std::size_t>(shape)], end = begins_[static_cast<std::size_t>(shape) + 1];
-  for (int i = begin; i < end; ++i, votes += kTurns) {
+  for (int i = begin; i < end; ++i, votes += kNumRotations) {
     std::int32_t most = 0;
-    for (int t = 0; t < kTurns; ++t) most = std::max(most, votes[t]);
-    if (2 * most <= best.back().weight) continue;  // also with the next turn
+    for (int t = 0; t < kNumRotations; ++t) most = std::max(most, votes[t]);
+    if (2 * most <= best.back().weight) continue;  // also with the next rotation
     Peak peak{0, i, 0};
-    for (int t = 0; t < kTurns; ++t) {
-      const int weight = votes[t] + votes[(t + 1) % kTurns];
+    for (int t = 0; t < kNumRotations; ++t) {
+      const int weight = votes[t] + votes[(t + 1) % kNumRotations];
       if (weight > peak.weight) peak = {weight, i, t};
     }
     if (peak.weight <= best.back().weight) continue;
@@ -187,10 +169,10 @@ void PointPairIndex::collect(int shape, const Reference& reference, const Eigen:
   }
   for (const Peak& peak : best) {
     if (peak.weight == 0) continue;
-    // The middle of the two steps of the turn.
-    const double turn = 2.0 * kPi * (peak.turn + 1.0) / kTurns;
+    // The middle of the two steps.
+    const double angle = 2.0 * kPi * (peak.rotation + 1.0) / kNumRotations;
     const Eigen::Matrix3d R_shape_scan = frameOf(normals_.col(peak.point).cast<double>().normalized()) *
-                                         Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX()) *
+                                         Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()) *
                                          reference.frame.transpose();
     poses.push_back({Eigen::Quaterniond(R_shape_scan),
                      points_.col(peak.point).cast<double>() + R_shape_scan * (center - reference.point),
@@ -204,24 +186,25 @@ ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const
   std::stable_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) { return a.weight > b.weight; });
   struct Cluster {
     Vote first;
-    Eigen::Vector4d turn;
-    Eigen::Vector3d place;
+    Eigen::Vector4d rotation;
+    Eigen::Vector3d position;
     double weight;
   };
-  const double cosine = std::cos(0.5 * kSameAngle), distance = kSamePlace * radii_[static_cast<std::size_t>(shape)];
+  const double cosine = std::cos(0.5 * kMatchingRules.same_angle),
+               distance = kMatchingRules.same_position * radii_[static_cast<std::size_t>(shape)];
   std::vector<Cluster> clusters;
   for (const Vote& vote : votes) {
     const auto same = std::find_if(clusters.begin(), clusters.end(), [&](const Cluster& cluster) {
-      return std::abs(cluster.first.turn.dot(vote.turn)) > cosine &&
-             (cluster.first.place - vote.place).norm() < distance;
+      return std::abs(cluster.first.rotation.dot(vote.rotation)) > cosine &&
+             (cluster.first.position - vote.position).norm() < distance;
     });
     if (same == clusters.end()) {
-      clusters.push_back({vote, vote.weight * vote.turn.coeffs(), vote.weight * vote.place, vote.weight});
+      clusters.push_back({vote, vote.weight * vote.rotation.coeffs(), vote.weight * vote.position, vote.weight});
       continue;
     }
-    const double sign = same->first.turn.dot(vote.turn) < 0.0 ? -1.0 : 1.0;
-    same->turn += sign * vote.weight * vote.turn.coeffs();
-    same->place += vote.weight * vote.place;
+    const double sign = same->first.rotation.dot(vote.rotation) < 0.0 ? -1.0 : 1.0;
+    same->rotation += sign * vote.weight * vote.rotation.coeffs();
+    same->position += vote.weight * vote.position;
     same->weight += vote.weight;
   }
   std::stable_sort(clusters.begin(), clusters.end(),
@@ -230,8 +213,8 @@ ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const
   for (const Cluster& cluster : clusters) {
     if (found.T_shape_scan.size() == static_cast<std::size_t>(num_poses)) break;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = Eigen::Quaterniond(cluster.turn).normalized().toRotationMatrix();
-    pose.translation() = cluster.place / cluster.weight - pose.linear() * center;
+    pose.linear() = Eigen::Quaterniond(cluster.rotation).normalized().toRotationMatrix();
+    pose.translation() = cluster.position / cluster.weight - pose.linear() * center;
     found.T_shape_scan.push_back(pose);
   }
   return found;
@@ -241,20 +224,20 @@ std::vector<ShapeOfPairs> PointPairIndex::nearest(const SurfacePoints& scan, con
   const Eigen::Vector3d center = centerOfMass(scan.points);
   std::vector<Reference> references;
   if (!blocks_.empty())
-    for (int i = 0; i < std::min<int>(kReferences, static_cast<int>(scan.points.cols())); ++i)
+    for (int i = 0; i < std::min<int>(kMatchingRules.num_references, static_cast<int>(scan.points.cols())); ++i)
       for (const int sign : {1, -1}) references.push_back(referenceOf(scan, i, sign));
   std::vector<ShapeOfPairs> found(radii_.size());
   for (std::size_t k = 0; k < found.size(); ++k) found[k].shape = static_cast<int>(k);
   parallelBlocks(blocks_.size(), options.num_threads, [&](std::size_t b) {
     const Block& block = blocks_[b];
     const auto begin = static_cast<std::size_t>(block.first_shape), end = static_cast<std::size_t>(block.end_shape);
-    std::vector<std::int32_t> votes(static_cast<std::size_t>(begins_[end] - begins_[begin]) * kTurns);
+    std::vector<std::int32_t> votes(static_cast<std::size_t>(begins_[end] - begins_[begin]) * kNumRotations);
     std::vector<std::vector<Vote>> poses(end - begin);
     for (const Reference& reference : references) {
       count(block, reference.look_ups, votes);
       for (std::size_t k = begin; k < end; ++k)
         collect(static_cast<int>(k), reference, center,
-                votes.data() + static_cast<std::size_t>(begins_[k] - begins_[begin]) * kTurns, poses[k - begin]);
+                votes.data() + static_cast<std::size_t>(begins_[k] - begins_[begin]) * kNumRotations, poses[k - begin]);
     }
     for (std::size_t k = begin; k < end; ++k)
       found[k] = clustered(static_cast<int>(k), std::move(poses[k - begin]), center, options.num_poses);

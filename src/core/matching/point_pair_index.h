@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/matching/matching_rules.h"
 #include "core/matching/surface_points.h"
 
 namespace pcl_symmetry {
@@ -16,54 +17,49 @@ struct ShapeOfPairs {
 };
 
 struct PairSearchOptions {
-  int num_nearest = 10;  ///< shapes that are returned, >= 0. chosen: see RecognitionOptions::num_candidates
-  int num_poses = 6;     ///< poses of each shape, >= 1. chosen: half misses poses, twice takes twice the time to try
+  int num_nearest = 10;  ///< shapes that are returned, >= 0
+  int num_poses = 6;     ///< poses of each shape, >= 1
   int num_threads = 0;   ///< >= 0; 0 = one per core
 };
 
 /// Finds shapes and poses by pairs of points with their normals (Drost et al. 2010; not in the paper): two points of a
-/// scan lie as far apart, and their normals as turned, as two points of the shape that it shows. What hides a part of
-/// the object takes away pairs, but changes no other: views of the whole, see ViewIndex, change with everything that is
-/// hidden.
+/// scan lie as far apart, and their normals at the same angles, as two points of the shape that it shows. What hides a
+/// part of the object takes away pairs, but changes no other: views of the whole, see ViewIndex, change with everything
+/// that is hidden.
 ///
 /// Departures from the publication: normals have no sign, distances are compared by their ratio, so that shapes may be
 /// of any size, and pairs that many shapes have count less.
 class PointPairIndex {
 public:
-  /// Points of a shape. chosen: half gives poses that are off by twice as much, twice takes four times the memory.
-  static constexpr int kShapePoints = 250;
-  /// Points of a scan that are paired. chosen: time grows with them; half misses poses where little is seen.
-  static constexpr int kScanPoints = 120;
-
-  /// \param shapes the points of each, about kShapePoints.
+  /// \param shapes the points of each, about MatchingRules::num_pair_points.
   /// \param num_threads >= 0; 0 = one per core.
   explicit PointPairIndex(const std::vector<SurfacePoints>& shapes, int num_threads = 0);
 
   int numShapes() const { return static_cast<int>(radii_.size()); }
 
-  /// \param scan some points, about kScanPoints, in random order, in the unit of the shapes.
+  /// \param scan some points, about MatchingRules::num_scan_points, in random order, in the unit of the shapes.
   /// \return most votes first, at most PairSearchOptions::num_nearest.
   std::vector<ShapeOfPairs> nearest(const SurfacePoints& scan, const PairSearchOptions& options = {}) const;
 
 private:
   /// A pose that one point of the scan votes for.
   struct Vote {
-    Eigen::Quaterniond turn;
-    Eigen::Vector3d place;  // of the center of the scan, frame of the shape
+    Eigen::Quaterniond rotation;
+    Eigen::Vector3d position;  // of the center of the scan, frame of the shape
     double weight;
   };
 
   /// A few shapes whose votes fit into the memory next to the processor.
   struct Block {
     int first_shape, end_shape;
-    // Their pairs by key: the first point, counted from the first one of the block, and in the last 8 bits the turn of
-    // the second one about the normal of the first.
+    // Their pairs by key: the first point, counted from the first one of the block, and in the last 8 bits the rotation
+    // of the second one about the normal of the first.
     std::vector<std::uint32_t> key_begins, pairs;
   };
 
-  /// Pairs of the shapes that a pair of the scan is like.
+  /// Pairs of the shapes like one of the scan.
   struct LookUp {
-    std::uint32_t key, turn;
+    std::uint32_t key, rotation;
   };
 
   /// A point of the scan that votes, with its normal of some sign.
@@ -83,7 +79,7 @@ private:
   int keyOf(int distance, int angle, int other_angle, int between) const;
   std::size_t numKeys() const { return weights_.size(); }
 
-  // Points of all shapes, one behind the other: places, normals, where the points of each shape begin.
+  // Points of all shapes, one after the other: positions, normals, where the points of each shape begin.
   Points points_, normals_;
   std::vector<int> begins_ = {0};
   std::vector<double> radii_;  // of the shapes

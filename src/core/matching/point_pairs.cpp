@@ -11,10 +11,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Radii: pairs of points of a surface are told apart from the first distance on, and are not farther apart than the
-// second. chosen: far below the least distance that PointPairIndex takes; derived: the diameter, with rounding.
-constexpr double kNearest = 0.1, kFarthest = 2.1;
-constexpr float kTiny = 1e-20f;  // added to divisors. chosen: far below rounding
+// Added to divisors.
+constexpr float kTiny = 1e-20f;
 
 int angleStep(double cosine, int num_steps, double range) {
   const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
@@ -46,10 +44,10 @@ struct RowInput {
   float point[3], frame[3][3];
 };
 
-/// Squared distances, cosines of the three angles, turns.
+/// Squared distances, cosines of the three angles, rotations.
 struct RowOutput {
   float *sq_distance, *cosine, *other_cosine, *between_cosine;
-  int* turn;
+  int* rotation;
 };
 
 PCL_SYMMETRY_MULTIVERSION void fillCosines(const RowInput& in, const RowOutput& out) {
@@ -69,9 +67,9 @@ PCL_SYMMETRY_MULTIVERSION void fillCosines(const RowInput& in, const RowOutput& 
   }
 }
 
-PCL_SYMMETRY_MULTIVERSION void fillTurns(const RowInput& in, const RowOutput& out) {
+PCL_SYMMETRY_MULTIVERSION void fillRotations(const RowInput& in, const RowOutput& out) {
   const float* __restrict x = in.x, * __restrict y = in.y, * __restrict z = in.z;
-  int* __restrict turn = out.turn;
+  int* __restrict rotation = out.rotation;
   const float px = in.point[0], py = in.point[1], pz = in.point[2];
   const float bx = in.frame[1][0], by = in.frame[1][1], bz = in.frame[1][2];
   const float cx = in.frame[2][0], cy = in.frame[2][1], cz = in.frame[2][2];
@@ -86,7 +84,7 @@ PCL_SYMMETRY_MULTIVERSION void fillTurns(const RowInput& in, const RowOutput& ou
     angle = au < av ? 0.25f - angle : angle;
     angle = u < 0.0f ? 0.5f - angle : angle;
     angle = v < 0.0f ? 1.0f - angle : angle;
-    turn[j] = static_cast<int>(256.0f * angle) & 255;
+    rotation[j] = static_cast<int>(256.0f * angle) & 255;
   }
 }
 
@@ -110,33 +108,33 @@ PointPair pairOf(const Eigen::Matrix3d& frame, const Eigen::Vector3d& first, con
   pair.angle = std::acos(std::clamp(direction.x(), -1.0, 1.0)) / kPi * kPairAngles;
   pair.other_angle = angleStep(std::abs(second_normal.dot(line)) / distance, kPairOtherAngles, 0.5 * kPi);
   pair.between = angleStep(std::abs(second_normal.dot(frame.col(0))), kPairOtherAngles, 0.5 * kPi);
-  const double turn = std::atan2(direction.z(), direction.y()) / (2.0 * kPi);
-  pair.turn = static_cast<std::uint8_t>(static_cast<int>(std::floor((turn + 1.0) * 256.0)) & 255);
+  const double rotation = std::atan2(direction.z(), direction.y()) / (2.0 * kPi);
+  pair.rotation = static_cast<std::uint8_t>(static_cast<int>(std::floor((rotation + 1.0) * 256.0)) & 255);
   return pair;
 }
 
 PairedSurface::PairedSurface(const PointsRef& points, const PointsRef& normals, double radius)
-    : first_step_(static_cast<int>(std::floor(std::log(kNearest * radius) / kPairDistanceStep))) {
+    : first_step_(static_cast<int>(std::floor(std::log(0.1 * radius) / kPairDistanceStep))) {
   const Eigen::Vector3f middle = points.rowwise().mean();
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3f place = (points.col(i) - middle) / static_cast<float>(radius);
-    points_.x.push_back(place.x());
-    points_.y.push_back(place.y());
-    points_.z.push_back(place.z());
+    const Eigen::Vector3f x = (points.col(i) - middle) / static_cast<float>(radius);
+    points_.x.push_back(x.x());
+    points_.y.push_back(x.y());
+    points_.z.push_back(x.z());
     normals_.x.push_back(normals(0, i));
     normals_.y.push_back(normals(1, i));
     normals_.z.push_back(normals(2, i));
   }
   for (int step = first_step_ + 1;; ++step) {
     const double distance = std::exp(kPairDistanceStep * step) / radius;
-    if (distance > kFarthest) break;
+    if (distance > 2.1) break;  // the diameter, with rounding
     sq_distances_.push_back(static_cast<float>(distance * distance));
   }
 }
 
 void PairedSurface::fillRow(int i, PairRow& row) const {
-  static const std::vector<float> kLimits = cosineLimits<kPairAngles>(kPi);
-  static const std::vector<float> kOtherLimits = cosineLimits<kPairOtherAngles>(0.5 * kPi);
+  static const std::vector<float> limits = cosineLimits<kPairAngles>(kPi);
+  static const std::vector<float> other_limits = cosineLimits<kPairOtherAngles>(0.5 * kPi);
   const std::size_t size = points_.x.size(), at = static_cast<std::size_t>(i);
   const Eigen::Matrix3d frame = frameOf(Eigen::Vector3f(normals_.x[at], normals_.y[at], normals_.z[at]).cast<double>());
   RowInput in{points_.x.data(),
@@ -152,20 +150,20 @@ void PairedSurface::fillRow(int i, PairRow& row) const {
     for (int c = 0; c < 3; ++c) in.frame[k][c] = static_cast<float>(frame(c, k));
   std::vector<float> cosine(size), other(size), between(size);
   row.distance.resize(size);
-  row.turn.resize(size);
+  row.rotation.resize(size);
   row.distance_step.assign(size, first_step_);
   for (std::vector<int>* steps : {&row.angle_step, &row.other_step, &row.between_step}) steps->assign(size, 0);
-  const RowOutput out{row.distance.data(), cosine.data(), other.data(), between.data(), row.turn.data()};
+  const RowOutput out{row.distance.data(), cosine.data(), other.data(), between.data(), row.rotation.data()};
   fillCosines(in, out);
-  fillTurns(in, out);
-  const auto count = [&](const std::vector<float>& values, const std::vector<float>& limits, float sign,
+  fillRotations(in, out);
+  const auto count = [&](const std::vector<float>& values, const std::vector<float>& ends, float sign,
                          std::vector<int>& steps) {
-    countLimits(values.data(), in.size, limits.data(), static_cast<int>(limits.size()), sign, steps.data());
+    countLimits(values.data(), in.size, ends.data(), static_cast<int>(ends.size()), sign, steps.data());
   };
   count(row.distance, sq_distances_, 1.0f, row.distance_step);
-  count(cosine, kLimits, -1.0f, row.angle_step);
-  count(other, kOtherLimits, -1.0f, row.other_step);
-  count(between, kOtherLimits, -1.0f, row.between_step);
+  count(cosine, limits, -1.0f, row.angle_step);
+  count(other, other_limits, -1.0f, row.other_step);
+  count(between, other_limits, -1.0f, row.between_step);
   for (float& distance : row.distance) distance = std::sqrt(distance);
 }
 

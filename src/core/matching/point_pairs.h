@@ -8,13 +8,12 @@
 
 namespace pcl_symmetry {
 
-/// What tells pairs of points with their normals apart (Drost et al. 2010; not in the paper).
+/// What distinguishes pairs of points with their normals (Drost et al. 2010; not in the paper).
 
-// Step of the logarithm of a distance. chosen: 16 %, as the points of a shape are apart; half misses pairs, twice finds
-// twice as many that do not fit.
+// Step of the logarithm of a distance: 16 %, the spacing of the points of a shape.
 constexpr double kPairDistanceStep = 0.15;
-// Angles between the first normal and the line of a pair, of any sign, and of the second normal and between both
-// normals, without sign. chosen: 15 degrees a step, see kPairDistanceStep.
+// Steps of 15 degrees of the angle between the first normal and the line, and of the angles of the second normal with
+// the line and the first normal, which have no sign.
 constexpr int kPairAngles = 12, kPairOtherAngles = 6;
 
 /// Two points with their normals.
@@ -22,14 +21,14 @@ struct PointPair {
   double log_distance;       ///< in steps
   double angle;              ///< between the first normal and the line, in steps
   int other_angle, between;  ///< steps
-  std::uint8_t turn;         ///< of the second point about the first normal, in 1/256
+  std::uint8_t rotation;     ///< of the second point about the first normal, in 1/256 of a full one
 };
 
-/// A point with its normal as a frame: the normal, and two directions across it.
+/// A point with its normal as a frame: the normal, and two directions perpendicular to it.
 Eigen::Matrix3d frameOf(const Eigen::Vector3d& normal);
 
 /// \param frame of the first point.
-/// \param second another place than \p first.
+/// \param second another point than \p first.
 PointPair pairOf(const Eigen::Matrix3d& frame, const Eigen::Vector3d& first, const Eigen::Vector3d& second,
                  const Eigen::Vector3d& second_normal);
 
@@ -37,10 +36,10 @@ PointPair pairOf(const Eigen::Matrix3d& frame, const Eigen::Vector3d& first, con
 struct PairRow {
   std::vector<float> distance;                                           ///< radii
   std::vector<int> distance_step, angle_step, other_step, between_step;  ///< valid where distance > 0
-  std::vector<int> turn;                                                 ///< 1/256
+  std::vector<int> rotation;                                             ///< 1/256
 };
 
-/// Points whose pairs are all told apart: what pairOf() finds for each, many at once.
+/// What pairOf() finds for all pairs of points of a surface, many at once.
 class PairedSurface {
 public:
   /// \param normals unit.
@@ -51,7 +50,7 @@ public:
   void fillRow(int i, PairRow& row) const;
 
 private:
-  /// Coordinates, one behind the other.
+  /// Coordinates, one after the other.
   struct Columns {
     std::vector<float> x, y, z;
   };

@@ -12,26 +12,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Points of each cloud that all poses are judged by. measured: of 71 objects of scenes of fold 0 that are hidden by 30
-// to 70 %, the model that is shown has the best pose for 67 with 60 and with 120 points, without noise.
-constexpr int kJudgedPoints = 60;
-// Points of each cloud that poses are improved by. chosen: half ranks models by chance, twice takes twice the time.
-constexpr int kImprovedPoints = 120;
-// Radii of the shape, width of the Gaussian that all poses are judged with. measured: with 0.12 as many models are
-// first (66 of 71, see kJudgedPoints; 24 poses of each).
-constexpr double kJudgedWidth = 0.2;
-// Best poses of all shapes that are improved. measured: 300 leave one of 71 models more out of the first three than
-// 600, see kJudgedPoints.
-constexpr std::size_t kNumImproved = 400;
-// Steps of the improvement. chosen: half shrinks the Gaussian faster than poses follow, twice takes twice the time.
-constexpr int kSteps = 6;
-// Radii of the shape, widths of the Gaussian at the first and the last step. chosen: poses of pairs are off by the
-// first. measured, the last, with the noise of a depth camera: 0.05 and 0.08 leave 58 and 61 of 71 models among the
-// first three with 24 poses of each model, 0.08 and 0.12 65 and 67 with 48.
-constexpr double kFirstWidth = 0.25, kLastWidth = 0.1;
-// Poses in one block of a thread. chosen: half adds overhead, twice leaves threads idle; results do not depend on it.
-constexpr std::size_t kPosesInBlock = 64;
-
 /// A pose of one of the shapes, about the centers.
 struct Trial {
   std::size_t shape;
@@ -39,21 +19,23 @@ struct Trial {
 };
 
 void improveAndJudge(RankedPose& pose, const PoseScorer& scorer, double radius) {
-  PoseScorer::Detail detail{kImprovedPoints, 0.0};
+  PoseScorer::Detail detail{kMatchingRules.num_improved_points, 0.0};
   detail.unit = radius;
-  for (int i = 0; i < kSteps; ++i) {
-    const double share = static_cast<double>(i) / (kSteps - 1);
-    detail.width = kFirstWidth * std::pow(kLastWidth / kFirstWidth, share) * radius;
+  for (int i = 0; i < kMatchingRules.num_steps; ++i) {
+    const double share = static_cast<double>(i) / (kMatchingRules.num_steps - 1);
+    detail.width =
+        kMatchingRules.first_width * std::pow(kMatchingRules.last_width / kMatchingRules.first_width, share) * radius;
     pose.T_model_scan = scorer.step(pose.T_model_scan, detail);
   }
-  pose.score = scorer.score(pose.T_model_scan, {kImprovedPoints, kLastWidth * radius});
+  pose.score =
+      scorer.score(pose.T_model_scan, {kMatchingRules.num_improved_points, kMatchingRules.last_width * radius});
 }
 
 /// Calls judge(pose, scorer, radius of the shape) for each trial and sorts them, best first.
 template <typename Judge>
 void judgeAll(std::vector<Trial>& trials, const ScreenedSurface& scan, const std::vector<PosesOfShape>& shapes,
               int num_threads, const Judge& judge) {
-  parallelRanges(trials.size(), kPosesInBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(trials.size(), 64, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ScreenedSurface& shape = *shapes[trials[i].shape].shape;
       judge(trials[i].pose, PoseScorer(scan.surface, shape.surface), shape.radius);
@@ -101,9 +83,10 @@ std::vector<ScreenedShape> screenPoses(const ScreenedSurface& scan, const std::v
                                        const PoseScreeningOptions& options) {
   std::vector<Trial> trials = trialsOf(scan, shapes);
   judgeAll(trials, scan, shapes, options.num_threads, [](RankedPose& pose, const PoseScorer& scorer, double radius) {
-    pose.score = scorer.score(pose.T_model_scan, {kJudgedPoints, kJudgedWidth * radius});
+    pose.score =
+        scorer.score(pose.T_model_scan, {kMatchingRules.num_judged_points, kMatchingRules.judged_width * radius});
   });
-  trials.resize(std::min(trials.size(), kNumImproved));
+  trials.resize(std::min<std::size_t>(trials.size(), kMatchingRules.num_improved));
   judgeAll(trials, scan, shapes, options.num_threads, improveAndJudge);
 
   std::vector<std::vector<RankedPose>> of_shape(shapes.size());

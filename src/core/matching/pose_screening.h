@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/matching/matching_rules.h"
 #include "core/matching/surface_points.h"
 #include "core/registration/posed_surface.h"
 #include "core/registration/ranked_poses.h"
@@ -15,9 +16,6 @@ struct ScreenedSurface {
   Eigen::Vector3d center;  ///< of the bounding ball, input frame
   double radius;           ///< of the bounding ball, input units, >= 0
   PosedSurface surface;    ///< about the center, input units
-
-  /// Points of a shape. chosen: half blurs thin parts, twice takes twice the memory.
-  static constexpr int kShapePoints = 1000;
 
   /// \param points in random order, at least one.
   /// \param seen what the scanner saw of a scan, input frame; nothing for a shape.
@@ -31,15 +29,11 @@ struct PosesOfShape {
 };
 
 struct PoseScreeningOptions {
-  int num_shapes = 10;  ///< shapes that are returned, >= 0. chosen: see RecognitionOptions::num_candidates
-  /// Merit behind the best pose of all shapes at which a shape is left out, and shapes that stay all the same.
-  /// measured: of 119 objects of scenes of fold 0 that are hidden by 30 to 70 %, with the noise of a depth camera, 115
-  /// have their model among ten, 114 of these among the first three, the last one ninth and 0.16 behind. 4.4 of ten
-  /// models are within 0.15, 8.3 within twice that.
-  double most_behind = 0.15;
-  int least_shapes = 3;
-  int num_poses = 6;    ///< poses of each shape, >= 1. chosen: half misses poses, twice takes twice the time to try
-  int num_threads = 0;  ///< >= 0; 0 = one per core
+  int num_shapes = 10;        ///< shapes that are returned, >= 0
+  double most_behind = 0.15;  ///< merit behind the best pose of all shapes at which a shape is left out,
+  int least_shapes = 3;       ///< unless it is one of the first
+  int num_poses = 6;          ///< poses of each shape, >= 1
+  int num_threads = 0;        ///< >= 0; 0 = one per core
 };
 
 /// A shape that is left, with its best poses.
@@ -48,10 +42,10 @@ struct ScreenedShape {
   std::vector<Eigen::Isometry3d> T_shape_scan;  ///< input frames, best first, at least one
 };
 
-/// Tries thousands of poses of many shapes with a scan (not in the paper): votes of pairs of points say little where
+/// Tries thousands of poses of many shapes with a scan (not in the paper): votes of pairs of points are weak where
 /// much of an object is hidden, but one of many poses that got votes is near the true one. All poses are judged by a
-/// few points and by the space that the scanner saw to be empty; the best of all shapes are improved by steps of Gauss
-/// and Newton and judged again.
+/// few points and by the space that the scanner saw to be empty; the best of all shapes are improved by
+/// Gauss-Newton steps and judged again.
 /// \param shapes in the unit of the scan.
 /// \return the shapes with the best poses, best first, at most PoseScreeningOptions::num_shapes.
 std::vector<ScreenedShape> screenPoses(const ScreenedSurface& scan, const std::vector<PosesOfShape>& shapes,

@@ -5,27 +5,21 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/matching/signature_axes.h"
+#include "core/base/check.h"
 #include "core/geometry/axis_rotations.h"
-#include "core/geometry/principal_axes.h"
 #include "core/geometry/cell_normals.h"
+#include "core/geometry/principal_axes.h"
+#include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr int kSide = kSignatureCells;            // derived: short name
-constexpr int kNumCells = kSide * kSide * kSide;  // derived: cells of one cube
-// Finer cells, which count as surface or not: the density of the points does not matter. chosen: half the size of a
-// cell; at the full size walls fill whole cells, at a quarter gaps between points count as holes.
-constexpr int kFineSide = 2 * kSide;
-constexpr int kNumFineCells = kFineSide * kFineSide * kFineSide;  // derived: fine cells of one cube
-// Half the side of a cube, in mean distances of the points from the middle. chosen: half cuts away the outer parts of
-// most shapes, twice leaves most cells empty.
-constexpr double kReach = 2.5;
-// Cells across the bounding ball, one normal each. chosen: half rounds edges, twice leaves too few points in a cell.
-constexpr int kNormalCells = 60;
-// derived: rows and columns of the entries of n n^T, in the order of kNumOrientations.
+constexpr int kNumCells = kSignatureCells * kSignatureCells * kSignatureCells;
+// Finer cells count as surface or not, so that the density of the points does not matter.
+constexpr int kFineSide = 2 * kSignatureCells;
+constexpr int kNumFineCells = kFineSide * kFineSide * kFineSide;
+// Rows and columns of the entries of n n^T, see kNumOrientations.
 constexpr int kPairs[kNumOrientations][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
 
 using Orientation = Eigen::Matrix<float, kNumOrientations, 1>;
@@ -42,18 +36,18 @@ struct FineCell {
   int count = 0;
 };
 
-/// Adds a value to the eight cells around a place, by trilinear weights.
-/// \param place in cells from the corner of the cube.
-void spread(const Orientation& value, const Eigen::Array3f& place, float* cells) {
-  const Eigen::Array3f corner = (place - 0.5f).floor();
-  const Eigen::Array3f t = place - 0.5f - corner;
+/// Adds a value to the eight cells around a position, by trilinear weights.
+/// \param position in cells from the corner of the cube.
+void spread(const Orientation& value, const Eigen::Array3f& position, float* cells) {
+  const Eigen::Array3f corner = (position - 0.5f).floor();
+  const Eigen::Array3f t = position - 0.5f - corner;
   const Eigen::Array3i first = corner.cast<int>();
   for (int k = 0; k < 8; ++k) {
     const Eigen::Array3i step(k & 1, k >> 1 & 1, k >> 2);
     const Eigen::Array3i at = first + step;
-    if ((at < 0).any() || (at >= kSide).any()) continue;
+    if ((at < 0).any() || (at >= kSignatureCells).any()) continue;
     const float weight = (step == 1).select(t, 1.0f - t).prod();
-    float* cell = cells + (at.z() * kSide + at.y()) * kSide + at.x();
+    float* cell = cells + (at.z() * kSignatureCells + at.y()) * kSignatureCells + at.x();
     for (int c = 0; c < kNumOrientations; ++c) cell[c * kNumCells] += weight * value[c];
   }
 }
@@ -82,14 +76,15 @@ std::vector<FineCell> fineCells(const Points& points, const Eigen::Matrix3Xf& no
 /// \param cube kNumOrientations * kNumCells values, 0 before.
 void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::vector<int>& normal_of_points,
               float* cube) {
-  const float reach = static_cast<float>(kReach) * points.colwise().norm().mean();
+  const float reach = static_cast<float>(kMatchingRules.signature_reach) * points.colwise().norm().mean();
   const std::vector<FineCell> fine = fineCells(points, normals, normal_of_points, reach);
   for (int i = 0; i < kNumFineCells; ++i) {
     const FineCell& cell = fine[static_cast<std::size_t>(i)];
     if (cell.count == 0) continue;
     const Eigen::Array3f at(static_cast<float>(i % kFineSide), static_cast<float>(i / kFineSide % kFineSide),
                             static_cast<float>(i / (kFineSide * kFineSide)));
-    spread(cell.sum / static_cast<float>(cell.count), (at + 0.5f) * (static_cast<float>(kSide) / kFineSide), cube);
+    spread(cell.sum / static_cast<float>(cell.count), (at + 0.5f) * (static_cast<float>(kSignatureCells) / kFineSide),
+           cube);
   }
   Eigen::Map<Eigen::ArrayXf> values(cube, kNumOrientations * kNumCells);
   values = values.sign() * values.abs().sqrt();
@@ -119,12 +114,13 @@ CubeRotation makeCubeRotation(const Eigen::Matrix3i& rotation) {
     const int from_orientation = orientationIndex(from_axis[a], from_axis[b]);
     result.sign[static_cast<std::size_t>(c)] = static_cast<float>(axis_sign[a] * axis_sign[b]);
     for (int i = 0; i < kNumCells; ++i) {
-      const int at[3] = {i % kSide, i / kSide % kSide, i / (kSide * kSide)};
+      const int at[3] = {i % kSignatureCells, i / kSignatureCells % kSignatureCells,
+                         i / (kSignatureCells * kSignatureCells)};
       int from[3];
       for (int axis = 0; axis < 3; ++axis)
-        from[from_axis[axis]] = axis_sign[axis] > 0 ? at[axis] : kSide - 1 - at[axis];
+        from[from_axis[axis]] = axis_sign[axis] > 0 ? at[axis] : kSignatureCells - 1 - at[axis];
       result.source[static_cast<std::size_t>(c * kNumCells + i)] =
-          from_orientation * kNumCells + (from[2] * kSide + from[1]) * kSide + from[0];
+          from_orientation * kNumCells + (from[2] * kSignatureCells + from[1]) * kSignatureCells + from[0];
     }
   }
   return result;
@@ -139,16 +135,49 @@ const CubeRotation& cubeRotation(int rotation) {
   return rotations[static_cast<std::size_t>(rotation)];
 }
 
+/// Points about the center of their bounding ball, in units of its radius: squares neither overflow nor underflow.
+Points inRadii(const PointsRef& points) {
+  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
+  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+  const BoundingBall ball = boundingBall(points);
+  check(ball.radius > 0.0, "radius of the points", ball.radius, "> 0");
+  return normalizePoints(points, ball.center, ball.radius);
+}
+
+/// Points in the given axes, about the point half-way between their center of mass and the middle of their extent.
+Points aboutMiddle(const Points& points, const Eigen::Matrix3d& axes) {
+  Points rotated = axes.transpose().cast<float>() * points;
+  const Eigen::Vector3f mean = rotated.rowwise().mean();
+  const Eigen::Vector3f middle = 0.5f * (rotated.rowwise().minCoeff() + rotated.rowwise().maxCoeff());
+  rotated.colwise() -= 0.5f * (mean + middle);
+  return rotated;
+}
+
+/// Points divided by their root mean squares along the axes.
+Points stretched(const Points& points) {
+  const Eigen::Vector3f spread = points.rowwise().norm();
+  return spread.cwiseMax(kMatchingRules.min_spread * spread.maxCoeff()).cwiseInverse().asDiagonal() * points;
+}
+
+/// At most \p max_points points, at equal steps in the input.
+Points thinned(const PointsRef& points, int max_points) {
+  if (points.cols() <= max_points) return points;
+  Points kept(3, max_points);
+  for (Eigen::Index i = 0; i < max_points; ++i) kept.col(i) = points.col(i * points.cols() / max_points);
+  return kept;
+}
+
 }  // namespace
 
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes) {
   const Points centered = inRadii(points);
-  const CellNormals surface = cellNormals(centered, Eigen::Vector3d::Constant(-1.0), 2.0 / kNormalCells, kNormalCells);
-  const Points turned = aboutMiddle(centered, axes);
+  const CellNormals surface = cellNormals(centered, Eigen::Vector3d::Constant(-1.0), 2.0 / kMatchingRules.normal_cells,
+                                          kMatchingRules.normal_cells);
+  const Points rotated = aboutMiddle(centered, axes);
   const Eigen::Matrix3Xf normals = axes.transpose().cast<float>() * surface.normals;
   std::vector<float> signature(kSignatureSize, 0.0f);
-  fillCube(turned, normals, surface.cell_of_points, signature.data());
-  fillCube(stretched(turned), normals, surface.cell_of_points, signature.data() + kSignatureSize / 2);
+  fillCube(rotated, normals, surface.cell_of_points, signature.data());
+  fillCube(stretched(rotated), normals, surface.cell_of_points, signature.data() + kSignatureSize / 2);
   for (float& value : signature) value *= static_cast<float>(std::sqrt(0.5));
   return signature;
 }
@@ -158,8 +187,8 @@ std::vector<Eigen::Matrix3d> signatureFrames(const PointsRef& points, const Symm
   const Eigen::Vector3d first = frame.axes.col(0);
   Eigen::Matrix<double, 3, 2> across;
   across << first.unitOrthogonal(), first.cross(first.unitOrthogonal());
-  const Eigen::Matrix<double, 3, 2> turned = principal.axes.transpose() * across;
-  const Eigen::Matrix2d spread_across = turned.transpose() * principal.variances.asDiagonal() * turned;
+  const Eigen::Matrix<double, 3, 2> rotated = principal.axes.transpose() * across;
+  const Eigen::Matrix2d spread_across = rotated.transpose() * principal.variances.asDiagonal() * rotated;
   // A matrix of two rows is tridiagonal as it is; Eigen's general way takes ten seconds to compile.
   const double scale = spread_across.cwiseAbs().maxCoeff();
   const Eigen::Matrix2d scaled = spread_across / (scale > 0.0 ? scale : 1.0);
@@ -173,7 +202,7 @@ std::vector<Eigen::Matrix3d> signatureFrames(const PointsRef& points, const Symm
 }
 
 FrameOptions signatureFrameOptions() {
-  FrameOptions options;  // chosen: half the default resolution along theta, phi and r
+  FrameOptions options;  // half the default resolution
   options.num_cells = 32;
   options.num_theta = 16;
   options.num_phi = 64;
@@ -193,6 +222,24 @@ void rotateSignature(const float* signature, int rotation, float* rotated) {
       for (int i = 0; i < kNumCells; ++i) *rotated++ = sign * from[source[i]];
     }
   }
+}
+
+ShapeDescription describeShape(const PointsRef& points, const DescriptionOptions& options,
+                               const Visibility* visibility) {
+  FrameOptions frame_options = signatureFrameOptions();
+  frame_options.seed = options.seed;
+  frame_options.num_threads = options.num_threads;
+  ShapeDescription result;
+  result.frame = symmetryFrame(thinned(points, options.max_frame_points), frame_options, visibility);
+  const Points used = thinned(points, options.max_points);
+  const std::vector<Eigen::Matrix3d> frames = signatureFrames(used, result.frame);
+  result.signatures.resize(kSignatureSize, static_cast<Eigen::Index>(frames.size()));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::vector<float> signature = shapeSignature(used, frames[i]);
+    result.signatures.col(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::VectorXf>(signature.data(), kSignatureSize);
+  }
+  return result;
 }
 
 }  // namespace pcl_symmetry

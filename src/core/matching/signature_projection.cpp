@@ -15,15 +15,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Dimensions that are searched besides those that are kept. chosen: half slows convergence of the weakest components,
-// twice takes more time.
-constexpr int kSpare = 16;
-// Share of the greatest variance, below which components are rounding errors. chosen: 84 float epsilons; half or twice
-// changes the last components alone.
-constexpr float kLeastVariance = 1e-5f;
-// Rows per block of a product. chosen: at half the overhead per block grows, at twice threads idle.
-constexpr Eigen::Index kRows = 512;
-
 /// Index of the rotation a^T b.
 int quotient(int a, int b) {
   const auto& rotations = axisRotations();
@@ -35,7 +26,7 @@ int quotient(int a, int b) {
 /// a * b, computed by blocks of rows.
 Eigen::MatrixXf product(const Eigen::MatrixXf& a, const Eigen::Ref<const Eigen::MatrixXf>& b, int num_threads) {
   Eigen::MatrixXf result(a.rows(), b.cols());
-  parallelRanges(static_cast<std::size_t>(a.rows()), kRows, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(static_cast<std::size_t>(a.rows()), 512, num_threads, [&](std::size_t begin, std::size_t end) {
     const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
     result.middleRows(first, count).noalias() = a.middleRows(first, count) * b;
   });
@@ -70,7 +61,7 @@ struct Components {
 /// The greatest eigenvalues of a symmetric matrix by subspace iteration.
 Components principalComponents(const Eigen::MatrixXf& products, const ProjectionOptions& options) {
   const Eigen::Index size = products.rows();
-  const Eigen::Index searched = std::min<Eigen::Index>(size, options.num_dimensions + kSpare);
+  const Eigen::Index searched = std::min<Eigen::Index>(size, options.num_dimensions + 16);
   RandomStream random(options.seed);
   const auto orthonormal = [&](const Eigen::MatrixXf& spanning) -> Eigen::MatrixXf {
     return Eigen::HouseholderQR<Eigen::MatrixXf>(spanning).householderQ() * Eigen::MatrixXf::Identity(size, searched);
@@ -84,8 +75,7 @@ Components principalComponents(const Eigen::MatrixXf& products, const Projection
   const Eigen::VectorXf falling = solver.eigenvalues().reverse();
   check(falling[0] > 0.0f, "variance of the shapes", falling[0], "> 0");
   Eigen::Index kept = 0;
-  while (kept < std::min<Eigen::Index>(searched, options.num_dimensions) && falling[kept] > kLeastVariance * falling[0])
-    ++kept;
+  while (kept < std::min<Eigen::Index>(searched, options.num_dimensions) && falling[kept] > 1e-5f * falling[0]) ++kept;
   return {space * solver.eigenvectors().rowwise().reverse().leftCols(kept), falling.head(kept)};
 }
 
@@ -126,28 +116,20 @@ Eigen::MatrixXf whitenedBasis(const Eigen::MatrixXf& signatures, const Component
 std::vector<Eigen::MatrixXf> rotationsOfComponents(const Components& components, Eigen::Index num_shapes,
                                                    int num_threads) {
   const Eigen::Index n = num_shapes;
-  std::vector<Eigen::MatrixXf> turns(kNumAxisRotations);
+  std::vector<Eigen::MatrixXf> rotations(kNumAxisRotations);
   parallelBlocks(kNumAxisRotations, num_threads, [&](std::size_t r) {
     Eigen::MatrixXf moved(components.vectors.rows(), components.vectors.cols());
     for (int g = 0; g < kNumAxisRotations; ++g)
       moved.middleRows(g * n, n) = components.vectors.middleRows(quotient(static_cast<int>(r), g) * n, n);
-    turns[r].noalias() = components.vectors.transpose() * moved;
+    rotations[r].noalias() = components.vectors.transpose() * moved;
   });
-  return turns;
+  return rotations;
 }
 
 }  // namespace
 
-void ProjectionOptions::validate() const {
-  check(num_dimensions >= 1, "num_dimensions", num_dimensions, ">= 1");
-  check(whitening >= 0.0 && whitening <= 1.0, "whitening", whitening, "in [0, 1]");
-  check(num_iterations >= 1, "num_iterations", num_iterations, ">= 1");
-  checkNumThreads(num_threads);
-}
-
 SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options,
                                              SignatureRotation rotate) {
-  options.validate();
   check(rotate != rotateSignature || signatures.rows() == kSignatureSize, "size of a signature", signatures.rows(),
         "kSignatureSize");
   check(signatures.cols() >= 1, "number of shapes", signatures.cols(), ">= 1");
@@ -155,7 +137,7 @@ SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, 
   SignatureProjection result;
   result.mean_ = rotationMean(signatures, rotate);
   result.basis_ = whitenedBasis(signatures, components, rotate, options);
-  result.turns_ = rotationsOfComponents(components, signatures.cols(), options.num_threads);
+  result.rotations_ = rotationsOfComponents(components, signatures.cols(), options.num_threads);
   return result;
 }
 
@@ -176,14 +158,16 @@ Eigen::MatrixXf SignatureProjection::rotations(const Eigen::Ref<const Eigen::Mat
   Eigen::MatrixXf result(numDimensions(), kNumAxisRotations * compact.cols());
   for (int r = 0; r < kNumAxisRotations; ++r)
     for (Eigen::Index i = 0; i < compact.cols(); ++i)
-      result.col(kNumAxisRotations * i + r) = (turns_[static_cast<std::size_t>(r)] * compact.col(i)).stableNormalized();
+      result.col(kNumAxisRotations * i + r) =
+          (rotations_[static_cast<std::size_t>(r)] * compact.col(i)).stableNormalized();
   return result;
 }
 
 std::vector<float> SignatureProjection::toValues() const {
   std::vector<float> values(mean_.data(), mean_.data() + mean_.size());
   values.insert(values.end(), basis_.data(), basis_.data() + basis_.size());
-  for (const Eigen::MatrixXf& turn : turns_) values.insert(values.end(), turn.data(), turn.data() + turn.size());
+  for (const Eigen::MatrixXf& rotation : rotations_)
+    values.insert(values.end(), rotation.data(), rotation.data() + rotation.size());
   return values;
 }
 
@@ -201,7 +185,7 @@ SignatureProjection SignatureProjection::fromValues(const std::vector<float>& va
   result.basis_ = Eigen::Map<const Eigen::MatrixXf>(next, kSignatureSize, k);
   next += kSignatureSize * k;
   for (int r = 0; r < kNumAxisRotations; ++r, next += k * k)
-    result.turns_.emplace_back(Eigen::Map<const Eigen::MatrixXf>(next, k, k));
+    result.rotations_.emplace_back(Eigen::Map<const Eigen::MatrixXf>(next, k, k));
   return result;
 }
 

@@ -9,20 +9,13 @@
 namespace pcl_symmetry {
 
 struct ProjectionOptions {
-  /// Dimensions of the compact form, >= 1; fewer where the references span fewer. chosen: half loses detail, twice
-  /// takes twice the memory.
-  int num_dimensions = 256;
+  int num_dimensions = 256;  ///< of the compact form, >= 1; fewer where the references span fewer
   /// Coefficients are divided by their standard deviation to this power, in [0, 1]: what all shapes have in common
-  /// counts less. chosen: 0 is the L2 distance of the signatures, 1 lets noise count as much as shape.
+  /// counts less. 0 is the L2 distance of the signatures, 1 lets noise count as much as shape.
   double whitening = 0.4;
-  /// Iterations of the search for the components of greatest variance, >= 1. chosen: half leaves the weakest components
-  /// inexact, twice takes twice the time.
-  int num_iterations = 4;
+  int num_iterations = 4;  ///< of the search for the components of greatest variance, >= 1
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
-
-  /// \throws std::invalid_argument naming field, value and rule.
-  void validate() const;
 };
 
 /// Rotates a signature or another descriptor by one of the axisRotations().
@@ -38,9 +31,9 @@ class SignatureProjection {
 public:
   SignatureProjection() = default;
 
-  /// \param signatures S x N, one reference shape per column, N >= 1; README measures 200 of 904 shapes.
+  /// \param signatures S x N, one reference shape per column, N >= 1.
   /// \param rotate rotates such a column.
-  /// \throws std::invalid_argument for bad options, no shape, or shapes that are all alike.
+  /// \throws std::invalid_argument for no shape, or shapes that are all alike.
   static SignatureProjection fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options = {},
                                  SignatureRotation rotate = rotateSignature);
 
@@ -64,9 +57,9 @@ public:
   static SignatureProjection fromValues(const std::vector<float>& values);
 
 private:
-  Eigen::VectorXf mean_;                // S
-  Eigen::MatrixXf basis_;               // S x K, whitening included
-  std::vector<Eigen::MatrixXf> turns_;  // 24, K x K
+  Eigen::VectorXf mean_;                    // S
+  Eigen::MatrixXf basis_;                   // S x K, whitening included
+  std::vector<Eigen::MatrixXf> rotations_;  // 24, K x K
 };
 
 }  // namespace pcl_symmetry

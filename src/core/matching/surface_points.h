@@ -13,7 +13,7 @@ struct SurfacePoints {
   Points normals;  ///< 3 x N, unit, of any sign
 };
 
-/// A few points of a surface, evenly spread: none is much closer to another than an even spread of so many allows.
+/// A few points of a surface, evenly spread: none is much closer to another than their number allows.
 /// \param points 3 x N, finite, N >= 1.
 /// \param count >= 1.
 /// \param seed of the choice.
@@ -21,7 +21,7 @@ struct SurfacePoints {
 /// points where there are no more.
 SurfacePoints evenSurfacePoints(const Points& points, int count, std::uint64_t seed);
 
-/// The same for several counts: directions of the surface are found once.
+/// The same for several counts.
 std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::vector<int>& counts, std::uint64_t seed);
 
 }  // namespace pcl_symmetry

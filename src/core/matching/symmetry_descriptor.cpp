@@ -1,53 +1,15 @@
 #include "core/matching/symmetry_descriptor.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/base/simd.h"
+#include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-// Cells along each side of the distance transform that planes are measured in. chosen: 2 cells to a sigma; half makes
-// steps of f visible in D, twice takes eight times the time and memory.
-constexpr int kTransformCells = 64;
-// Radii of the ball. chosen: planes are told apart by a narrower Gaussian than places; half makes D sensitive to the
-// sampling, twice blurs neighbouring planes.
-constexpr double kTransformSigma = 1.0 / 16.0;
-// Partial sums. chosen: 32 floats are two AVX-512 or four AVX registers and hide the latency of additions; half waits
-// for it, twice gains nothing.
-constexpr std::size_t kLanes = 32;
-
-PCL_SYMMETRY_MULTIVERSION
-float sumOfSquares(const float* a, const float* b, std::size_t size) {
-  float sums[kLanes] = {};
-  std::size_t i = 0;
-  for (; i + kLanes <= size; i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const float difference = a[i + lane] - b[i + lane];
-      sums[lane] += difference * difference;
-    }
-  }
-  for (; i < size; ++i) sums[i % kLanes] += (a[i] - b[i]) * (a[i] - b[i]);
-  float sum = 0.0f;
-  for (const float lane : sums) sum += lane;
-  return sum;
-}
-
-/// sin(theta) at the centers of the bins of theta.
-const std::array<float, kDescriptorBins>& sines() {
-  static const std::array<float, kDescriptorBins> values = [] {
-    std::array<float, kDescriptorBins> made;
-    for (int t = 0; t < kDescriptorBins; ++t)
-      made[static_cast<std::size_t>(t)] = static_cast<float>(std::sin((t + 0.5) * (0.5 * kPi) / kDescriptorBins));
-    return made;
-  }();
-  return values;
-}
 
 /// sqrt(max(D, 0)) of the planes within distance 1 of the origin.
 /// \param num_radius bins of r.
@@ -85,8 +47,8 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
   edt_options.num_cells = kDescriptorBins;
   SymmetryDescriptors result;
   result.gedt = GaussianEdt(scaled, edt_options).values();
-  edt_options.num_cells = kTransformCells;
-  edt_options.sigma = kTransformSigma;
+  edt_options.num_cells = kMatchingRules.transform_cells;
+  edt_options.sigma = kMatchingRules.transform_sigma;
   const GaussianEdt edt(scaled, edt_options);
   result.prst = prstOf(edt, kDescriptorBins, options);
   // A single bin of r is centered on the planes through the origin.
@@ -95,15 +57,19 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
 }
 
 float sqDistance(const float* a, const float* b, std::size_t size) {
-  return sumOfSquares(a, b, size);
+  using Values = Eigen::Map<const Eigen::VectorXf>;
+  const auto count = static_cast<Eigen::Index>(size);
+  return (Values(a, count) - Values(b, count)).squaredNorm();
 }
 
 float planeDescriptorDistance(const float* a, const float* b, std::size_t size) {
   const std::size_t row = size / kDescriptorBins;
   check(row * kDescriptorBins == size, "size", size, "a multiple of the number of bins");
-  float sum = 0.0f;
-  for (std::size_t t = 0; t < kDescriptorBins; ++t) sum += sines()[t] * sumOfSquares(a + t * row, b + t * row, row);
-  return std::sqrt(sum);
+  double sum = 0.0;
+  for (std::size_t t = 0; t < kDescriptorBins; ++t)
+    sum += std::sin((static_cast<double>(t) + 0.5) * (0.5 * kPi) / kDescriptorBins) *
+           sqDistance(a + t * row, b + t * row, row);
+  return static_cast<float>(std::sqrt(sum));
 }
 
 }  // namespace pcl_symmetry

@@ -5,23 +5,20 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
 
 /// Bins of theta, of phi and of r, and cells along each side of the distance transform.
-constexpr int kDescriptorBins = 32;  // derived: 32^3 = 32 768 floats, Section 5.2
-constexpr int kPRSTSize = kDescriptorBins * kDescriptorBins * kDescriptorBins;  // derived: theta x phi x r
-constexpr int kPRSDSize = kDescriptorBins * kDescriptorBins;                    // derived: theta x phi
-constexpr int kGEDTSize = kPRSTSize;                                            // derived: cells x cells x cells
+constexpr int kDescriptorBins = 32;
+constexpr int kPRSTSize = kDescriptorBins * kDescriptorBins * kDescriptorBins;  // theta x phi x r
+constexpr int kPRSDSize = kDescriptorBins * kDescriptorBins;                    // theta x phi
+constexpr int kGEDTSize = kPRSTSize;                                            // cells x cells x cells
 
 struct DescriptorOptions {
-  /// Radius of the ball that is described, in mean distances of the points from the origin, > 0. chosen: half cuts away
-  /// the outer parts of most shapes, twice leaves most bins empty.
-  double radius = 2.0;
-  /// Samples of the transform, >= 1. chosen: half lets the error grow by sqrt(2), twice takes twice the time.
-  int num_samples = 256;
+  double radius = 2.0;    ///< of the ball that is described, in mean distances of the points from the origin, > 0
+  int num_samples = 256;  ///< of the transform, >= 1
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -51,7 +48,7 @@ struct SymmetryDescriptors {
 SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Isometry3d& T_frame_input,
                                         const DescriptorOptions& options = {});
 
-/// Sum of squared differences. All SIMD versions give the same bytes.
+/// Sum of squared differences.
 /// \param a \p size values.
 /// \param b \p size values.
 float sqDistance(const float* a, const float* b, std::size_t size);

@@ -2,9 +2,14 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/base/simd.h"
 
 namespace pcl_symmetry {
 
@@ -14,6 +19,46 @@ template <typename Integer>
 Integer inSteps(double value, double step) {
   const double least = std::numeric_limits<Integer>::min(), greatest = std::numeric_limits<Integer>::max();
   return static_cast<Integer>(std::lround(std::clamp(value / step, least, greatest)));
+}
+
+constexpr std::size_t kBytesOfView = kViewCodeSize + 2;  // see packedViewCodes()
+
+/// Squared distances of codes, in squares of the step.
+/// \param codes value by value, \p stride apart.
+PCL_SYMMETRY_MULTIVERSION
+void sqCodeDistances(const std::int8_t* codes, std::size_t stride, std::size_t count, const std::int8_t* scan,
+                     std::int32_t* sums) {
+  for (std::size_t i = 0; i < count; ++i) sums[i] = 0;
+  for (std::size_t k = 0; k < kViewCodeSize; ++k) {
+    const std::int8_t* values = codes + k * stride;
+    const auto own = static_cast<std::int16_t>(scan[k]);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto difference = static_cast<std::int16_t>(values[i] - own);
+      sums[i] += difference * difference;
+    }
+  }
+}
+
+std::int16_t sizeAt(const std::int8_t* sizes, std::size_t i) {
+  const auto low = static_cast<std::uint8_t>(sizes[2 * i]), high = static_cast<std::uint8_t>(sizes[2 * i + 1]);
+  return static_cast<std::int16_t>(low | high << 8);
+}
+
+/// The least distance of the views of a shape; infinite without views.
+float leastDistance(const std::int8_t* codes, std::size_t num_views, const ViewCode& scan, float size_weight) {
+  const std::int8_t* sizes = codes + kViewCodeSize * num_views;
+  constexpr std::size_t views_at_once = 256;
+  std::array<std::int32_t, views_at_once> sums;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t first = 0; first < num_views; first += views_at_once) {
+    const std::size_t count = std::min(views_at_once, num_views - first);
+    sqCodeDistances(codes + first, num_views, count, scan.values.data(), sums.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const float size = static_cast<float>(std::abs(sizeAt(sizes, first + i) - scan.size));
+      least = std::min(least, kViewCodeStep * std::sqrt(static_cast<float>(sums[i])) + size_weight * size);
+    }
+  }
+  return least;
 }
 
 }  // namespace
@@ -33,9 +78,9 @@ std::string packedViewCodes(const std::vector<ViewCode>& codes) {
 
 ViewCoder ViewCoder::fit(const std::vector<View>& views) {
   check(!views.empty(), "number of views", static_cast<double>(views.size()), ">= 1");
-  Eigen::MatrixXd magnitudes(kTurnlessViewSize, static_cast<Eigen::Index>(views.size()));
+  Eigen::MatrixXd magnitudes(kViewMagnitudes, static_cast<Eigen::Index>(views.size()));
   for (std::size_t i = 0; i < views.size(); ++i)
-    magnitudes.col(static_cast<Eigen::Index>(i)) = turnlessValues(views[i].values).cast<double>();
+    magnitudes.col(static_cast<Eigen::Index>(i)) = magnitudesOf(views[i].values).cast<double>();
   const Eigen::VectorXd mean = magnitudes.rowwise().mean();
   magnitudes.colwise() -= mean;
   const Eigen::MatrixXd products = magnitudes * magnitudes.transpose();
@@ -47,7 +92,7 @@ ViewCoder ViewCoder::fit(const std::vector<View>& views) {
 }
 
 ViewCode ViewCoder::codeOf(const View& view) const {
-  const Eigen::VectorXf components = basis_.transpose() * (turnlessValues(view.values) - mean_);
+  const Eigen::VectorXf components = basis_.transpose() * (magnitudesOf(view.values) - mean_);
   ViewCode code;
   for (int k = 0; k < kViewCodeSize; ++k)
     code.values[static_cast<std::size_t>(k)] =
@@ -64,18 +109,47 @@ std::string ViewCoder::codesOf(const std::vector<View>& views) const {
 }
 
 Eigen::MatrixXf ViewCoder::toValues() const {
-  Eigen::MatrixXf values(kTurnlessViewSize, 1 + kViewCodeSize);
+  Eigen::MatrixXf values(kViewMagnitudes, 1 + kViewCodeSize);
   values << mean_, basis_;
   return values;
 }
 
 ViewCoder ViewCoder::fromValues(const Eigen::MatrixXf& values) {
-  check(values.rows() == kTurnlessViewSize && values.cols() == 1 + kViewCodeSize, "size of a view coder",
+  check(values.rows() == kViewMagnitudes && values.cols() == 1 + kViewCodeSize, "size of a view coder",
         static_cast<double>(values.size()), "that of this library");
   ViewCoder coder;
   coder.mean_ = values.col(0);
   coder.basis_ = values.rightCols(kViewCodeSize);
   return coder;
+}
+
+void ViewCodeIndex::add(const std::string& codes) {
+  check(codes.size() % kBytesOfView == 0, "bytes of view codes", static_cast<double>(codes.size()),
+        "a multiple of those of a view");
+  codes_.insert(codes_.end(), codes.begin(), codes.end());
+  begins_.push_back(begins_.back() + codes.size() / kBytesOfView);
+}
+
+std::vector<int> ViewCodeIndex::nearest(const ViewCode& scan, double size_weight, int count, int num_threads) const {
+  check(count >= 0, "count", count, ">= 0");
+  const auto weight = static_cast<float>(size_weight) * kViewSizeStep;
+  std::vector<float> distances(numShapes());
+  parallelRanges(numShapes(), 256, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      distances[i] =
+          leastDistance(codes_.data() + kBytesOfView * begins_[i], begins_[i + 1] - begins_[i], scan, weight);
+  });
+  std::vector<int> shapes;
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    if (std::isfinite(distances[i])) shapes.push_back(static_cast<int>(i));
+  const std::size_t kept = std::min(shapes.size(), static_cast<std::size_t>(count));
+  std::nth_element(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(kept), shapes.end(), [&](int a, int b) {
+    const float near_a = distances[static_cast<std::size_t>(a)], near_b = distances[static_cast<std::size_t>(b)];
+    return near_a != near_b ? near_a < near_b : a < b;
+  });
+  shapes.resize(kept);
+  std::sort(shapes.begin(), shapes.end());
+  return shapes;
 }
 
 }  // namespace pcl_symmetry

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -10,27 +11,24 @@
 
 namespace pcl_symmetry {
 
-/// Values of a code. measured: of 274 scans of models of the Princeton Shape Benchmark (fold 1 of the training half),
-/// the scanned model is the nearest of 902 for 74 % with 24 values and 70 % with 16, and among the nearest 50 for 99.6
-/// and 100 %.
+/// Values of a code.
 constexpr int kViewCodeSize = 24;
 
-/// A view in few bytes, the same for all turns of its picture.
+/// A view in few bytes, the same for all rotations of its picture.
 struct ViewCode {
   std::array<std::int8_t, kViewCodeSize> values;  ///< in steps of kViewCodeStep
   std::int16_t size;                              ///< logarithm of View::radius in steps of kViewSizeStep
 };
-/// Step of the values of a code. derived: components of a vector of magnitudes of unit norm lie within 1 of those of
-/// another.
+/// Step of the values of a code, which are components of a unit vector.
 constexpr float kViewCodeStep = 1.0f / 127.0f;
-/// Step of the logarithm of a radius. chosen: 0.1 %; half and twice change no order, and 16 bits hold a factor of 1e14.
+/// Step of the logarithm of a radius: 16 bits hold a factor of 1e14.
 constexpr float kViewSizeStep = 1e-3f;
 
 /// Codes of the views of one shape: value by value for all views, then sizes with their low bytes first.
 /// \return (kViewCodeSize + 2) * number of views bytes.
 std::string packedViewCodes(const std::vector<ViewCode>& codes);
 
-/// Makes codes: the principal components of the magnitudes of views, see turnlessValues().
+/// Makes codes: the principal components of the magnitudes of views, see magnitudesOf().
 class ViewCoder {
 public:
   ViewCoder() = default;
@@ -41,14 +39,36 @@ public:
   /// \return packedViewCodes() of the views of a shape.
   std::string codesOf(const std::vector<View>& views) const;
 
-  /// \return (kViewCodeSize + 1) * kTurnlessViewSize numbers: mean and basis.
+  /// \return (kViewCodeSize + 1) * kViewMagnitudes numbers: mean and basis.
   Eigen::MatrixXf toValues() const;
   /// \throws std::invalid_argument for a matrix of another size.
   static ViewCoder fromValues(const Eigen::MatrixXf& values);
 
 private:
   Eigen::VectorXf mean_;
-  Eigen::MatrixXf basis_;  // kTurnlessViewSize x kViewCodeSize, orthonormal columns
+  Eigen::MatrixXf basis_;  // kViewMagnitudes x kViewCodeSize, orthonormal columns
+};
+
+/// Finds shapes that a scan can show by the codes of their views: those that are compared in full, see ViewIndex.
+///
+/// All codes are compared. Eight million, those of 100 000 shapes, take 208 MB and milliseconds per query.
+class ViewCodeIndex {
+public:
+  /// \param codes of a shape, see packedViewCodes().
+  /// \throws std::invalid_argument for another number of bytes.
+  void add(const std::string& codes);
+
+  std::size_t numShapes() const { return begins_.size() - 1; }
+  std::size_t numViews() const { return begins_.back(); }
+
+  /// \param size_weight see ViewSearchOptions.
+  /// \param count >= 0.
+  /// \return the numbers of the nearest shapes, rising, at most \p count. Shapes without views are never found.
+  std::vector<int> nearest(const ViewCode& scan, double size_weight, int count, int num_threads) const;
+
+private:
+  std::vector<std::int8_t> codes_;         // of all shapes, one after the other
+  std::vector<std::size_t> begins_ = {0};  // of the shapes, and the end, in views
 };
 
 }  // namespace pcl_symmetry

@@ -4,27 +4,17 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Shapes per block of work. chosen: at half the overhead per block grows, at twice threads idle at the end of few
-// shapes.
-constexpr std::size_t kBlock = 16;
-constexpr double kLargestDistance = 2.0;  // derived: of two unit vectors
-// Nearest views of a shape whose mean distance ranks it: a scan lies between views, and another shape is like it from
-// one side by chance. measured: of 119 scans of models of the Princeton Shape Benchmark (fold 0 of the training half)
-// among 100 000 models, the scanned one is among the nearest ten for 103 with one view, 107 with two, 106 with three
-// and 103 with five.
-constexpr std::size_t kMeanViews = 2;
-
 struct NearView {
   double distance;
   const View* view;
-  double turn;
+  double angle;
 };
 
 /// The nearest views of one shape, nearest first.
@@ -34,11 +24,11 @@ std::vector<NearView> nearestViews(const std::vector<View>& views, const View& s
   for (const View& view : views) {
     const double size = options.size_weight * std::abs(std::log(view.radius / scan.radius));
     const bool full = nearest.size() >= static_cast<std::size_t>(options.num_poses);
-    const double enough = full ? nearest.back().distance - size : kLargestDistance;
+    const double enough = full ? nearest.back().distance - size : 2.0;  // the greatest distance of unit vectors
     if (enough <= 0.0) continue;
     const ViewAgreement agreement = comparison.compare(view.values.data(), static_cast<float>(enough));
     if (agreement.distance >= enough) continue;
-    const NearView pose{agreement.distance + size, &view, agreement.turn};
+    const NearView pose{agreement.distance + size, &view, agreement.angle};
     if (full) nearest.pop_back();
     nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), pose,
                                     [](const NearView& a, const NearView& b) { return a.distance < b.distance; }),
@@ -48,7 +38,7 @@ std::vector<NearView> nearestViews(const std::vector<View>& views, const View& s
 }
 
 double meanDistance(const std::vector<NearView>& nearest) {
-  const std::size_t count = std::min(kMeanViews, nearest.size());
+  const std::size_t count = std::min<std::size_t>(kMatchingRules.num_mean_views, nearest.size());
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) sum += nearest[i].distance;
   return sum / static_cast<double>(count);
@@ -56,22 +46,14 @@ double meanDistance(const std::vector<NearView>& nearest) {
 
 }  // namespace
 
-void ViewSearchOptions::validate() const {
-  check(num_nearest >= 0, "num_nearest", num_nearest, ">= 0");
-  check(num_poses >= 1, "num_poses", num_poses, ">= 1");
-  check(size_weight >= 0.0, "size_weight", size_weight, ">= 0");
-  checkNumThreads(num_threads);
-}
-
 void ViewIndex::add(const std::vector<View>& views) {
   shapes_.push_back(views);
 }
 
 std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, const ViewSearchOptions& options) const {
-  options.validate();
   const ViewComparison comparison(scan);
   std::vector<std::vector<NearView>> views(shapes_.size());
-  parallelRanges(shapes_.size(), kBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(shapes_.size(), 16, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) views[i] = nearestViews(shapes_[i], scan, comparison, options);
   });
 
@@ -86,7 +68,7 @@ std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, const ViewSearchOp
   for (const int shape : order) {
     found.push_back({shape, distance(shape), {}});
     for (const NearView& pose : views[static_cast<std::size_t>(shape)])
-      found.back().T_shape_scan.push_back(poseOfView(scan, *pose.view, pose.turn));
+      found.back().T_shape_scan.push_back(poseOfView(scan, *pose.view, pose.angle));
   }
   return found;
 }

@@ -8,14 +8,10 @@
 namespace pcl_symmetry {
 
 struct ViewSearchOptions {
-  int num_nearest = 10;  ///< shapes that are returned, >= 0. chosen: see RecognitionOptions::num_candidates
-  int num_poses = 6;     ///< poses of each shape, >= 1. chosen: half misses poses, twice takes twice the time to try
-  /// Added to the distance of two views if their radii differ by a factor of e, >= 0. chosen: see RecognitionOptions.
-  double size_weight = 0.25;
-  int num_threads = 0;  ///< >= 0; 0 = one per core
-
-  /// \throws std::invalid_argument naming field, value and rule.
-  void validate() const;
+  int num_nearest = 10;       ///< shapes that are returned, >= 0
+  int num_poses = 6;          ///< poses of each shape, >= 1
+  double size_weight = 0.25;  ///< distance that radii a factor of e apart add, >= 0
+  int num_threads = 0;        ///< >= 0; 0 = one per core
 };
 
 /// A shape that looks like a scan from some side.
@@ -35,7 +31,6 @@ public:
   int numShapes() const { return static_cast<int>(shapes_.size()); }
 
   /// \return nearest first, at most ViewSearchOptions::num_nearest. Shapes without views are never found.
-  /// \throws std::invalid_argument for bad options.
   std::vector<ShapeOfView> nearest(const View& scan, const ViewSearchOptions& options = {}) const;
 
 private:

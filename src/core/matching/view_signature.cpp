@@ -7,40 +7,26 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
-#include "core/base/simd.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/viewing_frame.h"
 #include "core/matching/depth_picture.h"
+#include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-// Cells across the picture. chosen: half blurs the outline, twice leaves cells without points inside it.
-constexpr int kPictureCells = 32;
-// Half the side of the picture, radii of the outline. chosen: it holds the outer ring and its smoothing; half cuts the
-// outline, twice halves the resolution.
-constexpr float kReach = 2.5f;
-// Outer edge of the rings, radii of the outline. chosen: half leaves out the ends of long outlines, twice leaves most
-// rings empty.
-constexpr double kOuterRing = 2.3;
-// Samples on a ring, and turns that are compared. chosen: 7.5 degrees, which ICP removes; half misses narrow parts of
-// the outline, twice takes twice the time.
-constexpr int kNumAngles = 48;
-// Weight of the magnitudes in ViewAgreement::distance. measured: of 274 scans of models of the Princeton Shape
-// Benchmark (fold 1 of the training half), the scanned model is among the nearest ten of 902 for 94.5 % at 0, 94.9 at
-// 0.5, 97.8 at 0.7 and 97.4 at 1, where poses are no longer ordered.
-constexpr float kTurnlessWeight = 0.7f;
-constexpr int kRow = 2 * kViewRings;  // values of the real or imaginary part of a harmonic. derived: outline and depth
+constexpr int kNumAngles = 48;        // samples on a ring, and rotations that are compared: 7.5 degrees
+constexpr int kRow = 2 * kViewRings;  // values of the real or imaginary part of a harmonic: outline and depth
 
-/// Cosines and sines of m times the angle of each turn.
-struct Turns {
+/// Cosines and sines of m times the angle of each rotation.
+struct RotationTable {
   std::array<std::array<float, kNumAngles>, kViewHarmonics + 1> cosines, sines;
 };
 
-const Turns& turns() {
-  static const Turns values = [] {
-    Turns made;
+const RotationTable& rotationTable() {
+  static const RotationTable values = [] {
+    RotationTable made;
     for (int m = 0; m <= kViewHarmonics; ++m) {
       for (int a = 0; a < kNumAngles; ++a) {
         made.cosines[m][a] = static_cast<float>(std::cos(2.0 * kPi * m * a / kNumAngles));
@@ -63,19 +49,20 @@ int imaginaryPart(int harmonic) {
 /// View::values of a picture.
 Eigen::VectorXf harmonicsOf(const SmoothPicture& picture) {
   Eigen::VectorXf values = Eigen::VectorXf::Zero(kViewSignatureSize);
-  const float to_cells = kPictureCells / (2.0f * kReach);
+  const float reach = kMatchingRules.picture_reach, to_cells = kMatchingRules.picture_cells / (2.0f * reach);
   for (int ring = 0; ring < kViewRings; ++ring) {
-    const double radius = (ring + 0.5) * kOuterRing / kViewRings;
+    const double radius = (ring + 0.5) * kMatchingRules.outer_ring / kViewRings;
     for (int a = 0; a < kNumAngles; ++a) {
-      const float x = static_cast<float>(radius) * turns().cosines[1][a],
-                  y = static_cast<float>(radius) * turns().sines[1][a];
-      const Eigen::Array2f sample = picture.sample((Eigen::Array2f(x, y) + kReach) * to_cells);
+      const float x = static_cast<float>(radius) * rotationTable().cosines[1][a],
+                  y = static_cast<float>(radius) * rotationTable().sines[1][a];
+      const Eigen::Array2f sample = picture.sample((Eigen::Array2f(x, y) + reach) * to_cells);
       for (int m = 0; m <= kViewHarmonics; ++m) {
         // A ring counts by its area; a harmonic and its conjugate count as two.
         const float weight = static_cast<float>(std::sqrt((m > 0 ? 2.0 : 1.0) * radius));
         for (int c = 0; c < 2; ++c) {
-          values[realPart(m) + c * kViewRings + ring] += weight * turns().cosines[m][a] * sample[c];
-          if (m > 0) values[imaginaryPart(m) + c * kViewRings + ring] -= weight * turns().sines[m][a] * sample[c];
+          values[realPart(m) + c * kViewRings + ring] += weight * rotationTable().cosines[m][a] * sample[c];
+          if (m > 0)
+            values[imaginaryPart(m) + c * kViewRings + ring] -= weight * rotationTable().sines[m][a] * sample[c];
         }
       }
     }
@@ -83,15 +70,6 @@ Eigen::VectorXf harmonicsOf(const SmoothPicture& picture) {
   const float norm = values.norm();
   if (norm > 0.0f) values /= norm;
   return values;
-}
-
-/// \param rotation 3 x 3, row by row.
-PCL_SYMMETRY_MULTIVERSION
-void turnPoints(const float* from, const float* rotation, std::size_t count, float* to) {
-  const float *x = from, *y = from + count, *z = from + 2 * count;
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < count; ++i)
-      to[k * count + i] = rotation[3 * k] * x[i] + rotation[3 * k + 1] * y[i] + rotation[3 * k + 2] * z[i];
 }
 
 /// Points that are looked at from many sides, in radii of their bounding ball: squares neither overflow nor underflow.
@@ -104,14 +82,13 @@ public:
 
   View from(const Eigen::Vector3d& forward) const {
     const Eigen::Matrix3d R_view_input = viewingFrame(forward.normalized());
-    const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> rotation = R_view_input.cast<float>();
-    PointColumns in_view(points_.rows(), 3);
-    turnPoints(points_.data(), rotation.data(), static_cast<std::size_t>(points_.rows()), in_view.data());
-    const Outline outline = outlineOf(in_view);
+    const PointColumns in_view = points_.lazyProduct(R_view_input.cast<float>().transpose().eval());
+    const ViewOutline outline = outlineOf(in_view);
     const Eigen::Vector3f middle = outline.middle.cast<float>();
     const auto radius = static_cast<float>(outline.radius);
-    DepthPicture picture(kPictureCells, middle.head<2>().array() - kReach * radius,
-                         2.0f * kReach * radius / kPictureCells);
+    const float reach = kMatchingRules.picture_reach;
+    const int cells = kMatchingRules.picture_cells;
+    DepthPicture picture(cells, middle.head<2>().array() - reach * radius, 2.0f * reach * radius / cells);
     picture.add(in_view);
     View view;
     view.values = harmonicsOf(SmoothPicture(picture, middle.z(), radius));
@@ -155,26 +132,27 @@ std::vector<View> viewsAround(const PointsRef& points, int num_views, int num_th
   return views;
 }
 
-Eigen::VectorXf turnlessValues(const Eigen::VectorXf& values) {
-  Eigen::VectorXf turnless(kTurnlessViewSize);
-  turnless.head<kRow>() = values.head<kRow>();
+Eigen::VectorXf magnitudesOf(const Eigen::VectorXf& values) {
+  Eigen::VectorXf magnitudes(kViewMagnitudes);
+  magnitudes.head<kRow>() = values.head<kRow>();
   for (int m = 1; m <= kViewHarmonics; ++m)
-    turnless.segment<kRow>(kRow * m) =
+    magnitudes.segment<kRow>(kRow * m) =
         (values.segment<kRow>(realPart(m)).array().square() + values.segment<kRow>(imaginaryPart(m)).array().square())
             .sqrt();
-  return turnless;
+  return magnitudes;
 }
 
-ViewComparison::ViewComparison(const View& view) : values_(view.values), turnless_(turnlessValues(view.values)) {}
+ViewComparison::ViewComparison(const View& view) : values_(view.values), magnitudes_(magnitudesOf(view.values)) {}
 
 ViewAgreement ViewComparison::compare(const float* values, float enough) const {
   ViewAgreement best;
+  const float weight = kMatchingRules.magnitude_weight;
   const Eigen::Map<const Eigen::VectorXf> other(values, kViewSignatureSize);
-  const float turnless = (turnlessValues(other) - turnless_).norm();
-  if (turnless >= enough) return best;  // it is the smaller one of the two distances
+  const float apart = (magnitudesOf(other) - magnitudes_).norm();
+  if (apart >= enough) return best;  // it is the smaller one of the two distances
   // From this distance of the signatures on, what is left is not needed.
-  const float enough_of_all = (enough - kTurnlessWeight * turnless) / (1.0f - kTurnlessWeight);
-  // Re conj(V_m) Q_m exp(i m a) is what harmonic m adds to the correlation with the picture turned by a.
+  const float enough_of_all = (enough - weight * apart) / (1.0f - weight);
+  // Re conj(V_m) Q_m exp(i m a) is what harmonic m adds to the correlation with the picture rotated by a.
   const float* own = values_.data();
   std::array<float, kViewHarmonics + 1> real, imaginary;
   real[0] = dot(values, own);
@@ -192,16 +170,16 @@ ViewAgreement ViewComparison::compare(const float* values, float enough) const {
   correlation.fill(real[0]);
   for (int m = 1; m <= kViewHarmonics; ++m)
     for (int a = 0; a < kNumAngles; ++a)
-      correlation[a] += real[m] * turns().cosines[m][a] - imaginary[m] * turns().sines[m][a];
+      correlation[a] += real[m] * rotationTable().cosines[m][a] - imaginary[m] * rotationTable().sines[m][a];
   const auto at = std::max_element(correlation.begin(), correlation.end());
   if (*at <= least) return best;
-  best.distance = kTurnlessWeight * turnless + (1.0f - kTurnlessWeight) * std::sqrt(std::max(0.0f, 2.0f - 2.0f * *at));
-  best.turn = -2.0 * kPi * static_cast<double>(at - correlation.begin()) / kNumAngles;
+  best.distance = weight * apart + (1.0f - weight) * std::sqrt(std::max(0.0f, 2.0f - 2.0f * *at));
+  best.angle = -2.0 * kPi * static_cast<double>(at - correlation.begin()) / kNumAngles;
   return best;
 }
 
-Eigen::Isometry3d poseOfView(const View& scan, const View& model, double turn) {
-  return model.T_view_input.inverse() * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) * scan.T_view_input;
+Eigen::Isometry3d poseOfView(const View& scan, const View& model, double angle) {
+  return model.T_view_input.inverse() * Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * scan.T_view_input;
 }
 
 }  // namespace pcl_symmetry

@@ -7,15 +7,13 @@
 
 namespace pcl_symmetry {
 
-constexpr int kViewRings = 8;  ///< rings of a picture in polar coordinates. chosen: half blurs, twice doubles the size
-/// Harmonics of each ring beside its mean. chosen: half blurs what a turn of 22 degrees tells apart, twice doubles the
-/// size and the time of a comparison.
-constexpr int kViewHarmonics = 8;
-/// Values of a view. derived: outline and depth, per ring a mean and the real and imaginary parts of the harmonics.
+constexpr int kViewRings = 8;      ///< rings of a picture in polar coordinates
+constexpr int kViewHarmonics = 8;  ///< of each ring, beside its mean
+/// Values of a view: outline and depth, per ring a mean and the real and imaginary parts of the harmonics.
 constexpr int kViewSignatureSize = 2 * kViewRings * (2 * kViewHarmonics + 1);
 
-/// Values of a view that turns of its picture leave. derived: per ring a mean and the magnitude of each harmonic.
-constexpr int kTurnlessViewSize = 2 * kViewRings * (kViewHarmonics + 1);
+/// Values of a view that rotations of its picture leave: per ring a mean and the magnitude of each harmonic.
+constexpr int kViewMagnitudes = 2 * kViewRings * (kViewHarmonics + 1);
 
 /// What a shape looks like from far away on one side (not in the paper): its outline and its depths.
 ///
@@ -24,7 +22,7 @@ constexpr int kTurnlessViewSize = 2 * kViewRings * (kViewHarmonics + 1);
 struct View {
   /// Harmonics of outline and depth on rings around the middle; unit norm, independent of size and distance. Harmonic m
   /// is followed by harmonic m + 1; each holds the real parts of the outline's rings, then those of the depths, then
-  /// the imaginary parts in the same order (harmonic 0 has none). A turn of the picture by an angle a multiplies
+  /// the imaginary parts in the same order (harmonic 0 has none). A rotation of the picture by an angle a multiplies
   /// harmonic m by exp(-i m a).
   Eigen::VectorXf values;
   double radius = 0.0;  ///< root mean square distance of the inside of the outline from its middle, input units
@@ -34,7 +32,7 @@ struct View {
 
 /// \param points 3 x N, finite, input units.
 /// \param forward direction that the viewer looks in, any length but zero.
-/// \throws std::invalid_argument for points without extent across \p forward or a direction that is zero.
+/// \throws std::invalid_argument for points that are seen as one, or a direction that is zero.
 View viewOf(const PointsRef& points, const Eigen::Vector3d& forward);
 
 /// Views from directions that are spread evenly over the sphere.
@@ -44,20 +42,21 @@ View viewOf(const PointsRef& points, const Eigen::Vector3d& forward);
 /// \throws std::invalid_argument for points without extent.
 std::vector<View> viewsAround(const PointsRef& points, int num_views = 80, int num_threads = 0);
 
-/// Means of the rings and magnitudes of the harmonics, in the order of View::values: the same for all turns.
+/// Means of the rings and magnitudes of the harmonics, in the order of View::values: the same for all rotations of
+/// the picture.
 /// \param values View::values.
-/// \return kTurnlessViewSize values. Their L2 distance is at most that of the signatures at any turn.
-Eigen::VectorXf turnlessValues(const Eigen::VectorXf& values);
+/// \return kViewMagnitudes values. Their L2 distance is at most that of the signatures at any rotation.
+Eigen::VectorXf magnitudesOf(const Eigen::VectorXf& values);
 
-/// How alike two views are at their best turn.
+/// How alike two views are at their best rotation.
 struct ViewAgreement {
-  /// L2 distances of the signatures at the best turn and of their turnlessValues(), weighted 0.3 and 0.7, in [0, 2].
+  /// L2 distances of the signatures at the best rotation and of their magnitudesOf(), weighted 0.3 and 0.7, in [0, 2].
   /// What a scan lacks moves the phases of harmonics more than their magnitudes.
   float distance = 2.0f;
-  double turn = 0.0;  ///< radians about z, from the first view's picture to the second's
+  double angle = 0.0;  ///< radians about z, from the first view's picture to the second's
 };
 
-/// Compares one view with many, at all turns of the picture in steps of 7.5 degrees.
+/// Compares one view with many, at all rotations of the picture in steps of 7.5 degrees.
 class ViewComparison {
 public:
   /// \param view of a scan.
@@ -65,16 +64,16 @@ public:
 
   /// \param values View::values of another view.
   /// \param enough distances from this one on are not needed: the comparison stops early.
-  /// \return the default where the distance is at least \p enough at all turns.
+  /// \return the default where the distance is at least \p enough at all rotations.
   ViewAgreement compare(const float* values, float enough) const;
 
 private:
-  Eigen::VectorXf values_, turnless_;
+  Eigen::VectorXf values_, magnitudes_;
 };
 
 /// The pose in which a model looks like a scan.
-/// \param turn see ViewAgreement::turn.
+/// \param angle see ViewAgreement::angle.
 /// \return T_model_scan.
-Eigen::Isometry3d poseOfView(const View& scan, const View& model, double turn);
+Eigen::Isometry3d poseOfView(const View& scan, const View& model, double angle);
 
 }  // namespace pcl_symmetry

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/base/random.h"
@@ -91,6 +92,14 @@ TEST(CompactIndex, CopesWithLittleAndRefusesNonsense) {
   EXPECT_THROW(one.nearest(syntheticForms(5, 1, 1), 1), std::invalid_argument);
   EXPECT_THROW(one.nearest(syntheticForms(4, 1, 1), -1), std::invalid_argument);
   EXPECT_THROW(CompactIndex(syntheticForms(4, 3, 1), 2), std::invalid_argument);
+}
+
+TEST(TypicalDistance, IsTheMeanOfTheNearest) {
+  constexpr float kItself = std::numeric_limits<float>::infinity();
+  EXPECT_FLOAT_EQ(typicalDistance({4.0f, 1.0f, kItself, 2.0f, 9.0f}, 3), (1.0f + 2.0f + 4.0f) / 3.0f);
+  EXPECT_FLOAT_EQ(typicalDistance({4.0f, kItself, 1.0f}, 10), 2.5f);
+  EXPECT_FLOAT_EQ(typicalDistance({kItself}), 1.0f);
+  EXPECT_GT(typicalDistance({0.0f, 0.0f}), 0.0f);
 }
 
 }  // namespace pcl_symmetry

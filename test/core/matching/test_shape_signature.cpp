@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/matching/shape_signature.h"
 #include "core/geometry/axis_rotations.h"
+#include "core/matching/shape_signature.h"
 #include "shapes/knobbed_box.h"
 
 namespace pcl_symmetry {
@@ -67,17 +67,18 @@ TEST(ShapeSignature, RefusesPointsWithoutExtent) {
 }
 
 TEST(SignatureFrames, KeepTheFirstAxisAndSpreadTheOthers) {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix();
-  const Points box = turn.cast<float>() * knobbedBox({1.0, 0.7, 0.4}, {0.0, 0.0, 0.0}, 20'000, 1);
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix();
+  const Points box = rotation.cast<float>() * knobbedBox({1.0, 0.7, 0.4}, {0.0, 0.0, 0.0}, 20'000, 1);
   SymmetryFrame frame;
-  frame.axes.col(0) = turn.col(1);
-  frame.axes.col(1) = (turn.col(0) + turn.col(2)).normalized();
+  frame.axes.col(0) = rotation.col(1);
+  frame.axes.col(1) = (rotation.col(0) + rotation.col(2)).normalized();
   frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
   const auto frames = signatureFrames(box, frame);
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_TRUE(frames[1].isApprox(frame.axes));
-  EXPECT_TRUE(frames[0].col(0).isApprox(turn.col(1)));
-  EXPECT_GT(std::abs(frames[0].col(1).dot(turn.col(0))), 0.999);
+  EXPECT_TRUE(frames[0].col(0).isApprox(rotation.col(1)));
+  EXPECT_GT(std::abs(frames[0].col(1).dot(rotation.col(0))), 0.999);
   EXPECT_NEAR(frames[0].determinant(), 1.0, 1e-9);
 }
 

@@ -60,13 +60,9 @@ TEST(SignatureProjection, IsTheSameWithAnyNumberOfThreadsAndAfterStorage) {
 }
 
 TEST(SignatureProjection, RefusesWhatItCannotUse) {
-  const Eigen::MatrixXf signatures = boxSignatures(2);
   EXPECT_THROW(SignatureProjection::fit(Eigen::MatrixXf(kSignatureSize, 0)), std::invalid_argument);
   EXPECT_THROW(SignatureProjection::fit(Eigen::MatrixXf::Ones(5, 5)), std::invalid_argument);
   EXPECT_THROW(SignatureProjection::fit(Eigen::MatrixXf::Zero(kSignatureSize, 3)), std::invalid_argument);
-  ProjectionOptions options;
-  options.whitening = 2.0;
-  EXPECT_THROW(SignatureProjection::fit(signatures, options), std::invalid_argument);
 }
 
 }  // namespace pcl_symmetry

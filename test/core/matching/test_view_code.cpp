@@ -1,4 +1,3 @@
-#include "core/matching/view_code.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +7,7 @@
 #include <numeric>
 
 #include "core/base/random.h"
-#include "core/matching/view_code_index.h"
+#include "core/matching/view_code.h"
 
 namespace pcl_symmetry {
 
@@ -45,25 +44,25 @@ std::vector<View> joined(const std::vector<std::vector<View>>& shapes) {
 
 }  // namespace
 
-TEST(ViewCode, TurnsOfThePictureDoNotChangeIt) {
+TEST(ViewCode, RotationsOfThePictureDoNotChangeIt) {
   const Points points = lumpyEllipsoid({1.0, 0.6, 0.3}, 1);
   const Eigen::Vector3d forward = Eigen::Vector3d(0.3, -1.0, 0.5).normalized();
   const View view = viewOf(points, forward);
-  const Eigen::VectorXf own = turnlessValues(view.values);
-  ASSERT_EQ(own.size(), kTurnlessViewSize);
+  const Eigen::VectorXf own = magnitudesOf(view.values);
+  ASSERT_EQ(own.size(), kViewMagnitudes);
   EXPECT_NEAR(own.norm(), 1.0, 1e-5);
   const ViewCoder coder = ViewCoder::fit(viewsAround(points, 40, 1));
   for (const double angle : {0.4, 1.7, -2.6}) {
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, forward).toRotationMatrix();
-    const View turned = viewOf(turn.cast<float>() * points, forward);
-    EXPECT_GT((turned.values - view.values).norm(), 0.3) << angle;
-    EXPECT_LT((turnlessValues(turned.values) - own).norm(), 0.15) << angle;  // the cells of the picture
-    const ViewCode a = coder.codeOf(view), b = coder.codeOf(turned);
+    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, forward).toRotationMatrix();
+    const View rotated = viewOf(rotation.cast<float>() * points, forward);
+    EXPECT_GT((rotated.values - view.values).norm(), 0.3) << angle;
+    EXPECT_LT((magnitudesOf(rotated.values) - own).norm(), 0.15) << angle;  // the cells of the picture
+    const ViewCode a = coder.codeOf(view), b = coder.codeOf(rotated);
     for (std::size_t k = 0; k < kViewCodeSize; ++k) EXPECT_NEAR(a.values[k], b.values[k], 0.15f / kViewCodeStep);
   }
   // Magnitudes are no farther from each other than what they are the magnitudes of.
   const View other = viewOf(points, {1.0, 0.0, 0.2});
-  EXPECT_LE((turnlessValues(other.values) - own).norm(), (other.values - view.values).norm() + 1e-6f);
+  EXPECT_LE((magnitudesOf(other.values) - own).norm(), (other.values - view.values).norm() + 1e-6f);
 }
 
 TEST(ViewCode, CoderComesBackFromItsNumbers) {

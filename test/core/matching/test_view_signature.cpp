@@ -42,7 +42,7 @@ double angleBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return Eigen::AngleAxisd(a.linear() * b.linear().transpose()).angle();
 }
 
-constexpr double kTurnStep = 2.0 * M_PI / 48.0;
+constexpr double kAngleStep = 2.0 * M_PI / 48.0;
 
 }  // namespace
 
@@ -71,17 +71,17 @@ TEST(ViewSignature, DoesNotChangeWithSizeAndPlace) {
   }
 }
 
-TEST(ViewSignature, ATurnOfThePictureIsFound) {
+TEST(ViewSignature, ARotationOfThePictureIsFound) {
   const Points points = slabWithTower(1.0, 0.6);
   const Eigen::Vector3d forward = Eigen::Vector3d(1.0, 2.0, -3.0).normalized();
   const View view = viewOf(points, forward);
   for (const double angle : {0.0, 0.6, 2.0, -1.1, 3.1}) {
     const Eigen::Isometry3d T = motion(angle, forward, {4.0, 1.0, -2.0});
-    const View turned = viewOf(moved(points, T), forward);
-    const ViewAgreement agreement = ViewComparison(turned).compare(view.values.data(), 2.0f);
+    const View rotated = viewOf(moved(points, T), forward);
+    const ViewAgreement agreement = ViewComparison(rotated).compare(view.values.data(), 2.0f);
     EXPECT_LT(agreement.distance, 0.15f) << angle;
-    const Eigen::Isometry3d pose = poseOfView(turned, view, agreement.turn);
-    EXPECT_LT(angleBetween(pose, T.inverse()), 0.5 * kTurnStep + 0.02) << angle;
+    const Eigen::Isometry3d pose = poseOfView(rotated, view, agreement.angle);
+    EXPECT_LT(angleBetween(pose, T.inverse()), 0.5 * kAngleStep + 0.02) << angle;
     EXPECT_LT((pose * (T * Eigen::Vector3d::Zero())).norm(), 0.1) << angle;
   }
 }
@@ -138,8 +138,6 @@ TEST(ViewIndex, AsksForNoMoreThanItHolds) {
   EXPECT_EQ(index.nearest(view, options).size(), 1u);
   options.num_nearest = 0;
   EXPECT_TRUE(index.nearest(view, options).empty());
-  options.num_poses = 0;
-  EXPECT_THROW(index.nearest(view, options), std::invalid_argument);
 }
 
 TEST(ViewIndex, AnyNumberOfThreadsGivesTheSame) {

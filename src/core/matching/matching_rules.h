@@ -1,0 +1,48 @@
+#pragma once
+
+namespace pcl_symmetry {
+
+/// Numbers of matching that decide which shapes are found.
+struct MatchingRules {
+  // Signatures
+  double signature_reach = 2.5;  // mean distances from the middle: half the side of the cube
+  int normal_cells = 60;         // across the bounding ball, one normal each
+  float min_spread = 0.05f;      // of the greatest root mean square: flat shapes are stretched no further
+
+  // Descriptors of the paper
+  int transform_cells = 64;             // of the distance transform that planes are measured in,
+  double transform_sigma = 1.0 / 16.0;  // and its width, radii: planes need a narrower one than positions
+
+  // Views
+  int outline_cells = 48;         // across the larger side of an outline
+  int picture_cells = 32;         // across a picture
+  float picture_reach = 2.5f;     // radii of the outline: half the side of a picture
+  double outer_ring = 2.3;        // radii of the outline: outer edge of the rings
+  float deepest = 2.0f;           // radii of the outline: greater depths count as this
+  float magnitude_weight = 0.7f;  // of the magnitudes in ViewAgreement::distance
+  int num_mean_views = 2;         // views of a shape whose mean distance ranks it: a scan lies between views
+
+  // Pairs of points
+  int num_neighbors = 16;          // that give a normal
+  int num_pair_points = 250;       // of a shape
+  int num_scan_points = 120;       // of a scan
+  int num_references = 20;         // points of a scan that vote, each with all others
+  double min_pair_distance = 0.2;  // radii: nearer points are too uncertain
+  double mean_weight = 8.0;  // of a pair that as many points have as the mean; it falls with the root of their number
+  double max_weight = 64.0;  // of a rare pair
+  double same_angle = 0.4;   // radians, poses that are one,
+  double same_position = 0.15;  // and radii
+
+  // Screening of poses
+  int num_screened_points = 1000;  // of a shape
+  int num_judged_points = 60;      // that all poses are judged by,
+  double judged_width = 0.2;       // radii, with this width of the Gaussian
+  int num_improved = 400;          // best poses of all shapes that are improved,
+  int num_improved_points = 120;   // by this many points,
+  int num_steps = 6;               // in as many steps,
+  double first_width = 0.25;       // radii, from this width
+  double last_width = 0.1;         // radii, to this one
+};
+inline constexpr MatchingRules kMatchingRules;
+
+}  // namespace pcl_symmetry
