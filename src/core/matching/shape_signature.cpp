@@ -76,7 +76,7 @@ std::vector<FineCell> fineCells(const Points& points, const Eigen::Matrix3Xf& no
 /// \param cube kNumOrientations * kNumCells values, 0 before.
 void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::vector<int>& normal_of_points,
               float* cube) {
-  const float reach = static_cast<float>(kMatchingRules.signature_reach) * points.colwise().norm().mean();
+  const float reach = static_cast<float>(matching_rules.signature_reach) * points.colwise().norm().mean();
   const std::vector<FineCell> fine = fineCells(points, normals, normal_of_points, reach);
   for (int i = 0; i < kNumFineCells; ++i) {
     const FineCell& cell = fine[static_cast<std::size_t>(i)];
@@ -156,7 +156,7 @@ Points aboutMiddle(const Points& points, const Eigen::Matrix3d& axes) {
 /// Points divided by their root mean squares along the axes.
 Points stretched(const Points& points) {
   const Eigen::Vector3f spread = points.rowwise().norm();
-  return spread.cwiseMax(kMatchingRules.min_spread * spread.maxCoeff()).cwiseInverse().asDiagonal() * points;
+  return spread.cwiseMax(matching_rules.min_spread * spread.maxCoeff()).cwiseInverse().asDiagonal() * points;
 }
 
 /// At most \p max_points points, at equal steps in the input.
@@ -171,8 +171,8 @@ Points thinned(const PointsRef& points, int max_points) {
 
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes) {
   const Points centered = inRadii(points);
-  const CellNormals surface = cellNormals(centered, Eigen::Vector3d::Constant(-1.0), 2.0 / kMatchingRules.normal_cells,
-                                          kMatchingRules.normal_cells);
+  const CellNormals surface = cellNormals(centered, Eigen::Vector3d::Constant(-1.0), 2.0 / matching_rules.normal_cells,
+                                          matching_rules.normal_cells);
   const Points rotated = aboutMiddle(centered, axes);
   const Eigen::Matrix3Xf normals = axes.transpose().cast<float>() * surface.normals;
   std::vector<float> signature(kSignatureSize, 0.0f);

@@ -47,8 +47,8 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
   edt_options.num_cells = kDescriptorBins;
   SymmetryDescriptors result;
   result.gedt = GaussianEdt(scaled, edt_options).values();
-  edt_options.num_cells = kMatchingRules.transform_cells;
-  edt_options.sigma = kMatchingRules.transform_sigma;
+  edt_options.num_cells = matching_rules.transform_cells;
+  edt_options.sigma = matching_rules.transform_sigma;
   const GaussianEdt edt(scaled, edt_options);
   result.prst = prstOf(edt, kDescriptorBins, options);
   // A single bin of r is centered on the planes through the origin.

@@ -38,7 +38,7 @@ std::vector<NearView> nearestViews(const std::vector<View>& views, const View& s
 }
 
 double meanDistance(const std::vector<NearView>& nearest) {
-  const std::size_t count = std::min<std::size_t>(kMatchingRules.num_mean_views, nearest.size());
+  const std::size_t count = std::min<std::size_t>(matching_rules.num_mean_views, nearest.size());
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) sum += nearest[i].distance;
   return sum / static_cast<double>(count);

@@ -24,7 +24,7 @@ std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const Object
                                             const FoldAxis& main) {
   std::vector<double> offsets;
   // Up to half the radius: where points are unevenly dense, the center of a cylinder lies off the center of mass.
-  for (int k = -25; k <= 25; ++k) offsets.push_back(kRotationRules.across_step * k);
+  for (int k = -25; k <= 25; ++k) offsets.push_back(rotation_rules.across_step * k);
   const Line3d across = bestAcross(fit, main.line, kPi, 1, offsets);
   RotationSet set = rotationsAbout({across.origin(), main.line.direction()});
   set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction(), kPi));
@@ -36,7 +36,7 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
                                          const FoldAxis& main) {
   const RotationGroup group{RotationGroupKind::Dihedral, main.fold};
   const double width = kPi / main.fold;
-  const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kRotationRules.across_step)));
+  const int num_angles = std::max(4, static_cast<int>(std::ceil(width / rotation_rules.across_step)));
   const Line3d across = bestAcross(fit, main.line, width, num_angles, {0.0, -0.04, 0.04, -0.08, 0.08, -0.12, 0.12});
   const Eigen::Matrix3d frame = frameAlong(main.line.direction(), across.direction());
   return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
@@ -46,16 +46,16 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
 /// \param first,second axes that were found.
 /// \param a,b axes of the group that these are taken for.
 std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                        const RotationGroup& group, const FoldAxis& first,
-                                        const FoldAxis& second, const RotationAxis& a, const RotationAxis& b) {
+                                        const RotationGroup& group, const FoldAxis& first, const FoldAxis& second,
+                                        const RotationAxis& a, const RotationAxis& b) {
   if (a.order % first.fold != 0 || b.order % second.fold != 0) return std::nullopt;
   const double cosine = a.direction.dot(b.direction);
   const Eigen::Vector3d direction = first.line.direction().dot(second.line.direction()) * cosine < 0.0
                                         ? -second.line.direction()
                                         : second.line.direction();
   const double expected = angleBetweenLines(a.direction, b.direction);
-  if (expected < kRotationRules.axes_meet ||
-      std::abs(angleBetweenLines(first.line.direction(), direction) - expected) > kRotationRules.axes_meet)
+  if (expected < rotation_rules.axes_meet ||
+      std::abs(angleBetweenLines(first.line.direction(), direction) - expected) > rotation_rules.axes_meet)
     return std::nullopt;
   const Eigen::Matrix3d frame =
       frameAlong(first.line.direction(), direction) * frameAlong(a.direction, b.direction).transpose();

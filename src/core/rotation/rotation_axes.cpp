@@ -23,7 +23,7 @@ Eigen::Vector3d directionAt(int k, int count) {
 
 /// The overlap of a rotation; 0 where a part of the points shows that it is too small.
 double overlapOrLess(const RotationFit& fit, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) {
-  return fit.overlap(rotation, center, kRotationRules.num_first_points) < kRotationRules.first_overlap
+  return fit.overlap(rotation, center, rotation_rules.num_first_points) < rotation_rules.first_overlap
              ? 0.0
              : fit.overlap(rotation, center);
 }
@@ -35,9 +35,9 @@ std::vector<int> peaks(const std::vector<double>& values) {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return values[a] > values[b]; });
   for (const int k : order) {
-    if (kept.size() >= kRotationRules.max_directions || values[k] < kRotationRules.min_line_overlap) break;
+    if (kept.size() >= rotation_rules.max_directions || values[k] < rotation_rules.min_line_overlap) break;
     const bool near = std::any_of(kept.begin(), kept.end(), [&](int other) {
-      return std::abs(directionAt(k, size).dot(directionAt(other, size))) > std::cos(kRotationRules.min_angle);
+      return std::abs(directionAt(k, size).dot(directionAt(other, size))) > std::cos(rotation_rules.min_angle);
     });
     if (!near) kept.push_back(k);
   }
@@ -51,7 +51,7 @@ std::vector<double> foldOverlaps(const RotationFit& fit, const Line3d& line, int
   for (int n = 2; n <= max_fold; ++n) {
     const double own = fit.overlap(rotationAbout(line.direction(), 2.0 * kPi / n), line.origin());
     const double half = fit.overlap(rotationAbout(line.direction(), kPi / n), line.origin());
-    overlaps[n] = own >= half - kRotationRules.half_allowance ? own : 0.0;
+    overlaps[n] = own >= half - rotation_rules.half_allowance ? own : 0.0;
   }
   return overlaps;
 }
@@ -78,15 +78,15 @@ std::vector<Line3d> linesThrough(const Eigen::Vector3d& center, const RotationFi
 /// dense, that of the bounding ball, which is 0.
 std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit) {
   const Eigen::Vector3d mass = centerOfMass(fit.points());
-  return mass.norm() > kRotationRules.same_line ? std::vector<Eigen::Vector3d>{mass, Eigen::Vector3d::Zero()}
+  return mass.norm() > rotation_rules.same_line ? std::vector<Eigen::Vector3d>{mass, Eigen::Vector3d::Zero()}
                                                 : std::vector{mass};
 }
 
 /// Whether a line is one of \p lines.
 bool isKnown(const std::vector<Line3d>& lines, const Line3d& line) {
   return std::any_of(lines.begin(), lines.end(), [&](const Line3d& other) {
-    return angleBetweenLines(other.direction(), line.direction()) < kRotationRules.same_line &&
-           (line.origin() - other.origin()).cross(other.direction()).norm() < kRotationRules.same_line;
+    return angleBetweenLines(other.direction(), line.direction()) < rotation_rules.same_line &&
+           (line.origin() - other.origin()).cross(other.direction()).norm() < rotation_rules.same_line;
   });
 }
 
@@ -98,10 +98,10 @@ std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max
   const auto least_near_best = [&](int last) {
     const double best = *std::max_element(overlaps.begin(), overlaps.begin() + last + 1);
     int n = 2;
-    while (overlaps[n] < best - kRotationRules.near_best) ++n;
+    while (overlaps[n] < best - rotation_rules.near_best) ++n;
     return n;
   };
-  const int small = least_near_best(std::min(kRotationRules.small_fold, max_fold)), any = least_near_best(max_fold);
+  const int small = least_near_best(std::min(rotation_rules.small_fold, max_fold)), any = least_near_best(max_fold);
   return any == small ? std::vector{small} : std::vector{small, any};
 }
 
@@ -120,7 +120,7 @@ public:
     part = std::min(part / divisor, (whole - part) / divisor);  // a rotation and its inverse fail alike
     whole /= divisor;
     const auto [entry, is_new] = shares_.insert({{part, whole}, {}});
-    if (is_new) entry->second = fit_.offShares(rotation(part, whole), line_.origin(), kRotationRules.num_some_points);
+    if (is_new) entry->second = fit_.offShares(rotation(part, whole), line_.origin(), rotation_rules.num_some_points);
     return entry->second;
   }
 
@@ -150,16 +150,16 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
   double overlap = 0.0;
   for (const int fold : likelyFolds(fit, start, max_fold)) {
     RotationSet other = singleRotation(start, fold);
-    if (fit.overlap(other) < kRotationRules.min_overlap) continue;
+    if (fit.overlap(other) < rotation_rules.min_overlap) continue;
     other = fit.roughlyFitted(other);
     const double its_overlap = fit.overlap(other);
-    if (its_overlap <= overlap + kRotationRules.clearly_better) continue;
+    if (its_overlap <= overlap + rotation_rules.clearly_better) continue;
     overlap = its_overlap;
     best = std::move(other);
   }
-  if (overlap < kRotationRules.rough_overlap || isKnown(tried, lineOf(best, start))) return std::nullopt;
+  if (overlap < rotation_rules.rough_overlap || isKnown(tried, lineOf(best, start))) return std::nullopt;
   best = fit.closelyFitted(best);
-  return fit.overlap(best) < kRotationRules.fair_overlap ? std::nullopt : std::optional(best);
+  return fit.overlap(best) < rotation_rules.fair_overlap ? std::nullopt : std::optional(best);
 }
 
 /// A rotation about a line that fails: the first that does so clearly, else the worst.
@@ -190,10 +190,10 @@ double excessBetween(RotationProfile& profile, int fold) {
 /// halfway between. A multiple of a true fold fails that: half its rotations are no symmetries, or as good as any.
 /// \return the greatest first.
 std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const Line3d& line, int max_fold) {
-  const double most = greatestExcess(fit.limits(), kRotationRules.num_some_points);
+  const double most = greatestExcess(fit.limits(), rotation_rules.num_some_points);
   std::vector<int> folds;
   for (int n = max_fold; n >= 2; --n) {
-    if (fit.overlap(profile.rotation(1, n), line.origin()) < kRotationRules.rough_overlap) continue;
+    if (fit.overlap(profile.rotation(1, n), line.origin()) < rotation_rules.rough_overlap) continue;
     const double excess = excessOfFold(profile, n, most);
     if (excess <= most && beatsOthers(excess, excessBetween(profile, n))) folds.push_back(n);
   }
@@ -252,7 +252,7 @@ Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int 
 }
 
 std::optional<FoldAxis> AxisFinder::foldAbout(const Line3d& line, const std::vector<int>& folds) const {
-  for (std::size_t i = 0; i < folds.size() && i < kRotationRules.max_folds; ++i) {
+  for (std::size_t i = 0; i < folds.size() && i < rotation_rules.max_folds; ++i) {
     const RotationSet rotations = cyclicSet(line, folds[i]);
     auto axis = axisFrom(placedGroup(fit_, options_, RotationGroupKind::Cyclic, folds[i], rotations), folds[i]);
     if (axis) return axis;
@@ -264,17 +264,17 @@ std::optional<FoldAxis> AxisFinder::foldAbout(const Line3d& line, const std::vec
 /// their fold comes before rotations by all angles, though the pieces together be small enough for a feature.
 std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
   RotationProfile profile(fit_, line);
-  const double most = greatestExcess(fit_.limits(), kRotationRules.num_some_points);
+  const double most = greatestExcess(fit_.limits(), rotation_rules.num_some_points);
   const auto failing = failingRotation(profile, most);
   const int worst = failing.first;
   const double excess = failing.second;
   const auto revolution = [&]() -> std::optional<FoldAxis> {
-    if (excess > kRotationRules.max_worst * most) return std::nullopt;
+    if (excess > rotation_rules.max_worst * most) return std::nullopt;
     return axisFrom(placedGroup(fit_, options_, RotationGroupKind::Revolution, 0, rotationsAbout(line)), 0);
   };
   std::vector<int> folds;
-  if (excess >= kRotationRules.pattern_excess) folds = foldsOf(fit_, profile, line, options_.max_fold);
-  const bool is_pattern = !folds.empty() && (folds.front() >= kRotationRules.min_pattern || excess > 1.0);
+  if (excess >= rotation_rules.pattern_excess) folds = foldsOf(fit_, profile, line, options_.max_fold);
+  const bool is_pattern = !folds.empty() && (folds.front() >= rotation_rules.min_pattern || excess > 1.0);
   std::optional<FoldAxis> axis = is_pattern ? foldAbout(line, folds) : revolution();
   if (!axis) axis = is_pattern ? revolution() : foldAbout(line, folds);
   if (!axis || axis->fold > 0)
@@ -284,7 +284,7 @@ std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
 
 void AxisFinder::judge(const std::vector<Line3d>& lines) {
   for (const Line3d& start : lines) {
-    if (isRound() || axes_.size() >= kRotationRules.max_axes) break;
+    if (isRound() || axes_.size() >= rotation_rules.max_axes) break;
     if (isKnown(tried_, start)) continue;
     const std::optional<RotationSet> rotation = fittedRotation(fit_, start, options_.max_fold, tried_);
     const bool is_new = rotation && !isKnown(tried_, lineOf(*rotation, start));
@@ -292,8 +292,8 @@ void AxisFinder::judge(const std::vector<Line3d>& lines) {
     if (!is_new) continue;
     const Line3d line = lineOf(*rotation, start);
     tried_.push_back(line);
-    const OffShares shares = fit_.offShares(rotation->rotations[0], rotation->center, kRotationRules.num_some_points);
-    if (fit_.limits().excess(shares) > greatestExcess(fit_.limits(), kRotationRules.num_some_points)) {
+    const OffShares shares = fit_.offShares(rotation->rotations[0], rotation->center, rotation_rules.num_some_points);
+    if (fit_.limits().excess(shares) > greatestExcess(fit_.limits(), rotation_rules.num_some_points)) {
       const double angle = Eigen::AngleAxisd(rotation->rotations[0]).angle();
       rejected_.push_back({line, static_cast<int>(std::lround(2.0 * kPi / angle)), angle, shares});
       continue;
@@ -303,8 +303,7 @@ void AxisFinder::judge(const std::vector<Line3d>& lines) {
     if (axis->fold == 0) axes_.clear();
     axes_.push_back(std::move(*axis));
   }
-  std::stable_sort(axes_.begin(), axes_.end(),
-                   [](const FoldAxis& a, const FoldAxis& b) { return a.fold > b.fold; });
+  std::stable_sort(axes_.begin(), axes_.end(), [](const FoldAxis& a, const FoldAxis& b) { return a.fold > b.fold; });
 }
 
 }  // namespace pcl_symmetry

@@ -34,7 +34,7 @@ const Eigen::Vector3d kHalves[] = {
 std::vector<SurfacePoints> shapes(double scale) {
   std::vector<SurfacePoints> made;
   for (const Eigen::Vector3d& half : kHalves)
-    made.push_back(evenSurfacePoints(scale * lumpyEllipsoid(half, 4000, 1), kMatchingRules.num_pair_points, 1));
+    made.push_back(evenSurfacePoints(scale * lumpyEllipsoid(half, 4000, 1), matching_rules.num_pair_points, 1));
   return made;
 }
 
@@ -101,7 +101,7 @@ TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {
     const PointPairIndex index(made, 1);
     ASSERT_EQ(index.numShapes(), 5);
     for (int k = 0; k < 5; ++k) {
-      const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[k], scale), kMatchingRules.num_scan_points, 1);
+      const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[k], scale), matching_rules.num_scan_points, 1);
       const std::vector<ShapeOfPairs> found = index.nearest(scan);
       ASSERT_EQ(found.size(), 5u);
       EXPECT_EQ(found[0].shape, k) << scale;
@@ -115,7 +115,7 @@ TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {
 }
 
 TEST(PointPairIndex, ThreadsDoNotChangeIt) {
-  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[1], 1.0), kMatchingRules.num_scan_points, 1);
+  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[1], 1.0), matching_rules.num_scan_points, 1);
   std::vector<ShapeOfPairs> found[2];
   for (int i = 0; i < 2; ++i) {
     PairSearchOptions options;
@@ -139,7 +139,7 @@ TEST(PointPairIndex, DegenerateShapesAreFoundByNoPair) {
   std::vector<SurfacePoints> with = shapes(1.0);
   with.push_back(evenSurfacePoints(same, 20, 1));
   const PointPairIndex index(with, 1);
-  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[0], 1.0), kMatchingRules.num_scan_points, 1);
+  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[0], 1.0), matching_rules.num_scan_points, 1);
   EXPECT_EQ(index.nearest(scan).front().shape, 0);
   EXPECT_EQ(index.nearest(scan).back().votes, 0.0);
   for (const ShapeOfPairs& shape : index.nearest(evenSurfacePoints(same, 20, 1))) EXPECT_EQ(shape.votes, 0.0);

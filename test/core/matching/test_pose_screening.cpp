@@ -27,7 +27,7 @@ Points pointsOfBox(const Eigen::Vector3d& half, int count, std::uint64_t seed) {
 }
 
 ScreenedSurface screenedBox(const Eigen::Vector3d& half) {
-  return ScreenedSurface(evenSurfacePoints(pointsOfBox(half, 5000, 1), kMatchingRules.num_screened_points, 1));
+  return ScreenedSurface(evenSurfacePoints(pointsOfBox(half, 5000, 1), matching_rules.num_screened_points, 1));
 }
 
 const Eigen::Vector3d kBoxes[] = {{1.0, 0.6, 0.3}, {0.8, 0.8, 0.5}, {1.2, 0.2, 0.4}};
