@@ -127,6 +127,7 @@ void addRegistration(py::module_& module) {
           "(4, 4) from the frame of the source to that of the target")
       .def_property_readonly(
           "score", [](const CloudRegistration& r) { return r.score; }, "PoseScore of the transform")
+      .def_readonly("on_surface", &CloudRegistration::on_surface)
       .def_property_readonly("converged", [](const CloudRegistration& r) { return r.converged(); })
       .def_property_readonly(
           "poses",

@@ -213,7 +213,10 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
   for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
-  if (!poses.empty()) result.covariance = covarianceOf(clouds, poses.front(), inner);
+  if (!poses.empty()) {
+    result.covariance = covarianceOf(clouds, poses.front(), inner);
+    result.on_surface = shareOnSurface(clouds.scan(), clouds.model(), poses.front().T_model_scan);
+  }
   if (poses.empty()) result.poses.push_back({guess, {}});
   static_cast<RegisteredPose&>(result) = result.poses.front();
   return result;

@@ -3,6 +3,7 @@
 #include <pcl/common/point_tests.h>
 #include <pcl/common/transforms.h>
 #include <pcl/impl/pcl_base.hpp>
+#include <pcl/search/kdtree.h>
 
 #include <cmath>
 #include <limits>
@@ -13,28 +14,30 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+namespace detail {
+
+/// Finds nothing near points that are not finite, at which PCL's tree aborts: pcl::Registration::getFitnessScore() then
+/// leaves them out.
+template <typename PointT>
+class FinitePointTree : public pcl::search::KdTree<PointT> {
+public:
+  using pcl::search::KdTree<PointT>::nearestKSearch;
+  int nearestKSearch(const PointT& point, int k, pcl::Indices& indices,
+                     std::vector<float>& sq_distances) const override {
+    if (pcl::isXYZFinite(point)) return pcl::search::KdTree<PointT>::nearestKSearch(point, k, indices, sq_distances);
+    sq_distances.assign(static_cast<std::size_t>(k), std::numeric_limits<float>::infinity());
+    return 0;
+  }
+};
+
+}  // namespace detail
+
 template <typename PointSource, typename PointTarget, typename Scalar>
 SymmetryRegistration<PointSource, PointTarget, Scalar>::SymmetryRegistration() {
   reg_name_ = "SymmetryRegistration";
+  tree_ = pcl::make_shared<detail::FinitePointTree<PointTarget>>();
   max_iterations_ = options_.max_iterations;
   transformation_epsilon_ = options_.transformation_epsilon;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-double SymmetryRegistration<PointSource, PointTarget, Scalar>::getFitnessScore(double max_range) {
-  PointCloudSource moved;
-  pcl::transformPointCloud(*input_, moved, final_transformation_);
-  pcl::Indices closest(1);
-  std::vector<float> sq_distance(1);
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const PointSource& point : moved) {
-    if (!pcl::isXYZFinite(point) || tree_->nearestKSearch(point, 1, closest, sq_distance) < 1) continue;
-    if (sq_distance[0] > max_range) continue;
-    sum += sq_distance[0];
-    ++count;
-  }
-  return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::max();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -90,14 +93,15 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   poses_ = result.poses;
   score_ = result.score;
   timing_ms_ = result.timing_ms;
-  if (score_.merit() >= min_merit_) {
+  if (result.converged(min_merit_)) {
     covariance_ = result.covariance;
     final_transformation_ = transformation_ = result.T_target_source.matrix().template cast<Scalar>();
     return;
   }
   std::ostringstream reason;
   reason << "nothing fits" << (options_.around ? " around the guess" : "") << ": the best pose has support "
-         << score_.support << " and conflict " << score_.conflict;
+         << score_.support << " and conflict " << score_.conflict << ", " << std::lround(100.0 * result.on_surface)
+         << " % of the points lie on the surface";
   reason_ = reason.str();
 }
 

@@ -40,7 +40,8 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
   if (median(geometry.roughness) > kRegistration.rough_share * typical)
     geometry = localGeometry(points, *search, kRegistration.num_rough_neighbors, num_threads);
   normals = std::move(geometry.normals);
-  accuracy = typical + 2.0 * median(std::move(geometry.roughness));
+  noise = median(std::move(geometry.roughness));
+  accuracy = typical + 2.0 * noise;
 }
 
 PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normals, std::optional<Visibility> seen_space)

@@ -35,6 +35,7 @@ struct PosedSurface {
   std::vector<float> spacing;      ///< N, distance between neighboring samples there
   std::vector<int> order;          ///< N, the points in random order: the first k are an even sample of the surface
   double accuracy = 0.0;           ///< distance within which samples of one surface meet: their spacing and their noise
+  double noise = 0.0;              ///< scatter of the samples about the surface
   std::optional<Visibility> seen;  ///< what the scanner saw; nothing = the cloud shows its object from all sides
   std::shared_ptr<LateGrid> grid;  ///< shared by copies of the surface
   ClosestPointSearch::Ptr search;

@@ -37,8 +37,8 @@ def register(
     guess: (4, 4), tried beside many other poses; None: the identity.
     around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.
     source_viewpoint, target_viewpoint: as in planes().
-    With thousands of points, poses of a wrong object have a merit below 0.32, those of the right one 0.5 or more. Clouds of
-    a few hundred points reach 0.4 on wrong objects, too; fewer than 100 do not converge.
+    With thousands of points, poses of a wrong object have a merit below 0.32, those of the right one 0.5 or more. Points
+    too few to tell do not converge: fewer than 100, or where less than 45 % of them lie on the surface of the other cloud.
     """
     import numpy as np
 
@@ -63,7 +63,7 @@ def register(
     result = Registration(
         score=_score(found.score),
         poses=[(pose, _score(score)) for pose, score in found.poses],
-        **_fields(found, "transform", "converged", "covariance"),
+        **_fields(found, "transform", "converged", "on_surface", "covariance"),
     )
     return result if source_shift is None and target_shift is None else result._moved_between(s, t)
 
