@@ -23,4 +23,11 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int
   });
 }
 
+MeshSurface meshSurface(const pcl::PolygonMesh& mesh) {
+  return detail::withBadArguments([&] {
+    const MeshArrays arrays = toArrays(mesh);
+    return MeshSurface(arrays.vertices, fansOf(arrays));
+  });
+}
+
 }  // namespace pcl_symmetry

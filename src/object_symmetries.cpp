@@ -23,7 +23,10 @@ ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmet
 
 ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const ObjectSymmetryOptions& options,
                                         int num_points) {
-  return detectObjectSymmetries(*sampleMesh(mesh, num_points, options.seed), options);
+  const auto points = sampleMesh(mesh, num_points, options.seed);
+  ObjectSymmetries found = detectObjectSymmetries(*points, options);
+  if (!points->empty()) refineOnMesh(meshSurface(mesh), found);
+  return found;
 }
 
 }  // namespace pcl_symmetry

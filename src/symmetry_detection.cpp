@@ -6,7 +6,12 @@ namespace pcl_symmetry {
 
 std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PolygonMesh& mesh, const DetectionOptions& options,
                                                 int num_points) {
-  return detectSymmetryPlanes(*sampleMesh(mesh, num_points, options.seed), options);
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setOptions(options);
+  const auto points = sampleMesh(mesh, num_points, options.seed);
+  refinement.setInputCloud(points);
+  if (!points->empty()) refinement.setMesh(meshSurface(mesh));
+  return refinement.compute();
 }
 
 }  // namespace pcl_symmetry

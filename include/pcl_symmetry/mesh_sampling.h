@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/mesh_surface.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -17,5 +18,9 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// \throws pcl::BadArgumentException where \p num_points is less than 1 or the mesh refers to vertices that it does not
 /// have.
 pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int num_points, std::uint64_t seed = 1);
+
+/// The mesh as the exact surface that refineOnMesh() takes; polygons are cut into triangles.
+/// \throws pcl::BadArgumentException where no polygon has an area, or the mesh refers to vertices that it does not have.
+MeshSurface meshSurface(const pcl::PolygonMesh& mesh);
 
 }  // namespace pcl_symmetry

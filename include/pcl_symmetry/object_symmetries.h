@@ -18,7 +18,7 @@ template <typename PointT>
 ObjectSymmetries detectObjectSymmetries(const pcl::PointCloud<PointT>& cloud,
                                         const ObjectSymmetryOptions& options = {});
 
-/// The same for a mesh.
+/// The same for a mesh, whose axes are exact: see refineOnMesh().
 /// \param num_points points spread over the mesh, >= 1.
 /// \throws pcl::BadArgumentException for bad options, and where the mesh refers to vertices that it does not have.
 ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const ObjectSymmetryOptions& options = {},

@@ -24,7 +24,7 @@ std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PointCloud<PointT>& c
   return refinement.compute();
 }
 
-/// The same for a mesh.
+/// The same for a mesh, whose planes are exact: see refineOnMesh().
 /// \param num_points points spread over the mesh, >= 1.
 /// \throws pcl::BadArgumentException for bad options, and where the mesh refers to vertices that it does not have.
 std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PolygonMesh& mesh, const DetectionOptions& options = {},

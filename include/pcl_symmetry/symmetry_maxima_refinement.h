@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/mesh_refinement.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -47,6 +48,7 @@ public:
     ScanAnalysis<PointT>::setInputCloud(cloud);
     map_ = {};
     edt_.reset();
+    mesh_.reset();
   }
 
   /// Sets every option at once.
@@ -103,6 +105,10 @@ public:
   /// \param map,edt made by PlanarSymmetryTransform for the same cloud.
   void setSymmetryMap(const SymmetryMap& map, const std::shared_ptr<const GaussianEdt>& edt);
 
+  /// Tells the mesh that the points of the cloud were spread over: the last step refines on it, see refineOnMesh(),
+  /// unless the points were seen from one side. Follows setInputCloud(), which forgets it.
+  void setMesh(const MeshSurface& mesh) { mesh_ = mesh; }
+
   /// \return the planes, best first, in the frame of the input; empty where the shape has no symmetry, and where the
   /// input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
@@ -156,6 +162,7 @@ private:
   bool use_input_normals_ = true;
   SymmetryMap map_;  // that was given
   std::shared_ptr<const GaussianEdt> edt_;
+  std::optional<MeshSurface> mesh_;
   detail::DetectedPlanes found_;  // without the planes, which compute() returns
 };
 

@@ -13,6 +13,8 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+class MeshSurface;
+
 /// Options of objectSymmetries(): what symmetric means, and limits of the search.
 struct ObjectSymmetryOptions {
   int num_cells = 64;         ///< cells of the distance transform along each side, in [8, 512]
@@ -149,5 +151,9 @@ struct ObjectSymmetries {
 /// \return the group, in the input frame; C_1 for a shape without symmetry.
 /// \throws std::invalid_argument for bad options, values that are not finite, too few points and points on a line.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
+
+/// Moves a group, as a whole, that was found on points that were spread over a mesh to where it maps the mesh itself
+/// onto itself.
+void refineOnMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries);
 
 }  // namespace pcl_symmetry

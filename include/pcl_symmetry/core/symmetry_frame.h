@@ -37,6 +37,8 @@ struct FrameOptions {
   void validate() const;
 };
 
+class MeshSurface;
+
 /// A frame that may be the shape's own: that in which people would put it.
 struct ProbableFrame {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< center of symmetry, input frame
@@ -105,5 +107,9 @@ struct SymmetryFrame {
 /// \throws std::invalid_argument for bad options or points without extent.
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options = {},
                             const Visibility* visibility = nullptr, const MakeSearch& make_search = nullptr);
+
+/// Moves the center and axes of a frame of points that were spread over a mesh to the planes of symmetry of the mesh
+/// itself; axes across which no plane is a symmetry at 1 % of the diameter follow the others.
+void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame);
 
 }  // namespace pcl_symmetry

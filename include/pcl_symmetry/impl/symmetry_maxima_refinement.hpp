@@ -45,6 +45,7 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     const std::optional<Points> normals =
         use_input_normals_ ? detail::normalsOf(*input_, this->getUsedIndices()) : std::nullopt;
     found_ = detail::foundPlanes(std::move(points), edt_.get(), map_, options_, search, seen, normals);
+    if (mesh_ && !seen) refineOnMesh(*mesh_, found_, options_);
     return std::move(found_.planes);
   });
 }

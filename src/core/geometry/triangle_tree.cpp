@@ -92,6 +92,7 @@ struct TriangleTree::Builder {
         leaf.v[axis][lane] = v[axis];
       }
       leaf.triangle[lane] = order[i];
+      leaf.size = lane + 1;
       for (int k = 0; k < 3; ++k) box.extend(corners.col(t[k]));
     }
     tree.leaves_.push_back(leaf);
@@ -194,6 +195,72 @@ RayHit TriangleTree::search(const Eigen::Vector3f& origin, const Eigen::Vector3f
 RayHit TriangleTree::closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
                              float farthest) const {
   return search(origin, direction, nearest, farthest, false);
+}
+
+namespace {
+
+/// The point a + s u + t v of a triangle that is closest to a + w (Ericson, Real-Time Collision Detection, 5.1.5).
+Eigen::Vector3f closestOffset(const Eigen::Vector3f& u, const Eigen::Vector3f& v, const Eigen::Vector3f& w) {
+  const float d1 = u.dot(w), d2 = v.dot(w);
+  if (d1 <= 0.0f && d2 <= 0.0f) return Eigen::Vector3f::Zero();
+  const Eigen::Vector3f to_u = w - u, to_v = w - v;
+  const float d3 = u.dot(to_u), d4 = v.dot(to_u);
+  if (d3 >= 0.0f && d4 <= d3) return u;
+  const float d5 = u.dot(to_v), d6 = v.dot(to_v);
+  if (d6 >= 0.0f && d5 <= d6) return v;
+  const float c = d1 * d4 - d3 * d2;
+  if (c <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) return d1 / (d1 - d3) * u;
+  const float b = d5 * d2 - d1 * d6;
+  if (b <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) return d2 / (d2 - d6) * v;
+  const float a = d3 * d6 - d5 * d4;
+  if (a <= 0.0f && d4 >= d3 && d5 >= d6) return u + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (v - u);
+  const float sum = a + b + c;
+  return b / sum * u + c / sum * v;
+}
+
+}  // namespace
+
+ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x) const {
+  constexpr int kMostOpen = 64;  // derived: as for rays
+  ClosestOnTriangles found;
+  if (nodes_.empty()) return found;
+  struct Open {
+    float sq_distance;
+    int child;
+  };
+  Open stack[kMostOpen];
+  int depth = 0;
+  stack[depth++] = {0.0f, 0};
+  while (depth > 0) {
+    const Open next = stack[--depth];
+    if (!(next.sq_distance < found.sq_distance)) continue;
+    if (next.child < 0) {
+      const Leaf& leaf = leaves_[~next.child];
+      for (int k = 0; k < leaf.size; ++k) {
+        const Eigen::Vector3f a(leaf.a[0][k], leaf.a[1][k], leaf.a[2][k]), u(leaf.u[0][k], leaf.u[1][k], leaf.u[2][k]),
+            v(leaf.v[0][k], leaf.v[1][k], leaf.v[2][k]);
+        const Eigen::Vector3f point = a + closestOffset(u, v, x - a);
+        const float sq_distance = (x - point).squaredNorm();
+        if (sq_distance < found.sq_distance) found = {leaf.triangle[k], point, sq_distance};
+      }
+      continue;
+    }
+    const Node& node = nodes_[next.child];
+    Lanes sq_distances{};
+    for (int axis = 0; axis < 3; ++axis)
+      for (int k = 0; k < kWidth; ++k) {
+        const float below = node.box[0][axis][k] - x[axis], above = x[axis] - node.box[1][axis][k];
+        const float out = std::max(0.0f, std::max(below, above));
+        sq_distances[k] += out * out;
+      }
+    const int behind = depth;
+    for (int k = 0; k < node.num_children; ++k) {
+      int place = depth++;
+      for (; place > behind && stack[place - 1].sq_distance < sq_distances[k]; --place) stack[place] = stack[place - 1];
+      stack[place] = {sq_distances[k], node.child[k]};
+    }
+  }
+  return found;
 }
 
 bool TriangleTree::blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {

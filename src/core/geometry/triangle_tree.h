@@ -14,7 +14,14 @@ struct RayHit {
   float distance = std::numeric_limits<float>::infinity();  ///< lengths of the direction
 };
 
-/// A bounding volume hierarchy for ray queries. (The tools use Embree; the library does not depend on it.)
+/// The point of a surface that is closest to another point.
+struct ClosestOnTriangles {
+  int triangle = -1;  ///< index of the triangle; -1 where none is close enough
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();
+  float sq_distance = std::numeric_limits<float>::infinity();
+};
+
+/// A bounding volume hierarchy for rays and closest points. (The tools use Embree; the library does not depend on it.)
 ///
 /// A node has four children and a leaf four triangles, whose numbers lie side by side, so that four are tested in one
 /// instruction where the processor has it. Each of the four takes the steps that a single one would take.
@@ -32,6 +39,9 @@ public:
   /// \return whether a triangle lies between two points.
   bool blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
+  /// \return the exact closest point of the triangles, also of those without area.
+  ClosestOnTriangles closestTo(const Eigen::Vector3f& x) const;
+
 private:
   static constexpr int kWidth = 4;  // floats in the smallest vector register of current processors
   using Lanes = float[kWidth];
@@ -45,6 +55,7 @@ private:
   struct Leaf {
     Lanes a[3], u[3], v[3];
     int triangle[kWidth];
+    int size = 0;
   };
   struct Box {
     Eigen::Array3f min, max;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/random.h"
@@ -60,6 +61,32 @@ TEST(TriangleTree, FindsWhatTryingEveryTriangleFinds) {
   }
   EXPECT_GT(num_hits, 100);
   EXPECT_LT(num_hits, 500);
+}
+
+/// The closest point of a triangle has three conditions: it lies in it, and no way along u and v comes closer.
+TEST(TriangleTree, FindsTheClosestPointThatTryingEveryTriangleFinds) {
+  const Scene scene(300);
+  const TriangleTree tree(scene.corners, scene.triangles);
+  RandomStream random(3);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3f x(2.0f * Scene::draw(random), 2.0f * Scene::draw(random), 2.0f * Scene::draw(random));
+    float least = 100.0f;
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+      for (int j = 0; j <= 40; ++j)
+        for (int k = 0; j + k <= 40; ++k)
+          least = std::min(least, (scene.corners.middleCols<3>(3 * static_cast<Eigen::Index>(t)) *
+                                       (Eigen::Vector3f(40 - j - k, j, k) / 40.0f) -
+                                   x)
+                                      .norm());
+    const ClosestOnTriangles found = tree.closestTo(x);
+    EXPECT_NEAR(std::sqrt(found.sq_distance), least, 0.01) << "as fine as points are tried";
+    EXPECT_LE(std::sqrt(found.sq_distance), least + 1e-5);
+    EXPECT_NEAR((found.point - x).squaredNorm(), found.sq_distance, 1e-5);
+  }
+  const std::vector<Eigen::Vector3i> segment{{0, 1, 1}};
+  Points ends(3, 2);
+  ends << 0, 2, 0, 0, 0, 0;
+  EXPECT_TRUE(TriangleTree(ends, segment).closestTo({0.5f, 1.0f, 0.0f}).point.isApprox(Eigen::Vector3f(0.5f, 0, 0)));
 }
 
 TEST(TriangleTree, EmptyAndDegenerateScenesBlockNothing) {

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// Motions x -> R (x - center) + center that map a shape onto itself: R is a reflection or a rotation. They move
+/// together, as those of a group or the planes of a frame.
+struct MotionsAbout {
+  std::vector<Eigen::Matrix3d> linear;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< input frame
+
+  /// The reflection across a plane.
+  /// \param near the center is the point of the plane that is closest to it.
+  static MotionsAbout across(const ReflectionPlane& plane, const Eigen::Vector3d& near);
+  void addReflection(const Eigen::Vector3d& unit_normal);
+  /// Turns that stand for turns by any angle.
+  void addTurns(const Eigen::Vector3d& unit_axis);
+};
+
+/// How much of a mesh a motion maps onto the mesh.
+struct MeshShares {
+  double share = 1.0;      ///< of the area, that it maps to within the tolerance
+  double deviation = 0.0;  ///< 97 % of the area stay within it, input units
+  double residual = 0.0;   ///< root mean square distance of what stays within the tolerance, input units
+};
+
+/// A mesh of triangles as the exact surface: its closest points are those of its triangles, not of samples.
+class MeshSurface {
+public:
+  /// \param vertices 3 x V, input units; triangles with a vertex that is not finite are left out.
+  /// \param triangles indices of vertices.
+  /// \throws std::invalid_argument for an index that is no vertex, and a mesh without area.
+  MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles);
+
+  /// A turn of the axes of motions, R becomes turn R turn^T, and their new center, input frame.
+  struct Placement {
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  };
+  /// Where motions map the surface best onto itself: least squares of the distances of samples from the mesh, and of
+  /// its open borders from the borders, with a weight that leaves out what does not agree. Steps are those of Iterative
+  /// Symmetric Points (Section 4.4).
+  /// \return where they begin, if that is no worse.
+  Placement fitted(const MotionsAbout& motions) const;
+  /// The same for one plane.
+  ReflectionPlane fitted(const ReflectionPlane& plane) const;
+
+  /// \param tolerance input units, > 0.
+  MeshShares shares(const ReflectionPlane& plane, double tolerance) const;
+
+  const BoundingBall& ball() const;  ///< of the triangles, input frame
+  int numSamples() const;            ///< that shares are of
+
+private:
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
+};
+
+}  // namespace pcl_symmetry

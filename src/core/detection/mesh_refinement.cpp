@@ -1,0 +1,95 @@
+#include "pcl_symmetry/core/mesh_refinement.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Share of the surface that a symmetry maps to within the tolerance (DetectionOptions::tolerance).
+constexpr double kSymmetricShare = 0.97;
+// The least and, less 1, the greatest confidence: what the fitted confidence of samples reaches.
+constexpr double kLeastConfidence = 0.003;
+// Radians: a plane closer than this to the one that a flat shape lies in moves nothing.
+constexpr double kSameAsFlat = 0.02;
+
+/// The probability that at least 97 % of the surface is within the tolerance, where a share of its samples is.
+double confidenceOf(double share, int num_samples) {
+  const double deviation = std::sqrt(kSymmetricShare * (1.0 - kSymmetricShare) / num_samples);
+  const double confidence = 0.5 * std::erfc(-(share - kSymmetricShare) / deviation / std::sqrt(2.0));
+  return std::min(std::max(confidence, kLeastConfidence), 1.0 - kLeastConfidence);
+}
+
+void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, const DetectionOptions& options) {
+  static_cast<ReflectionPlane&>(plane) = mesh.fitted(static_cast<const ReflectionPlane&>(plane)).canonical();
+  const MeshShares shares = mesh.shares(plane, tolerance);
+  plane.share = shares.share;
+  const double error = std::sqrt(shares.share * (1.0 - shares.share) / mesh.numSamples()) + 1.0 / mesh.numSamples();
+  plane.share_low = std::max(0.0, shares.share - 2.0 * error);
+  plane.share_high = std::min(1.0, shares.share + 2.0 * error);
+  plane.deviation = shares.deviation;
+  plane.residual = shares.residual;
+  plane.confidence = confidenceOf(shares.share, mesh.numSamples());
+  plane.kind = plane.confidence >= options.min_confidence ? PlaneKind::Symmetry
+               : plane.confidence >= options.min_possible ? PlaneKind::Possible
+                                                          : PlaneKind::Approximate;
+}
+
+bool areOne(const SymmetryPlane& a, const SymmetryPlane& b, const BoundingBall& ball, const DetectionOptions& options) {
+  return a.angleTo(b) <= options.merge_angle &&
+         std::abs(std::abs(a.signedDistance(ball.center)) - std::abs(b.signedDistance(ball.center))) <=
+             options.merge_offset * ball.radius;
+}
+
+}  // namespace
+
+void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
+  const auto is_flat = [&](const ReflectionPlane& plane) {
+    return found.flat && plane.angleTo(*found.flat) < kSameAsFlat;
+  };
+  std::vector<SymmetryPlane> kept;
+  std::optional<SymmetryPlane> dropped;
+  for (SymmetryPlane& plane : found.planes) {
+    if (plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible) {
+      if (!is_flat(plane)) refine(mesh, plane, found.tolerance, options);
+      if (std::any_of(kept.begin(), kept.end(),
+                      [&](const SymmetryPlane& other) { return areOne(other, plane, mesh.ball(), options); }))
+        continue;
+      if (plane.kind == PlaneKind::Approximate && !options.approximate) {
+        if (!dropped || plane.share > dropped->share) dropped = std::move(plane);
+        continue;
+      }
+    }
+    kept.push_back(std::move(plane));
+  }
+  std::stable_sort(kept.begin(), kept.end(), [](const SymmetryPlane& a, const SymmetryPlane& b) {
+    return a.kind != b.kind ? a.kind < b.kind : a.kind < PlaneKind::Approximate && a.confidence > b.confidence;
+  });
+  found.planes = std::move(kept);
+  if (found.best) {
+    refine(mesh, *found.best, found.tolerance, options);
+    if (found.best->kind != PlaneKind::Approximate) {
+      found.planes.push_back(*found.best);
+      found.best.reset();
+    }
+  } else if (dropped && found.planes.empty() && found.axes.empty() && found.centers.empty()) {
+    found.best = dropped;
+  }
+  for (SymmetryAxis& axis : found.axes) {
+    MotionsAbout motions{{}, axis.point};
+    motions.addTurns(axis.direction);
+    const MeshSurface::Placement placed = mesh.fitted(motions);
+    axis.direction = placed.turn * axis.direction;
+    axis.point = placed.center + axis.direction.dot(mesh.ball().center - placed.center) * axis.direction;
+  }
+  for (SymmetryCenter& center : found.centers) {
+    MotionsAbout motions{{}, center.point};
+    for (int k = 0; k < 3; ++k) motions.addReflection(Eigen::Vector3d::Unit(k));
+    center.point = mesh.fitted(motions).center;
+  }
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,67 @@
+#include <Eigen/Geometry>
+
+#include "pcl_symmetry/core/mesh_surface.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// A plane of a frame is exact where it maps this share of the surface to within this share of the diameter, as
+// DetectionOptions::tolerance has it.
+constexpr double kExactShare = 0.97, kExactTolerance = 0.01;
+
+}  // namespace
+
+void refineOnMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries) {
+  if (symmetries.discrete.empty() && symmetries.continuous.empty()) return;
+  MotionsAbout motions{{}, symmetries.center};
+  for (const Eigen::Isometry3d& motion : symmetries.discrete) motions.linear.push_back(motion.linear());
+  for (const ContinuousSymmetry& axis : symmetries.continuous) motions.addTurns(axis.axis);
+  const MeshSurface::Placement placed = mesh.fitted(motions);
+  symmetries.center = placed.center;
+  for (Eigen::Isometry3d& motion : symmetries.discrete) {
+    motion.linear() = placed.turn * motion.linear() * placed.turn.transpose();
+    motion.translation() = placed.center - motion.linear() * placed.center;
+  }
+  for (ContinuousSymmetry& axis : symmetries.continuous)
+    axis = {symmetries.kind == RotationGroupKind::Spherical ? axis.axis : placed.turn * axis.axis, placed.center};
+}
+
+void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
+  Eigen::Matrix3d axes = frame.axes;
+  Eigen::Vector3d center = frame.center;
+  int exact[3], num_exact = 0;
+  for (int k = 0; k < 3; ++k) {
+    const ReflectionPlane plane = mesh.fitted(ReflectionPlane(frame.axes.col(k), frame.axes.col(k).dot(frame.center)));
+    if (mesh.shares(plane, 2.0 * kExactTolerance * mesh.ball().radius).share < kExactShare) continue;
+    axes.col(k) = plane.normal();
+    for (int i = 0; i < num_exact; ++i) axes.col(k) -= axes.col(exact[i]).dot(axes.col(k)) * axes.col(exact[i]);
+    axes.col(k).normalize();
+    center -= (axes.col(k).dot(center) - axes.col(k).dot(plane.normal() * plane.offset())) * axes.col(k);
+    exact[num_exact++] = k;
+  }
+  if (num_exact == 0) return;
+  if (num_exact == 1) {
+    const int k = exact[0], next = (k + 1) % 3;
+    axes.col(next) = (axes.col(next) - axes.col(k).dot(axes.col(next)) * axes.col(k)).normalized();
+  }
+  if (num_exact < 3) {
+    const int last = num_exact == 2 ? 3 - exact[0] - exact[1] : (exact[0] + 2) % 3;
+    axes.col(last) = axes.col((last + 1) % 3).cross(axes.col((last + 2) % 3));
+  }
+  if (axes.determinant() < 0.0) return;
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // of the frame
+  motion.linear() = axes * frame.axes.transpose();
+  motion.translation() = center - motion.linear() * frame.center;
+  frame.axes = axes;
+  frame.center = center;
+  frame.T_canonical_input = frame.T_canonical_input * motion.inverse();
+  for (Eigen::Isometry3d& other : frame.equivalent) other = other * motion.inverse();
+  if (frame.probable.empty()) return;
+  frame.probable.front().center = center;
+  frame.probable.front().axes = axes;
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,258 @@
+#include "pcl_symmetry/core/mesh_surface.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/base/check.h"
+#include "core/base/median.h"
+#include "core/geometry/directions.h"
+#include "core/geometry/mesh_sampling.h"
+#include "core/geometry/open_edges.h"
+#include "core/geometry/triangle_tree.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+// Lengths are in radii of the bounding ball.
+struct MeshRules {
+  int samples = 4000;          // of the area, that shares are of; an error of 0.3 % at the limit of 97 %
+  int fitted_samples = 2000;   // that motions are fitted to
+  int border_samples = 1000;   // of the open borders
+  int iterations = 40;         // at most; exact surfaces take three to six
+  double settled = 1e-9;       // length of a step that ends the fit: below what float coordinates resolve
+  double longest_step = 0.05;  // radians and radii: samples of the other side are not reached in one step
+  double widths = 2.5;         // medians of the distances, the width of the weights: most samples of a symmetry agree
+  double first_width = 0.05;   // of the weights, halved each step: the ends of a bar are few, and off by what they tell
+  double least_width = 1e-4;   // of the weights, far above rounding
+  double exact_cost = 1e-6;    // of all samples: rounding
+  double touching = 1e-5;      // distance below which its direction is rounding, and the normal counts
+  double stiffness = 1e-9;     // of the greatest, below which nothing fixes a direction
+  double judged_width = 0.01;  // of what tells which step is best: half the default tolerance
+  double farthest_turn = 0.45;  // radians and radii: a fit that goes farther left its symmetry
+};
+constexpr MeshRules kMesh;
+
+/// Least squares in a small turn omega of all axes and a move t of the center.
+struct MotionSums {
+  Matrix6d h = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  double cost = 0.0;  // of what does not agree
+
+  Vector6d step() const {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(h);
+    Vector6d result = Vector6d::Zero();
+    for (int i = 0; i < 6; ++i) {
+      const double stiffness = solver.eigenvalues()[i];
+      if (!(stiffness > kMesh.stiffness * solver.eigenvalues()[5])) continue;
+      result -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness);
+    }
+    return result * std::min(1.0, kMesh.longest_step / std::max(result.norm(), kMesh.settled));
+  }
+};
+
+}  // namespace
+
+MotionsAbout MotionsAbout::across(const ReflectionPlane& plane, const Eigen::Vector3d& near) {
+  MotionsAbout motions{{}, near - plane.signedDistance(near) * plane.normal()};
+  motions.addReflection(plane.normal());
+  return motions;
+}
+
+void MotionsAbout::addReflection(const Eigen::Vector3d& unit_normal) {
+  linear.emplace_back(Eigen::Matrix3d::Identity() - 2.0 * unit_normal * unit_normal.transpose());
+}
+
+void MotionsAbout::addTurns(const Eigen::Vector3d& unit_axis) {
+  constexpr int kNumTurns = 4;  // by the golden angle: they fit no polygon
+  for (int k = 1; k <= kNumTurns; ++k)
+    linear.emplace_back(Eigen::AngleAxisd(kGoldenAngle * k, unit_axis).toRotationMatrix());
+}
+
+struct MeshSurface::Parts {
+  /// Triangles, or edges as triangles without area, with samples and a direction each: the normal, or along the edge.
+  struct Surface {
+    std::unique_ptr<TriangleTree> tree;
+    Points samples, directions;
+  };
+
+  BoundingBall ball;
+  Surface faces, borders;  // about the center of the ball, in radii; borders may have no tree
+
+  /// Where a sample lands, and from the closest point to there.
+  struct Match {
+    Eigen::Vector3d image, apart, direction;
+  };
+
+  static std::vector<Match> matches(const Surface& surface, Eigen::Index size, const Eigen::Matrix3d& linear,
+                                    const Eigen::Vector3d& center) {
+    std::vector<Match> found;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Eigen::Vector3d x = center + linear * (surface.samples.col(i).cast<double>() - center);
+      const ClosestOnTriangles closest = surface.tree->closestTo(x.cast<float>());
+      found.push_back({x, x - closest.point.cast<double>(), surface.directions.col(closest.triangle).cast<double>()});
+    }
+    return found;
+  }
+
+  /// \param least_width of the weights.
+  void addTo(MotionSums& sums, const Surface& surface, Eigen::Index size, const MotionsAbout& motions,
+             double least_width) const {
+    for (const Eigen::Matrix3d& linear : motions.linear) {
+      const std::vector<Match> found = matches(surface, size, linear, motions.center);
+      std::vector<double> distances;
+      for (const Match& match : found) distances.push_back(match.apart.norm());
+      const double sigma = std::max(least_width, kMesh.widths * median(distances));
+      // x' = R (x - c) + c moves with exp(omega) R exp(-omega) and c + t by ((1 - R det R) omega) x (x' - c) +
+      // (1 - R) t: a reflection is -1 times a rotation.
+      const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+      const Eigen::Matrix3d moves = (one - linear).transpose(),
+                            turns = (one - linear.determinant() * linear).transpose();
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        const Match& match = found[i];
+        const auto gaussian = [&](double width) { return std::exp(-distances[i] * distances[i] / (width * width)); };
+        const bool is_border = &surface == &borders;
+        const Eigen::Vector3d& face = match.direction;
+        Eigen::Vector3d across = is_border ? face.unitOrthogonal() : face;
+        if (distances[i] > kMesh.touching) across = match.apart / distances[i];
+        const auto add = [&](const Eigen::Vector3d& m) {
+          Vector6d slope;
+          slope << turns * (match.image - motions.center).cross(m), moves * m;
+          sums.h += gaussian(sigma) * slope * slope.transpose();
+          sums.g += gaussian(sigma) * m.dot(match.apart) * slope;
+        };
+        add(across);
+        if (is_border) add(across.cross(face).normalized());
+        sums.cost += 1.0 - gaussian(kMesh.judged_width);
+      }
+    }
+  }
+};
+
+MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles) {
+  Points corners(3, static_cast<Eigen::Index>(3 * triangles.size()));
+  std::vector<Eigen::Vector3i> faces;
+  for (const Eigen::Vector3i& triangle : triangles) {
+    const int first = 3 * static_cast<int>(faces.size());
+    for (int k = 0; k < 3; ++k) {
+      check(triangle[k] >= 0 && triangle[k] < vertices.cols(), "triangle vertex", triangle[k], "an index of a vertex");
+      corners.col(first + k) = vertices.col(triangle[k]);
+    }
+    if (corners.middleCols(first, 3).allFinite()) faces.emplace_back(first, first + 1, first + 2);
+  }
+  corners.conservativeResize(3, static_cast<Eigen::Index>(3 * faces.size()));
+  const auto parts = std::make_shared<Parts>();
+  parts->ball = boundingBall(corners);
+  check(parts->ball.radius > 0.0, "extent of the mesh", parts->ball.radius, "> 0");
+  corners = normalizePoints(corners, parts->ball.center, parts->ball.radius);
+
+  parts->faces.tree = std::make_unique<TriangleTree>(corners, faces);
+  parts->faces.directions.resize(3, static_cast<Eigen::Index>(faces.size()));
+  for (Eigen::Index t = 0; t < parts->faces.directions.cols(); ++t) {
+    const Eigen::Vector3f u = corners.col(3 * t + 1) - corners.col(3 * t),
+                          v = corners.col(3 * t + 2) - corners.col(3 * t);
+    parts->faces.directions.col(t) = u.cross(v).stableNormalized();
+  }
+  // Every second sample is fitted to first, spread over the surface.
+  const Points samples = sampleTriangles(corners, faces, kMesh.samples);
+  parts->faces.samples = samples;
+  for (int i = 0; i < kMesh.samples; ++i)
+    parts->faces.samples.col(i / 2 + (i % 2) * kMesh.fitted_samples) = samples.col(i);
+
+  std::vector<Eigen::Vector3i> edges;
+  std::vector<double> length_up_to{0.0};
+  for (const auto& [a, b] : openEdges(corners, faces)) {
+    edges.emplace_back(a, b, b);
+    length_up_to.push_back(length_up_to.back() + (corners.col(b) - corners.col(a)).norm());
+  }
+  if (length_up_to.back() > 0.0) {
+    Parts::Surface& borders = parts->borders;
+    borders.tree = std::make_unique<TriangleTree>(corners, edges);
+    borders.directions.resize(3, static_cast<Eigen::Index>(edges.size()));
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      borders.directions.col(static_cast<Eigen::Index>(e)) =
+          (corners.col(edges[e][1]) - corners.col(edges[e][0])).normalized();
+    borders.samples.resize(3, kMesh.border_samples);
+    std::size_t e = 0;
+    for (int i = 0; i < kMesh.border_samples; ++i) {
+      const double target = (i + 0.5) * length_up_to.back() / kMesh.border_samples;
+      while (e + 1 < edges.size() && length_up_to[e + 1] < target) ++e;
+      borders.samples.col(i) = corners.col(edges[e][0]) + static_cast<float>(target - length_up_to[e]) *
+                                                              borders.directions.col(static_cast<Eigen::Index>(e));
+    }
+  }
+  parts_ = parts;
+}
+
+MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
+  const BoundingBall& ball = parts_->ball;
+  MotionsAbout moving{motions.linear, (motions.center - ball.center) / ball.radius};
+  const Eigen::Vector3d start = moving.center;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  Placement best{turn, motions.center};
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMesh.iterations; ++i) {
+    MotionSums sums;
+    const double width = std::max(kMesh.least_width, std::ldexp(kMesh.first_width, -i));
+    parts_->addTo(sums, parts_->faces, kMesh.fitted_samples, moving, width);
+    if (parts_->borders.tree) parts_->addTo(sums, parts_->borders, kMesh.border_samples, moving, width);
+    const bool is_near =
+        Eigen::AngleAxisd(turn).angle() < kMesh.farthest_turn && (moving.center - start).norm() < kMesh.farthest_turn;
+    if (!is_near) break;
+    // Of equally good steps the last counts: it polishes.
+    if (sums.cost <= least * (1.0 + kMesh.least_width) + kMesh.exact_cost) {
+      best = {turn, ball.center + ball.radius * moving.center};
+      least = std::min(least, sums.cost);
+    }
+    const Vector6d step = sums.step();
+    const double angle = step.head<3>().norm();
+    const bool is_done = step.norm() < kMesh.settled && (width == kMesh.least_width || sums.cost < kMesh.exact_cost);
+    if (is_done || !step.allFinite()) break;
+    const Eigen::Matrix3d next =
+        angle > 0.0 ? Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
+    turn = next * turn;
+    for (Eigen::Matrix3d& linear : moving.linear) linear = next * linear * next.transpose();
+    moving.center += step.tail<3>();
+  }
+  return best;
+}
+
+ReflectionPlane MeshSurface::fitted(const ReflectionPlane& plane) const {
+  const Placement placed = fitted(MotionsAbout::across(plane, parts_->ball.center));
+  const Eigen::Vector3d normal = placed.turn * plane.normal();
+  return {normal, normal.dot(placed.center)};
+}
+
+MeshShares MeshSurface::shares(const ReflectionPlane& plane, double tolerance) const {
+  constexpr double kQuantile = 0.97;  // as of SymmetryPlane::deviation
+  const MotionsAbout motions = MotionsAbout::across(plane, parts_->ball.center);
+  std::vector<double> distances;
+  double sq_sum = 0.0, within = 0.0;
+  for (const Parts::Match& match : Parts::matches(parts_->faces, kMesh.samples, motions.linear.front(),
+                                                  (motions.center - parts_->ball.center) / parts_->ball.radius)) {
+    distances.push_back(parts_->ball.radius * match.apart.norm());
+    if (distances.back() > tolerance) continue;
+    within += 1.0;
+    sq_sum += distances.back() * distances.back();
+  }
+  const auto quantile = distances.begin() + static_cast<std::ptrdiff_t>(kQuantile * kMesh.samples);
+  std::nth_element(distances.begin(), quantile, distances.end());
+  return {within / kMesh.samples, *quantile, within > 0.0 ? std::sqrt(sq_sum / within) : 0.0};
+}
+
+const BoundingBall& MeshSurface::ball() const {
+  return parts_->ball;
+}
+
+int MeshSurface::numSamples() const {
+  return kMesh.samples;
+}
+
+}  // namespace pcl_symmetry
