@@ -1,6 +1,7 @@
 /// The greatest group that axes of symmetry are part of.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/base/constants.h"
@@ -38,8 +39,23 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
   const double width = kPi / main.fold;
   const int num_angles = std::max(4, static_cast<int>(std::ceil(width / rotation_rules.across_step)));
   const Line3d across = bestAcross(fit, main.line, width, num_angles, {0.0, -0.04, 0.04, -0.08, 0.08, -0.12, 0.12});
-  const Eigen::Matrix3d frame = frameAlong(main.line.direction(), across.direction());
-  return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
+  const auto placed = [&](const Eigen::Vector3d& direction) {
+    const Eigen::Matrix3d frame = frameAlong(main.line.direction(), direction);
+    return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
+  };
+  if (auto found = placed(across.direction())) return found;
+  // The cells of a slender part tell no angle apart; its surface does.
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d best = across.direction();
+  for (int k = 0; k < num_angles; ++k) {
+    const Eigen::Vector3d direction = rotationAbout(main.line.direction(), width * k / num_angles) * across.direction();
+    const OffShares shares =
+        fit.offShares(rotationAbout(direction, kPi), across.origin(), rotation_rules.num_some_points);
+    if (!(shares.off < least)) continue;
+    least = shares.off;
+    best = direction;
+  }
+  return placed(best);
 }
 
 /// Two axes that are not parallel place a group, up to itself.

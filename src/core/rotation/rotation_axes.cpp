@@ -162,6 +162,18 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
   return fit.overlap(best) < rotation_rules.fair_overlap ? std::nullopt : std::optional(best);
 }
 
+/// The surface judged at a tolerance that rotations about a line do not keep to by themselves: about a slender part,
+/// every point moves less than a share of its length.
+RotationFit fitAbout(const RotationFit& fit, const Line3d& line) {
+  double sq_radius = 0.0;
+  for (Eigen::Index i = 0; i < fit.points().cols(); ++i)
+    sq_radius =
+        std::max(sq_radius, (fit.points().col(i).cast<double>() - line.origin()).cross(line.direction()).squaredNorm());
+  RotationLimits limits = fit.limits();
+  limits.tolerance = std::min(limits.tolerance, rotation_rules.max_tolerance_of_radius * std::sqrt(sq_radius));
+  return fit.withLimits(limits);
+}
+
 /// A rotation about a line that fails: the first that does so clearly, else the worst.
 std::pair<int, double> failingRotation(RotationProfile& profile, double most) {
   std::pair<int, double> worst{1, 0.0};
@@ -251,10 +263,11 @@ Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int 
   return best;
 }
 
-std::optional<FoldAxis> AxisFinder::foldAbout(const Line3d& line, const std::vector<int>& folds) const {
+std::optional<FoldAxis> AxisFinder::foldAbout(const RotationFit& fit, const Line3d& line,
+                                              const std::vector<int>& folds) const {
   for (std::size_t i = 0; i < folds.size() && i < rotation_rules.max_folds; ++i) {
     const RotationSet rotations = cyclicSet(line, folds[i]);
-    auto axis = axisFrom(placedGroup(fit_, options_, RotationGroupKind::Cyclic, folds[i], rotations), folds[i]);
+    auto axis = axisFrom(placedGroup(fit, options_, RotationGroupKind::Cyclic, folds[i], rotations), folds[i]);
     if (axis) return axis;
   }
   return std::nullopt;
@@ -263,20 +276,21 @@ std::optional<FoldAxis> AxisFinder::foldAbout(const Line3d& line, const std::vec
 /// The line with all rotations about it that are symmetries. Three or more equal pieces around a line are a pattern:
 /// their fold comes before rotations by all angles, though the pieces together be small enough for a feature.
 std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
-  RotationProfile profile(fit_, line);
-  const double most = greatestExcess(fit_.limits(), rotation_rules.num_some_points);
+  const RotationFit fit = fitAbout(fit_, line);
+  RotationProfile profile(fit, line);
+  const double most = greatestExcess(fit.limits(), rotation_rules.num_some_points);
   const auto failing = failingRotation(profile, most);
   const int worst = failing.first;
   const double excess = failing.second;
   const auto revolution = [&]() -> std::optional<FoldAxis> {
     if (excess > rotation_rules.max_worst * most) return std::nullopt;
-    return axisFrom(placedGroup(fit_, options_, RotationGroupKind::Revolution, 0, rotationsAbout(line)), 0);
+    return axisFrom(placedGroup(fit, options_, RotationGroupKind::Revolution, 0, rotationsAbout(line)), 0);
   };
   std::vector<int> folds;
-  if (excess >= rotation_rules.pattern_excess) folds = foldsOf(fit_, profile, line, options_.max_fold);
+  if (excess >= rotation_rules.pattern_excess) folds = foldsOf(fit, profile, line, options_.max_fold);
   const bool is_pattern = !folds.empty() && (folds.front() >= rotation_rules.min_pattern || excess > 1.0);
-  std::optional<FoldAxis> axis = is_pattern ? foldAbout(line, folds) : revolution();
-  if (!axis) axis = is_pattern ? revolution() : foldAbout(line, folds);
+  std::optional<FoldAxis> axis = is_pattern ? foldAbout(fit, line, folds) : revolution();
+  if (!axis) axis = is_pattern ? revolution() : foldAbout(fit, line, folds);
   if (!axis || axis->fold > 0)
     rejected_.push_back({line, 0, 2.0 * kPi * worst / kNumPhases, profile.shares(worst, kNumPhases)});
   return axis;

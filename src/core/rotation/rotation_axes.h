@@ -60,7 +60,7 @@ public:
 
 private:
   std::optional<FoldAxis> axisAbout(const Line3d& line);
-  std::optional<FoldAxis> foldAbout(const Line3d& line, const std::vector<int>& folds) const;
+  std::optional<FoldAxis> foldAbout(const RotationFit& fit, const Line3d& line, const std::vector<int>& folds) const;
 
   const RotationFit& fit_;
   const ObjectSymmetryOptions& options_;

@@ -65,6 +65,8 @@ struct RotationRules {
   std::size_t max_folds = 3;       // folds of a line that are fitted, the greatest first
   int min_pattern = 3;             // equal pieces around a line that are a pattern, not features,
   double pattern_excess = 0.5;     // where other rotations exceed this
+  double max_tolerance_of_radius =
+      0.06;  // a bar 3 % as thick as long keeps its corners, a polygon of 12 sides is round
 
   // Groups
   double axes_meet = 0.1;     // angles between two found axes and two of a group agree within this
