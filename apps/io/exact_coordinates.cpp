@@ -96,6 +96,16 @@ Eigen::Isometry3d shiftedBack(const Eigen::Isometry3d& T_target_source, const Ei
   return result;
 }
 
+Eigen::Vector4d printedCoefficients(const ReflectionPlane& plane, const Eigen::Vector3d& shift) {
+  constexpr double kDecimals = 1e6;
+  Eigen::Vector4d coefficients;
+  for (int k = 0; k < 3; ++k) coefficients[k] = std::round(kDecimals * plane.normal()[k]) / kDecimals + 0.0;
+  const Eigen::Vector3d normal = coefficients.head<3>();
+  // The point of the plane that is closest to the middle of the points.
+  coefficients[3] = -normal.dot(shift + plane.offset() * plane.normal()) + 0.0;
+  return coefficients;
+}
+
 int lengthDigits(const Eigen::Vector3d& shift) {
   // derived: six digits tell 1e-5 of the extent; a shift of up to a million extents takes six more.
   return shift.isZero(0.0) ? 6 : 12;

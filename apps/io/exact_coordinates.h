@@ -49,6 +49,10 @@ ReflectionPlane shiftedBack(const ReflectionPlane& plane, const Eigen::Vector3d&
 Eigen::Isometry3d shiftedBack(const Eigen::Isometry3d& T_target_source, const Eigen::Vector3d& source_shift,
                               const Eigen::Vector3d& target_shift);
 
+/// \return a, b, c and d of the plane of the shifted points in the input frame, as six decimals of the normal are
+/// printed: far from the origin, d and the rounded normal together are the plane at the points
+Eigen::Vector4d printedCoefficients(const ReflectionPlane& plane, const Eigen::Vector3d& shift);
+
 /// \return significant digits of lengths in the input frame that a tool prints
 int lengthDigits(const Eigen::Vector3d& shift);
 

@@ -1,11 +1,16 @@
-/// The canonical frame of a cloud by its symmetry, or the transform that brings it to another one; completion.
+/// The canonical frame of a cloud by its symmetry, or the transform that brings it to another one; completion, and
+/// symmetrised shapes with their asymmetry.
+#include <pcl/common/io.h>
 #include <pcl/console/print.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,12 +24,16 @@
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/json_values.h"
+#include "io/mesh_output.h"
 #include "io/shape_output.h"
 #include "io/turn_values.h"
 #include "pcl_symmetry/completion.h"
+#include "pcl_symmetry/mesh_sampling.h"
+#include "pcl_symmetry/symmetrization.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pcl_symmetry/symmetry_registration.h"
+#include "pictures/picture.h"
 #include "pictures/scene_page.h"
 
 namespace {
@@ -35,7 +44,8 @@ using namespace pcl_symmetry::apps;
 struct AlignOptions {
   BatchOptions batch;
   std::string input;
-  std::optional<std::string> output, target, html_path;
+  std::optional<std::string> output, target, html_path, png_path, landmarks;
+  std::string symmetrise = "none";
   bool complete = false;
   CommonOptions common;
 };
@@ -46,12 +56,23 @@ CommandLine commandLine(AlignOptions& options) {
       "Turns a cloud into the frame of its symmetry: center to the origin, axes to x, y and z, best first. "
       "With -target, brings it to another cloud instead, from any pose.",
       "pcl_symmetry_align scan.pcd aligned.pcd -target model.ply -json pose.json");
-  options.batch.outputs = {&options.output, &options.html_path};
+  options.batch.outputs = {&options.output, &options.html_path, &options.png_path};
   line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the cloud after the transform")
       .text("target", "FILE", options.target, "cloud or mesh that the input is brought to")
       .text("html", "FILE", options.html_path,
             "page that shows the input in the target, or its center and axes, for any browser, without network")
+      .picture("png", options.png_path, "picture of the same")
+      .choice(
+          "symmetrise", options.symmetrise, {"none", "mean", "left", "right"},
+          "write the shape that its best plane maps onto itself, after the transform: its halves are the mean of both "
+          "sides, or the side that the normal of the plane points away from (left) or to (right). A mesh keeps its "
+          "faces and is written as .ply. The field asymmetry of a point tells how far the shape is outside of the "
+          "reflection of its other side there, along the normal; -html and -png show it")
+      .text("landmarks", "FILE", options.landmarks,
+            "with -symmetrise: lines of six numbers, a landmark and its counterpart, or of three, one of the midline; "
+            "their "
+            "asymmetry is reported")
       .flag("complete", options.complete,
             "reflect the cloud across its best plane of symmetry, except into space that was seen to be empty; the "
             "field reflected_of of an added point is the index of its source, and -1 for all others")
@@ -70,8 +91,9 @@ SymmetryFrame computeFrame(const Console& console, const InputShape& input, cons
     alignment.setOptions(options);
     alignment.setViewpoint(shifted(common.viewpoint, input.shift()));
     alignment.setInputCloud(input.points);
-    const SymmetryFrame frame = alignment.compute();
+    SymmetryFrame frame = alignment.compute();
     if (!alignment.getReason().empty()) throw InputError(input.path + ": " + alignment.getReason());
+    if (input.shape.mesh && !alignment.usedViewpoint()) refineOnMesh(meshSurface(*input.shape.mesh), frame);
     step.done(alignment.usedViewpoint() ? "seen from one side" : "");
     return frame;
   });
@@ -99,6 +121,7 @@ ReflectionPlane bestPlane(const Console& console, const InputShape& input, const
     refinement.setOptions(detection);
     refinement.setViewpoint(shifted(common.viewpoint, input.shift()));
     refinement.setInputCloud(input.points);
+    if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
     std::vector<SymmetryPlane> found = refinement.compute();
     if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
     return found;
@@ -129,6 +152,140 @@ void complete(const Console& console, const InputShape& input, const CommonOptio
   fields = appendCopies(fields, completed.sources, "reflected_of");
   movePoints(fields, shiftedBack(plane, input.shift()).reflection(), input.points->size());
   step.done(std::to_string(completed.added.size()) + " points added");
+}
+
+/// Landmarks of a file, minus the shift.
+struct Landmarks {
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> pairs;
+  std::vector<Eigen::Vector3d> midline;
+};
+
+Landmarks readLandmarks(const std::string& path, const Eigen::Vector3d& shift) {
+  std::ifstream file(path);
+  if (!file) throw InputError(path + ": cannot be opened");
+  Landmarks landmarks;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    line = line.substr(0, line.find('#'));
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == ',' || c == ';' || c == '\r'; }, ' ');
+    std::istringstream words(line);
+    std::vector<double> values;
+    for (double value = 0.0; words >> value;) values.push_back(value);
+    if (!words.eof() || (values.size() != 0 && values.size() != 3 && values.size() != 6))
+      throw InputError(path + ": line " + std::to_string(number) + " must hold three or six numbers");
+    if (values.empty()) continue;
+    const Eigen::Vector3d first = Eigen::Map<const Eigen::Vector3d>(values.data()) - shift;
+    if (values.size() == 3) landmarks.midline.push_back(first);
+    if (values.size() == 6) landmarks.pairs.emplace_back(first, Eigen::Map<const Eigen::Vector3d>(&values[3]) - shift);
+  }
+  return landmarks;
+}
+
+nlohmann::json landmarksJson(const Landmarks& landmarks, const ReflectionPlane& plane) {
+  const LandmarkAsymmetry found = landmarkAsymmetry(landmarks.pairs, landmarks.midline, plane);
+  nlohmann::json json{{"object_rms", found.object_rms},
+                      {"paired_rms", found.paired_rms},
+                      {"paired", nlohmann::json::array()},
+                      {"midline", found.unpaired}};
+  for (const Eigen::Vector3d& apart : found.paired)
+    json["paired"].push_back({{"distance", apart.norm()}, {"vector", numbersOf(apart)}});
+  return json;
+}
+
+/// A symmetrised shape in the frame of the shifted points, and what is reported about it.
+struct Symmetrised {
+  pcl::PCLPointCloud2 fields;  ///< of a cloud
+  std::optional<pcl::PolygonMesh> mesh;
+  std::vector<float> asymmetry;  ///< of each point of the input
+  double greatest = 0.0;         ///< absolute asymmetry
+  nlohmann::json json;
+  std::string text;
+};
+
+/// Writes positions into the fields x, y and z.
+void setPositions(pcl::PCLPointCloud2& fields, const pcl::PointCloud<pcl::PointXYZ>& points,
+                  const Eigen::Vector3d& shift) {
+  for (const pcl::PCLPointField& field : fields.fields) {
+    if (field.name != "x" && field.name != "y" && field.name != "z") continue;
+    const int axis = field.name[0] - 'x';
+    for (std::size_t i = 0; i < points.size() && i < static_cast<std::size_t>(fields.width) * fields.height; ++i) {
+      const double value = static_cast<double>(points[i].data[axis]) + shift[axis];
+      const auto rounded = static_cast<float>(value);
+      std::uint8_t* at = &fields.data[i * fields.point_step + field.offset];
+      if (field.datatype == pcl::PCLPointField::FLOAT64) std::memcpy(at, &value, sizeof(value));
+      if (field.datatype == pcl::PCLPointField::FLOAT32) std::memcpy(at, &rounded, sizeof(rounded));
+    }
+  }
+}
+
+Symmetrised symmetrise(const Console& console, const InputShape& input, const AlignOptions& options,
+                       const CommonOptions& common) {
+  const ReflectionPlane plane = bestPlane(console, input, common);
+  Step step(console, "Symmetrising");
+  const SymmetrizedHalf half = options.symmetrise == "left"    ? SymmetrizedHalf::Left
+                               : options.symmetrise == "right" ? SymmetrizedHalf::Right
+                                                               : SymmetrizedHalf::Mean;
+  Symmetrised result;
+  const Eigen::Vector4d coefficients = shiftedBack(plane, input.shift()).coefficients();
+  result.json = {{"half", options.symmetrise}, {"plane", numbersOf(coefficients)}};
+  double mean = 0.0;
+  if (input.shape.mesh) {
+    const SymmetrizedMesh shape = symmetrize(*input.shape.mesh, plane, half, common.threads);
+    result.mesh = shape.mesh;
+    result.asymmetry = shape.asymmetry;
+    mean = shape.mean_asymmetry;
+    result.greatest = shape.greatest_asymmetry;
+    result.json["deviation"] = shape.deviation;
+  } else {
+    const SymmetrizedCloud<pcl::PointXYZ> shape = symmetrize(*input.points, plane, half, common.threads);
+    result.asymmetry = shape.asymmetry;
+    mean = shape.mean_asymmetry;
+    result.greatest = shape.greatest_asymmetry;
+    const std::size_t size = shape.sources.size() / 2;
+    pcl::PCLPointCloud2 kept;
+    pcl::copyPointCloud(withFields(input.fields(), {"asymmetry"}, {result.asymmetry}),
+                        pcl::Indices(shape.sources.begin(), shape.sources.begin() + static_cast<std::ptrdiff_t>(size)),
+                        kept);
+    setPositions(kept, shape.cloud, input.shift());
+    pcl::Indices all(size);
+    for (std::size_t i = 0; i < size; ++i) all[i] = static_cast<pcl::index_t>(i);
+    result.fields = appendCopies(kept, all, "reflected_of");
+    movePoints(result.fields, shiftedBack(plane, input.shift()).reflection(), size);
+  }
+  result.json["mean_asymmetry"] = mean;
+  result.json["greatest_asymmetry"] = result.greatest;
+  char text[96];
+  std::snprintf(text, sizeof(text), "asymmetry: mean %.4g, greatest %.4g\n", mean, result.greatest);
+  result.text = text;
+  if (options.landmarks) {
+    result.json["landmarks"] = landmarksJson(readLandmarks(*options.landmarks, input.shift()), plane);
+    std::snprintf(text, sizeof(text), "landmarks: object asymmetry %.4g, paired %.4g, root mean square\n",
+                  result.json["landmarks"]["object_rms"].get<double>(),
+                  result.json["landmarks"]["paired_rms"].get<double>());
+    result.text += text;
+  }
+  step.done();
+  return result;
+}
+
+/// The input with the colours of its asymmetry.
+PictureScene sceneOf(const InputShape& input, const Symmetrised& symmetrised) {
+  PictureScene scene;
+  scene.points = input.shape.points;
+  scene.mesh = input.shape.mesh;
+  PicturePanel panel;
+  char label[96];
+  std::snprintf(label, sizeof(label), "asymmetry: 0 is -%.3g (inside), 1 is +%.3g (outside)", symmetrised.greatest,
+                symmetrised.greatest);
+  panel.label = label;
+  panel.show_points = !scene.mesh;
+  for (const float value : symmetrised.asymmetry)
+    panel.support.push_back(std::isfinite(value) && symmetrised.greatest > 0.0
+                                ? static_cast<float>(0.5 + 0.5 * value / symmetrised.greatest)
+                                : 0.5f);
+  scene.panels = {panel};
+  return scene;
 }
 
 /// A motion of the input, between input frames, and what is reported about it.
@@ -263,7 +420,7 @@ Motion toOwnFrame(const Console& console, const InputShape& input, const AlignOp
                 linesOf(frame, input.shift()),
                 describe(frame, input.shift()),
                 {}};
-  if (options.html_path) motion.scene = sceneOf(input, frame);
+  if (options.html_path || options.png_path) motion.scene = sceneOf(input, frame);
   return motion;
 }
 
@@ -271,7 +428,7 @@ Motion toTarget(const Console& console, const InputShape& input, const AlignOpti
                 const CommonOptions& common) {
   const InputShape target = loadInput(console, *options.target, common);
   Motion motion = registerTo(console, input, target, common);
-  if (options.html_path) motion.scene = sceneOf(input, target, motion.transform);
+  if (options.html_path || options.png_path) motion.scene = sceneOf(input, target, motion.transform);
   if (motion.converged)
     motion.text = linesOf(motion.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
   return motion;
@@ -303,10 +460,25 @@ void analyse(const AlignOptions& options, FileJob& job) {
   const InputShape input = loadInput(console, job.path(), common);
   Motion motion =
       options.target ? toTarget(console, input, options, common) : toOwnFrame(console, input, options, common);
+  std::optional<Symmetrised> symmetrised;
+  if (options.symmetrise != "none" && motion.converged) {
+    if (options.output && input.shape.mesh) checkMeshExtension(job.output(*options.output));
+    symmetrised = symmetrise(console, input, options, common);
+    motion.text += symmetrised->text;
+    motion.json["symmetrised"] = symmetrised->json;
+    if (motion.scene) motion.scene = sceneOf(input, *symmetrised);
+  }
   job.report({motion.text, motion.json, rowsOf(motion)});
   if (!motion.converged) throw InputError(job.path() + ": does not fit " + *options.target + " in any pose");
   if (options.html_path) writePage(*motion.scene, {job.path(), motion.text}, job.output(*options.html_path));
-  pcl::PCLPointCloud2 fields = input.fields();
+  if (options.png_path) renderPicture(*motion.scene, job.output(*options.png_path), 800, 600);
+  if (symmetrised && symmetrised->mesh) {
+    const Eigen::Isometry3d T_output_shifted = motion.transform * Eigen::Translation3d(input.shift());
+    if (options.output)
+      saveMesh(job.output(*options.output), *symmetrised->mesh, T_output_shifted, "asymmetry", symmetrised->asymmetry);
+    return;
+  }
+  pcl::PCLPointCloud2 fields = symmetrised ? std::move(symmetrised->fields) : input.fields();
   if (options.complete) complete(console, input, common, fields);
   if (options.output) save(console, input.shape, std::move(fields), motion.transform, job.output(*options.output));
 }
@@ -316,6 +488,9 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.output) checkCloudExtension(*options.output);
+  if (options.complete && options.symmetrise != "none")
+    throw UsageError("-complete and -symmetrise exclude each other");
+  if (options.landmarks && options.symmetrise == "none") throw UsageError("-landmarks needs -symmetrise");
   // What the classes have to say is said here, in one line.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   options.batch.inputs = {options.input};

@@ -1,4 +1,6 @@
 /// Symmetry planes of a cloud or mesh: a table, JSON, the support of every point, a picture.
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -8,6 +10,7 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/csv.h"
 #include "command_line/file_errors.h"
 #include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
@@ -18,6 +21,8 @@
 #include "io/json_values.h"
 #include "io/shape_output.h"
 #include "io/turn_values.h"
+#include "pcl_symmetry/core/revolution_profile.h"
+#include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pictures/picture.h"
 #include "pictures/scene_page.h"
@@ -32,7 +37,7 @@ constexpr std::size_t kMaxPanels = 9;
 
 struct PlanesOptions {
   BatchOptions batch;
-  std::optional<std::string> png_path, html_path, support_path;
+  std::optional<std::string> png_path, html_path, support_path, profile_path;
   DetectionOptions detection;
   std::optional<double> tolerance;
   CommonOptions common;
@@ -46,13 +51,17 @@ const std::vector<std::string> kColumns = {"number",     "kind",  "a",       "b"
 CommandLine commandLine(PlanesOptions& options) {
   CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of clouds and meshes.",
                    "pcl_symmetry_planes chair.pcd -json planes.json -png planes.png");
-  options.batch.outputs = {&options.png_path, &options.html_path, &options.support_path};
+  options.batch.outputs = {&options.png_path, &options.html_path, &options.support_path, &options.profile_path};
   line.positionals("input", options.batch.inputs, kManyInputs)
       .picture("png", options.png_path, "picture: cloud, planes and support, best planes first")
       .text("html", "FILE", options.html_path,
             "page with the same in three dimensions, for any browser, without network")
       .text("support", "FILE", options.support_path,
             "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane")
+      .text(
+          "profile", "FILE", options.profile_path,
+          "profile of a body of revolution, .csv or .svg: radius, height, spread and number of points along the curve "
+          "whose turn about the best axis is the body")
       .flag("approximate", options.detection.approximate,
             "also report approximate symmetries and symmetries of parts, marked as such")
       .number("min_confidence", options.detection.min_confidence, Range::closed(0, 1),
@@ -99,7 +108,7 @@ std::string formatted(const char* format, Values... values) {
 
 /// How far the best plane of a shape without symmetry is off.
 std::string lineOfBest(const SymmetryPlane& best, double tolerance, const Eigen::Vector3d& shift, int digits) {
-  const Eigen::Vector4d c = shiftedBack(best, shift).coefficients();
+  const Eigen::Vector4d c = printedCoefficients(best, shift);
   return formatted("best plane %.6f %.6f %.6f %.*g maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n",
                    c[0], c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
 }
@@ -115,7 +124,7 @@ std::string lineOfTolerance(const Findings& findings) {
 
 /// What a sheet leaves open.
 std::string lineOfFlat(const ReflectionPlane& flat, const Eigen::Vector3d& shift, int digits) {
-  const Eigen::Vector4d c = shiftedBack(flat, shift).coefficients();
+  const Eigen::Vector4d c = printedCoefficients(flat, shift);
   return formatted("flat: the points lie on the plane %.6f %.6f %.6f %.*g; to be mirrored in it says nothing\n", c[0],
                    c[1], c[2], digits, c[3]);
 }
@@ -141,7 +150,7 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   table += formatted("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence",
                      "share", "support", "score", "seen", "kind");
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    const Eigen::Vector4d c = shiftedBack(planes[i], shift).coefficients();
+    const Eigen::Vector4d c = printedCoefficients(planes[i], shift);
     table += formatted("%5zu %10.6f %10.6f %10.6f %12.*g %10.3f %7.3f %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2],
                        digits, c[3], planes[i].confidence, planes[i].share, planes[i].support, planes[i].score,
                        planes[i].seen, toString(planes[i].kind));
@@ -303,6 +312,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     if (options.tolerance) refinement.setTolerance(*options.tolerance);
     refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
     refinement.setInputCloud(input.points);
+    if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
     findings.planes = refinement.compute();
     if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
   });
@@ -341,6 +351,44 @@ void saveSupport(const InputShape& input, const Findings& findings, const std::s
             input.shape.sensor_orientation);
 }
 
+/// A drawing of the profile: the curve and its spread to one side of the axis, the curve alone to the other.
+std::string profileSvg(const std::vector<ProfilePoint>& profile) {
+  double width = 0.0, low = profile.front().height, high = low;
+  for (const ProfilePoint& point : profile) {
+    width = std::max(width, point.radius + point.spread);
+    low = std::min(low, point.height);
+    high = std::max(high, point.height);
+  }
+  constexpr double kMargin = 0.05, kPixels = 800.0, kLine = 0.003;
+  const double extent = std::max(2.0 * width, high - low), border = kMargin * extent,
+               height = high - low + 2.0 * border;
+  const double all = 2.0 * (width + border), scale = kPixels / std::max(all, height);
+  std::string dots;
+  for (const ProfilePoint& point : profile)
+    for (const double side : {-1.0, 1.0})
+      dots += formatted("<circle cx=\"%.6g\" cy=\"%.6g\" r=\"%.4g\" fill=\"%s\" fill-opacity=\"%s\"/>\n",
+                        side * point.radius, -point.height, std::max(kLine * extent, side > 0.0 ? point.spread : 0.0),
+                        side > 0.0 ? "#e69f00" : "#0072b2", side > 0.0 ? "0.3" : "1");
+  return formatted(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"%.6g %.6g %.6g "
+             "%.6g\">\n",
+             scale * all, scale * height, -width - border, -high - border, all, height) +
+         formatted("<path d=\"M 0 %.6g V %.6g\" stroke=\"#595959\" stroke-width=\"%.4g\"/>\n", -high - border,
+                   -low + border, kLine * extent) +
+         dots + "</svg>\n";
+}
+
+void saveProfile(const InputShape& input, const Findings& findings, const std::string& path) {
+  if (findings.axes.empty()) throw InputError(input.path + ": is no body of revolution, has no profile");
+  const std::vector<ProfilePoint> profile =
+      namingFile(input.path, [&] { return revolutionProfile(finitePoints(*input.points), findings.axes.front()); });
+  if (profile.empty()) throw InputError(input.path + ": has too few points along its profile");
+  if (boost::iends_with(path, ".svg")) return writeText(path, profileSvg(profile));
+  std::string table = csvLine({"radius", "height", "spread", "count"});
+  for (const ProfilePoint& point : profile) table += csvLine({point.radius, point.height, point.spread, point.count});
+  writeText(path, table);
+}
+
 void draw(const Console& console, const InputShape& input, const Findings& findings, const std::string& path) {
   Step drawing(console, "Drawing " + path);
   const PictureScene scene = makeScene(input.points, findings);
@@ -353,6 +401,7 @@ void analyse(const PlanesOptions& options, FileJob& job) {
   const Findings findings = search(job, input, options);
   job.report({tableOf(findings, input.shift()), describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));
+  if (options.profile_path) saveProfile(input, findings, job.output(*options.profile_path));
   if (options.png_path) draw(job.console(), input, findings, job.output(*options.png_path));
   if (options.html_path)
     writePage(makeScene(input.points, findings), {job.path(), tableOf(findings, input.shift())},
@@ -364,6 +413,9 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.support_path) checkCloudExtension(*options.support_path);
+  if (options.profile_path && !boost::iends_with(*options.profile_path, ".csv") &&
+      !boost::iends_with(*options.profile_path, ".svg"))
+    throw UsageError(*options.profile_path + ": extension must be .csv or .svg");
   return runOnFiles(options.batch, options.common, kColumns, [&](FileJob& job) { analyse(options, job); });
 }
 

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "tools/tool_run.h"
-#include "scanner/virtual_scanner.h"
 #include "io/shape_input.h"
 #include "pcl_symmetry/completion.h"
+#include "scanner/virtual_scanner.h"
+#include "tools/tool_run.h"
 
 namespace {
 
@@ -176,6 +176,47 @@ TEST_F(AlignTool, CompletesAScanAndMarksWhatItAdds) {
     ASSERT_GE(source, 0);
     ASSERT_EQ(fieldOf<std::uint32_t>(after.cloud, "label", i), static_cast<std::uint32_t>(source));
     const auto p = (*after.points)[i].getVector3fMap(), q = (*after.points)[source].getVector3fMap();
+    ASSERT_LT((Eigen::Vector3f(-q.x(), q.y(), q.z()) - p).norm(), 0.1) << "reflected at x = 0 of the model";
+  }
+}
+
+/// A box whose right end stands 0.02 further out than its left one, about x = 0.01.
+TEST_F(AlignTool, SymmetrisesAMeshAndACloud) {
+  const std::string faces = "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n";
+  const std::string mesh = folder_.write(
+      "m.off",
+      "OFF\n8 6 12\n-2 -1.5 -1\n2.02 -1.5 -1\n2 1.5 -1\n-2 1.5 -1\n-2 -1.5 1\n2.02 -1.5 1\n2 1.5 1\n-2 1.5 1\n" +
+          faces);
+  const std::string landmarks = folder_.write("l.txt", "# ends\n-2 0 0, 2 0 0\n0 1.5 0\n");
+  ASSERT_EQ(run(mesh + " " + (folder_ / "s.ply") + " -symmetrise mean -landmarks " + landmarks + " -json " +
+                (folder_ / "r.json")),
+            0)
+      << error_;
+  const nlohmann::json found = report()["symmetrised"];
+  EXPECT_LT(found["deviation"].get<double>(), 1e-5 * 5.0);
+  EXPECT_LT(found["greatest_asymmetry"].get<double>(), 0.025);
+  EXPECT_EQ(found["landmarks"]["paired"].size(), 1u);
+  EXPECT_EQ(found["landmarks"]["midline"].size(), 1u);
+  const Shape written = loadShape(folder_ / "s.ply");
+  ASSERT_TRUE(written.mesh);
+  EXPECT_EQ(written.mesh->polygons.size(), 6u);
+  EXPECT_TRUE(std::isfinite(fieldOf<float>(written.cloud, "asymmetry", 3)));
+  EXPECT_NE(output_.find("landmarks: object asymmetry"), std::string::npos);
+  ASSERT_EQ(run(mesh + " " + (folder_ / "s.pcd") + " -symmetrise mean"), 2);
+  EXPECT_NE(error_.find(".ply"), std::string::npos) << error_;
+  const std::string bad = folder_.write("bad.txt", "1 2 3\n1 2\n");
+  ASSERT_EQ(run(mesh + " -symmetrise mean -landmarks " + bad), 1);
+  EXPECT_NE(error_.find("bad.txt: line 2"), std::string::npos) << error_;
+  ASSERT_EQ(run(mesh + " -complete -symmetrise mean"), 2);
+
+  Eigen::Isometry3d T_scan_model;
+  const std::string scan = scanOfChair(T_scan_model);
+  ASSERT_EQ(run(scan + " " + (folder_ / "out.pcd") + " -symmetrise left -target " + chair_), 0) << error_;
+  const Shape after = loadShape(folder_ / "out.pcd");
+  const std::size_t half = after.points->size() / 2;
+  for (std::size_t i = 0; i < half; ++i) {
+    ASSERT_EQ(fieldOf<std::int32_t>(after.cloud, "reflected_of", half + i), static_cast<int>(i));
+    const auto p = (*after.points)[half + i].getVector3fMap(), q = (*after.points)[i].getVector3fMap();
     ASSERT_LT((Eigen::Vector3f(-q.x(), q.y(), q.z()) - p).norm(), 0.1) << "reflected at x = 0 of the model";
   }
 }

@@ -1,15 +1,17 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
+#include "io/shape_input.h"
 #include "tools/lathe_mesh.h"
 #include "tools/tool_run.h"
-#include "io/shape_input.h"
 
 namespace {
 
@@ -26,6 +28,51 @@ protected:
   const std::string tetrahedron_ = folder_.write(
       "t.off", "OFF\n4 4 6\n0 0 0\n2 0.1 0\n0.4 1.3 0.1\n0.7 0.2 0.9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
 };
+
+/// What is printed has few digits, and still is the plane at the points.
+TEST_F(PlanesTool, PrintsPlanesThatAreRightFarFromTheOrigin) {
+  // A prism whose planes are oblique, at map coordinates.
+  const Eigen::Vector3d center(500000.3, 5000000.7, 100.2);
+  std::string off = "OFF\n8 6 12\n";
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d x(i & 1 ? 1.0 : -1.0, i & 2 ? 0.7 : -0.7, i & 4 ? 0.4 : -0.4);
+    const Eigen::Vector3d turned = center + Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()) * x;
+    char text[96];
+    std::snprintf(text, sizeof(text), "%.6f %.6f %.6f\n", turned.x(), turned.y(), turned.z());
+    off += text;
+  }
+  off += "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+  ASSERT_EQ(run(folder_.write("far.off", off)), 0) << error_;
+  std::istringstream table(output_);
+  std::string line;
+  std::getline(table, line);
+  int num_planes = 0;
+  for (double number, a, b, c, d; std::getline(table, line); ++num_planes) {
+    ASSERT_TRUE(std::istringstream(line) >> number >> a >> b >> c >> d) << line;
+    EXPECT_NEAR(Eigen::Vector3d(a, b, c).dot(center) + d, 0.0, 2e-5) << line;
+  }
+  EXPECT_EQ(num_planes, 3);
+}
+
+TEST_F(PlanesTool, WritesTheProfileOfABodyOfRevolution) {
+  const std::string vase =
+      folder_.write("vase.off", latheOFF({{0.5, 0}, {0.7, 0.3}, {0.5, 0.8}, {0.3, 1.0}, {0.4, 1.4}}, 90));
+  ASSERT_EQ(run(vase + " -profile " + (folder_ / "p.csv")), 0) << error_;
+  std::istringstream table(contentOf(folder_ / "p.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "radius,height,spread,count");
+  double greatest = 0.0;
+  int count = 0;
+  for (; std::getline(table, line); ++count) greatest = std::max(greatest, std::stod(line));
+  EXPECT_GT(count, 60);
+  EXPECT_NEAR(greatest, 0.7, 0.02);
+  ASSERT_EQ(run(vase + " -profile " + (folder_ / "p.svg")), 0) << error_;
+  EXPECT_EQ(contentOf(folder_ / "p.svg").rfind("<svg ", 0), 0u);
+  EXPECT_EQ(run(vase + " -profile " + (folder_ / "p.txt")), 2);
+  EXPECT_EQ(run(box_ + " -profile " + (folder_ / "p.csv")), 1);
+  EXPECT_NE(error_.find("no body of revolution"), std::string::npos);
+}
 
 TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
   ASSERT_EQ(run(box_ + " -json " + (folder_ / "a.json")), 0) << error_;
