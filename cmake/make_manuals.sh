@@ -25,7 +25,8 @@ mkdir -p "$output/man1" "$output/completions"
 for tool in "$@"; do
   help2man --no-info --name="$("$folder/$tool" -h | sed -n 1p)" --help-option=-h --version-option=-version "$folder/$tool" |
     gzip -9n >"$output/man1/$tool.1.gz"
-  # A tool with commands prints the flags of each by "TOOL COMMAND -h"; the completion offers those of the tool itself.
-  flags=$("$folder/$tool" -h | sed -nE 's/^  (-[a-z_]+)( .*)?$/\1/p' | tr '\n' ' ')
-  printf 'complete -o default -W "%s" %s\n' "$flags" "$tool" >"$output/completions/$tool"
+  # Flags, their values such as a|b, and commands such as "a, b or c".
+  words=$("$folder/$tool" -h | sed -nE 's/^  (-[a-z_]+)( ([a-z]+(\|[a-z]+)+) .*| .*)?$/\1 \3/p; s/^  command +(.*)$/\1/p' |
+    sed -E 's/[|,]/ /g; s/ or / /g' | tr '\n' ' ')
+  printf 'complete -o default -W "%s" %s\n' "$words" "$tool" >"$output/completions/$tool"
 done

@@ -10,6 +10,13 @@ if(tools AND HELP2MAN_PROGRAM)
   install(DIRECTORY ${manuals}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion COMPONENT tools)
 endif()
 
+# What to read, and programs to start from.
+install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/apps/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+if(tools)
+  install(FILES ${PROJECT_SOURCE_DIR}/apps/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools RENAME tools.md)
+endif()
+
 set(CPACK_PACKAGE_VENDOR "pcl_symmetry")
 set(CPACK_PACKAGE_CONTACT "pcl_symmetry contributors <maintainers@example.org>")  # as in package.xml
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")

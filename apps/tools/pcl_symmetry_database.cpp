@@ -35,6 +35,11 @@ struct DatabaseToolOptions {
   DatabaseToolOptions() { common.mesh_points = kDatabaseMeshPoints; }
 };
 
+/// "1 model", "2 models".
+std::string counted(std::size_t number, const std::string& what) {
+  return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+}
+
 CommandLine commandLine(DatabaseToolOptions& options) {
   CommandLine line(
       "pcl_symmetry_database",
@@ -91,11 +96,11 @@ private:
     const std::vector<ModelFile> files = modelFiles(options_.arguments, options_.names == "path");
     std::vector<std::string> tags;
     if (options_.tag) tags.push_back(*options_.tag);
-    Step step(console_, "Describing " + std::to_string(files.size()) + " models");
+    Step step(console_, "Describing " + counted(files.size(), "model"));
     const std::vector<ModelInput> inputs =
         modelInputs(files, options_.common.mesh_points, options_.common.librarySeed(), tags);
     const BuildReport report = database.build(inputs, [&](double share) { return step.progress(share), true; });
-    step.done(std::to_string(report.num_added) + " models" +
+    step.done(counted(static_cast<std::size_t>(report.num_added), "model") +
               (report.num_kept > 0 ? ", " + std::to_string(report.num_kept) + " kept" : ""));
     return finish(report, {{"kept", report.num_kept}});
   }
@@ -104,10 +109,10 @@ private:
     const InputFiles inputs = inputFiles(options_.arguments);
     std::vector<std::string> files;
     for (std::size_t i = 0; i < inputs.size(); ++i) files.push_back(inputs.path(i));
-    Step step(console_, "Merging " + std::to_string(files.size()) + " databases");
+    Step step(console_, "Merging " + counted(files.size(), "database"));
     BuildReport report;
     report.num_added = database.merge(files, [&](double share) { return step.progress(share), true; });
-    step.done(std::to_string(report.num_added) + " models");
+    step.done(counted(static_cast<std::size_t>(report.num_added), "model"));
     return finish(report, nlohmann::json::object());
   }
 
@@ -126,7 +131,7 @@ private:
       for (const std::string& name : options_.arguments) database.remove(name);
     else
       database.rebuild();
-    step.done(std::to_string(database.size()) + " models");
+    step.done(counted(database.size(), "model"));
   }
 
   int show(const SymmetryDatabase& database) const {

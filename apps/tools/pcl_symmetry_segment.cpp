@@ -84,7 +84,8 @@ void checkOutput(const SegmentOptions& o, const CommandLine& line) {
   if (!o.output) return;
   const std::string extension =
       boost::algorithm::to_lower_copy(boost::filesystem::path(*o.output).extension().string());
-  if (extension != ".seg") checkCloudExtension(*o.output);
+  if (extension != ".seg" && extension != ".pcd" && extension != ".ply")
+    throw UsageError(*o.output + ": unknown extension, must be .pcd, .ply or, for a mesh, .seg");
 }
 
 nlohmann::json describe(const std::string& path, const Shape& shape, const std::vector<pcl::PointIndices>& segments,
