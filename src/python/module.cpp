@@ -15,9 +15,12 @@
 #include "core/geometry/mesh_sampling.h"
 #include "core/matching/shape_signature.h"
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/mesh_refinement.h"
 #include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/revolution_profile.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/core/symmetric_completion.h"
+#include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/viewpoint_score.h"
 #include "python/evidence.h"
@@ -49,17 +52,64 @@ std::vector<std::vector<int>> polygonsOf(const py::array_t<int, py::array::c_sty
   return polygons;
 }
 
-py::array_t<float> sampleMesh(const AnyArray& vertices, const AnyArray& faces, int num_points, std::uint64_t seed) {
-  const InputPoints input("vertices", vertices, 0, seed);
-  if (!input.rows().empty()) throw std::invalid_argument("vertices: not all finite, must be");
+/// Vertices and triangles of a mesh.
+struct MeshInput {
+  MeshInput(const AnyArray& vertex_rows, const AnyArray& faces) : vertices("vertices", vertex_rows, 0, 0) {
+    if (!vertices.rows().empty()) throw std::invalid_argument("vertices: not all finite, must be");
+    for (const std::vector<int>& polygon : polygonsOf(faces.array))
+      for (std::size_t k = 2; k < polygon.size(); ++k) triangles.emplace_back(polygon[0], polygon[k - 1], polygon[k]);
+  }
+
+  InputPoints vertices;
   std::vector<Eigen::Vector3i> triangles;
-  for (const std::vector<int>& polygon : polygonsOf(faces.array))
-    for (std::size_t k = 2; k < polygon.size(); ++k) triangles.emplace_back(polygon[0], polygon[k - 1], polygon[k]);
-  return rowsOf(sampleTriangles(input.points(), triangles, num_points, seed));
+};
+
+py::array_t<float> sampleMesh(const AnyArray& vertices, const AnyArray& faces, int num_points, std::uint64_t seed) {
+  const MeshInput mesh(vertices, faces);
+  return rowsOf(sampleTriangles(mesh.vertices.points(), mesh.triangles, num_points, seed));
+}
+
+MeshSurface meshSurface(const AnyArray& vertices, const AnyArray& faces) {
+  const MeshInput mesh(vertices, faces);
+  const py::gil_scoped_release release;
+  return {mesh.vertices.points(), mesh.triangles};
+}
+
+/// \param faces None for a cloud.
+SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, const ReflectionPlane& plane,
+                            const std::string& half, int threads) {
+  const std::vector<std::string> names{"mean", "left", "right"};
+  const auto at = std::find(names.begin(), names.end(), half);
+  if (at == names.end()) throw std::invalid_argument("half = " + half + ", must be mean, left or right");
+  const auto kept = static_cast<SymmetrizedHalf>(at - names.begin());
+  if (!faces.is_none()) {
+    const MeshInput mesh(points, {arrayOf("faces", faces)});
+    const py::gil_scoped_release release;
+    return symmetrizedMesh(mesh.vertices.points(), mesh.triangles, plane, kept, threads);
+  }
+  const InputPoints input("points", points, 0, 0);
+  if (!input.rows().empty()) throw std::invalid_argument("points: not all finite, must be");
+  const py::gil_scoped_release release;
+  return symmetrizedCloud(input.points(), plane, kept, threads);
+}
+
+/// \return (K, 4): radius, height, spread, count.
+Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3d& point,
+                                    const Eigen::Vector3d& direction, int num_points) {
+  const InputPoints input("points", points, 0, 0);
+  SymmetryAxis axis;
+  axis.point = point;
+  axis.direction = direction;
+  const py::gil_scoped_release release;
+  const std::vector<ProfilePoint> profile = revolutionProfile(input.points(), axis, num_points);
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(profile.size()), 4);
+  for (std::size_t i = 0; i < profile.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) << profile[i].radius, profile[i].height, profile[i].spread, profile[i].count;
+  return rows;
 }
 
 PlaneSearch planes(const py::array& points, const py::object& viewpoint, DetectionOptions options,
-                   std::size_t max_points, const py::object& normals) {
+                   std::size_t max_points, const py::object& normals, const std::optional<MeshSurface>& mesh) {
   const InputPoints input("points", points, max_points, options.seed);
   std::optional<Points> given;
   if (!normals.is_none()) given = input.atPoints("normals", arrayOf("normals", normals));
@@ -72,6 +122,7 @@ PlaneSearch planes(const py::array& points, const py::object& viewpoint, Detecti
   {
     const py::gil_scoped_release release;
     search.found = detectPlanes(cloud, options);
+    if (mesh && !seen) refineOnMesh(*mesh, search.found, options);
   }
   search.num_rows = input.numRows();
   search.rows = input.rows();
@@ -79,14 +130,16 @@ PlaneSearch planes(const py::array& points, const py::object& viewpoint, Detecti
 }
 
 SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::size_t max_points, std::uint64_t seed,
-                    int threads) {
+                    int threads, const std::optional<MeshSurface>& mesh) {
   const InputPoints input("points", points, max_points, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   const py::gil_scoped_release release;
   FrameOptions options;
   options.seed = seed;
   options.num_threads = threads;
-  return symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
+  SymmetryFrame found = symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
+  if (mesh && !seen) refineOnMesh(*mesh, found);
+  return found;
 }
 
 /// \return the added points, and the rows that they are the reflections of.
@@ -259,7 +312,7 @@ void addPlaneFunctions(py::module_& module) {
       "planes",
       [](const AnyArray& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
          bool approximate, int max_planes, const py::object& normals, std::size_t max_points, bool evidence,
-         std::uint64_t seed, int threads) {
+         std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
         DetectionOptions options;
         options.tolerance = tolerance;
         options.absolute_tolerance = absolute_tolerance;
@@ -268,12 +321,12 @@ void addPlaneFunctions(py::module_& module) {
         options.evidence = evidence;
         options.seed = seed;
         options.num_threads = threads;
-        return planes(points, viewpoint, options, max_points, normals);
+        return planes(points, viewpoint, options, max_points, normals, mesh);
       },
       py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto", py::arg("tolerance") = standard.tolerance,
       py::arg("absolute_tolerance") = 0.0, py::arg("approximate") = false, py::arg("max_planes") = standard.max_planes,
       py::arg("normals") = py::none(), py::arg("max_points") = 50'000, py::arg("evidence") = false, py::arg("seed") = 1,
-      py::arg("threads") = 0,
+      py::arg("threads") = 0, py::arg("mesh") = py::none(),
       "Planes of symmetry of a cloud (Sections 4.1 to 4.4).\n\n"
       "points: (N, 3), input units; float32 rows are not copied. Rows that are not finite are left out.\n"
       "viewpoint: where the scanner stood: \"auto\" (the points decide), None (seen from all sides) or (x, y, z).\n"
@@ -297,12 +350,32 @@ void addPlaneFunctions(py::module_& module) {
              "planes: list of Plane. Returns a list of View, best first.");
 }
 
+void addMeshFunctions(py::module_& module) {
+  py::class_<MeshSurface>(module, "MeshSurface", "A mesh as the exact surface that symmetries are refined on.")
+      .def(py::init(&meshSurface), py::arg("vertices"), py::arg("faces"));
+  py::class_<SymmetrizedShape>(module, "Symmetrized")
+      .def_property_readonly("points", [](const SymmetrizedShape& s) { return rowsOf(s.points); })
+      .def_readonly("kept", &SymmetrizedShape::kept)
+      .def_property_readonly("asymmetry",
+                             [](const SymmetrizedShape& s) {
+                               return py::array_t<float>(static_cast<py::ssize_t>(s.asymmetry.size()),
+                                                         s.asymmetry.data());
+                             })
+      .def_readonly("mean_asymmetry", &SymmetrizedShape::mean_asymmetry)
+      .def_readonly("greatest_asymmetry", &SymmetrizedShape::greatest_asymmetry)
+      .def_readonly("deviation", &SymmetrizedShape::deviation);
+  module.def("symmetrize", &symmetrize, py::arg("points"), py::arg("faces"), py::arg("plane"), py::arg("half"),
+             py::arg("threads"));
+  module.def("profile", &revolutionProfileOf, py::arg("points"), py::arg("point"), py::arg("direction"),
+             py::arg("num_points"));
+}
+
 void addShapeFunctions(py::module_& module) {
   module.def("sample_mesh", &sampleMesh, py::arg("vertices"), py::arg("faces"), py::arg("num_points") = 10'000,
              py::kw_only(), py::arg("seed") = 1,
              "(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces.");
   module.def("frame", &frame, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
-             py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0,
+             py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0, py::arg("mesh") = py::none(),
              "Canonical frame of a cloud (Section 5.1). Parameters as in planes(). Returns Frame.");
   module.def("closest", &closest, py::arg("points"), py::arg("queries"));
   module.def("segment", &segment, py::arg("points"), py::arg("faces") = py::none(), py::kw_only(), py::arg("parts") = 0,
@@ -330,6 +403,7 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   addPlaneResults(module);
   addFrame(module);
   addMap(module);
+  addMeshFunctions(module);
   addPlaneFunctions(module);
   addShapeFunctions(module);
   addRotations(module);

@@ -4,9 +4,11 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "pcl_symmetry/core/mesh_surface.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "python/input_points.h"
 #include "python/motions.h"
@@ -17,10 +19,13 @@ namespace pcl_symmetry::python {
 
 namespace {
 
-ObjectSymmetries rotations(const AnyArray& points, ObjectSymmetryOptions options) {
+ObjectSymmetries rotations(const AnyArray& points, ObjectSymmetryOptions options,
+                           const std::optional<MeshSurface>& mesh) {
   const InputPoints input("points", points, 0, options.seed);
   const py::gil_scoped_release release;
-  return objectSymmetries(input.points(), options);
+  ObjectSymmetries found = objectSymmetries(input.points(), options);
+  if (mesh) refineOnMesh(*mesh, found);
+  return found;
 }
 
 void addClass(py::module_& module) {
@@ -96,17 +101,18 @@ void addRotations(py::module_& module) {
   module.def(
       "rotations",
       [](const AnyArray& points, double tolerance, double absolute_tolerance, double max_feature, std::uint64_t seed,
-         int threads) {
+         int threads, const std::optional<MeshSurface>& mesh) {
         ObjectSymmetryOptions options;
         options.tolerance = tolerance;
         options.absolute_tolerance = absolute_tolerance;
         options.max_feature = max_feature;
         options.seed = seed;
         options.num_threads = threads;
-        return rotations(points, options);
+        return rotations(points, options, mesh);
       },
       py::arg("points"), py::kw_only(), py::arg("tolerance") = standard.tolerance, py::arg("absolute_tolerance") = 0.0,
       py::arg("max_feature") = standard.max_feature, py::arg("seed") = 1, py::arg("threads") = 0,
+      py::arg("mesh") = py::none(),
       "The group of rotations that map a whole object onto itself (Section 6). Returns Rotations.\n\n"
       "tolerance, absolute_tolerance: as in planes().\n"
       "max_feature: share of the surface, such as a screw or a notch, that a symmetry may map off it, in [0, 1].\n"

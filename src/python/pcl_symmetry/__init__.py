@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, List
 
 from ._pcl_symmetry import Merging as Merging
 from ._pcl_symmetry import __version__ as __version__
-from .functions import complete, describe, frame, planes, rotations, sample_mesh, segment, transform, viewpoints
+from .functions import complete, describe, frame, planes, rotations, sample_mesh, segment, symmetrize, transform, viewpoints
 from .results import (
     Axis,
     BuildReport,
@@ -25,10 +25,12 @@ from .results import (
     Planes,
     PoseScore,
     ProbableFrame,
+    Profile,
     Recognized,
     ReflectionPlane,
     Registration,
     Rotations,
+    Symmetrized,
     Turn,
     View,
 )
@@ -48,10 +50,12 @@ __all__ = [
     "Planes",
     "PoseScore",
     "ProbableFrame",
+    "Profile",
     "Recognized",
     "ReflectionPlane",
     "Registration",
     "Rotations",
+    "Symmetrized",
     "Turn",
     "View",
     "complete",
@@ -61,6 +65,7 @@ __all__ = [
     "rotations",
     "sample_mesh",
     "segment",
+    "symmetrize",
     "transform",
     "viewpoints",
 ]

@@ -6,7 +6,20 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from . import _pcl_symmetry as core
-from .results import Axis, Center, Frame, Map, Plane, Planes, ProbableFrame, ReflectionPlane, Rotations, Turn, View
+from .results import (
+    Axis,
+    Center,
+    Frame,
+    Map,
+    Plane,
+    Planes,
+    ProbableFrame,
+    ReflectionPlane,
+    Rotations,
+    Symmetrized,
+    Turn,
+    View,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,9 +42,10 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
 
     if points is None or isinstance(points, str):
         raise TypeError(f"{name} = {points!r}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh")
-    faces = getattr(points, "triangles", getattr(points, "faces", None))
-    if faces is not None and len(faces) and hasattr(points, "vertices"):
-        return sample_mesh(points.vertices, faces, num_mesh_points), None
+    faces = _faces(points)
+    if faces is not None:
+        vertices, shift = prepare(name, np.asarray(points.vertices))
+        return core.sample_mesh(vertices, faces, num_mesh_points), shift
     for member in ("points", "vertices"):
         if not hasattr(points, "__array__") and hasattr(points, member):
             points = getattr(points, member)
@@ -67,6 +81,23 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
         return array, None
     shift = (low + high) / 2
     return (array - shift).astype(np.float32), shift
+
+
+def _faces(points: Any) -> Any:
+    """Those of a mesh of Open3D or trimesh; None for anything else."""
+    faces = getattr(points, "triangles", getattr(points, "faces", None))
+    return faces if faces is not None and len(faces) and hasattr(points, "vertices") else None
+
+
+def _prepare_with_mesh(name: str, points: Any) -> Tuple["NDArray[Any]", "Shift", Any]:
+    """As prepare(), and the mesh itself, where symmetries become exact; None for a cloud."""
+    import numpy as np
+
+    faces = _faces(points)
+    if faces is None:
+        return (*prepare(name, points), None)
+    vertices, shift = prepare(name, np.asarray(points.vertices))
+    return core.sample_mesh(vertices, faces, _NUM_MESH_POINTS), shift, core.MeshSurface(vertices, faces)
 
 
 def _seen_from(viewpoint: Viewpoint, shift: "Shift") -> Any:
@@ -114,7 +145,7 @@ def planes(
     """Planes of symmetry of a cloud (Sections 4.1 to 4.4).
 
     points: (N, 3), input units, or a cloud or mesh of Open3D or trimesh; float32 rows are not copied. Rows that are not
-        finite are left out.
+        finite are left out. The planes of a mesh are exact: the last step refines on the mesh itself.
     viewpoint: where the scanner stood: "auto" (the points decide), None (seen from all sides) or (x, y, z).
     tolerance: how far a symmetric surface may be off, share of the greatest distance between two points, in (0, 0.1].
     absolute_tolerance: the same in input units; 0: tolerance decides.
@@ -126,7 +157,7 @@ def planes(
     """
     import numpy as np
 
-    array, shift = prepare("points", points)
+    array, shift, mesh = _prepare_with_mesh("points", points)
     found = core.planes(
         array,
         viewpoint=_seen_from(viewpoint, shift),
@@ -139,6 +170,7 @@ def planes(
         evidence=evidence,
         seed=seed,
         threads=threads,
+        mesh=mesh,
     )
     scores = ("confidence", "score", "support")
     result = Planes(
@@ -171,6 +203,39 @@ def complete(
     return (added if shift is None else added + shift), list(rows)
 
 
+def symmetrize(
+    points: Any,
+    plane: ReflectionPlane,
+    half: str = "mean",
+    *,
+    faces: Optional["ArrayLike"] = None,
+    threads: int = 0,
+) -> Symmetrized:
+    """The shape that a plane maps onto itself, and the asymmetry of each point.
+
+    points: (N, 3), all finite, or a cloud or mesh of Open3D or trimesh. faces: (F, 3) of a mesh given by its vertices; a mesh
+        keeps them.
+    half: mean: both halves are the mean of the two sides; left or right: the side that the normal of the plane points away
+        from or to, and its reflection.
+    """
+    import numpy as np
+
+    own_faces = _faces(points)
+    if own_faces is not None:
+        points, faces = np.asarray(points.vertices), own_faces
+    array, shift = prepare("points", points)
+    moved = plane if shift is None else plane._moved(-shift)
+    found = core.symmetrize(array, faces, _core_plane(moved), half, threads)
+    result = found.points if shift is None else found.points + shift
+    rows = np.arange(len(array))
+    if faces is None:
+        rows = np.asarray(found.kept, dtype=np.int64)
+        result = np.concatenate([result[rows], plane.reflect(result[rows])])
+        rows = np.concatenate([rows, rows])
+    measures = ("asymmetry", "mean_asymmetry", "greatest_asymmetry", "deviation")
+    return Symmetrized(points=result, rows=rows, **_fields(found, *measures))
+
+
 def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
     """Directions from the object to the camera that show the least repetition (Section 5.4), best first."""
     return [View(v.direction, v.score) for v in core.viewpoints([(p.normal, p.score) for p in planes])]
@@ -192,8 +257,10 @@ def frame(
     threads: int = 0,
 ) -> Frame:
     """Canonical frame of a cloud (Section 5.1). Parameters as in planes()."""
-    array, shift = prepare("points", points)
-    found = core.frame(array, viewpoint=_seen_from(viewpoint, shift), max_points=max_points, seed=seed, threads=threads)
+    array, shift, mesh = _prepare_with_mesh("points", points)
+    found = core.frame(
+        array, viewpoint=_seen_from(viewpoint, shift), max_points=max_points, seed=seed, threads=threads, mesh=mesh
+    )
     result = Frame(
         probable=[ProbableFrame(**_fields(f, "center", "axes", "probability", "revolution_axis")) for f in found.probable],
         turns=[_turn(t) for t in found.turns],
@@ -217,7 +284,7 @@ def rotations(
     max_feature: share of the surface, such as a screw or a notch, that a symmetry may map off it, in [0, 1].
     Raises ValueError for bad parameters, fewer than 20 distinct points, and points on a line.
     """
-    array, shift = prepare("points", points)
+    array, shift, mesh = _prepare_with_mesh("points", points)
     found = core.rotations(
         array,
         tolerance=tolerance,
@@ -225,6 +292,7 @@ def rotations(
         max_feature=max_feature,
         seed=seed,
         threads=threads,
+        mesh=mesh,
     )
     names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance")
     result = Rotations(**_fields(found, *names))

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 if TYPE_CHECKING:
-    from .results import Frame, Map, Planes, ReflectionPlane
+    from .results import Frame, Map, Planes, Profile, ReflectionPlane
 
 # Colors that remain apart for color-blind eyes (Okabe and Ito), as in the pictures of the tools.
 COLORS = ["#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#595959"]
@@ -60,6 +60,15 @@ def plot_frame(frame: "Frame", points: Any, axes: Any) -> Any:
     for k in range(3):
         reach = np.array([[-1], [1]]) * _diagonal(points) / 2 * frame.scores[k]
         axes.plot(*(frame.center + reach * frame.axes[:, k]).T, color=COLORS[k], linewidth=2)
+    return axes
+
+
+def plot_profile(profile: "Profile", axes: Any) -> Any:
+    if axes is None:
+        axes = plt.figure(figsize=(6, 6), dpi=100).add_subplot()
+    axes.plot(profile.radius, profile.height, ".", markersize=3)
+    axes.fill_betweenx(profile.height, profile.radius - profile.spread, profile.radius + profile.spread, alpha=0.2)
+    axes.set(xlabel="radius", ylabel="height", aspect="equal")
     return axes
 
 

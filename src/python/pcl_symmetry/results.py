@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from .pages import Page
+
     Doubles = NDArray[np.float64]
 
 Self = TypeVar("Self", bound="Result")
@@ -241,6 +243,59 @@ class Axis(Result):
         result: "NDArray[Any]" = self.point + along + np.cos(angle) * (y - along) + np.sin(angle) * np.cross(k, y)
         return result.astype(x.dtype)
 
+    def profile(self, points: Any, num_points: int = 200) -> "Profile":
+        """The curve whose turn about the axis is the body of revolution, averaged over all angles.
+
+        points: (N, 3), or an object of Open3D or trimesh. num_points: of the curve, about.
+        """
+        from . import _pcl_symmetry as core
+        from .functions import prepare
+
+        array, shift = prepare("points", points)
+        point = self.point if shift is None else self.point - shift
+        rows = core.profile(array, point, self.direction, num_points)
+        return Profile(radius=rows[:, 0], height=rows[:, 1], spread=rows[:, 2], count=rows[:, 3].astype(int))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Result):
+    """The profile of a body of revolution: points of a curve, in order."""
+
+    _in_repr = ("radius", "height")
+    radius: "Doubles"
+    """(K,) distance from the axis."""
+    height: "Doubles"
+    """(K,) along the direction of the axis, from its point."""
+    spread: "Doubles"
+    """(K,) standard deviation of the points about the curve."""
+    count: "NDArray[np.int64]"
+    """(K,) points that decide there."""
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the curve and its spread with matplotlib; savefig() of its figure writes SVG. Returns the axes."""
+        from .plots import plot_profile
+
+        return plot_profile(self, axes)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Symmetrized(Result):
+    """A shape that a plane maps onto itself, and the asymmetry of the given one."""
+
+    _in_repr = ("mean_asymmetry", "greatest_asymmetry")
+    points: "NDArray[Any]"
+    """(M, 3): the vertices of a mesh; of a cloud the points that stay, then their reflections."""
+    rows: "NDArray[np.int64]"
+    """(M,) row of the given point that each is, or is the reflection of."""
+    asymmetry: "NDArray[np.float32]"
+    """(N,) how far the shape is outside of the reflection of its other side at each given point, along its normal; NaN where
+    the other side has nothing."""
+    mean_asymmetry: float
+    """Mean of the absolute values, of a mesh by area."""
+    greatest_asymmetry: float
+    deviation: float
+    """Greatest distance of the result from its own reflection."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Turn(Result):
@@ -351,6 +406,12 @@ class Planes(Result):
         else:
             result[: len(values)] = values
         return result
+
+    def show(self, points: "ArrayLike") -> "Page":
+        """A page with the points and the planes in three dimensions, as the tools write with -html: a notebook shows it."""
+        from .pages import page_of_planes
+
+        return page_of_planes(self, points)
 
     def plot(self, points: "ArrayLike", axes: Any = None) -> Any:
         """Draws points, planes and axes with matplotlib into axes of projection 3d, by default new ones; returns them."""
@@ -573,7 +634,9 @@ class Registration(Result):
     score: PoseScore
     """Of the transform."""
     converged: bool
-    """Whether both clouds have 100 points and the merit is at least 0.4."""
+    """Whether both clouds have 100 points, the merit is at least 0.4 and on_surface at least 0.45."""
+    on_surface: float
+    """Share of the source's points that lie on the surface of the target, within 2 % of its radius or what noise asks for."""
     poses: List[Tuple["Doubles", PoseScore]]
     """(transform, score), best first: poses that symmetry makes equal have like merits."""
     covariance: Optional["Doubles"]
