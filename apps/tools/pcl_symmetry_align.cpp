@@ -198,7 +198,6 @@ struct Symmetrised {
   pcl::PCLPointCloud2 fields;  ///< of a cloud
   std::optional<pcl::PolygonMesh> mesh;
   std::vector<float> asymmetry;  ///< of each point of the input
-  double greatest = 0.0;         ///< absolute asymmetry
   nlohmann::json json;
   std::string text;
 };
@@ -229,19 +228,19 @@ Symmetrised symmetrise(const Console& console, const InputShape& input, const Al
   Symmetrised result;
   const Eigen::Vector4d coefficients = shiftedBack(plane, input.shift()).coefficients();
   result.json = {{"half", options.symmetrise}, {"plane", numbersOf(coefficients)}};
-  double mean = 0.0;
+  double mean = 0.0, greatest = 0.0;
   if (input.shape.mesh) {
     const SymmetrizedMesh shape = symmetrize(*input.shape.mesh, plane, half, common.threads);
     result.mesh = shape.mesh;
     result.asymmetry = shape.asymmetry;
     mean = shape.mean_asymmetry;
-    result.greatest = shape.greatest_asymmetry;
+    greatest = shape.greatest_asymmetry;
     result.json["deviation"] = shape.deviation;
   } else {
     const SymmetrizedCloud<pcl::PointXYZ> shape = symmetrize(*input.points, plane, half, common.threads);
     result.asymmetry = shape.asymmetry;
     mean = shape.mean_asymmetry;
-    result.greatest = shape.greatest_asymmetry;
+    greatest = shape.greatest_asymmetry;
     const std::size_t size = shape.sources.size() / 2;
     pcl::PCLPointCloud2 kept;
     pcl::copyPointCloud(withFields(input.fields(), {"asymmetry"}, {result.asymmetry}),
@@ -254,9 +253,9 @@ Symmetrised symmetrise(const Console& console, const InputShape& input, const Al
     movePoints(result.fields, shiftedBack(plane, input.shift()).reflection(), size);
   }
   result.json["mean_asymmetry"] = mean;
-  result.json["greatest_asymmetry"] = result.greatest;
+  result.json["greatest_asymmetry"] = greatest;
   char text[96];
-  std::snprintf(text, sizeof(text), "asymmetry: mean %.4g, greatest %.4g\n", mean, result.greatest);
+  std::snprintf(text, sizeof(text), "asymmetry: mean %.4g, greatest %.4g\n", mean, greatest);
   result.text = text;
   if (options.landmarks) {
     result.json["landmarks"] = landmarksJson(readLandmarks(*options.landmarks, input.shift()), plane);
@@ -269,21 +268,26 @@ Symmetrised symmetrise(const Console& console, const InputShape& input, const Al
   return result;
 }
 
-/// The input with the colours of its asymmetry.
+/// The input with the colours of its asymmetry: blue inside, yellow outside of the reflection of the other side.
 PictureScene sceneOf(const InputShape& input, const Symmetrised& symmetrised) {
+  constexpr double kShown = 0.97;  // share of the points within the scale: a few that stick out hide no other
+  std::vector<float> sizes;
+  for (const float value : symmetrised.asymmetry)
+    if (std::isfinite(value)) sizes.push_back(std::abs(value));
+  const auto last = sizes.begin() + static_cast<std::ptrdiff_t>(kShown * static_cast<double>(sizes.size()));
+  if (last != sizes.end()) std::nth_element(sizes.begin(), last, sizes.end());
+  const float scale = last != sizes.end() && *last > 0.0f ? *last : 1.0f;
   PictureScene scene;
   scene.points = input.shape.points;
   scene.mesh = input.shape.mesh;
+  scene.show_color_bar = false;
   PicturePanel panel;
   char label[96];
-  std::snprintf(label, sizeof(label), "asymmetry: 0 is -%.3g (inside), 1 is +%.3g (outside)", symmetrised.greatest,
-                symmetrised.greatest);
+  std::snprintf(label, sizeof(label), "asymmetry: blue %.3g inside, yellow %.3g outside", scale, scale);
   panel.label = label;
   panel.show_points = !scene.mesh;
   for (const float value : symmetrised.asymmetry)
-    panel.support.push_back(std::isfinite(value) && symmetrised.greatest > 0.0
-                                ? static_cast<float>(0.5 + 0.5 * value / symmetrised.greatest)
-                                : 0.5f);
+    panel.support.push_back(std::isfinite(value) ? std::min(1.0f, std::max(0.0f, 0.5f + 0.5f * value / scale)) : 0.5f);
   scene.panels = {panel};
   return scene;
 }
