@@ -9,6 +9,8 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+struct VolumeFunction;
+
 /// Options of the Gaussian Euclidean distance transform. Zero means: choose from the data.
 struct GaussianEdtOptions {
   int num_cells = 64;   ///< cells along each side, in [8, 512]
@@ -32,6 +34,12 @@ public:
   /// \param points 3 x N, finite, input units, N >= 1, not all equal unless options.radius is set.
   /// \throws std::invalid_argument for bad options, no point, points without extent, or a value that is not finite.
   explicit GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options = {});
+
+  /// A function that is given on a grid, on these cells (Section 4.2), in place of a distance transform: all estimators
+  /// take it as they take f of points.
+  /// \param options radius = 0: the bounding ball of the body; sigma is not used, the margin is that of two cells.
+  /// \throws std::invalid_argument for bad options.
+  explicit GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions& options = {});
 
   int numCells() const { return num_cells_; }     ///< cells along each side of the cube
   double cellSize() const { return cell_size_; }  ///< input units
@@ -93,6 +101,7 @@ public:
 private:
   void chooseWidth(const PointsRef& points, double sigma);
   void computeValues(const PointsRef& points, int num_threads);
+  void sumValues(int num_threads);
 
   int num_cells_ = 0;
   double cell_size_ = 0.0;

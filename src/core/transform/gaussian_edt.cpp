@@ -11,6 +11,7 @@
 #include "core/transform/cell_distances.h"
 #include "core/transform/gaussian_width.h"
 #include "core/transform/transform_rules.h"
+#include "pcl_symmetry/core/scalar_grid.h"
 
 namespace pcl_symmetry {
 
@@ -101,37 +102,63 @@ void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
   Points cells = normalizePoints(points, origin_, cell_size_);
   if (static_cast<std::size_t>(cells.cols()) > kTransform.dense_per_cell * slice_size) cells = thin(cells, n);
   const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_), sq_reach = reach * reach;
-  filled_.assign(slice_size, {0, 0});
   const CellDistances distances(cells, n, reach);
   values_.resize(slice_size * n);
   parallelBlocks(distances.numRows(), num_threads,
                  [&](std::size_t row) { distances.fill(static_cast<int>(row), values_.data()); });
   // Section 4.1: f = exp(-dist^2 / sigma^2).
   const double scale = -1.0 / std::pow(sigma_ / cell_size_, 2);
+  parallelRanges(values_.size(), slice_size, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      values_[i] = values_[i] >= sq_reach ? 0.0f : static_cast<float>(std::exp(scale * values_[i]));
+  });
+  sumValues(num_threads);
+  if (sq_norm_ == 0.0) throw std::invalid_argument("points: none near the ball given by center and radius");
+}
+
+GaussianEdt::GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions& options) {
+  options.validate();
+  num_cells_ = options.num_cells;
+  const BoundingBall ball =
+      options.radius > 0.0 ? BoundingBall{options.center, options.radius} : boundingBall(volume.bodyPoints(false));
+  center_ = ball.center;
+  radius_ = ball.radius;
+  cell_size_ = radius_ / std::max(0.5 * num_cells_ - kMarginInSigmas * kSigmaInCells, 0.25 * num_cells_);
+  sigma_ = kSigmaInCells * cell_size_;
+  origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
+  const int n = num_cells_;
+  values_.assign(static_cast<std::size_t>(n) * n * n, 0.0f);
+  const Eigen::Affine3d T_index_input = volume.f.T_input_index().inverse();
+  parallelRanges(values_.size(), static_cast<std::size_t>(n) * n, options.num_threads,
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) {
+                     const Eigen::Vector3d p = T_index_input * cellCenter(i);
+                     if (volume.f.contains(p)) values_[i] = static_cast<float>(volume.f.at(p));
+                   }
+                 });
+  sumValues(options.num_threads);
+  if (sq_norm_ == 0.0) throw std::invalid_argument("volume: nothing in the ball given by center and radius");
+  interpolation_ = sharpened(kOfInterpolation, options.num_threads);
+}
+
+void GaussianEdt::sumValues(int num_threads) {
+  const int n = num_cells_;
+  filled_.assign(static_cast<std::size_t>(n) * n, {0, 0});
   std::vector<double> sums(n, 0.0), sq_sums(n, 0.0);
   parallelBlocks(n, num_threads, [&](std::size_t slice) {
-    double sum = 0.0, sq_sum = 0.0;
     for (std::size_t row = slice * n; row < (slice + 1) * n; ++row) {
-      float* const values = values_.data() + row * n;
       Range& filled = filled_[row];
       for (int x = 0; x < n; ++x) {
-        if (values[x] >= sq_reach) {
-          values[x] = 0.0f;
-          continue;
-        }
-        const double value = std::exp(scale * values[x]);
-        values[x] = static_cast<float>(value);
-        sum += value;
-        sq_sum += value * value;
+        const double value = values_[row * n + x];
+        if (value <= 0.0) continue;
+        sums[slice] += value;
+        sq_sums[slice] += value * value;
         filled = {filled.end == 0 ? x : filled.begin, x + 1};
       }
     }
-    sums[slice] = sum;
-    sq_sums[slice] = sq_sum;
   });
   sum_ = std::accumulate(sums.begin(), sums.end(), 0.0);
   sq_norm_ = std::accumulate(sq_sums.begin(), sq_sums.end(), 0.0);
-  if (sq_norm_ == 0.0) throw std::invalid_argument("points: none near the ball given by center and radius");
 }
 
 Eigen::Vector3d GaussianEdt::cellCenter(std::size_t index) const {

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/point_set.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// A function on a regular grid in space, such as a CT or MR image (Section 4.2: "medical imaging data").
+class ScalarGrid {
+public:
+  using Ptr = std::shared_ptr<ScalarGrid>;
+  using ConstPtr = std::shared_ptr<const ScalarGrid>;
+  using Size = std::array<int, 3>;
+
+  /// \param size voxels along each axis of the grid, >= 1.
+  /// \param T_input_index from indices, voxel centers at whole numbers, to the input frame; finite and invertible. It
+  /// holds spacing, origin and direction, see placed().
+  /// \param values one a voxel, the first index fastest; NaN where nothing is known.
+  /// \throws std::invalid_argument naming what is wrong.
+  ScalarGrid(const Size& size, const Eigen::Affine3d& T_input_index, std::vector<float> values);
+
+  /// \param spacing between voxel centers, input units, > 0.
+  /// \param origin center of voxel (0, 0, 0), input frame.
+  /// \param direction unit columns: where the axes of the grid point.
+  /// \throws std::invalid_argument naming field, value and rule.
+  static Eigen::Affine3d placed(const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin,
+                                const Eigen::Matrix3d& direction = Eigen::Matrix3d::Identity());
+
+  const Size& size() const { return size_; }                               ///< voxels along each axis
+  std::size_t numVoxels() const { return values_.size(); }                 ///< product of the size
+  const std::vector<float>& values() const { return values_; }             ///< one a voxel, the first index fastest
+  const Eigen::Affine3d& T_input_index() const { return T_input_index_; }  ///< from indices to the input frame
+  Eigen::Vector3d spacing() const { return T_input_index_.linear().colwise().norm(); }  ///< input units
+
+  /// \param p indices, not only whole ones.
+  /// \param margin voxels.
+  /// \return whether p lies between voxel centers, the margin or more from the outermost ones.
+  bool contains(const Eigen::Vector3d& p, const Eigen::Vector3d& margin = Eigen::Vector3d::Zero()) const {
+    return (p.array() >= margin.array()).all() && (p.array() <= last_.array() - margin.array()).all();
+  }
+
+  /// Trilinear interpolation.
+  /// \param p indices, where contains().
+  /// \param gradient per voxel, unless null.
+  double at(const Eigen::Vector3d& p, Eigen::Vector3d* gradient = nullptr) const;
+
+private:
+  friend struct VolumeFunction;
+
+  Size size_;
+  Eigen::Affine3d T_input_index_;
+  std::vector<float> values_;
+  Eigen::Vector3d last_;             ///< indices of the last voxel
+  std::array<std::size_t, 3> step_;  ///< to the next voxel along each axis; 0 where there is one only
+};
+
+/// The intensities of a volume that count: \p low and less become 0, \p high and more become 1.
+struct VolumeLevels {
+  double low = 0.0;   ///< input intensity
+  double high = 0.0;  ///< input intensity; low = high = 0: background and brightest half percent of the voxels
+
+  /// \throws std::invalid_argument unless both are finite and low < high, or both are 0.
+  void validate() const;
+};
+
+/// A volume as the function f of the transform, on no more voxels than wanted and a little smoothed.
+struct VolumeFunction {
+  /// \param volume at least 4 voxels along each axis.
+  /// \param most_voxels groups of voxels are averaged until there are no more than this, >= 4096.
+  /// \throws std::invalid_argument for bad levels, and where the volume holds no answer: too few voxels, no finite
+  /// value, all values equal.
+  VolumeFunction(const ScalarGrid& volume, const VolumeLevels& levels, std::size_t most_voxels, int num_threads = 0);
+
+  /// The same function on fewer voxels.
+  VolumeFunction(const VolumeFunction& finer, std::size_t most_voxels, int num_threads = 0);
+
+  ScalarGrid f;         ///< in [0, 1]
+  double body = 0.5;    ///< f of the border between background and body (Otsu's threshold)
+  VolumeLevels levels;  ///< that were used
+
+  /// \return 3 x N voxel centers of the body, input frame; of those with a neighbor outside alone if \p surface.
+  Points bodyPoints(bool surface) const;
+};
+
+}  // namespace pcl_symmetry

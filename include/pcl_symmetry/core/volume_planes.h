@@ -1,0 +1,27 @@
+#pragma once
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/scalar_grid.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// Planes of symmetry of a volume: maxima of the transform (Sections 4.1 to 4.3), each refined to where D itself is
+/// greatest. A dense volume has no nearest points to iterate over, so Gauss-Newton steps of the three parameters of the
+/// plane take the place of Iterative Symmetric Points: they minimize the sum of (f(x) - f(gamma x))^2, which is
+/// 2 |f|^2 - 2 f . gamma(f), over the voxels whose reflection the volume shows.
+///
+/// Of a SymmetryPlane, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the body,
+/// `seen` the share of the body whose reflection lies within the volume, and `residual` the root mean square of
+/// f(x) - f(gamma x). `confidence` is no probability here: (c - c0) / (1 - c0), where c0 is what three quarters of the
+/// planes reach that pass through the center of mass in all directions, but for those near a maximum. It is 0 for a
+/// plane like any other and 1 where both halves are equal.
+/// \param options edt.num_cells, max_candidates, max_planes, min_confidence, approximate, seed and num_threads count.
+/// \param levels the intensities that count.
+/// \return planes at least as confident as min_confidence, and with `approximate` the other maxima; best first. A
+/// volume without an answer gives a reason.
+/// \throws std::invalid_argument for bad options or levels.
+Detection detectVolumePlanes(const ScalarGrid& volume, const DetectionOptions& options = {},
+                             const VolumeLevels& levels = {});
+
+}  // namespace pcl_symmetry

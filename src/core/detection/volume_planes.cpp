@@ -1,0 +1,298 @@
+#include "pcl_symmetry/core/volume_planes.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
+#include "core/detection/plane_tolerance.h"
+#include "core/geometry/directions.h"
+#include "core/geometry/principal_axes.h"
+#include "pcl_symmetry/core/planar_transform.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// The numbers that change answers.
+struct VolumeRules {
+  std::size_t fine_voxels = 1u << 22;    ///< of the last refinement: 160 along an edge
+  std::size_t coarse_voxels = 1u << 18;  ///< of the map, the candidates and the correlations: 64 along an edge
+  int num_samples = 512;                 ///< of the map; the inside of a body has less contrast than a surface
+  int num_chance_planes = 256;           ///< in all directions; their quartile has a standard error of 3 %
+  double chance_angle = 0.26;            ///< radians: planes closer to a maximum are left out of these
+  double chance_quantile = 0.75;         ///< of their correlations: c0
+  double most_chance = 0.97;             ///< a body whose planes correlate like this is round
+  double least_seen = 0.5;               ///< share of the body that a plane has to compare
+  double merge_angle = 0.07;             ///< radians: maxima closer than this, and ...
+  double merge_offset = 0.04;            ///< ... than this share of the radius in offset, are one
+};
+constexpr VolumeRules kRules;
+
+/// A plane with a tangent frame: n and offsets are measured from a point of the body.
+struct Chart {
+  Chart(const ReflectionPlane& plane, const Eigen::Vector3d& pivot)
+      : n(plane.normal()), s(plane.signedDistance(pivot) * -1.0), u(n.unitOrthogonal()), v(n.cross(u)), pivot(pivot) {}
+
+  /// \param step radians about v and u, and input units along n.
+  ReflectionPlane moved(const Eigen::Vector3d& step) const {
+    const Eigen::Vector3d normal = (n + step[0] * u + step[1] * v).normalized();
+    return ReflectionPlane(normal, normal.dot(pivot) + s + step[2]);
+  }
+
+  Eigen::Vector3d n;
+  double s;
+  Eigen::Vector3d u, v, pivot;
+};
+
+/// What a plane does to a volume.
+struct Comparison {
+  double correlation = 0.0;                        ///< of f with its reflection inside the body
+  double score = 0.0;                              ///< D
+  double seen = 0.0;                               ///< share of the body whose reflection lies in the volume
+  double residual = 0.0;                           ///< root mean square of f(x) - f(gamma x) inside the body
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();  ///< of Gauss-Newton
+
+  /// \return what planes are compared by.
+  double merit() const { return seen < kRules.least_seen ? -1.0 : correlation; }
+};
+
+/// Sums over pairs of a voxel and its reflection.
+struct PairSums {
+  double n = 0.0, f = 0.0, g = 0.0, ff = 0.0, gg = 0.0, fg = 0.0;  // inside the body
+  double product = 0.0, square = 0.0, body = 0.0, seen_body = 0.0;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d rhs = Eigen::Vector3d::Zero();
+
+  void operator+=(const PairSums& other) {
+    n += other.n, f += other.f, g += other.g, ff += other.ff, gg += other.gg, fg += other.fg;
+    product += other.product, square += other.square, body += other.body, seen_body += other.seen_body;
+    normal += other.normal;
+    rhs += other.rhs;
+  }
+};
+
+/// A volume that planes are tried on.
+class ReflectedVolume {
+public:
+  ReflectedVolume(const VolumeFunction& volume, const Eigen::Vector3d& pivot, int num_threads)
+      : f_(volume.f), body_(volume.body), pivot_(pivot), num_threads_(num_threads) {
+    T_index_input_ = f_.T_input_index().inverse();
+    // Smoothing has mixed the outermost voxels with what lies beyond the volume.
+    for (int a = 0; a < 3; ++a) margin_[a] = f_.size()[a] >= 16 ? 2.0 : 0.0;
+  }
+
+  /// \param stride every stride-th voxel along each axis is reflected.
+  Comparison compare(const ReflectionPlane& plane, int stride, bool with_step) const {
+    const int nz = f_.size()[2], num_slices = (nz + stride - 1) / stride;
+    std::vector<PairSums> slices(num_slices);
+    parallelBlocks(num_slices, num_threads_, [&](std::size_t k) {
+      slices[k] = with_step ? ofSlice<true>(plane, static_cast<int>(k) * stride, stride)
+                            : ofSlice<false>(plane, static_cast<int>(k) * stride, stride);
+    });
+    PairSums sum;
+    for (const PairSums& slice : slices) sum += slice;
+    Comparison result;
+    if (sum.n < 1.0 || sum.square == 0.0) return result;
+    const double var_f = sum.ff - sum.f * sum.f / sum.n, var_g = sum.gg - sum.g * sum.g / sum.n;
+    if (var_f > 0.0 && var_g > 0.0) result.correlation = (sum.fg - sum.f * sum.g / sum.n) / std::sqrt(var_f * var_g);
+    result.score = std::clamp(sum.product / sum.square, 0.0, 1.0);
+    result.seen = sum.seen_body / std::max(1.0, sum.body);
+    result.residual = std::sqrt(std::max(0.0, sum.ff + sum.gg - 2.0 * sum.fg) / sum.n);
+    if (with_step) {
+      // Nearly round bodies leave an angle open: a little of the trace keeps the step short there.
+      Eigen::Matrix3d normal = sum.normal;
+      normal.diagonal() *= 1.0 + 1e-6;
+      result.step = normal.ldlt().solve(-sum.rhs);
+      if (!result.step.allFinite()) result.step.setZero();
+    }
+    return result;
+  }
+
+  /// Gauss-Newton from a plane to the nearest maximum of D.
+  /// \param tolerance of the last step: radians, and voxels times ten.
+  /// \return the plane, with iterations and converged.
+  SymmetryPlane refined(const ReflectionPlane& start, int stride, int max_iterations, double tolerance) const {
+    const double spacing = f_.spacing().minCoeff(), most_step = 4.0 * stride * spacing;
+    SymmetryPlane result(start);
+    for (; result.iterations < max_iterations && !result.converged; ++result.iterations) {
+      const Chart chart(result, pivot_);
+      Eigen::Vector3d step = compare(result, stride, true).step;
+      step *=
+          std::min({1.0, 0.1 / std::max(1e-12, step.head<2>().norm()), most_step / std::max(1e-12, std::abs(step[2]))});
+      const int iterations = result.iterations;
+      result = SymmetryPlane(chart.moved(step));
+      result.iterations = iterations;
+      result.converged = step.head<2>().norm() < tolerance && std::abs(step[2]) < 10.0 * tolerance * spacing;
+    }
+    return result;
+  }
+
+private:
+  template <bool kWithStep>
+  PairSums ofSlice(const ReflectionPlane& plane, int z, int stride) const {
+    const Chart chart(plane, pivot_);
+    const Eigen::Affine3d& T = f_.T_input_index();
+    const Eigen::Affine3d image = T_index_input_ * plane.reflection() * T;  // from indices to indices
+    const Eigen::Matrix3d to_input = T_index_input_.linear().transpose();   // of gradients
+    const float* const values = f_.values().data();
+    const auto [nx, ny, nz] = f_.size();
+    const float body = static_cast<float>(body_);
+    PairSums sum;
+    for (int y = 0; y < ny; y += stride) {
+      const float* const row = values + (static_cast<std::size_t>(z) * ny + y) * nx;
+      for (int x = 0; x < nx; x += stride) {
+        const double own = row[x];
+        const bool in_body = own > body;
+        sum.square += own * own;
+        sum.body += in_body;
+        const Eigen::Vector3d index(x, y, z), p = image * index;
+        if (!f_.contains(p, margin_) || !f_.contains(index, margin_)) continue;
+        Eigen::Vector3d gradient;
+        const double other = f_.at(p, kWithStep ? &gradient : nullptr);
+        sum.product += own * other;
+        sum.seen_body += in_body;
+        if (!in_body && other <= body) continue;
+        sum.n += 1.0;
+        sum.f += own, sum.g += other, sum.ff += own * own, sum.gg += other * other, sum.fg += own * other;
+        if (!kWithStep) continue;
+        // The derivatives of f(x) - f(x - 2 (n.x - r) n) by angles about v and u and by r.
+        const Eigen::Vector3d g = to_input * gradient, from_pivot = T * index - pivot_;
+        const double d = chart.n.dot(from_pivot) - chart.s, along = g.dot(chart.n);
+        const Eigen::Vector3d j(2.0 * (chart.u.dot(from_pivot) * along + d * g.dot(chart.u)),
+                                2.0 * (chart.v.dot(from_pivot) * along + d * g.dot(chart.v)), -2.0 * along);
+        sum.normal += j * j.transpose();
+        sum.rhs += (own - other) * j;
+      }
+    }
+    return sum;
+  }
+
+  const ScalarGrid& f_;
+  double body_;
+  Eigen::Vector3d pivot_;
+  int num_threads_;
+  Eigen::Affine3d T_index_input_;
+  Eigen::Vector3d margin_;
+};
+
+/// A stride that reflects about this number of voxels.
+int strideFor(const ScalarGrid& grid, double num_voxels) {
+  return std::max(1, static_cast<int>(std::lround(std::cbrt(static_cast<double>(grid.numVoxels()) / num_voxels))));
+}
+
+/// c0: the correlation that a plane reaches in any direction.
+double chanceLevel(const ReflectedVolume& volume, const Eigen::Vector3d& center, int stride,
+                   const std::vector<SymmetryPlane>& maxima, int num_threads) {
+  std::vector<ReflectionPlane> planes;
+  for (int k = 0; k < kRules.num_chance_planes; ++k) {
+    const Eigen::Vector3d n = spiralDirection(k, kRules.num_chance_planes, k * kGoldenAngle);
+    const ReflectionPlane plane(n, n.dot(center));
+    const bool is_near = std::any_of(maxima.begin(), maxima.end(), [&](const SymmetryPlane& maximum) {
+      return maximum.angleTo(plane) < kRules.chance_angle;
+    });
+    if (!is_near) planes.push_back(plane);
+  }
+  if (planes.empty()) return 1.0;
+  std::vector<double> reached(planes.size());
+  parallelBlocks(planes.size(), num_threads,
+                 [&](std::size_t i) { reached[i] = volume.compare(planes[i], stride, false).correlation; });
+  const auto at = reached.begin() + static_cast<std::ptrdiff_t>(kRules.chance_quantile * (reached.size() - 1));
+  std::nth_element(reached.begin(), at, reached.end());
+  return std::max(0.0, *at);
+}
+
+std::vector<ReflectionPlane> startsOf(const SymmetryMap& map, const Points& body, int max_candidates) {
+  std::vector<ReflectionPlane> starts = principalPlanes(principalAxes(body));
+  for (const LocalMaximum& maximum : findLocalMaxima(map))
+    if (static_cast<int>(starts.size()) < max_candidates) starts.push_back(maximum.plane);
+  return starts;
+}
+
+/// The plane as seen from a point.
+ReflectionPlane about(const ReflectionPlane& plane, const Eigen::Vector3d& point) {
+  return ReflectionPlane(plane.normal(), -plane.signedDistance(point));
+}
+
+}  // namespace
+
+Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& options, const VolumeLevels& levels) {
+  options.validate();
+  levels.validate();
+  Detection found;
+  Stopwatch watch;
+  try {
+    const VolumeFunction fine(input, levels, kRules.fine_voxels, options.num_threads);
+    const VolumeFunction coarse(fine, kRules.coarse_voxels, options.num_threads);
+    const Points body = coarse.bodyPoints(false);
+    const GaussianEdt edt(coarse, options.edt);
+    found.timing_ms.emplace_back("volume", watch.lap());
+    SampledTransformOptions sampled;
+    sampled.num_samples = kRules.num_samples;
+    sampled.seed = options.seed;
+    sampled.num_threads = options.num_threads;
+    const Eigen::Vector3d center = centerOfMass(body);
+    found.map = sampledTransform(
+        edt, PlaneGrid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius()), sampled);
+    found.map.center_of_mass = center;
+    found.diameter = 2.0 * edt.radius();
+    found.timing_ms.emplace_back("transform", watch.lap());
+
+    const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
+    const int stride = strideFor(coarse.f, 30'000);
+    const PlaneTolerance one{kRules.merge_angle, kRules.merge_offset * edt.radius()};
+    const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options.max_candidates);
+    std::vector<SymmetryPlane> maxima(starts.size());
+    parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
+      maxima[i] = few.refined(starts[i], stride, 15, 2e-3);
+      maxima[i].support = few.compare(maxima[i], 1, false).merit();
+    });
+    // The best of those that ended at one plane, best first.
+    const auto distinct = [&](std::vector<SymmetryPlane> planes) {
+      std::stable_sort(planes.begin(), planes.end(),
+                       [](const auto& a, const auto& b) { return a.support > b.support; });
+      std::vector<SymmetryPlane> kept;
+      for (const SymmetryPlane& plane : planes)
+        if (plane.support > 0.0 &&
+            !one.anySame(kept, about(plane, center), [&](const SymmetryPlane& other) { return about(other, center); }))
+          kept.push_back(plane);
+      if (static_cast<int>(kept.size()) > options.max_planes) kept.resize(options.max_planes);
+      return kept;
+    };
+    maxima = distinct(maxima);
+    found.timing_ms.emplace_back("maxima", watch.lap());
+
+    const double chance = chanceLevel(few, center, stride, maxima, options.num_threads);
+    if (chance > kRules.most_chance)
+      throw std::invalid_argument("volume: the body is round, planes in all directions map it onto itself");
+    for (SymmetryPlane& plane : maxima) {
+      if (!options.approximate && (plane.support - chance) / (1.0 - chance) < options.min_confidence) continue;
+      const int before = plane.iterations;
+      plane = all.refined(plane, strideFor(fine.f, 500'000), 10, 1e-4);
+      const Comparison comparison = few.compare(plane, 1, false);
+      plane.iterations += before;
+      plane.support = std::max(0.0, comparison.merit());
+      plane.score = comparison.score;
+      plane.seen = comparison.seen;
+      plane.residual = comparison.residual;
+    }
+    for (SymmetryPlane& plane : distinct(maxima)) {
+      plane.confidence = std::clamp((plane.support - chance) / (1.0 - chance), 0.0, 1.0);
+      plane.share = plane.share_low = plane.share_high = plane.support;
+      plane.kind = plane.confidence >= options.min_confidence ? PlaneKind::Symmetry : PlaneKind::Approximate;
+      if (options.approximate || plane.kind == PlaneKind::Symmetry) found.planes.push_back(plane);
+    }
+    found.timing_ms.emplace_back("refinement", watch.lap());
+  } catch (const std::invalid_argument& error) {
+    if (std::string(error.what()).rfind("volume: ", 0) != 0) throw;
+    found.reason = error.what();
+  }
+  return found;
+}
+
+}  // namespace pcl_symmetry
