@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "core/evidence/plane_support.h"
+#include "pcl_symmetry/core/published_planes.h"
+#include "pcl_symmetry/core/volume_planes.h"
 
 namespace pcl_symmetry::detail {
 
@@ -22,6 +24,29 @@ DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const Symmetry
   input.make_search = search;
   DetectedPlanes found;
   static_cast<Detection&>(found) = detectPlanes(input, options);
+  found.points = std::move(points);
+  return found;
+}
+
+DetectedPlanes planesOfVolume(const ScalarGrid& volume, const DetectionOptions& options, const VolumeLevels& levels) {
+  DetectedPlanes found;
+  static_cast<Detection&>(found) = detectVolumePlanes(volume, options, levels);
+  return found;
+}
+
+DetectedPlanes planesAsPublished(Points points, const GaussianEdt* edt, const SymmetryMap& map,
+                                 const DetectionOptions& options) {
+  DetectedPlanes found;
+  std::optional<GaussianEdt> own;
+  if (!edt) own.emplace(points, options.edt);
+  if (!edt) found.map = publishedMap(points, *own, TransformMethod::Convolution, options.seed, options.num_threads);
+  PublishedOptions published;
+  published.maxima = options.maxima;
+  published.num_points = options.num_refine_samples;
+  published.seed = options.seed;
+  published.num_threads = options.num_threads;
+  found.planes = publishedPlanes(points, edt ? *edt : *own, edt ? map : found.map, published);
+  if (static_cast<int>(found.planes.size()) > options.max_planes) found.planes.resize(options.max_planes);
   found.points = std::move(points);
   return found;
 }

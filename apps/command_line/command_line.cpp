@@ -157,6 +157,17 @@ CommandLine& CommandLine::direction(const std::string& name, std::optional<Eigen
 CommandLine& CommandLine::common(CommonOptions& options, unsigned flags) {
   if (flags & kMeshPoints)
     number("points", options.mesh_points, Range::closed(100, 10'000'000), "number of points spread over a mesh");
+  if (flags & kVolumes) {
+    options.takes_volumes = true;
+    add("levels", "LOW,HIGH",
+        "volumes: intensities that count, as a window of a viewer (background and brightest voxels)",
+        [&options](const std::string& text) {
+          options.levels = parseNumbers("-levels", text);
+          if (options.levels.size() != 2 || !(options.levels[0] < options.levels[1]))
+            rejectValue("-levels", text, "must be LOW,HIGH with LOW < HIGH");
+        });
+    number("surface", options.surface, Range{}, "volumes: analyse the surface of this intensity as a mesh");
+  }
   if (flags & kGrid) number("grid", options.grid, Range::closed(8, 512), "cells along an edge of the distance field");
   if (flags & kSigma)
     number("sigma", options.sigma, Range::above(0), "width of the Gaussian, input units (two cells of the field)");

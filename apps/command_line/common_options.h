@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pcl_symmetry/viewpoint.h"
 
@@ -18,6 +19,9 @@ struct CommonOptions {
   std::optional<double> sigma;  ///< width of the Gaussian, input units; none: two cells
   int mesh_points = 10'000;     ///< number of points spread over a mesh
   Viewpoint viewpoint;
+  bool takes_volumes = false;     ///< whether the tool analyses volumes
+  std::vector<double> levels;     ///< intensities of volumes that count, two; empty: chosen from the values
+  std::optional<double> surface;  ///< the intensity whose surface is analysed in place of the volume
   bool quiet = false;
 
   /// \return the seed of the library, whose default is 1 where that of the flag is 0
@@ -47,6 +51,7 @@ enum CommonFlag : unsigned {
   kQuiet = 1u << 5,
   kSigma = 1u << 6,
   kMeshPoints = 1u << 7,
+  kVolumes = 1u << 8,
   kAnalysisFlags = (1u << 6) - 1,             ///< all but -sigma and -points
   kShapeFlags = kAnalysisFlags | kMeshPoints  ///< of tools that analyse one cloud or mesh
 };

@@ -2,6 +2,7 @@
 
 #include "command_line/file_errors.h"
 #include "io/exact_coordinates.h"
+#include "io/volume_input.h"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {
@@ -26,9 +27,41 @@ void warnOfLeftOut(const Console& console, const std::string& path, const Shape&
   for (const std::string& what : shape.left_out) console.warn(path + ": " + what + " left out");
 }
 
+namespace {
+
+/// A volume, or a surface in it.
+InputShape loadVolumeInput(const std::string& path, const CommonOptions& common) {
+  const Volume volume = loadVolume(path);
+  InputShape input;
+  input.path = path;
+  if (common.surface) {
+    input.shape = surfaceOf(path, *volume.grid, *common.surface);
+    input.points =
+        namingFile(path, [&] { return sampleMesh(*input.shape.mesh, common.mesh_points, common.librarySeed()); });
+  } else {
+    if (!common.levels.empty()) input.levels = {common.levels[0], common.levels[1]};
+    input.volume = volume.grid;
+    constexpr std::size_t kMostVoxels = 64 * 64 * 64;
+    input.points = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+    const Points border = namingFile(
+        path, [&] { return VolumeFunction(*volume.grid, input.levels, kMostVoxels, common.threads).bodyPoints(true); });
+    for (Eigen::Index i = 0; i < border.cols(); ++i)
+      input.points->emplace_back(border(0, i), border(1, i), border(2, i));
+    input.shape.points = input.points;
+    input.shape.cloud = toFields(*input.points, Eigen::Vector3d::Zero());
+  }
+  input.shape.left_out = volume.left_out;
+  return input;
+}
+
+}  // namespace
+
 InputShape loadInput(const Console& console, const std::string& path, const CommonOptions& common) {
   Step loading(console, "Loading " + path);
-  InputShape input = loadInput(path, common.mesh_points, common.librarySeed());
+  const bool is_volume = common.takes_volumes && isVolumePath(path);
+  if (common.surface && !is_volume) throw InputError(path + ": -surface is of volumes, " + kVolumeFiles);
+  InputShape input =
+      is_volume ? loadVolumeInput(path, common) : loadInput(path, common.mesh_points, common.librarySeed());
   input.loading_ms = loading.done(std::to_string(input.points->size()) + " points");
   warnOfLeftOut(console, path, input.shape);
   return input;

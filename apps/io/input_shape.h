@@ -1,4 +1,4 @@
-/// A file as the tools analyse it: the points of a cloud, or points spread over a mesh.
+/// A file as the tools analyse it: the points of a cloud, points spread over a mesh, or a volume.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include "command_line/common_options.h"
 #include "command_line/console.h"
 #include "io/shape_input.h"
+#include "pcl_symmetry/core/scalar_grid.h"
 
 namespace pcl_symmetry::apps {
 
@@ -15,6 +16,8 @@ struct InputShape {
   Shape shape;
   pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< minus the shift of the shape; those of a cloud may be non-finite
   double loading_ms = 0.0;
+  ScalarGrid::ConstPtr volume;  ///< of a volume, whose points are the voxels at the border of the body; null otherwise
+  VolumeLevels levels;          ///< intensities of the volume that count
 
   const Eigen::Vector3d& shift() const { return shape.shift; }
 

@@ -10,15 +10,18 @@
 #include <utility>
 #include <vector>
 
-#include "io/file_text.h"
-#include "io/pcd_reader.h"
-#include "io/ply_reader.h"
+#include "command_line/flag_values.h"
 #include "io/assimp_reader.h"
-#include "io/load_module.h"
 #include "io/column_reader.h"
+#include "io/file_text.h"
+#include "io/load_module.h"
 #include "io/obj_reader.h"
 #include "io/off_reader.h"
+#include "io/pcd_reader.h"
+#include "io/ply_reader.h"
 #include "io/standard_streams.h"
+#include "io/volume_input.h"
+#include "pictures/drawing.h"
 
 namespace pcl_symmetry::apps {
 
@@ -188,6 +191,13 @@ Shape loadShape(const std::string& path) {
     if (extension.empty()) throw InputError(name + ": is of no known kind, must be " + kShapeFiles);
   }
   return shapeOf(name, std::move(text), extension);
+}
+
+Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value) {
+  ExactShape surface;
+  functionOf<decltype(contourVolume)>(kDrawingModule, "contourVolume")(volume, value, surface);
+  if (surface.polygons.empty()) throw InputError(path + ": no surface of value " + shortest(value));
+  return fromExact(path, std::move(surface));
 }
 
 Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) {

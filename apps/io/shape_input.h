@@ -14,6 +14,7 @@
 #include "command_line/tool_errors.h"
 #include "io/shape_file_kinds.h"
 #include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/scalar_grid.h"
 
 namespace pcl_symmetry::apps {
 
@@ -33,6 +34,10 @@ struct Shape {
 /// is that of a pipe without extension
 /// \throws InputError naming the file, what is wrong and the rule
 Shape loadShape(const std::string& path);
+
+/// \return the mesh where a volume has a value.
+/// \throws InputError naming the file where there is no such place.
+Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value);
 
 /// \return 3 x N, the finite points of a cloud, same order.
 Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud);

@@ -5,8 +5,6 @@
 #include <vtkImageShrink3D.h>
 #include <vtkMapper.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
-#include <vtkOutputWindow.h>
 #include <vtkPNGWriter.h>
 #include <vtkPolyData.h>
 #include <vtkRenderWindow.h>
@@ -21,6 +19,7 @@
 
 #include "pictures/drawing.h"
 #include "pictures/picture_actors.h"
+#include "pictures/vtk_messages.h"
 #include "core/base/constants.h"
 
 namespace pcl_symmetry::apps {
@@ -31,33 +30,6 @@ namespace {
 /// is more than the graphics memory of small machines.
 constexpr int kMaxSuperSampled = 4096;
 constexpr double kViewAngle = 25.0;  ///< degrees; chosen: half looks flat, twice distorts the edges
-
-/// Keeps VTK's messages for the one line that reports a failure.
-class MessageCollector : public vtkOutputWindow {
-public:
-  static MessageCollector* New();
-  vtkTypeMacro(MessageCollector, vtkOutputWindow);
-  void DisplayText(const char*) override {}
-  void DisplayErrorText(const char* text) override {
-    if (first_error.empty() && text) first_error = text;
-  }
-  std::string first_error;
-};
-vtkStandardNewMacro(MessageCollector);
-
-/// Puts the collector in place of VTK's own window while a picture is made.
-class CollectedMessages {
-public:
-  CollectedMessages() : old_(vtkOutputWindow::GetInstance()) { vtkOutputWindow::SetInstance(collector_); }
-  ~CollectedMessages() { vtkOutputWindow::SetInstance(old_); }
-  CollectedMessages(const CollectedMessages&) = delete;
-  CollectedMessages& operator=(const CollectedMessages&) = delete;
-  const std::string& firstError() const { return collector_->first_error; }
-
-private:
-  vtkSmartPointer<vtkOutputWindow> old_;
-  vtkNew<MessageCollector> collector_;
-};
 
 /// Places the camera so that all of the panel lies inside the picture, below the label and left of the colour bar.
 /// \param bar_share part of the panel's width that the colour bar takes.
@@ -166,7 +138,7 @@ void drawScenes(const std::vector<PictureScene>& scenes, const PictureTarget& ta
   int num_panels = 0;
   for (const PictureScene& scene : scenes) num_panels += static_cast<int>(scene.panels.size());
   requireDisplay(target.name);
-  const CollectedMessages messages;
+  const VtkMessages messages;
   const int factor = std::max(target.width, target.height) <= kMaxSuperSampled ? 2 : 1;
   vtkNew<vtkRenderWindow> window;
   window->SetOffScreenRendering(1);

@@ -15,6 +15,7 @@
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
+#include "io/method_names.h"
 #include "io/shape_output.h"
 #include "pictures/picture.h"
 #include "pictures/raster_image.h"
@@ -32,7 +33,8 @@ struct MapOptions {
   BatchOptions batch;
   std::string input;
   std::optional<std::string> output, volume_path, slices_path, png_path;
-  std::string of = "planes", measure = "D";
+  std::string measure = "D";
+  MeasureOptions what;
   std::optional<int> fold;
   int cells = 96, size = 300;
   CommonOptions common;
@@ -44,19 +46,22 @@ CommandLine commandLine(MapOptions& options) {
   options.batch.outputs = {&options.output, &options.volume_path, &options.slices_path, &options.png_path};
   line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the points with one more field, intensity, about 0 to 1")
-      .choice("of", options.of, {"planes", "axes", "centers"},
+      .choice("of", options.what.of, {"planes", "axes", "centers"},
               "what is symmetric: reflections, turns about axes, or point symmetry")
       .choice("measure", options.measure, {"D", "prst"},
               "what is written: D of equation 2, or PRST = sqrt((1 + D) / 2) of equation 1, within 0.707 and 1")
       .number("fold", options.fold, Range::closed(0, 60),
               "with -of axes: order of the turns, 0 = by any angle, not 1; default: the best of 2 to 8 and any angle")
+      .choice("method", options.what.method, kMethodNames, "estimator of planes (Sections 4.2 and 4.3)")
+      .number("scale", options.what.scale, Range::closed(0, 1),
+              "local symmetry of planes: within this share of the shape's radius around each point; 0 = of the whole")
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
       .picture("slices", options.slices_path,
                "picture: three slices through the middle, the darker the greater, the shape on top")
       .picture("png", options.png_path, "picture: the points in the colours of their symmetry")
       .number("cells", options.cells, Range::closed(8, 512), "cells of the volume along its longest edge")
       .number("size", options.size, Range::closed(16, 4096), "edge of each picture, pixels")
-      .common(options.common, kShapeFlags | kSigma);
+      .common(options.common, kShapeFlags | kSigma | kVolumes);
   options.batch.addTo(line);
   return line;
 }
@@ -226,7 +231,7 @@ void analyse(const MapOptions& options, FileJob& job) {
   Step transforming(job.console(), "Transforming");
   CommonOptions common = options.common;
   common.threads = job.numThreads();
-  SymmetryMeasure map = measureSymmetry(input, common, options.of, options.fold.value_or(-1));
+  SymmetryMeasure map = measureSymmetry(input, common, options.what);
   if (options.measure == "prst") map = byEquation1(std::move(map));
   const double transforming_ms = transforming.done(std::to_string(map.num_tried) + " " + map.of);
 
@@ -256,7 +261,9 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.output) checkCloudExtension(*options.output);
-  if (options.fold && options.of != "axes") throw UsageError("-fold goes with -of axes");
+  options.what.fold = options.fold.value_or(-1);
+  if (options.what.scale > 0.0 && options.what.of != "planes") throw UsageError("-scale goes with -of planes");
+  if (options.fold && options.what.of != "axes") throw UsageError("-fold goes with -of axes");
   if (options.fold == 1) rejectValue("-fold", "1", "must be 0 or >= 2: a turn of order 1 changes nothing");
   options.batch.inputs = {options.input};
   return runOnFiles(options.batch, options.common, {"points", "least", "greatest"},

@@ -19,13 +19,16 @@
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/json_values.h"
+#include "io/method_names.h"
 #include "io/shape_output.h"
 #include "io/turn_values.h"
 #include "pcl_symmetry/core/revolution_profile.h"
 #include "pcl_symmetry/mesh_sampling.h"
+#include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pictures/picture.h"
 #include "pictures/scene_page.h"
+#include "pictures/volume_slices.h"
 
 namespace {
 
@@ -40,6 +43,8 @@ struct PlanesOptions {
   std::optional<std::string> png_path, html_path, support_path, profile_path;
   DetectionOptions detection;
   std::optional<double> tolerance;
+  std::string method = "sampled";
+  bool method_given = false, as_published = false;
   CommonOptions common;
 };
 
@@ -49,11 +54,12 @@ const std::vector<std::string> kColumns = {"number",     "kind",  "a",       "b"
                                            "confidence", "share", "support", "score", "seen", "deviation"};
 
 CommandLine commandLine(PlanesOptions& options) {
-  CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of clouds and meshes.",
+  CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of clouds, meshes and volumes.",
                    "pcl_symmetry_planes chair.pcd -json planes.json -png planes.png");
   options.batch.outputs = {&options.png_path, &options.html_path, &options.support_path, &options.profile_path};
   line.positionals("input", options.batch.inputs, kManyInputs)
-      .picture("png", options.png_path, "picture: cloud, planes and support, best planes first")
+      .picture("png", options.png_path,
+               "picture: cloud, planes and support, best planes first; three slices of a volume and its asymmetry")
       .text("html", "FILE", options.html_path,
             "page with the same in three dimensions, for any browser, without network")
       .text("support", "FILE", options.support_path,
@@ -72,8 +78,12 @@ CommandLine commandLine(PlanesOptions& options) {
           "0.01, or what a depth camera resolves, up to 0.03)")
       .number("absolute_tolerance", options.detection.absolute_tolerance, Range::atLeast(0),
               "the same in input units; 0 = -tolerance decides")
+      .choice("method", options.method, kMethodNames,
+              "the estimator of the map (Sections 4.2 and 4.3); exact with -as_published")
+      .flag("as_published", options.as_published,
+            "refine the maxima of the map as the paper does (Section 4.4), without a decision")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "largest number of planes reported")
-      .common(options.common, kShapeFlags | kSigma);
+      .common(options.common, kShapeFlags | kSigma | kVolumes);
   options.batch.addTo(line);
   return line;
 }
@@ -300,6 +310,26 @@ PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, co
   return scene;
 }
 
+/// Gives the refinement a map by the estimator that was named: of 64 x 64 x 64 bins as published, else as fine as that
+/// of the refinement itself.
+void giveMap(SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, const InputShape& input,
+             const PlanesOptions& options) {
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  const DetectionOptions& detection = refinement.getOptions();
+  transform.setNumCells(detection.edt.num_cells);
+  transform.setSigma(detection.edt.sigma);
+  if (!options.as_published) transform.setMapSize(detection.num_theta, detection.num_phi, detection.num_radius);
+  transform.setMethod(methodNamed(options.method));
+  if (options.as_published) transform.setNearDistance(0.0);
+  transform.setRandomSeed(detection.seed);
+  transform.setNumberOfThreads(detection.num_threads);
+  transform.setViewpoint(refinement.getViewpoint());
+  transform.setMaxPoints(50'000);
+  transform.setInputCloud(input.points);
+  const SymmetryMap map = transform.compute();
+  if (transform.getReason().empty()) refinement.setSymmetryMap(map, transform.getDistanceTransform());
+}
+
 Findings search(const FileJob& job, const InputShape& input, const PlanesOptions& options) {
   Step searching(job.console(), "Searching planes");
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
@@ -311,8 +341,13 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     refinement.setOptions(detection);
     if (options.tolerance) refinement.setTolerance(*options.tolerance);
     refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
-    refinement.setInputCloud(input.points);
+    refinement.setAsPublished(options.as_published);
+    if (input.volume)
+      refinement.setInputVolume(input.volume, input.levels);
+    else
+      refinement.setInputCloud(input.points);
     if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
+    if (options.method_given && !input.volume) giveMap(refinement, input, options);
     findings.planes = refinement.compute();
     if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
   });
@@ -338,7 +373,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   const double searching_ms = searching.done(summary);
   findings.timing_ms.emplace_back("load", input.loading_ms);
   findings.timing_ms.emplace_back("total", searching_ms);
-  if (options.support_path || options.png_path || options.html_path)
+  if (!input.volume && (options.support_path || options.png_path || options.html_path))
     for (const SymmetryPlane& plane : findings.planes)
       findings.support.push_back(refinement.computePointSupport(plane));
   return findings;
@@ -391,6 +426,13 @@ void saveProfile(const InputShape& input, const Findings& findings, const std::s
 
 void draw(const Console& console, const InputShape& input, const Findings& findings, const std::string& path) {
   Step drawing(console, "Drawing " + path);
+  if (input.volume) {
+    const std::optional<ReflectionPlane> plane =
+        findings.planes.empty() ? std::nullopt : std::optional<ReflectionPlane>(findings.planes[0]);
+    writeImage(drawVolumeSlices(*input.volume, input.levels, plane, 400), path);
+    drawing.done();
+    return;
+  }
   const PictureScene scene = makeScene(input.points, findings);
   renderPicture(scene, path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
   drawing.done();
@@ -398,6 +440,8 @@ void draw(const Console& console, const InputShape& input, const Findings& findi
 
 void analyse(const PlanesOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
+  if (input.volume && (options.support_path || options.html_path))
+    throw InputError(job.path() + ": -support and -html are of points; -surface VALUE makes some");
   const Findings findings = search(job, input, options);
   job.report({tableOf(findings, input.shift()), describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));
@@ -412,6 +456,7 @@ int run(int argc, char** argv) {
   PlanesOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  options.method_given = line.given("method");
   if (options.support_path) checkCloudExtension(*options.support_path);
   if (options.profile_path && !boost::iends_with(*options.profile_path, ".csv") &&
       !boost::iends_with(*options.profile_path, ".svg"))

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "command_line/file_errors.h"
-#include "io/json_values.h"
 #include "io/exact_coordinates.h"
-#include "pcl_symmetry/planar_symmetry_transform.h"
+#include "io/json_values.h"
+#include "io/method_names.h"
 #include "pcl_symmetry/axial_symmetry_transform.h"
+#include "pcl_symmetry/core/local_symmetry.h"
+#include "pcl_symmetry/planar_symmetry_transform.h"
 
 namespace pcl_symmetry::apps {
 
@@ -26,7 +28,10 @@ void setUp(Transform& transform, const InputShape& input, const CommonOptions& c
   transform.setRandomSeed(common.librarySeed());
   transform.setNumberOfThreads(common.threads);
   transform.setViewpoint(shifted(common.viewpoint, input.shift()));
-  transform.setInputCloud(input.points);
+  if (input.volume)
+    transform.setInputVolume(input.volume, input.levels);
+  else
+    transform.setInputCloud(input.points);
 }
 
 template <typename Transform>
@@ -34,12 +39,23 @@ void checkAnswer(const Transform& transform, const InputShape& input) {
   if (!transform.getReason().empty()) throw InputError(input.path + ": " + transform.getReason());
 }
 
-SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common) {
+SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setGridSize(common.grid);
+  transform.setMethod(methodNamed(options.method));
   setUp(transform, input, common);
   const auto map = std::make_shared<const SymmetryMap>(transform.compute());
   checkAnswer(transform, input);
+  if (options.scale > 0.0) {
+    LocalSymmetryOptions local;
+    local.scale = options.scale * map->grid.radius();
+    local.seed = common.librarySeed();
+    return {"planes", static_cast<std::size_t>(local.num_directions),
+            [edt = transform.getDistanceTransform(), local](const Points& points, int threads) mutable {
+              local.num_threads = threads;
+              return localSymmetry(*edt, points, local);
+            }};
+  }
   return {"planes", map->values.size(),
           [map](const Points& points, int threads) { return pointSymmetry(*map, points, threads); }};
 }
@@ -114,10 +130,10 @@ SymmetryMeasure byEquation1(SymmetryMeasure measure) {
   return measure;
 }
 
-SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const std::string& of, int fold) {
+SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
   return namingFile(input.path, [&] {
-    if (of == "axes") return ofAxes(input, common, fold);
-    return of == "centers" ? ofCenters(input, common) : ofPlanes(input, common);
+    if (options.of == "axes") return ofAxes(input, common, options.fold);
+    return options.of == "centers" ? ofCenters(input, common) : ofPlanes(input, common, options);
   });
 }
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "command_line/common_options.h"
-#include "pictures/picture.h"
 #include "io/input_shape.h"
 #include "pcl_symmetry/core/point_set.h"
+#include "pictures/picture.h"
 
 namespace pcl_symmetry::apps {
 
@@ -28,9 +28,15 @@ struct SymmetryMeasure {
 /// so that values lie within [0.707, 1].
 SymmetryMeasure byEquation1(SymmetryMeasure measure);
 
-/// \param of planes, axes or centers.
-/// \param fold of axes: order of the turns, 0 = any angle; below 0: 2 to 8 and any angle.
+/// What is measured.
+struct MeasureOptions {
+  std::string of = "planes";       ///< planes, axes or centers
+  int fold = -1;                   ///< of axes: order of the turns, 0 = any angle; below 0: 2 to 8 and any angle
+  std::string method = "sampled";  ///< of planes: the estimator, one of kMethodNames
+  double scale = 0.0;              ///< of planes: radius of the window around each point, of the shape's; 0: the whole
+};
+
 /// \throws InputError where the input holds no answer.
-SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const std::string& of, int fold);
+SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const MeasureOptions& options);
 
 }  // namespace pcl_symmetry::apps

@@ -67,6 +67,8 @@ public:
     transform_.num_threads = num_threads;
   }
 
+  using CloudAnalysis<PointT>::setInputVolume;
+
   /// \return the map of all axes, in the frame and units of the input; empty where the input holds no answer, see
   /// getReason(). With a viewpoint it holds (1 + c) D / (D + F + c), as that of PlanarSymmetryTransform.
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
@@ -106,6 +108,11 @@ protected:
 private:
   /// \return whether the input holds an answer.
   bool prepare() {
+    if (this->volume()) {
+      const auto f = this->selectVolume(edt_options_.num_cells, transform_.num_threads);
+      if (f) edt_ = std::make_shared<const GaussianEdt>(*f, edt_options_);
+      return f.has_value();
+    }
     const Points points = this->selectInput(transform_.seed, transform_.num_threads);
     if (points.cols() == 0) return false;
     visibility_ = this->seenSpace(points);

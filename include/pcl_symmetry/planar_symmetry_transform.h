@@ -79,6 +79,11 @@ public:
   void setNumPairs(std::int64_t num_pairs) {
     detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.num_pairs = num_pairs; });
   }
+  /// \param cells pairs of points closer than this are drawn plane first by voting, >= 0; 0: voting as the paper writes
+  /// it; default 4.
+  void setNearDistance(double cells) {
+    detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.near_distance = cells; });
+  }
   void setRandomSeed(std::uint64_t seed) { transform_.sampled.seed = transform_.voting.seed = seed; }  ///< of all draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
@@ -91,6 +96,8 @@ public:
   /// \param num_points >= 1.
   /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.
   void setInputMesh(const pcl::PolygonMesh& mesh, int num_points = 50'000);
+
+  using CloudAnalysis<PointT>::setInputVolume;
 
   /// \return the map, in the frame and units of the input; empty where the input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
@@ -125,6 +132,13 @@ void PlanarSymmetryTransform<PointT>::setInputMesh(const pcl::PolygonMesh& mesh,
 template <typename PointT>
 SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
   return detail::withBadArguments([&] {
+    if (this->volume()) {
+      const auto f = this->selectVolume(edt_options_.num_cells, transform_.sampled.num_threads);
+      if (!f) return SymmetryMap();
+      edt_ = std::make_shared<const GaussianEdt>(*f, edt_options_);
+      const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
+      return planarTransform(*edt_, grid, centerOfMass(f->bodyPoints(false)), transform_);
+    }
     const Points points = this->selectInput(transform_.sampled.seed, transform_.sampled.num_threads);
     if (points.cols() == 0) return SymmetryMap();
     const std::optional<Visibility> seen = this->seenSpace(points);

@@ -51,6 +51,8 @@ public:
     mesh_.reset();
   }
 
+  using CloudAnalysis<PointT>::setInputVolume;
+
   /// Sets every option at once.
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setOptions(const DetectionOptions& options) {
@@ -109,6 +111,10 @@ public:
   /// unless the points were seen from one side. Follows setInputCloud(), which forgets it.
   void setMesh(const MeshSurface& mesh) { mesh_ = mesh; }
 
+  /// Keeps to the letter of Section 4.4: local maxima of the map that was given, or of the exact one with 64 x 64 x 64
+  /// bins, refined by publishedPlanes() and not judged. What a scanner saw is not used.
+  void setAsPublished(bool as_published) { as_published_ = as_published; }
+
   /// \return the planes, best first, in the frame of the input; empty where the shape has no symmetry, and where the
   /// input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
@@ -160,6 +166,7 @@ private:
   DetectionOptions options_;
   SearchPtr search_;
   bool use_input_normals_ = true;
+  bool as_published_ = false;
   SymmetryMap map_;  // that was given
   std::shared_ptr<const GaussianEdt> edt_;
   std::optional<MeshSurface> mesh_;

@@ -15,14 +15,17 @@
 #include "core/geometry/mesh_sampling.h"
 #include "core/matching/shape_signature.h"
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/local_symmetry.h"
 #include "pcl_symmetry/core/mesh_refinement.h"
 #include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/published_planes.h"
 #include "pcl_symmetry/core/revolution_profile.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/core/symmetric_completion.h"
 #include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/viewpoint_score.h"
+#include "pcl_symmetry/core/volume_planes.h"
 #include "python/evidence.h"
 #include "python/input_points.h"
 #include "python/motions.h"
@@ -108,6 +111,14 @@ Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3
   return rows;
 }
 
+/// \throws std::invalid_argument for another name.
+TransformMethod methodNamed(const std::string& method) {
+  const std::vector<std::string> names{"sampled", "convolution", "voting"};
+  const auto at = std::find(names.begin(), names.end(), method);
+  if (at == names.end()) throw std::invalid_argument("method = " + method + ", must be sampled, convolution or voting");
+  return static_cast<TransformMethod>(at - names.begin());
+}
+
 PlaneSearch planes(const py::array& points, const py::object& viewpoint, DetectionOptions options,
                    std::size_t max_points, const py::object& normals, const std::optional<MeshSurface>& mesh) {
   const InputPoints input("points", points, max_points, options.seed);
@@ -129,12 +140,66 @@ PlaneSearch planes(const py::array& points, const py::object& viewpoint, Detecti
   return search;
 }
 
-SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::size_t max_points, std::uint64_t seed,
-                    int threads, const std::optional<MeshSurface>& mesh) {
+/// \param volume first index along x, as nibabel has it.
+ScalarGrid gridOf(const py::array_t<float, py::array::f_style | py::array::forcecast>& volume,
+                  const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin, const Eigen::Matrix3d& direction) {
+  if (volume.ndim() != 3) throw std::invalid_argument("volume = array of another shape, must have three axes");
+  const ScalarGrid::Size size{static_cast<int>(volume.shape(0)), static_cast<int>(volume.shape(1)),
+                              static_cast<int>(volume.shape(2))};
+  return ScalarGrid(size, ScalarGrid::placed(spacing, origin, direction),
+                    std::vector<float>(volume.data(), volume.data() + volume.size()));
+}
+
+PlaneSearch volumePlanes(const py::array_t<float, py::array::f_style | py::array::forcecast>& volume,
+                       const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin, const Eigen::Matrix3d& direction,
+                       const std::pair<double, double>& levels, bool approximate, int max_planes, std::uint64_t seed,
+                       int threads) {
+  const ScalarGrid grid = gridOf(volume, spacing, origin, direction);
+  const py::gil_scoped_release release;
+  DetectionOptions options;
+  options.approximate = approximate;
+  options.max_planes = max_planes;
+  options.seed = seed;
+  options.num_threads = threads;
+  PlaneSearch search;
+  search.found = detectVolumePlanes(grid, options, {levels.first, levels.second});
+  return search;
+}
+
+PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method, int num_points,
+                                             std::uint64_t seed, int threads) {
+  const InputPoints input("points", points, 0, seed);
+  const TransformMethod estimator = methodNamed(method);
+  const py::gil_scoped_release release;
+  const GaussianEdt edt(input.points());
+  PublishedOptions options;
+  options.num_points = num_points;
+  options.seed = seed;
+  options.num_threads = threads;
+  PlaneSearch search;
+  search.found.planes =
+      publishedPlanes(input.points(), edt, publishedMap(input.points(), edt, estimator, seed, threads), options);
+  return search;
+}
+
+std::vector<float> localSymmetryOf(const AnyArray& points, double scale, std::uint64_t seed, int threads) {
+  const InputPoints input("points", points, 0, seed);
+  const py::gil_scoped_release release;
+  const GaussianEdt edt(input.points());
+  LocalSymmetryOptions options;
+  options.scale = scale * edt.radius();
+  options.seed = seed;
+  options.num_threads = threads;
+  return localSymmetry(edt, input.points(), options);
+}
+
+SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::size_t max_points, bool as_published,
+                    std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
   const InputPoints input("points", points, max_points, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   const py::gil_scoped_release release;
   FrameOptions options;
+  options.as_published = as_published;
   options.seed = seed;
   options.num_threads = threads;
   SymmetryFrame found = symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
@@ -225,10 +290,7 @@ SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, co
                       const Eigen::Vector3d& center, double radius, double sigma, std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 0, seed);
   PlanarTransformOptions options;
-  const std::vector<std::string> names{"sampled", "convolution", "voting"};
-  const auto at = std::find(names.begin(), names.end(), method);
-  if (at == names.end()) throw std::invalid_argument("method = " + method + ", must be sampled, convolution or voting");
-  options.method = static_cast<TransformMethod>(at - names.begin());
+  options.method = methodNamed(method);
   options.sampled.seed = options.voting.seed = seed;
   options.sampled.num_threads = options.convolution.num_threads = options.voting.num_threads = threads;
   const py::gil_scoped_release release;
@@ -339,6 +401,13 @@ void addPlaneFunctions(py::module_& module) {
       "evidence: also what the decisions are taken from, `evidence` and `turn_evidence` of the result; takes about as\n"
       "long again.\n"
       "Returns Planes. Raises ValueError for bad parameters.");
+  module.def("volume_planes", &volumePlanes, py::arg("volume"), py::kw_only(), py::arg("spacing"), py::arg("origin"),
+             py::arg("direction"), py::arg("levels"), py::arg("approximate"), py::arg("max_planes"), py::arg("seed"),
+             py::arg("threads"));
+  module.def("published_planes", &publishedPlanesOf, py::arg("points"), py::kw_only(), py::arg("method"),
+             py::arg("num_points"), py::arg("seed"), py::arg("threads"));
+  module.def("local_symmetry", &localSymmetryOf, py::arg("points"), py::arg("scale"), py::kw_only(), py::arg("seed"),
+             py::arg("threads"));
   module.def(
       "complete", &complete, py::arg("points"), py::arg("plane"), py::kw_only(), py::arg("viewpoint") = "auto",
       py::arg("threads") = 0,
@@ -375,7 +444,8 @@ void addShapeFunctions(py::module_& module) {
              py::kw_only(), py::arg("seed") = 1,
              "(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces.");
   module.def("frame", &frame, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
-             py::arg("max_points") = 50'000, py::arg("seed") = 1, py::arg("threads") = 0, py::arg("mesh") = py::none(),
+             py::arg("max_points") = 50'000, py::arg("as_published") = false, py::arg("seed") = 1,
+             py::arg("threads") = 0, py::arg("mesh") = py::none(),
              "Canonical frame of a cloud (Section 5.1). Parameters as in planes(). Returns Frame.");
   module.def("closest", &closest, py::arg("points"), py::arg("queries"));
   module.def("segment", &segment, py::arg("points"), py::arg("faces") = py::none(), py::kw_only(), py::arg("parts") = 0,

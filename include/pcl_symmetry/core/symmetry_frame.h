@@ -27,6 +27,10 @@ struct FrameOptions {
   /// Scores that differ by no more than this are equal, >= 0. The sampled D of a symmetry varies by 0.02 to 0.03 with
   /// the angle of the plane.
   double tie = 0.06;
+  /// The paper's own method: the plane of greatest D among the maxima of the exact map of 64 x 64 x 64 bins, refined by
+  /// publishedPlanes(); then two more picked greedily by D, at 64 angles within the plane across the first axis. It
+  /// ignores what a scanner saw, and no scores tie.
+  bool as_published = false;
   /// Searches the axes of rotation of scans too, SymmetryFrame::turns; false saves about a third of the time.
   bool turns = true;
   bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes about a seventh of the time

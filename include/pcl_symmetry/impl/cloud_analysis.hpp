@@ -2,13 +2,16 @@
 
 #include <pcl/pcl_base.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/scalar_grid.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -26,6 +29,7 @@ public:
   /// Sets the cloud to analyse and clears the results of the last one.
   void setInputCloud(const PointCloudConstPtr& cloud) override {
     pcl::PCLBase<PointT>::setInputCloud(cloud);
+    volume_.reset();
     clearResults();
   }
 
@@ -57,6 +61,34 @@ protected:
     reason_.clear();
   }
 
+  /// Analyzes a function on a grid in place of a cloud (Section 4.2), until a cloud is set.
+  /// \param volume such as a CT or MR image; results are in its input frame.
+  /// \param levels the intensities that count; default: chosen from the values.
+  /// \throws pcl::BadArgumentException for bad levels.
+  void setInputVolume(const ScalarGrid::ConstPtr& volume, const VolumeLevels& levels = {}) {
+    detail::withBadArguments([&] { levels.validate(); });
+    pcl::PCLBase<PointT>::setInputCloud(nullptr);
+    volume_ = volume;
+    levels_ = levels;
+    clearResults();
+  }
+
+  /// Begins an analysis of the volume.
+  /// \return f on about as many voxels as the distance transform would have cells; nothing where it holds no answer.
+  std::optional<VolumeFunction> selectVolume(int num_cells, int num_threads) {
+    clearResults();
+    try {
+      const std::size_t side = static_cast<std::size_t>(std::max(num_cells, 16));
+      return VolumeFunction(*volume_, levels_, side * side * side, num_threads);
+    } catch (const std::invalid_argument& error) {
+      giveNoAnswer(error.what());
+      return std::nullopt;
+    }
+  }
+
+  const ScalarGrid::ConstPtr& volume() const { return volume_; }  ///< null where a cloud is analyzed
+  const VolumeLevels& levels() const { return levels_; }          ///< of the volume
+
   /// Begins an analysis: clears the results of the last one and selects the points of the input.
   /// \param num_threads 0 = one per core.
   /// \return 3 x N points; N = 0 where the input holds no answer.
@@ -83,6 +115,8 @@ private:
   std::string name_;
   std::size_t max_points_;
   std::int64_t least_max_points_;
+  ScalarGrid::ConstPtr volume_;
+  VolumeLevels levels_;
   pcl::Indices used_indices_;
   std::string reason_;
 };

@@ -18,6 +18,13 @@ DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const Symmetry
                            const DetectionOptions& options, const MakeSearch& search,
                            const std::optional<Visibility>& seen, const std::optional<Points>& normals);
 
+/// The same for a volume.
+DetectedPlanes planesOfVolume(const ScalarGrid& volume, const DetectionOptions& options, const VolumeLevels& levels);
+
+/// The same as published.
+DetectedPlanes planesAsPublished(Points points, const GaussianEdt* edt, const SymmetryMap& map,
+                                 const DetectionOptions& options);
+
 /// \param all finite points of a cloud.
 /// \param cloud_size points of the cloud.
 /// \param samples 3 x N, finite, the surface that reflected points are compared with, same frame; N = 0: no surface.
@@ -38,8 +45,18 @@ void SymmetryMaximaRefinement<PointT>::setSymmetryMap(const SymmetryMap& map,
 template <typename PointT>
 std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
   return detail::withBadArguments([&] {
+    if (this->volume()) {
+      clearResults();
+      found_ = detail::planesOfVolume(*this->volume(), options_, this->levels());
+      if (!found_.reason.empty()) this->giveNoAnswer(found_.reason);
+      return std::move(found_.planes);
+    }
     Points points = this->selectInput(options_.seed, options_.num_threads);
     if (points.cols() == 0) return std::vector<SymmetryPlane>();
+    if (as_published_) {
+      found_ = detail::planesAsPublished(std::move(points), edt_.get(), map_, options_);
+      return std::move(found_.planes);
+    }
     const MakeSearch search = detail::searchOf<PointT>(search_, "SymmetryMaximaRefinement", options_.num_threads);
     const std::optional<Visibility> seen = this->seenSpace(points);
     const std::optional<Points> normals =

@@ -16,10 +16,73 @@
 #include "core/frame/leveled_frames.h"
 #include "core/frame/probable_frames.h"
 #include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/published_planes.h"
 
 namespace pcl_symmetry {
 
 namespace {
+
+/// An offset from the center of the grid, input units, and D of the plane there.
+struct OffsetAndScore {
+  double offset = 0.0, score = 0.0;
+};
+
+/// Section 5.1 as it stands: each axis is the normal of the plane of greatest D among those that are left.
+SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& options) {
+  const GaussianEdt edt(points, options.edt);
+  const SymmetryMap map = publishedMap(points, edt, TransformMethod::Convolution, options.seed, options.num_threads);
+  const PlaneGrid& grid = map.grid;
+  const PlaneProfiles profiles(edt, {}, kNumProfileSamples, options.seed, options.num_threads);
+  const Eigen::Vector3d middle = edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize());
+  const auto best_offset = [&](const Eigen::Vector3d& normal) -> OffsetAndScore {
+    const double first = (normal.dot(grid.center() - middle) + grid.offset(0)) / edt.cellSize();
+    const std::vector<float> s =
+        profiles.scores(normal.cast<float>(), static_cast<float>(first),
+                        static_cast<float>(grid.radiusStep() / edt.cellSize()), grid.numRadius());
+    const auto at = std::max_element(s.begin(), s.end()) - s.begin();
+    return {grid.offset(static_cast<int>(at)), s[at]};
+  };
+
+  // First: the plane of greatest D among the refined maxima. Those that leave their cell stay, because so the method
+  // does best.
+  PublishedOptions published;
+  published.discard_unstable = false;
+  published.seed = options.seed;
+  published.num_threads = options.num_threads;
+  const std::vector<SymmetryPlane> maxima = publishedPlanes(points, edt, map, published);
+  const ReflectionPlane first = maxima.empty() ? grid.plane(grid.bin(map.strongest())) : maxima.front();
+  SymmetryFrame frame;
+  frame.axes.col(0) = first.normal();
+
+  // Second: the greatest among those perpendicular to it.
+  const Eigen::Vector3d u = frame.axes.col(0).unitOrthogonal(), v = frame.axes.col(0).cross(u);
+  const auto turned = [&](std::size_t i) -> Eigen::Vector3d {
+    const double angle = kPi * static_cast<double>(i) / grid.numPhi();
+    return std::cos(angle) * u + std::sin(angle) * v;
+  };
+  std::vector<OffsetAndScore> perpendicular(static_cast<std::size_t>(grid.numPhi()));
+  parallelBlocks(perpendicular.size(), options.num_threads,
+                 [&](std::size_t i) { perpendicular[i] = best_offset(turned(i)); });
+  const auto second =
+      std::max_element(perpendicular.begin(), perpendicular.end(),
+                       [](const OffsetAndScore& a, const OffsetAndScore& b) { return a.score < b.score; });
+  frame.axes.col(1) = turned(static_cast<std::size_t>(second - perpendicular.begin()));
+
+  // Third: the greatest among those perpendicular to both.
+  frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
+  const OffsetAndScore third = best_offset(frame.axes.col(2));
+
+  // The center of symmetry is where the three meet.
+  frame.center =
+      grid.center() + frame.axes * Eigen::Vector3d(-first.signedDistance(grid.center()), second->offset, third.offset);
+  frame.scores << (maxima.empty() ? map[map.strongest()] : maxima.front().score), second->score, third.score;
+  frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
+  EquivalentFrames equivalent;
+  equivalent.addWithSigns(frame.axes, frame.center);
+  frame.equivalent = equivalent.poses();
+  frame.num_maxima = frame.equivalent.size();
+  return frame;
+}
 
 /// Axes of rotation of a scan; the axes of its frame are tried first.
 std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef& points, const GaussianEdt& edt,

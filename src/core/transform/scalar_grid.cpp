@@ -128,7 +128,7 @@ std::vector<float> someValues(const std::vector<float>& values) {
 
 VolumeLevels levelsOf(const ScalarGrid& volume, const VolumeLevels& given) {
   given.validate();
-  for (const int n : volume.size()) check(n >= 4, "slices of the volume", n, ">= 4 along each axis");
+  for (const int n : volume.size()) check(n >= 4, "volume: slices along an axis", n, ">= 4");
   const std::vector<float> values = someValues(volume.values());
   if (values.empty()) throw std::invalid_argument("volume: no finite value");
   if (given.low < given.high) return given;

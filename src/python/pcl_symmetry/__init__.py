@@ -13,7 +13,19 @@ from typing import TYPE_CHECKING, Any, List
 
 from ._pcl_symmetry import Merging as Merging
 from ._pcl_symmetry import __version__ as __version__
-from .functions import complete, describe, frame, planes, rotations, sample_mesh, segment, symmetrize, transform, viewpoints
+from .functions import (
+    complete,
+    describe,
+    frame,
+    local_symmetry,
+    planes,
+    rotations,
+    sample_mesh,
+    segment,
+    symmetrize,
+    transform,
+    viewpoints,
+)
 from .results import (
     Axis,
     BuildReport,
@@ -61,6 +73,7 @@ __all__ = [
     "complete",
     "describe",
     "frame",
+    "local_symmetry",
     "planes",
     "rotations",
     "sample_mesh",

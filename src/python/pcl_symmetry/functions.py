@@ -128,9 +128,33 @@ def _core_plane(plane: ReflectionPlane) -> Any:
     return core.ReflectionPlane(plane.normal, plane.offset)
 
 
+def _planes_of(found: Any, num_rows: int) -> Planes:
+    import numpy as np
+
+    scores = ("confidence", "score", "support")
+    return Planes(
+        planes=[_plane(p) for p in found.planes],
+        axes=[Axis(**_fields(a, "point", "direction", *scores)) for a in found.axes],
+        centers=[Center(**_fields(c, "point", *scores)) for c in found.centers],
+        turns=[_turn(t) for t in found.turns],
+        best=None if found.best is None else _plane(found.best),
+        evidence=found.evidence,
+        turn_evidence=found.turn_evidence,
+        _support=found.support,
+        _rows=np.asarray(found.rows, dtype=np.int64),
+        _num_rows=num_rows,
+        **_fields(found, "flat", "tolerance", "reason", "viewpoint"),
+    )
+
+
 def planes(
-    points: Any,
+    points: Any = None,
     *,
+    volume: Optional["ArrayLike"] = None,
+    spacing: "ArrayLike" = (1.0, 1.0, 1.0),
+    origin: "ArrayLike" = (0.0, 0.0, 0.0),
+    direction: Optional["ArrayLike"] = None,
+    levels: Optional[Tuple[float, float]] = None,
     viewpoint: Viewpoint = "auto",
     tolerance: float = 0.01,
     absolute_tolerance: float = 0.0,
@@ -139,10 +163,12 @@ def planes(
     normals: Optional["ArrayLike"] = None,
     max_points: int = 50_000,
     evidence: bool = False,
+    as_published: bool = False,
+    method: str = "convolution",
     seed: int = 1,
     threads: int = 0,
 ) -> Planes:
-    """Planes of symmetry of a cloud (Sections 4.1 to 4.4).
+    """Planes of symmetry of a cloud or of a volume (Sections 4.1 to 4.4).
 
     points: (N, 3), input units, or a cloud or mesh of Open3D or trimesh; float32 rows are not copied. Rows that are not
         finite are left out. The planes of a mesh are exact: the last step refines on the mesh itself.
@@ -153,11 +179,25 @@ def planes(
     normals: (N, 3), of any length and sign; None: estimated.
     max_points: larger clouds are thinned to so many. threads: 0 = one per core.
     evidence: also what the decisions are taken from; takes about as long again.
+    as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision; method: of the map,
+        sampled, convolution or voting.
+    volume: (I, J, K) in place of points, such as a CT or MR image, first index along the first axis (as nibabel has it;
+        arrays of SimpleITK are transposed). spacing, origin, direction: of its voxels, input units and frame; direction
+        is (3, 3) with the axes of the grid in columns. levels: (low, high) intensities that count; None: chosen.
+        confidence is then 0 for a plane like any other and 1 where both halves are equal, and support a correlation.
     Raises ValueError for bad parameters.
     """
     import numpy as np
 
+    if (points is None) == (volume is None):
+        raise TypeError("planes() takes points or volume")
+    if volume is not None:
+        return _volume_planes(volume, spacing, origin, direction, levels, approximate, max_planes, seed, threads)
     array, shift, mesh = _prepare_with_mesh("points", points)
+    if as_published:
+        found = core.published_planes(array, method=method, num_points=10_000, seed=seed, threads=threads)
+        result = _planes_of(found, len(array))
+        return result if shift is None else result._moved(shift)
     found = core.planes(
         array,
         viewpoint=_seen_from(viewpoint, shift),
@@ -172,21 +212,49 @@ def planes(
         threads=threads,
         mesh=mesh,
     )
-    scores = ("confidence", "score", "support")
-    result = Planes(
-        planes=[_plane(p) for p in found.planes],
-        axes=[Axis(**_fields(a, "point", "direction", *scores)) for a in found.axes],
-        centers=[Center(**_fields(c, "point", *scores)) for c in found.centers],
-        turns=[_turn(t) for t in found.turns],
-        best=None if found.best is None else _plane(found.best),
-        evidence=found.evidence,
-        turn_evidence=found.turn_evidence,
-        _support=found.support,
-        _rows=np.asarray(found.rows, dtype=np.int64),
-        _num_rows=len(array),
-        **_fields(found, "flat", "tolerance", "reason", "viewpoint"),
-    )
+    result = _planes_of(found, len(array))
     return result if shift is None else result._moved(shift)
+
+
+def _volume_planes(
+    volume: Any,
+    spacing: Any,
+    origin: Any,
+    direction: Any,
+    levels: Optional[Tuple[float, float]],
+    approximate: bool,
+    max_planes: int,
+    seed: int,
+    threads: int,
+) -> Planes:
+    import numpy as np
+
+    array = np.asarray(volume)
+    if array.ndim != 3 or array.dtype.kind not in "fiub":
+        raise ValueError(f"volume = array of shape {array.shape} and type {array.dtype}, must be (I, J, K), numbers")
+    found = core.volume_planes(
+        array,
+        spacing=spacing,
+        origin=origin,
+        direction=np.eye(3) if direction is None else direction,
+        levels=(0.0, 0.0) if levels is None else levels,
+        approximate=approximate,
+        max_planes=max_planes,
+        seed=seed,
+        threads=threads,
+    )
+    return _planes_of(found, 0)
+
+
+def local_symmetry(points: Any, scale: float, *, seed: int = 1, threads: int = 0) -> "NDArray[np.float32]":
+    """(N,) for each point the greatest D of a plane through it, of the surface within scale (Section 6).
+
+    scale: radius of the window around each point as a share of the radius of the shape, in (0, 1].
+    """
+    import numpy as np
+
+    array, _ = prepare("points", points)
+    return np.asarray(core.local_symmetry(array, scale, seed=seed, threads=threads), dtype=np.float32)
 
 
 def complete(
@@ -253,14 +321,15 @@ def frame(
     *,
     viewpoint: Viewpoint = "auto",
     max_points: int = 50_000,
+    as_published: bool = False,
     seed: int = 1,
     threads: int = 0,
 ) -> Frame:
-    """Canonical frame of a cloud (Section 5.1). Parameters as in planes()."""
+    """Canonical frame of a cloud (Section 5.1). Parameters as in planes(); as_published: the paper's own method."""
     array, shift, mesh = _prepare_with_mesh("points", points)
-    found = core.frame(
-        array, viewpoint=_seen_from(viewpoint, shift), max_points=max_points, seed=seed, threads=threads, mesh=mesh
-    )
+    seen_from = _seen_from(viewpoint, shift)
+    options = dict(max_points=max_points, as_published=as_published, seed=seed, threads=threads)
+    found = core.frame(array, viewpoint=seen_from, mesh=None if as_published else mesh, **options)
     result = Frame(
         probable=[ProbableFrame(**_fields(f, "center", "axes", "probability", "revolution_axis")) for f in found.probable],
         turns=[_turn(t) for t in found.turns],

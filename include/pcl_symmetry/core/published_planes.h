@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/plane_detection.h"
+
+namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+/// Options of publishedPlanes(); the defaults are the paper's.
+struct PublishedOptions {
+  LocalMaximaOptions maxima;     ///< thresholds of radius and Laplacian
+  int num_points = 10'000;       ///< reflected in each iteration, >= 10; drawn anew for each maximum
+  int max_iterations = 100;      ///< >= 1
+  bool discard_unstable = true;  ///< drops maxima that leave their cell; false keeps them where they end
+  std::uint64_t seed = 1;        ///< of the points drawn
+  int num_threads = 0;           ///< >= 0; 0 = one per core
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// The refinement of Section 4.4 to the letter, where detectPlanes() departs from it: each local maximum of the map is
+/// refined by Iterative Symmetric Points with the closed form for pairs of points, weights of constant width sigma and
+/// closest points by FLANN; one whose plane leaves its cell is discarded. Nothing is added, merged or decided: kind is
+/// PlaneKind::Approximate and confidence 0.
+/// \param points 3 x N, finite, input units.
+/// \param edt,map of these points, by any estimator; the paper's has 64 x 64 x 64 bins.
+/// \return by falling score D; `support` is the mean weight of the pairs, `residual` as that of SymmetryPlane.
+/// \throws std::invalid_argument for bad options.
+std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
+                                           const PublishedOptions& options = {});
+
+/// The map that the paper's applications begin with: 64 x 64 x 64 bins about the center of mass's ball of the EDT.
+/// \param method exact (Section 4.2), sampled, or voting with all pairs alike (Section 4.3).
+SymmetryMap publishedMap(const PointsRef& points, const GaussianEdt& edt,
+                         TransformMethod method = TransformMethod::Convolution, std::uint64_t seed = 1,
+                         int num_threads = 0);
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,86 @@
+#include "pcl_symmetry/core/published_planes.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/base/check.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+#include "core/transform/edt_correlation.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// Indices of points, drawn without repetition.
+std::vector<int> drawnPoints(Eigen::Index size, int count, std::uint64_t seed, std::uint64_t stream) {
+  std::vector<int> indices(size);
+  std::iota(indices.begin(), indices.end(), 0);
+  RandomStream random(seed, stream);
+  const std::size_t kept = std::min<std::size_t>(count, indices.size());
+  for (std::size_t i = 0; i < kept; ++i) std::swap(indices[i], indices[i + random.below(indices.size() - i)]);
+  indices.resize(kept);
+  return indices;
+}
+
+double scoreOf(const ReflectionPlane& plane, const GaussianEdt& edt) {
+  const ReflectionPlane cells(plane.normal(), plane.signedDistance(edt.origin()) / -edt.cellSize());
+  const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * plane.normal().x() * plane.normal();
+  return correlation(
+      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step, 1);
+}
+
+}  // namespace
+
+void PublishedOptions::validate() const {
+  maxima.validate();
+  check(num_points >= 10, "num_points", num_points, ">= 10");
+  check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
+  checkNumThreads(num_threads);
+}
+
+std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
+                                           const PublishedOptions& options) {
+  options.validate();
+  const ClosestPointSearch::Ptr search = makeFlannSearch(points);
+  const Points surface_points = points, no_normals(3, 0);
+  const IspSurface surface{surface_points, no_normals, *search};
+  IspOptions isp;
+  isp.update = IspUpdate::PointToPoint;
+  isp.sigma = isp.final_sigma = edt.sigma();
+  isp.max_iterations = options.max_iterations;
+  const std::vector<LocalMaximum> maxima = findLocalMaxima(map, options.maxima);
+  std::vector<SymmetryPlane> refined(maxima.size());
+  std::vector<char> is_stable(maxima.size());
+  parallelBlocks(maxima.size(), options.num_threads, [&](std::size_t i) {
+    const std::vector<int> samples = drawnPoints(points.cols(), options.num_points, options.seed, i);
+    const IspResult end = refineSymmetricPoints(surface, samples, maxima[i].plane, isp);
+    const auto cell = map.grid.find(end.plane);
+    is_stable[i] = cell && map.grid.index(*cell) == map.grid.index(maxima[i].bin);
+    refined[i] = SymmetryPlane(end.plane);
+    refined[i].iterations = end.iterations;
+    refined[i].converged = end.converged;
+    refined[i].residual = end.last.residual;
+    refined[i].support = end.last.weight;
+    refined[i].score = scoreOf(end.plane, edt);
+  });
+  std::vector<SymmetryPlane> planes;
+  for (std::size_t i = 0; i < refined.size(); ++i)
+    if (is_stable[i] || !options.discard_unstable) planes.push_back(refined[i]);
+  std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  return planes;
+}
+
+SymmetryMap publishedMap(const PointsRef& points, const GaussianEdt& edt, TransformMethod method, std::uint64_t seed,
+                         int num_threads) {
+  constexpr int kNumBins = 64;
+  PlanarTransformOptions options;
+  options.method = method;
+  options.voting.near_distance = 0.0;
+  options.sampled.seed = options.voting.seed = seed;
+  options.sampled.num_threads = options.convolution.num_threads = options.voting.num_threads = num_threads;
+  const PlaneGrid grid(kNumBins, kNumBins, kNumBins, edt.center(), edt.radius());
+  return planarTransform(edt, grid, centerOfMass(points), options);
+}
+
+}  // namespace pcl_symmetry
