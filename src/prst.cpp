@@ -3,6 +3,7 @@
 #include <pcl/point_types.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/matching/shape_signature.h"
@@ -21,10 +22,11 @@ void detail::PRSTParameters::validate() const {
   checkNumThreads(num_threads);
 }
 
-std::vector<float> detail::describePRST(const Points& points, const PRSTParameters& parameters,
-                                        const Visibility* seen) {
+std::vector<float> detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters,
+                                              const Visibility* seen, SymmetryDescriptorKind kind) {
   DescriptorOptions options;
   options.radius = parameters.radius;
+  options.by_equation_1 = parameters.by_equation_1;
   options.seed = parameters.seed;
   options.num_threads = parameters.num_threads;
   Eigen::Isometry3d T_frame_input = Eigen::Isometry3d::Identity();
@@ -38,7 +40,10 @@ std::vector<float> detail::describePRST(const Points& points, const PRSTParamete
     frame.num_threads = parameters.num_threads;
     T_frame_input = symmetryFrame(points, frame, seen).T_canonical_input;
   }
-  return symmetryDescriptors(points, T_frame_input, options).prst;
+  SymmetryDescriptors all = symmetryDescriptors(points, T_frame_input, options);
+  return std::move(kind == SymmetryDescriptorKind::PRST   ? all.prst
+                   : kind == SymmetryDescriptorKind::PRSD ? all.prsd
+                                                          : all.gedt);
 }
 
 float descriptorDistance(const PRSTSignature32768& a, const PRSTSignature32768& b) {

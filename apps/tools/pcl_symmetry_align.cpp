@@ -46,7 +46,7 @@ struct AlignOptions {
   std::string input;
   std::optional<std::string> output, target, html_path, png_path, landmarks;
   std::string symmetrise = "none";
-  bool complete = false;
+  bool complete = false, as_published = false;
   CommonOptions common;
 };
 
@@ -73,6 +73,7 @@ CommandLine commandLine(AlignOptions& options) {
             "with -symmetrise: lines of six numbers, a landmark and its counterpart, or of three, one of the midline; "
             "their "
             "asymmetry is reported")
+      .flag("as_published", options.as_published, "the frame by the paper's own method, to the letter of Section 5.1")
       .flag("complete", options.complete,
             "reflect the cloud across its best plane of symmetry, except into space that was seen to be empty; the "
             "field reflected_of of an added point is the index of its source, and -1 for all others")
@@ -82,9 +83,11 @@ CommandLine commandLine(AlignOptions& options) {
 }
 
 /// In the frame of the shifted points.
-SymmetryFrame computeFrame(const Console& console, const InputShape& input, const CommonOptions& common) {
+SymmetryFrame computeFrame(const Console& console, const InputShape& input, const CommonOptions& common,
+                           bool as_published) {
   Step step(console, "Searching the frame");
   FrameOptions options;
+  options.as_published = as_published;
   common.applyTo(options);
   SymmetryAlignment<pcl::PointXYZ> alignment;
   return namingFile(input.path, [&] {
@@ -418,7 +421,7 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
 
 Motion toOwnFrame(const Console& console, const InputShape& input, const AlignOptions& options,
                   const CommonOptions& common) {
-  const SymmetryFrame frame = computeFrame(console, input, common);
+  const SymmetryFrame frame = computeFrame(console, input, common, options.as_published);
   Motion motion{shiftedBack(frame.T_canonical_input, input.shift(), Eigen::Vector3d::Zero()),
                 true,
                 linesOf(frame, input.shift()),

@@ -32,6 +32,7 @@ struct SegmentOptions {
   std::string input;
   std::optional<std::string> output, png_path, html_path;
   std::optional<Eigen::Vector3d> up;
+  bool as_published = false;
   std::string method = "merging", evidence = "all";
   int depth = SplittingOptions().depth, num_parts = 0, size = 800;
   double concavity = 0.0;
@@ -56,6 +57,7 @@ CommandLine commandLine(SegmentOptions& o) {
       .choice("evidence", o.evidence, {"all", "concavity"},
               "for merging: symmetry and concavity, for scans from one side, or thickness and line of sight too")
       .number("parts", o.num_parts, Range::closed(0, 10'000), "number of parts; 0: as many as the shape has")
+      .flag("as_published", o.as_published, "for splitting: to the letter of Sections 4.4 and 5.3")
       .number("depth", o.depth, Range::closed(0, 30),
               "for splitting: largest number of splits from the whole to a part")
       .number("concavity", o.concavity, Range::closed(0, 100),
@@ -71,6 +73,7 @@ SegmentationOptions segmentationOptions(const SegmentOptions& o, int num_threads
   options.merging.evidence = o.evidence == "all" ? MergingEvidence::All : MergingEvidence::SymmetryAndConcavity;
   options.splitting.depth = o.depth;
   options.splitting.concavity_weight = o.concavity;
+  options.splitting.as_published = o.as_published;
   options.num_parts = o.num_parts;
   options.seed = o.common.librarySeed();
   options.num_threads = num_threads;

@@ -34,6 +34,7 @@ struct ViewpointToolOptions {
   std::optional<Eigen::Vector3d> up;
   int num_views = 4, size = 400;
   double separation = 40.0;  // degrees
+  bool as_published = false;
   CommonOptions common;
 };
 
@@ -47,6 +48,8 @@ CommandLine commandLine(ViewpointToolOptions& options) {
       .direction("up", options.up, "direction that is about up, input frame (0,0,1)")
       .number("views", options.num_views, Range::closed(1, 100), "largest number of good views")
       .number("separation", options.separation, Range::closed(0, 180), "least angle between good views, degrees")
+      .flag("as_published", options.as_published,
+            "the paper's sum: over all maxima of the exact map as Section 4.4 refines them")
       .number("size", options.size, Range::closed(16, 4096), "edge of each view, pixels")
       .common(options.common, kShapeFlags);
   options.batch.addTo(line);
@@ -133,14 +136,18 @@ double choose(ViewpointSelection& selection, const InputShape& input, const View
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   const std::vector<SymmetryPlane> planes = namingFile(input.path, [&] {
     refinement.setOptions(detection);
+    refinement.setAsPublished(options.as_published);
     refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
     refinement.setInputCloud(input.points);
     std::vector<SymmetryPlane> found = refinement.compute();
     if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
     return found;
   });
-  selection.setPlanes(planes, refinement.getAxes(),
-                      findLocalMaxima(refinement.getSymmetryMap(), detection.expert.maxima));
+  if (options.as_published)
+    selection.setPlanes(planes);
+  else
+    selection.setPlanes(planes, refinement.getAxes(),
+                        findLocalMaxima(refinement.getSymmetryMap(), detection.expert.maxima));
   selection.setInputCloud(input.points);
   if (options.up) selection.setUp(*options.up);
   selection.setSeparation(options.separation * kPi / 180.0);

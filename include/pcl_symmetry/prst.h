@@ -23,9 +23,19 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
+/// Which of the paper's descriptors an output holds.
+enum class SymmetryDescriptorKind { PRST, PRSD, GEDT };
+inline SymmetryDescriptorKind kindOf(const PRSTSignature32768&) { return SymmetryDescriptorKind::PRST; }
+inline SymmetryDescriptorKind kindOf(const PRSDSignature1024&) { return SymmetryDescriptorKind::PRSD; }
+inline SymmetryDescriptorKind kindOf(const GEDTSignature32768&) { return SymmetryDescriptorKind::GEDT; }
+inline float* valuesOf(PRSTSignature32768& signature) { return signature.prst; }
+inline float* valuesOf(PRSDSignature1024& signature) { return signature.prsd; }
+inline float* valuesOf(GEDTSignature32768& signature) { return signature.gedt; }
+
 /// Parameters of PRSTEstimation.
 struct PRSTParameters {
   bool use_input_axes = false;
+  bool by_equation_1 = false;
   double radius = 2.0;  ///< in mean distances of the points from the center, > 0
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
@@ -36,13 +46,15 @@ struct PRSTParameters {
 
 /// \param points 3 x N, finite, input units.
 /// \param seen what a scanner saw; null = the points show the object from all sides.
-/// \return PRSTSignature32768::descriptorSize() values.
+/// \return the values of a descriptor.
 /// \throws std::invalid_argument for points without extent.
-std::vector<float> describePRST(const Points& points, const PRSTParameters& parameters, const Visibility* seen);
+std::vector<float> describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
+                                      SymmetryDescriptorKind kind);
 
 }  // namespace detail
 
-/// The planar-reflective symmetry transform as a global descriptor: one for the whole cloud (Section 5.2).
+/// The planar-reflective symmetry transform as a global descriptor: one for the whole cloud (Section 5.2). The output
+/// type chooses what it is compared with in the paper, PRSD and GEDT: see PRSDEstimation and GEDTEstimation.
 ///
 /// Honors setIndices; points that are not finite are left out. The descriptor has no neighborhoods: setRadiusSearch,
 /// setKSearch, setSearchMethod and setSearchSurface of the base class are ignored. Clouds that hold no answer (no
@@ -66,6 +78,9 @@ public:
   /// \param use_input_axes true: about the center of mass in the axes of the cloud, as the paper does with models that
   /// were aligned by hand. false (default): in the canonical frame of the cloud, see SymmetryAlignment.
   void setUseInputAxes(bool use_input_axes) { parameters_.use_input_axes = use_input_axes; }
+  /// \param by_equation_1 values of PRST and PRSD are sqrt((1 + D) / 2) as in equation 1; false (default):
+  /// sqrt(max(D, 0)), which is 0 for planes without any symmetry.
+  void setByEquation1(bool by_equation_1) { parameters_.by_equation_1 = by_equation_1; }
   bool getUseInputAxes() const { return parameters_.use_input_axes; }  ///< see setUseInputAxes()
 
   /// Sets the size of the ball that is described. It is relative to the cloud, unlike that of setRadiusSearch(), which
@@ -126,8 +141,9 @@ protected:
   void computeFeature(PointCloudOut& output) override {
     output.width = output.height = 1;
     try {
-      const std::vector<float> prst = detail::describePRST(points_, parameters_, seen_ ? &*seen_ : nullptr);
-      std::copy(prst.begin(), prst.end(), output[0].prst);
+      const std::vector<float> values = detail::describeBySymmetry(points_, parameters_, seen_ ? &*seen_ : nullptr,
+                                                                   detail::kindOf(output[0]));
+      std::copy(values.begin(), values.end(), detail::valuesOf(output[0]));
     } catch (const std::invalid_argument& reason) {
       warnOfNoAnswer(std::string("input cloud: ") + reason.what());
       output.clear();
@@ -158,6 +174,13 @@ private:
   Points points_;
   std::optional<Visibility> seen_;
 };
+
+/// The reflective symmetry descriptor of Kazhdan et al. (2004), which the paper compares with (Figure 13).
+template <typename PointInT>
+using PRSDEstimation = PRSTEstimation<PointInT, PRSDSignature1024>;
+/// The Gaussian Euclidean distance transform as a descriptor (Figures 13 and 14).
+template <typename PointInT>
+using GEDTEstimation = PRSTEstimation<PointInT, GEDTSignature32768>;
 
 /// The product of the L2 distances of PRST and GEDT, which the paper proposes for retrieval (Section 5.2).
 /// \return >= 0.

@@ -14,6 +14,7 @@
 
 #include "core/geometry/mesh_sampling.h"
 #include "core/matching/shape_signature.h"
+#include "core/matching/symmetry_descriptor.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/local_symmetry.h"
 #include "pcl_symmetry/core/mesh_refinement.h"
@@ -151,9 +152,9 @@ ScalarGrid gridOf(const py::array_t<float, py::array::f_style | py::array::force
 }
 
 PlaneSearch volumePlanes(const py::array_t<float, py::array::f_style | py::array::forcecast>& volume,
-                       const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin, const Eigen::Matrix3d& direction,
-                       const std::pair<double, double>& levels, bool approximate, int max_planes, std::uint64_t seed,
-                       int threads) {
+                         const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin,
+                         const Eigen::Matrix3d& direction, const std::pair<double, double>& levels, bool approximate,
+                         int max_planes, std::uint64_t seed, int threads) {
   const ScalarGrid grid = gridOf(volume, spacing, origin, direction);
   const py::gil_scoped_release release;
   DetectionOptions options;
@@ -166,8 +167,28 @@ PlaneSearch volumePlanes(const py::array_t<float, py::array::f_style | py::array
   return search;
 }
 
-PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method, int num_points,
-                                             std::uint64_t seed, int threads) {
+/// \return PRST, PRSD and GEDT.
+std::vector<std::vector<float>> descriptors(const AnyArray& points, bool input_axes, bool by_equation_1,
+                                            std::uint64_t seed, int threads) {
+  const InputPoints input("points", points, 20'000, seed);
+  const py::gil_scoped_release release;
+  DescriptorOptions options;
+  options.by_equation_1 = by_equation_1;
+  options.seed = seed;
+  options.num_threads = threads;
+  Eigen::Isometry3d T_frame_input(Eigen::Translation3d(-centerOfMass(input.points())));
+  if (!input_axes) {
+    FrameOptions frame_options;
+    frame_options.seed = seed;
+    frame_options.num_threads = frame_options.edt.num_threads = threads;
+    T_frame_input = symmetryFrame(input.points(), frame_options).T_canonical_input;
+  }
+  SymmetryDescriptors all = symmetryDescriptors(input.points(), T_frame_input, options);
+  return {std::move(all.prst), std::move(all.prsd), std::move(all.gedt)};
+}
+
+PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method, int num_points, std::uint64_t seed,
+                              int threads) {
   const InputPoints input("points", points, 0, seed);
   const TransformMethod estimator = methodNamed(method);
   const py::gil_scoped_release release;
@@ -401,6 +422,8 @@ void addPlaneFunctions(py::module_& module) {
       "evidence: also what the decisions are taken from, `evidence` and `turn_evidence` of the result; takes about as\n"
       "long again.\n"
       "Returns Planes. Raises ValueError for bad parameters.");
+  module.def("descriptors", &descriptors, py::arg("points"), py::kw_only(), py::arg("input_axes"),
+             py::arg("by_equation_1"), py::arg("seed"), py::arg("threads"));
   module.def("volume_planes", &volumePlanes, py::arg("volume"), py::kw_only(), py::arg("spacing"), py::arg("origin"),
              py::arg("direction"), py::arg("levels"), py::arg("approximate"), py::arg("max_planes"), py::arg("seed"),
              py::arg("threads"));

@@ -57,6 +57,36 @@ class Planes(unittest.TestCase):
         self.assertAlmostEqual(found.tolerance, 0.01 * np.linalg.norm([1, 0.7, 0.4]), delta=2e-4)
         self.assertEqual(found.point_support(0).shape, (6000,))
 
+    def test_a_volume_has_that_of_its_halves_in_its_own_frame(self):
+        x, y, z = np.meshgrid(np.arange(44), np.arange(48), np.arange(40), indexing="ij")
+        side = abs(x - 20.5)
+        body = 1 / (1 + np.exp(12 * (np.sqrt((side / 15) ** 2 + ((y - 23) / 19) ** 2 + ((z - 19) / 16) ** 2) - 1)))
+        body += 0.6 / (1 + np.exp(np.sqrt((side - 7) ** 2 + (y - 31) ** 2 + (z - 24) ** 2) - 4))
+        direction = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+        found = pcl_symmetry.planes(volume=body, spacing=(2, 2, 3), origin=(5, 7, -9), direction=direction)
+        self.assertEqual(found.reason, "")
+        np.testing.assert_allclose(found[0].normal, [0, 1, 0], atol=1e-3)
+        self.assertAlmostEqual(found[0].offset, 48, delta=0.05)
+        self.assertGreater(found[0].confidence, 0.9)
+        self.assertEqual(pcl_symmetry.planes(volume=np.zeros((8, 8, 8))).reason, "volume: all values are equal")
+        with self.assertRaisesRegex(ValueError, "spacing = .* must be finite and > 0"):
+            pcl_symmetry.planes(volume=body, spacing=(1, 0, 1))
+        with self.assertRaisesRegex(TypeError, "points or volume"):
+            pcl_symmetry.planes()
+
+    def test_as_published_are_neither_added_nor_judged(self):
+        found = pcl_symmetry.planes(box(), as_published=True)
+        self.assertTrue(len(found))
+        self.assertEqual({plane.kind for plane in found}, {"approximate"})
+        frame = pcl_symmetry.frame(box(), as_published=True)
+        np.testing.assert_allclose(np.abs(frame.axes).max(axis=0), 1, atol=1e-3)
+
+    def test_local_symmetry_of_a_large_window_is_that_of_the_whole(self):
+        points = box()
+        local = pcl_symmetry.local_symmetry(points, 1.0)
+        middle = np.abs(points).min(axis=1) < 0.02 * np.abs(points).max()
+        self.assertGreater(local[middle].mean(), local[~middle].mean())
+
     def test_all_kinds_of_rows_give_the_same(self):
         points = box()
         padded = np.zeros((len(points), 5), dtype=np.float32)
@@ -240,6 +270,12 @@ class OtherFunctions(unittest.TestCase):
         self.assertTrue((merging.merges([1] + [0] * 13)["log_odds"] == 1).all())
         with self.assertRaisesRegex(ValueError, "weights = 2 numbers, must be 14"):
             merging.merges([1, 2])
+
+    def test_descriptors_of_the_paper_have_its_sizes(self):
+        prst, prsd, gedt = pcl_symmetry.descriptors(box(), input_axes=True)
+        self.assertEqual((prst.shape, prsd.shape, gedt.shape), ((32, 32, 32), (32, 32), (32, 32, 32)))
+        by_equation_1 = pcl_symmetry.descriptors(box(), input_axes=True, by_equation_1=True)[0]
+        np.testing.assert_allclose(by_equation_1, np.sqrt((1 + prst**2) / 2), atol=1e-5)
 
     def test_description_does_not_depend_on_the_pose(self):
         points = box()

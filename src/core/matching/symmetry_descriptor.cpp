@@ -11,7 +11,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// sqrt(max(D, 0)) of the planes within distance 1 of the origin.
+/// sqrt(max(D, 0)), or equation 1, of the planes within distance 1 of the origin.
 /// \param num_radius bins of r.
 std::vector<float> prstOf(const GaussianEdt& edt, int num_radius, const DescriptorOptions& options) {
   const PlaneGrid grid(kDescriptorBins, kDescriptorBins, num_radius, Eigen::Vector3d::Zero(), 1.0);
@@ -20,7 +20,8 @@ std::vector<float> prstOf(const GaussianEdt& edt, int num_radius, const Descript
   sampling.seed = options.seed;
   sampling.num_threads = options.num_threads;
   std::vector<float> values = sampledTransform(edt, grid, sampling).values;
-  for (float& value : values) value = std::sqrt(std::max(0.0f, value));
+  for (float& value : values)
+    value = std::sqrt(options.by_equation_1 ? 0.5f * (1.0f + std::max(0.0f, value)) : std::max(0.0f, value));
   return values;
 }
 

@@ -19,6 +19,8 @@ constexpr int kGEDTSize = kPRSTSize;                                            
 struct DescriptorOptions {
   double radius = 2.0;    ///< of the ball that is described, in mean distances of the points from the origin, > 0
   int num_samples = 256;  ///< of the transform, >= 1
+  /// PRST and PRSD by equation 1, sqrt((1 + D) / 2), in place of sqrt(max(D, 0)).
+  bool by_equation_1 = false;
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -32,7 +34,7 @@ struct SymmetryDescriptors {
   ///
   /// Departure from equation 1, PRST = sqrt((1 + D) / 2): the values are sqrt(max(D, 0)). f is nowhere negative, so
   /// that equation 1 maps all planes to [0.71, 1]; the root of D uses [0, 1] and is 0 for planes without any symmetry.
-  /// Both rise with D.
+  /// Both rise with D; DescriptorOptions::by_equation_1 chooses.
   std::vector<float> prst;
   /// PRSD, the reflective symmetry descriptor of Kazhdan et al. (2004): the same values for the planes through the
   /// origin, (theta, phi), phi fastest.

@@ -11,19 +11,21 @@
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/planar_transform.h"
+#include "pcl_symmetry/core/published_planes.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
 /// Points spread over elements by area.
-Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& elements, std::uint64_t seed) {
+Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& elements, int num_samples,
+                      std::uint64_t seed) {
   std::vector<char> inside(static_cast<std::size_t>(graph.size()), 0);
   for (const int element : elements) inside[element] = 1;
   std::vector<Eigen::Vector3i> triangles;
   for (std::size_t t = 0; t < graph.triangles.size(); ++t)
     if (inside[graph.element_of_triangle[t]]) triangles.push_back(graph.triangles[t]);
-  return sampleTriangles(graph.corners, triangles, kSegmentation.feature_samples, seed);
+  return sampleTriangles(graph.corners, triangles, num_samples, seed);
 }
 
 bool isNear(const ReflectionPlane& a, const ReflectionPlane& b, const Eigen::Vector3d& center, double most_offset) {
@@ -59,22 +61,15 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
   std::vector<ReflectionPlane> maxima;
   for (const LocalMaximum& maximum : findLocalMaxima(map, significant)) {
     if (static_cast<int>(maxima.size()) == options.max_planes) break;
-    if (options.as_published || isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
+    if (isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
   }
   return maxima;
 }
 
-/// Whether a refined plane lies in the cell of the grid that it started from.
-bool staysInCell(const ReflectionPlane& plane, const ReflectionPlane& start, const PlaneGrid& grid) {
-  const auto cell = grid.find(plane), first = grid.find(start);
-  return cell && first && grid.index(*cell) == grid.index(*first);
-}
-
 /// Refines planes by Iterative Symmetric Points (Section 4.4). A plane that leaves its basin keeps its start, a
-/// departure from the paper; as published, one that leaves its cell is dropped.
+/// departure from the paper.
 std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
-                                     const GaussianEdt& edt, bool as_published, int num_threads,
-                                     const MakeSearch& make_search) {
+                                     const GaussianEdt& edt, int num_threads, const MakeSearch& make_search) {
   const ClosestPointSearch::Ptr search = make_search ? make_search(samples) : makeFlannSearch(samples);
   const LocalGeometry geometry = localGeometry(samples, *search, kSegmentation.normal_neighbors, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
@@ -90,12 +85,6 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
     moved[i] = isNear(ends[i], starts[i], edt.center(), kSegmentation.most_moved * edt.radius()) ? ends[i] : starts[i];
   });
   std::vector<ReflectionPlane> planes;
-  if (as_published) {
-    const PlaneGrid grid = gridOf(edt);
-    for (std::size_t i = 0; i < starts.size(); ++i)
-      if (staysInCell(ends[i], starts[i], grid)) planes.push_back(ends[i].canonical());
-    return planes;
-  }
   for (const ReflectionPlane& plane : moved)
     if (isNew(plane, planes, edt)) planes.push_back(plane.canonical());
   return planes;
@@ -106,15 +95,25 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
 SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
                                   const SplittingOptions& options, std::uint64_t seed, int num_threads,
                                   const MakeSearch& make_search) {
-  const Points samples = sampleElements(graph, elements, seed);
+  const Points samples =
+      sampleElements(graph, elements, options.as_published ? kSegmentation.published_samples : kSegmentation.feature_samples, seed);
   GaussianEdtOptions edt_options;
   edt_options.num_threads = num_threads;
   const GaussianEdt edt(samples, edt_options);
   SymmetryFeatures features;
   features.radius = boundingBall(samples).radius;
-  const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, options, seed, num_threads);
-  for (const ReflectionPlane& plane : refined(maxima, samples, edt, options.as_published, num_threads, make_search))
-    features.planes.push_back({plane, 0.0});
+  if (options.as_published) {
+    const SymmetryMap map = publishedMap(samples, edt, TransformMethod::Convolution, seed, num_threads);
+    PublishedOptions published;
+    published.seed = seed;
+    published.num_threads = num_threads;
+    for (const SymmetryPlane& plane : publishedPlanes(samples, edt, map, published))
+      features.planes.push_back({plane, 0.0});
+  } else {
+    const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, options, seed, num_threads);
+    for (const ReflectionPlane& plane : refined(maxima, samples, edt, num_threads, make_search))
+      features.planes.push_back({plane, 0.0});
+  }
   features.support.resize(static_cast<Eigen::Index>(features.planes.size()),
                           static_cast<Eigen::Index>(elements.size()));
   double area = 0.0;

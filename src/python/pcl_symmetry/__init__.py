@@ -16,6 +16,7 @@ from ._pcl_symmetry import __version__ as __version__
 from .functions import (
     complete,
     describe,
+    descriptors,
     frame,
     local_symmetry,
     planes,
@@ -72,6 +73,7 @@ __all__ = [
     "View",
     "complete",
     "describe",
+    "descriptors",
     "frame",
     "local_symmetry",
     "planes",

@@ -394,6 +394,23 @@ def describe(points: Any, *, viewpoint: Viewpoint = "auto", seed: int = 1, threa
     return result
 
 
+def descriptors(
+    points: Any, *, input_axes: bool = False, by_equation_1: bool = False, seed: int = 1, threads: int = 0
+) -> Tuple["NDArray[np.float32]", "NDArray[np.float32]", "NDArray[np.float32]"]:
+    """The descriptors that the paper compares (Section 5.2): PRST and GEDT, (32, 32, 32), and PRSD, (32, 32).
+
+    input_axes: about the center of mass in the axes of the input, as for models aligned by hand; False: in frame().
+    by_equation_1: sqrt((1 + D) / 2) in place of sqrt(max(D, 0)). Compare PRST and PRSD by the L2 distance of values times
+    sqrt(sin(theta)), theta along the first axis; the paper's best distance is that of PRST times that of GEDT.
+    """
+    import numpy as np
+
+    array, _ = prepare("points", points)
+    options = dict(input_axes=input_axes, by_equation_1=by_equation_1, seed=seed, threads=threads)
+    prst, prsd, gedt = (np.asarray(values, dtype=np.float32) for values in core.descriptors(array, **options))
+    return prst.reshape(32, 32, 32), prsd.reshape(32, 32), gedt.reshape(32, 32, 32)
+
+
 def transform(
     points: Any,
     bins: Sequence[int] = (64, 64, 64),

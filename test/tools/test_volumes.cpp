@@ -1,0 +1,141 @@
+/// CT and MR volumes as files: the same plane from every format, and a sentence for bad ones.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/volume_input.h"
+#include "pictures/raster_image.h"
+#include "tools/tool_run.h"
+
+namespace {
+
+using namespace pcl_symmetry::apps;
+
+constexpr int kSize[3] = {44, 48, 40};
+
+/// A body with a pair of spots, symmetric in the plane x = 20.5 of the grid.
+std::vector<float> body() {
+  std::vector<float> values;
+  for (int z = 0; z < kSize[2]; ++z)
+    for (int y = 0; y < kSize[1]; ++y)
+      for (int x = 0; x < kSize[0]; ++x) {
+        const double side = std::abs(x - 20.5), v = y - 23.0, w = z - 19.0;
+        const double hull =
+            std::sqrt(std::pow(side / 15, 2) + std::pow((v + 0.004 * w * w) / 19, 2) + std::pow(w / 16, 2));
+        const double spot = std::hypot(side - 7, std::hypot(v - 8, w - 3));
+        values.push_back(static_cast<float>(100.0 / (1.0 + std::exp((hull - 1) * 12)) +
+                                            60.0 / (1.0 + std::exp(spot - 3)) +
+                                            30.0 / (1.0 + std::exp(std::hypot(v - 15, w + 9) - 4))));
+      }
+  return values;
+}
+
+std::string bytesOf(const std::vector<float>& values) {
+  return std::string(reinterpret_cast<const char*>(values.data()), 4 * values.size());
+}
+
+/// Axes of the grid along y, -x and z of the frame, spacing 2, 2 and 3: the plane is y = 2 * 20.5 + 7.
+std::string metaImage(const std::string& data, const std::string& size = "44 48 40") {
+  return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
+         "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 2 2 3\nDimSize = " +
+         size + "\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n" + data;
+}
+
+std::string nrrd(const std::string& data) {
+  return "NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: 44 48 40\nendian: "
+         "little\nencoding: raw\n"
+         "space directions: (0,2,0) (-2,0,0) (0,0,3)\nspace origin: (5,7,-9)\n\n" +
+         data;
+}
+
+std::string nifti(const std::string& data) {
+  std::string header(352, '\0');
+  const auto put = [&](std::size_t at, auto value) { std::memcpy(&header[at], &value, sizeof value); };
+  put(0, std::int32_t{348});
+  const std::int16_t dims[8] = {3, 44, 48, 40, 1, 1, 1, 1};
+  for (int i = 0; i < 8; ++i) put(40 + 2 * i, dims[i]);
+  put(70, std::int16_t{16});  // float
+  put(72, std::int16_t{32});
+  const float spacing[4] = {1, 2, 2, 3};
+  for (int i = 0; i < 4; ++i) put(76 + 4 * i, spacing[i]);
+  put(108, 352.0f);
+  put(112, 2.0f);  // slope
+  put(116, -50.0f);
+  put(254, std::int16_t{1});  // sform
+  const float rows[12] = {0, -2, 0, 5, 2, 0, 0, 7, 0, 0, 3, -9};
+  for (int i = 0; i < 12; ++i) put(280 + 4 * i, rows[i]);
+  std::memcpy(&header[344], "n+1", 4);
+  return header + data;
+}
+
+class Volumes : public ToolTest {
+protected:
+  Volumes() : ToolTest(toolPath("planes")) {}
+
+  nlohmann::json planesOf(const std::string& path, const std::string& flags = "") {
+    EXPECT_EQ(run(path + " -quiet " + flags + " -json " + (folder_ / "out.json")), 0) << error_;
+    return nlohmann::json::parse(contentOf(folder_ / "out.json"))["planes"];
+  }
+
+  std::string failureOf(const std::string& path) {
+    EXPECT_EQ(run(path + " -quiet"), 1) << path;
+    EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
+    return error_;
+  }
+};
+
+TEST_F(Volumes, OfAllFormatsHaveTheSamePlaneInTheFrameOfTheFile) {
+  const std::string data = bytesOf(body());
+  for (const std::string& path : {folder_.write("a.mha", metaImage(data)), folder_.write("a.nrrd", nrrd(data)),
+                                  folder_.write("a.nii", nifti(data))}) {
+    const nlohmann::json planes = planesOf(path);
+    ASSERT_GE(planes.size(), 1u) << path;
+    const auto c = planes[0]["coefficients"];
+    EXPECT_NEAR(c[1], 1.0, 1e-4) << path;
+    EXPECT_NEAR(c[3], -48.0, 0.05) << path;
+    EXPECT_GT(planes[0]["confidence"], 0.8) << path;
+  }
+}
+
+TEST_F(Volumes, KeepWhatTheirHeadersSay) {
+  const Volume volume = loadVolume(folder_.write("a.nii", nifti(bytesOf(body()))));
+  EXPECT_EQ(volume.grid->size()[1], 48);
+  EXPECT_NEAR(volume.grid->values()[0], 2.0f * body()[0] - 50.0f, 1e-4);
+  EXPECT_LT((volume.grid->T_input_index() * Eigen::Vector3d(1, 2, 3) - Eigen::Vector3d(1, 9, 0)).norm(), 1e-6);
+}
+
+TEST_F(Volumes, AreDrawnAsSlicesAndTheirSurfaceIsAMesh) {
+  const std::string path = folder_.write("a.mha", metaImage(bytesOf(body())));
+  ASSERT_EQ(run(path + " -quiet -png " + (folder_ / "a.png")), 0) << error_;
+  const RasterImage picture = readImage(folder_ / "a.png");
+  EXPECT_GT(picture.width, 3 * 400);
+  EXPECT_GT(picture.height, 2 * 400);
+  const nlohmann::json of_surface = planesOf(path, "-surface 50");
+  ASSERT_GE(of_surface.size(), 1u);
+  EXPECT_NEAR(of_surface[0]["coefficients"][3], -48.0, 0.5);
+  EXPECT_GE(planesOf(path, "-levels 20,120").size(), 1u);
+}
+
+TEST_F(Volumes, ThatAreBadGetASentence) {
+  const std::vector<float> values = body();
+  const std::string data = bytesOf(values);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(failureOf(folder_.write("cut.nii", nifti(data).substr(0, 90'000))).find("cut off"), std::string::npos);
+  EXPECT_NE(failureOf(folder_.write("cut.nrrd", nrrd(data).substr(0, 90'000))).find("cut.nrrd"), std::string::npos);
+  EXPECT_NE(failureOf(folder_.write("cut.mha", metaImage(data).substr(0, 90'000))).find("cut.mha"), std::string::npos);
+  EXPECT_NE(failureOf(folder_.write("text.nii.gz", "no volume")).find("text.nii.gz"), std::string::npos);
+  EXPECT_NE(failureOf(folder_.write("text.vti", "<VTKFile")).find("text.vti"), std::string::npos);
+  EXPECT_NE(failureOf(folder_.write("zero.mha", metaImage(bytesOf(std::vector<float>(values.size()))))).find("equal"),
+            std::string::npos);
+  EXPECT_NE(
+      failureOf(folder_.write("nan.mha", metaImage(bytesOf(std::vector<float>(values.size(), nan))))).find("finite"),
+      std::string::npos);
+  EXPECT_NE(failureOf(folder_.write("one.mha", metaImage(data, "44 1920 1"))).find("slices"), std::string::npos);
+  EXPECT_NE(failureOf(folder_ / "missing.nii").find("missing.nii"), std::string::npos);
+  EXPECT_EQ(run(folder_.write("a.mha", metaImage(data)) + " -levels 5,3"), 2);
+}
+
+}  // namespace
