@@ -16,6 +16,7 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 
 #include "command_line/tool_errors.h"
@@ -71,11 +72,27 @@ struct Image {
   int num_times = 1;
 };
 
+/// What MetaIO prints, as it tells of data that are cut off in no other way.
+class Printed {
+public:
+  Printed() : old_(std::cerr.rdbuf(text_.rdbuf())) {}
+  ~Printed() { std::cerr.rdbuf(old_); }
+  Printed(const Printed&) = delete;
+  Printed& operator=(const Printed&) = delete;
+  bool nothing() const { return text_.str().empty(); }
+
+private:
+  std::ostringstream text_;
+  std::streambuf* old_;
+};
+
 template <typename Reader>
 vtkSmartPointer<vtkImageData> updated(Reader& reader, const std::string& path, const VtkMessages& messages) {
+  const Printed printed;
   reader.SetFileName(path.c_str());
   reader.Update();
-  if (reader.GetErrorCode() != 0 || !messages.firstError().empty())
+  if (reader.GetErrorCode() != 0 || !messages.firstError().empty() || !messages.firstWarning().empty() ||
+      !printed.nothing())
     throw InputError(path + ": cannot be read, it is cut off or its header does not fit its data");
   return reader.GetOutput();
 }

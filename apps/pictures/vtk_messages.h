@@ -19,7 +19,11 @@ public:
   void DisplayErrorText(const char* text) override {
     if (first_error.empty() && text) first_error = text;
   }
-  std::string first_error;
+  void DisplayGenericWarningText(const char* text) override {
+    if (first_warning.empty() && text) first_warning = text;
+  }
+  void DisplayWarningText(const char* text) override { DisplayGenericWarningText(text); }
+  std::string first_error, first_warning;
 };
 
 /// Puts the collector in place of VTK's own window while something is read or drawn.
@@ -30,6 +34,7 @@ public:
   VtkMessages(const VtkMessages&) = delete;
   VtkMessages& operator=(const VtkMessages&) = delete;
   const std::string& firstError() const { return collector_->first_error; }
+  const std::string& firstWarning() const { return collector_->first_warning; }
 
 private:
   vtkSmartPointer<vtkOutputWindow> old_;

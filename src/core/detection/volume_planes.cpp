@@ -36,8 +36,8 @@ constexpr VolumeRules kRules;
 
 /// A plane with a tangent frame: n and offsets are measured from a point of the body.
 struct Chart {
-  Chart(const ReflectionPlane& plane, const Eigen::Vector3d& pivot)
-      : n(plane.normal()), s(plane.signedDistance(pivot) * -1.0), u(n.unitOrthogonal()), v(n.cross(u)), pivot(pivot) {}
+  Chart(const ReflectionPlane& plane, const Eigen::Vector3d& center)
+      : n(plane.normal()), s(-plane.signedDistance(center)), u(n.unitOrthogonal()), v(n.cross(u)), pivot(center) {}
 
   /// \param step radians about v and u, and input units along n.
   ReflectionPlane moved(const Eigen::Vector3d& step) const {

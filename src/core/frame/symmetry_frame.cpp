@@ -50,7 +50,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   published.seed = options.seed;
   published.num_threads = options.num_threads;
   const std::vector<SymmetryPlane> maxima = publishedPlanes(points, edt, map, published);
-  const ReflectionPlane first = maxima.empty() ? grid.plane(grid.bin(map.strongest())) : maxima.front();
+  const ReflectionPlane first = maxima.empty() ? grid.plane(grid.bin(map.strongest())) : ReflectionPlane(maxima.front());
   SymmetryFrame frame;
   frame.axes.col(0) = first.normal();
 
