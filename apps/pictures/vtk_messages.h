@@ -1,6 +1,7 @@
 /// VTK's messages, kept for the one line that reports a failure.
 #pragma once
 
+#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
@@ -29,7 +30,10 @@ public:
 /// Puts the collector in place of VTK's own window while something is read or drawn.
 class VtkMessages {
 public:
-  VtkMessages() : old_(vtkOutputWindow::GetInstance()) { vtkOutputWindow::SetInstance(collector_); }
+  VtkMessages() : old_(vtkOutputWindow::GetInstance()) {
+    vtkOutputWindow::SetInstance(collector_);
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  }
   ~VtkMessages() { vtkOutputWindow::SetInstance(old_); }
   VtkMessages(const VtkMessages&) = delete;
   VtkMessages& operator=(const VtkMessages&) = delete;
