@@ -180,7 +180,7 @@ std::vector<std::vector<float>> descriptors(const AnyArray& points, bool input_a
   if (!input_axes) {
     FrameOptions frame_options;
     frame_options.seed = seed;
-    frame_options.num_threads = frame_options.edt.num_threads = threads;
+    frame_options.num_threads = threads;
     T_frame_input = symmetryFrame(input.points(), frame_options).T_canonical_input;
   }
   SymmetryDescriptors all = symmetryDescriptors(input.points(), T_frame_input, options);

@@ -5,7 +5,7 @@
 
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/planar_transform.h"
-#include "pcl_symmetry/core/plane_detection.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
