@@ -38,11 +38,11 @@ DetectedPlanes planesAsPublished(Points points, const GaussianEdt* edt, const Sy
                                  const DetectionOptions& options) {
   DetectedPlanes found;
   std::optional<GaussianEdt> own;
-  if (!edt) own.emplace(points, options.edt);
+  if (!edt) own.emplace(points, options.edtOptions());
   if (!edt) found.map = publishedMap(points, *own, TransformMethod::Convolution, options.seed, options.num_threads);
   PublishedOptions published;
-  published.maxima = options.maxima;
-  published.num_points = options.num_refine_samples;
+  published.maxima = options.expert.maxima;
+  published.num_points = options.expert.num_refine_samples;
   published.seed = options.seed;
   published.num_threads = options.num_threads;
   found.planes = publishedPlanes(points, edt ? *edt : *own, edt ? map : found.map, published);

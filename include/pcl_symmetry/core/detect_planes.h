@@ -88,6 +88,9 @@ struct DetectionOptions {
   };
   Expert expert;  ///< see Expert
 
+  /// \return num_cells, sigma and num_threads as options of the distance transform.
+  GaussianEdtOptions edtOptions() const;
+
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

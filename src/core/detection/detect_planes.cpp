@@ -271,11 +271,7 @@ Detection planesOfMap(const PlaneInput& input, const GaussianEdt& edt, const Sym
 Detection planesOfPoints(const PlaneInput& input, const DetectionOptions& options) {
   Stopwatch watch;
   Timing timing;
-  GaussianEdtOptions edt_options;
-  edt_options.num_cells = options.num_cells;
-  edt_options.sigma = options.sigma;
-  edt_options.num_threads = options.num_threads;
-  const GaussianEdt edt(input.points, edt_options);
+  const GaussianEdt edt(input.points, options.edtOptions());
   timing.emplace_back("distance_transform", watch.lap());
   std::vector<float> free_space;
   if (input.visibility) free_space = freeSpace(edt, *input.visibility, options.num_threads);
@@ -312,6 +308,14 @@ Detection planesOfSubset(const PlaneInput& input, const CloudSubset& subset, con
 
 }  // namespace
 
+GaussianEdtOptions DetectionOptions::edtOptions() const {
+  GaussianEdtOptions edt;
+  edt.num_cells = num_cells;
+  edt.sigma = sigma;
+  edt.num_threads = num_threads;
+  return edt;
+}
+
 void DetectionOptions::validate() const {
   check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");
   check(most_tolerance > 0.0 && most_tolerance <= 0.1, "most_tolerance", most_tolerance, "in (0, 0.1]");
@@ -320,10 +324,7 @@ void DetectionOptions::validate() const {
   check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");
   check(max_possible >= 1, "max_possible", max_possible, ">= 1");
-  GaussianEdtOptions edt;
-  edt.num_cells = num_cells;
-  edt.sigma = sigma;
-  edt.validate();
+  edtOptions().validate();
   checkNumThreads(num_threads);
   expert.maxima.validate();
   check(expert.num_theta >= 1, "num_theta", expert.num_theta, ">= 1");

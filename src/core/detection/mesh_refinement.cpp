@@ -39,9 +39,9 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
 }
 
 bool areOne(const SymmetryPlane& a, const SymmetryPlane& b, const BoundingBall& ball, const DetectionOptions& options) {
-  return a.angleTo(b) <= options.merge_angle &&
+  return a.angleTo(b) <= options.expert.merge_angle &&
          std::abs(std::abs(a.signedDistance(ball.center)) - std::abs(b.signedDistance(ball.center))) <=
-             options.merge_offset * ball.radius;
+             options.expert.merge_offset * ball.radius;
 }
 
 }  // namespace

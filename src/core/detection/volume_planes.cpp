@@ -10,7 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/detection/plane_tolerance.h"
+#include "core/detection/plane_fit.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/planar_transform.h"
@@ -230,15 +230,17 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     const VolumeFunction fine(input, levels, kRules.fine_voxels, options.num_threads);
     const VolumeFunction coarse(fine, kRules.coarse_voxels, options.num_threads);
     const Points body = coarse.bodyPoints(false);
-    const GaussianEdt edt(coarse, options.edt);
+    const GaussianEdt edt(coarse, options.edtOptions());
     found.timing_ms.emplace_back("volume", watch.lap());
     SampledTransformOptions sampled;
     sampled.num_samples = kRules.num_samples;
     sampled.seed = options.seed;
     sampled.num_threads = options.num_threads;
     const Eigen::Vector3d center = centerOfMass(body);
-    found.map = sampledTransform(
-        edt, PlaneGrid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius()), sampled);
+    found.map = sampledTransform(edt,
+                                 PlaneGrid(options.expert.num_theta, options.expert.num_phi, options.expert.num_radius,
+                                           edt.center(), edt.radius()),
+                                 sampled);
     found.map.center_of_mass = center;
     found.diameter = 2.0 * edt.radius();
     found.timing_ms.emplace_back("transform", watch.lap());
@@ -246,7 +248,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
     const int stride = strideFor(coarse.f, 30'000);
     const PlaneTolerance one{kRules.merge_angle, kRules.merge_offset * edt.radius()};
-    const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options.max_candidates);
+    const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options.expert.max_candidates);
     std::vector<SymmetryPlane> maxima(starts.size());
     parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
       maxima[i] = few.refined(starts[i], stride, 15, 2e-3);

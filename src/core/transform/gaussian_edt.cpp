@@ -138,7 +138,7 @@ GaussianEdt::GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions&
                  });
   sumValues(options.num_threads);
   if (sq_norm_ == 0.0) throw std::invalid_argument("volume: nothing in the ball given by center and radius");
-  interpolation_ = sharpened(kOfInterpolation, options.num_threads);
+  interpolation_ = sharpened(kTransform.of_interpolation, options.num_threads);
 }
 
 void GaussianEdt::sumValues(int num_threads) {
