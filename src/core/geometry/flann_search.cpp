@@ -159,7 +159,7 @@ struct FlannSearch::Tree {
 
 FlannSearch::FlannSearch(const PointsRef& points)
     : points_(points),
-      tree_(new Tree{{flann::Matrix<float>(points_.data(), points_.cols(), 3), flann::KDTreeSingleIndexParams(32)}}) {
+      tree_(new Tree{{flann::Matrix<float>(points_.data(), points_.cols(), 3), flann::KDTreeSingleIndexParams(24)}}) {
   tree_->params.cores = 1;
   tree_->index.buildIndex();
 }
