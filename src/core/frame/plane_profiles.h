@@ -49,11 +49,18 @@ private:
   struct Cell {
     std::uint8_t surface, free;  // 255 times f and free space
   };
-  /// \param x in cells from the corner of the grid.
-  Cell at(const Eigen::Array3f& x) const {
-    const auto i = static_cast<std::uint32_t>(static_cast<int>(x[0]));
-    const auto j = static_cast<std::uint32_t>(static_cast<int>(x[1]));
-    const auto k = static_cast<std::uint32_t>(static_cast<int>(x[2]));
+  class Walk;
+  struct Sums;
+
+  /// \param images cells of the images of the samples.
+  /// \param completed the same in the reflection that completes a scan; null: there is none.
+  Sums sumsAt(const std::uint32_t* images, const std::uint32_t* completed) const;
+  Sums sumsAvx512(const std::uint32_t* images, const std::uint32_t* completed) const;
+
+  Cell at(float x, float y, float z) const {
+    const auto i = static_cast<std::uint32_t>(static_cast<int>(x));
+    const auto j = static_cast<std::uint32_t>(static_cast<int>(y));
+    const auto k = static_cast<std::uint32_t>(static_cast<int>(z));
     return i < size_ && j < size_ && k < size_ ? cells_[(k * size_ + j) * size_ + i] : outside_;
   }
 
@@ -61,7 +68,7 @@ private:
   float middle_;
   bool scanned_;
   Cell outside_;
-  std::vector<Cell> cells_;
+  std::vector<Cell> cells_;   // and one for all that lies outside, twice
   Eigen::Matrix3Xf samples_;  // cells from the middle
 };
 
