@@ -316,9 +316,10 @@ void giveMap(SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, const InputSha
              const PlanesOptions& options) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   const DetectionOptions& detection = refinement.getOptions();
-  transform.setNumCells(detection.edt.num_cells);
-  transform.setSigma(detection.edt.sigma);
-  if (!options.as_published) transform.setMapSize(detection.num_theta, detection.num_phi, detection.num_radius);
+  transform.setNumCells(detection.num_cells);
+  transform.setSigma(detection.sigma);
+  if (!options.as_published)
+    transform.setMapSize(detection.expert.num_theta, detection.expert.num_phi, detection.expert.num_radius);
   transform.setMethod(methodNamed(options.method));
   if (options.as_published) transform.setNearDistance(0.0);
   transform.setRandomSeed(detection.seed);

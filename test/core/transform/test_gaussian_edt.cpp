@@ -286,7 +286,7 @@ TEST(GaussianEdt, ProductsOfARowAreThoseOfItsCells) {
     const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * n);
     const Eigen::Vector3d step(symmetric(random), symmetric(random), symmetric(random));
     const ImageOfRow image{middle - 0.5 * n * step, step};
-    std::array<double, kProductSums> sums, expected;
+    std::array<double, num_product_sums> sums, expected;
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = expected[k] = random.uniform();
     for (int x = filled.begin; x < filled.end; ++x) {
       const double product = f[x] * edt.atCell(image.first + x * image.step);
