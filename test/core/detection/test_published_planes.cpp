@@ -20,6 +20,7 @@ TEST(PublishedPlanes, FindTheThreePlanesOfABox) {
   const GaussianEdt edt(points);
   PublishedOptions options;
   options.discard_unstable = false;
+  options.num_points = 2000;
   const auto planes = publishedPlanes(points, edt, publishedMap(points, edt), options);
   for (int k = 0; k < 3; ++k) {
     double nearest = 90.0;
@@ -35,6 +36,7 @@ TEST(PublishedPlanes, StayInTheirCellsAndAreNotJudged) {
   const GaussianEdt edt(points);
   const SymmetryMap map = publishedMap(points, edt);
   PublishedOptions options;
+  options.num_points = 500;
   const auto stable = publishedPlanes(points, edt, map, options);
   options.discard_unstable = false;
   const auto all = publishedPlanes(points, edt, map, options);
@@ -52,6 +54,7 @@ TEST(PublishedPlanes, AreTheSameForAnyNumberOfThreads) {
   const GaussianEdt edt(points);
   PublishedOptions options;
   options.num_threads = 1;
+  options.num_points = 200;
   const SymmetryMap map = publishedMap(points, edt, TransformMethod::Voting);
   const auto expected = publishedPlanes(points, edt, map, options);
   options.num_threads = 8;
