@@ -13,7 +13,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 struct PublishedOptions {
   LocalMaximaOptions maxima;     ///< thresholds of radius and Laplacian
   int num_points = 10'000;       ///< reflected in each iteration, >= 10; drawn anew for each maximum
-  int max_iterations = 50;      ///< >= 1
+  int max_iterations = 50;       ///< >= 1
+  int max_maxima = 0;            ///< strongest maxima that are refined, >= 0; 0 = all
   bool discard_unstable = true;  ///< drops maxima that leave their cell; false keeps them where they end
   std::uint64_t seed = 1;        ///< of the points drawn
   int num_threads = 0;           ///< >= 0; 0 = one per core

@@ -35,6 +35,7 @@ double scoreOf(const ReflectionPlane& plane, const GaussianEdt& edt) {
 void PublishedOptions::validate() const {
   maxima.validate();
   check(num_points >= 10, "num_points", num_points, ">= 10");
+  check(max_maxima >= 0, "max_maxima", max_maxima, ">= 0");
   check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
   checkNumThreads(num_threads);
 }
@@ -49,7 +50,9 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
   isp.update = IspUpdate::PointToPoint;
   isp.sigma = isp.final_sigma = edt.sigma();
   isp.max_iterations = options.max_iterations;
-  const std::vector<LocalMaximum> maxima = findLocalMaxima(map, options.maxima);
+  std::vector<LocalMaximum> maxima = findLocalMaxima(map, options.maxima);
+  if (options.max_maxima > 0 && maxima.size() > static_cast<std::size_t>(options.max_maxima))
+    maxima.erase(maxima.begin() + options.max_maxima, maxima.end());
   std::vector<SymmetryPlane> refined(maxima.size());
   std::vector<char> is_stable(maxima.size());
   parallelBlocks(maxima.size(), options.num_threads, [&](std::size_t i) {

@@ -43,14 +43,16 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
     return {grid.offset(static_cast<int>(at)), s[at]};
   };
 
-  // First: the plane of greatest D among the refined maxima. Those that leave their cell stay, because so the method
-  // does best.
+  // First: the plane of greatest D among the refined maxima, of which the strongest are enough. Those that leave their
+  // cell stay, because so the method does best.
   PublishedOptions published;
   published.discard_unstable = false;
+  published.max_maxima = 8;
   published.seed = options.seed;
   published.num_threads = options.num_threads;
   const std::vector<SymmetryPlane> maxima = publishedPlanes(points, edt, map, published);
-  const ReflectionPlane first = maxima.empty() ? grid.plane(grid.bin(map.strongest())) : ReflectionPlane(maxima.front());
+  const ReflectionPlane first =
+      maxima.empty() ? grid.plane(grid.bin(map.strongest())) : ReflectionPlane(maxima.front());
   SymmetryFrame frame;
   frame.axes.col(0) = first.normal();
 

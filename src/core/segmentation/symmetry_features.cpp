@@ -18,14 +18,13 @@ namespace pcl_symmetry {
 namespace {
 
 /// Points spread over elements by area.
-Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& elements, int num_samples,
-                      std::uint64_t seed) {
+Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& elements, std::uint64_t seed) {
   std::vector<char> inside(static_cast<std::size_t>(graph.size()), 0);
   for (const int element : elements) inside[element] = 1;
   std::vector<Eigen::Vector3i> triangles;
   for (std::size_t t = 0; t < graph.triangles.size(); ++t)
     if (inside[graph.element_of_triangle[t]]) triangles.push_back(graph.triangles[t]);
-  return sampleTriangles(graph.corners, triangles, num_samples, seed);
+  return sampleTriangles(graph.corners, triangles, kNumSamples, seed);
 }
 
 bool isNear(const ReflectionPlane& a, const ReflectionPlane& b, const Eigen::Vector3d& center, double most_offset) {
@@ -95,8 +94,7 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
 SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
                                   const SplittingOptions& options, std::uint64_t seed, int num_threads,
                                   const MakeSearch& make_search) {
-  const Points samples =
-      sampleElements(graph, elements, options.as_published ? kSegmentation.published_samples : kSegmentation.feature_samples, seed);
+  const Points samples = sampleElements(graph, elements, seed);
   GaussianEdtOptions edt_options;
   edt_options.num_threads = num_threads;
   const GaussianEdt edt(samples, edt_options);
@@ -105,6 +103,8 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
   if (options.as_published) {
     const SymmetryMap map = publishedMap(samples, edt, TransformMethod::Convolution, seed, num_threads);
     PublishedOptions published;
+    published.num_points = kSegmentation.published_samples;
+    published.max_maxima = options.max_planes;
     published.seed = seed;
     published.num_threads = num_threads;
     for (const SymmetryPlane& plane : publishedPlanes(samples, edt, map, published))
