@@ -3,6 +3,7 @@
 #include <pcl/io/pcd_io.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -54,6 +55,27 @@ TEST(PRSTEstimation, DescribesInTheCanonicalFrame) {
   EXPECT_LT(descriptorDistance(a[0], b[0]), 0.15f * norm(a[0]));
   const auto raw_a = describe(boxCloud(), true), raw_b = describe(boxCloud(pose, 0.01), true);
   EXPECT_GT(descriptorDistance(raw_a[0], raw_b[0]), 0.2f * norm(a[0]));
+}
+
+TEST(PRSDEstimation, AndGEDTEstimationGiveWhatThePaperComparesWith) {
+  PRSDEstimation<pcl::PointXYZ> prsd;
+  GEDTEstimation<pcl::PointXYZ> gedt;
+  PRSTEstimation<pcl::PointXYZ> by_equation_1;
+  pcl::PointCloud<PRSDSignature1024> prsd_of_box;
+  pcl::PointCloud<GEDTSignature32768> gedt_of_box;
+  pcl::PointCloud<PRSTSignature32768> prst_of_box;
+  by_equation_1.setByEquation1(true);
+  const Cloud::Ptr box = boxCloud();
+  for (pcl::PCLBase<pcl::PointXYZ>* estimation :
+       std::initializer_list<pcl::PCLBase<pcl::PointXYZ>*>{&prsd, &gedt, &by_equation_1})
+    estimation->setInputCloud(box);
+  prsd.compute(prsd_of_box);
+  gedt.compute(gedt_of_box);
+  by_equation_1.compute(prst_of_box);
+  ASSERT_EQ(prsd_of_box.size() + gedt_of_box.size() + prst_of_box.size(), 3u);
+  EXPECT_GT(*std::max_element(prsd_of_box[0].prsd, prsd_of_box[0].prsd + 1024), 0.9f);
+  EXPECT_GT(*std::max_element(gedt_of_box[0].gedt, gedt_of_box[0].gedt + 32768), 0.9f);
+  EXPECT_GE(*std::min_element(prst_of_box[0].prst, prst_of_box[0].prst + 32768), std::sqrt(0.5f) - 1e-6f);
 }
 
 TEST(PRSTEstimation, HonoursIndicesAndWorksThroughTheBaseClass) {
