@@ -24,7 +24,7 @@ Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& element
   std::vector<Eigen::Vector3i> triangles;
   for (std::size_t t = 0; t < graph.triangles.size(); ++t)
     if (inside[graph.element_of_triangle[t]]) triangles.push_back(graph.triangles[t]);
-  return sampleTriangles(graph.corners, triangles, kNumSamples, seed);
+  return sampleTriangles(graph.corners, triangles, kSegmentation.feature_samples, seed);
 }
 
 bool isNear(const ReflectionPlane& a, const ReflectionPlane& b, const Eigen::Vector3d& center, double most_offset) {
