@@ -10,6 +10,8 @@
 #include "core/evidence/evidence_rules.h"
 #include "core/geometry/open_borders.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/principal_axes.h"
+#include "core/scan/single_view.h"
 
 namespace pcl_symmetry {
 
@@ -78,7 +80,17 @@ Eigen::Vector3f OutermostPoints::last(const Eigen::Vector3f& direction) const {
   lookAt(*first);
   for (const Cell& cell : cells_)
     if (cell.bound(direction) >= most) lookAt(cell);
-  return {coordinates_[0][found], coordinates_[1][found], coordinates_[2][found]};
+  return at(found);
+}
+
+bool OutermostPoints::reach(const Eigen::Vector3f& x, float distance) const {
+  const float sq_distance = distance * distance;
+  return std::any_of(cells_.begin(), cells_.end(), [&](const Cell& cell) {
+    if ((x - x.cwiseMax(cell.least).cwiseMin(cell.most)).squaredNorm() > sq_distance) return false;
+    for (std::size_t i = cell.begin; i < cell.end; ++i)
+      if ((x - at(i)).squaredNorm() <= sq_distance) return true;
+    return false;
+  });
 }
 
 namespace {
@@ -108,7 +120,8 @@ float lastOf(const OutermostPoints& points, const Eigen::Vector3f& direction, fl
   for (const float from :
        {farthest - evidence_rules.outliers_within * spacing, -std::numeric_limits<float>::infinity()}) {
     distances.clear();
-    points.visitFrom(direction, from, [&](Eigen::Index, float distance) { distances.push_back(distance); });
+    points.visitFrom(direction, from,
+                     [&](Eigen::Index, const Eigen::Vector3f&, float distance) { distances.push_back(distance); });
     if (distances.size() > num_beyond) break;
   }
   const auto last = distances.begin() + static_cast<std::ptrdiff_t>(num_beyond);
@@ -130,13 +143,20 @@ float beyondEnd(const OutermostPoints& cloud, const Points& normals, const Outer
   const float gap = (normal.dot(piece.last(-normal)) - farthest) / unit;
   const float is_beyond = ramp(gap, -evidence_rules.behind, -evidence_rules.in_front);
   if (is_beyond <= 0.0f) return 0.0f;
-  float cosines = 0.0f, count = 0.0f;
+  const float reach = (evidence_rules.behind + std::max(0.0f, gap)) * unit;
+  float cosines = 0.0f, count = 0.0f, cosines_before = 0.0f, count_before = 0.0f;
   cloud.visitFrom(normal, lastOf(cloud, normal, farthest, unit) - evidence_rules.last_points * unit,
-                  [&](Eigen::Index i, float) {
-                    cosines += std::abs(normal.dot(normals.col(i)));
+                  [&](Eigen::Index i, const Eigen::Vector3f& x, float) {
+                    const float cosine = std::abs(normal.dot(normals.col(i)));
+                    cosines += cosine;
                     count += 1.0f;
+                    if (!piece.reach(x, reach)) return;
+                    cosines_before += cosine;
+                    count_before += 1.0f;
                   });
-  return is_beyond * ramp(-cosines / count, -evidence_rules.closes, -evidence_rules.runs_into);
+  if (count_before == 0.0f) return 0.0f;
+  return is_beyond * ramp(-std::max(cosines / count, cosines_before / count_before), -evidence_rules.closes,
+                          -evidence_rules.runs_into);
 }
 
 namespace {
@@ -223,6 +243,18 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
   return missing;
 }
 
+namespace {
+
+/// Whether each line along the shortest principal axis meets the surface once, as open ground: it ends all around, and
+/// its end is no cut.
+bool isOpenSheet(const Points& points) {
+  const PrincipalAxes axes = principalAxes(points);
+  const double far = evidence_rules.far_view * boundingBall(points).radius;
+  return layeredShare(points, axes.center + far * axes.axes.col(2)) < evidence_rules.layered_sheet;
+}
+
+}  // namespace
+
 SurfaceEnds::SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
                          const FoundNeighbours& found, double spacing, std::uint64_t seed, int num_threads)
     : geometry_(geometry),
@@ -230,9 +262,11 @@ SurfaceEnds::SurfaceEnds(const Points& points, const LocalGeometry& geometry, co
       borders_(openBorders(points, search, geometry.normals, num_threads, &found)),
       outermost_(points),
       cuts_(findCutPlanes(points, borders_, spacing, seed)),
-      trust_(std::clamp((evidence_rules.borders_everywhere - shareNearBorders(borders_, geometry)) /
-                            (evidence_rules.borders_everywhere - evidence_rules.few_borders),
-                        0.0, 1.0)) {}
+      trust_(isOpenSheet(points)
+                 ? 0.0
+                 : std::clamp((evidence_rules.borders_everywhere - shareNearBorders(borders_, geometry)) /
+                                  (evidence_rules.borders_everywhere - evidence_rules.few_borders),
+                              0.0, 1.0)) {}
 
 std::vector<float> SurfaceEnds::missing(const std::vector<char>& matched, const std::vector<int>& closest,
                                         const Points& reflected) const {

@@ -25,16 +25,19 @@ public:
   /// The point that is farthest along a direction; of several the first one.
   Eigen::Vector3f last(const Eigen::Vector3f& direction) const;
 
-  /// Calls visit(index of the point, its distance along the direction) for the points of which this distance is at
-  /// least \p from.
+  /// Calls visit(index of the point, the point, its distance along the direction) for the points of which this distance
+  /// is at least \p from.
   template <typename Visit>
   void visitFrom(const Eigen::Vector3f& direction, float from, const Visit& visit) const {
     for (const Cell& cell : cells_) {
       if (cell.bound(direction) < from) continue;
       for (std::size_t i = cell.begin; i < cell.end; ++i)
-        if (const float value = along(direction, i); value >= from) visit(index_of_[i], value);
+        if (const float value = along(direction, i); value >= from) visit(index_of_[i], at(i), value);
     }
   }
+
+  /// Whether a point lies within a distance of x.
+  bool reach(const Eigen::Vector3f& x, float distance) const;
 
 private:
   struct Cell {
@@ -47,6 +50,8 @@ private:
       return direction.x() * corner(0) + direction.y() * corner(1) + direction.z() * corner(2);
     }
   };
+
+  Eigen::Vector3f at(std::size_t i) const { return {coordinates_[0][i], coordinates_[1][i], coordinates_[2][i]}; }
 
   float along(const Eigen::Vector3f& direction, std::size_t i) const {
     return direction.x() * coordinates_[0][i] + direction.y() * coordinates_[1][i] + direction.z() * coordinates_[2][i];
@@ -64,7 +69,7 @@ private:
 /// runs into that plane: its normals lie along it. A part that an object has on one side alone has its reflection
 /// beyond the surface, too, but there the surface closes: its normals stand on the plane. No open border is needed, so
 /// that parts as thin as the spacing, whose borders are not seen, and parts without any edge to what is matched are
-/// told as well.
+/// told as well. What ends far from the piece, as the rim of a mug ends far from its handle, explains nothing.
 /// \param cloud the N points of the cloud.
 /// \param normals 3 x N, unit, of arbitrary sign.
 /// \param piece reflections of neighboring points without counterpart.
