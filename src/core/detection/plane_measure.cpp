@@ -142,7 +142,10 @@ std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, cons
   std::vector<float> unknown(size, 0.0f);
   if (cloud_.seen()) {
     for (std::size_t i = 0; i < size; ++i)
-      if (!matched[i]) unknown[i] = isSeenEmpty(reflected.points.col(i).cast<double>(), rim) ? 0.0f : 1.0f;
+      if (!matched[i]) {
+        const Eigen::Vector3d x = reflected.points.col(i).cast<double>();
+        unknown[i] = isSeenEmpty(x, rim) ? 1.0f - emptiness(*cloud_.visibility, x) : 1.0f;
+      }
     return unknown;
   }
   const double held = std::clamp(offset_stiffness / detection_rules.held - 1.0, 0.0, 1.0);

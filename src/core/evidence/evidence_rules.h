@@ -19,6 +19,9 @@ struct EvidenceRules {
   float most = 9.0f;                                     ///< squared deviation that counts as no support
   double tilt_ridge = 1e-4;                              ///< far below the stiffness of tilts that are held
 
+  double exact_depth = 4e-3;          ///< error of a depth, radii, up to which a pixel without depth saw nothing
+  float empty_without_depth = 0.15f;  ///< the same as a share where errors are larger
+
   // Confidence.
   double coarsest = 5.0, coarsest_volume = 4.0, coarsest_flat = 2.0;  ///< tolerances; a wider spacing resolves none
   double lost_per_coarseness = 2.0;                                   ///< log odds per tolerance beyond

@@ -48,6 +48,13 @@ float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eig
 
 }  // namespace
 
+float emptiness(const Visibility& visibility, const Eigen::Vector3d& x) {
+  const double behind = visibility.depthBehind(x);
+  if (behind >= 0.0) return 0.0f;
+  const bool is_exact = visibility.depthError(x) < evidence_rules.exact_depth;
+  return std::isfinite(behind) || is_exact ? 1.0f : evidence_rules.empty_without_depth;
+}
+
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
                             const SurfaceSamples& samples, const Visibility* visibility) {
   const std::size_t size = closest.size();
@@ -57,8 +64,8 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
       evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples);
     // Where all is explained, nothing is in conflict, seen or not.
     if (evidence.support[i] == 1.0f) continue;
-    const bool seen = !visibility || visibility->depthBehind(reflected.col(i).cast<double>()) < 0.0;
-    evidence.conflict[i] = seen ? 1.0f - evidence.support[i] : 0.0f;
+    const float empty = visibility ? emptiness(*visibility, reflected.col(i).cast<double>()) : 1.0f;
+    evidence.conflict[i] = empty * (1.0f - evidence.support[i]);
   }
   return evidence;
 }

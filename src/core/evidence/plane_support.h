@@ -22,6 +22,12 @@ struct PointEvidence {
   std::vector<float> conflict;  ///< the reflection lies where the scanner saw that there is nothing
 };
 
+/// How surely nothing is at a point. A pixel without a depth tells that nothing is there where the sensor is exact, and
+/// little where it has errors: it may be a shadow of the projector, or what hid the object was cut out of the picture.
+/// \param x in the unit ball.
+/// \return in [0, 1]: 0 behind what was seen, 1 before it.
+float emptiness(const Visibility& visibility, const Eigen::Vector3d& x);
+
 /// Near an edge the closest sample may lie on another face: the best of that sample and of those next to it counts.
 /// \param reflected 3 x M, reflections of points of the surface, normalized to the unit ball.
 /// \param reflected_normals 3 x M, reflections of their normals.
