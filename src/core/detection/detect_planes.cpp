@@ -185,14 +185,15 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   timed("closure");
 
   // Families: bodies of revolution, spheres, and what only rotations of a scan show.
-  if (options.families) {
+  if (options.families && !decision.isPlace()) {
     PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, judge, options);
     planes = std::move(found.planes);
     detection.axes = std::move(found.axes);
     detection.centers = std::move(found.centers);
   }
   timed("families");
-  planes = withScanAxes(std::move(planes), cloud, judge.measure.tolerance(), options, detection);
+  if (!decision.isPlace())
+    planes = withScanAxes(std::move(planes), cloud, judge.measure.tolerance(), options, detection);
   const bool has_family = !detection.axes.empty() || !detection.centers.empty();
   decision.preferBest(planes, has_family);
   timed("turns");

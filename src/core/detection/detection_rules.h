@@ -69,7 +69,10 @@ struct DetectionRules {
   int look_samples = 2000;       ///< samples of a quick look
   std::array<double, 2> tolerances{1.0, 2.0};  ///< at which shares are measured, see PlaneEvidence
 
+  double beside_outline = 0.02;  ///< tangent of the angle beside an outline at which the picture is looked up
+
   // Deciding.
+  double most_cut = 0.3;               ///< share of the outline that the picture may cut off; tables in frames: 0.36
   double look_errors = 2.0;            ///< standard errors that a quick look allows
   double still_share = 0.5;            ///< share of the points that an uninformative plane leaves in place
   double nothing_missing = 0.01;       ///< share of the surface; less is missing by chance

@@ -82,12 +82,16 @@ PlaneKind PlaneDecision::kindOf(const ReflectionPlane& plane, double confidence)
     return measure_.thinness() == Thinness::Line ||
            measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - detection_rules.still_share;
   };
-  if (confidence >= options_.min_confidence && isResolved() && !saysNothing()) return PlaneKind::Symmetry;
+  if (confidence >= options_.min_confidence && isResolved() && !isPlace() && !saysNothing()) return PlaneKind::Symmetry;
   return confidence >= options_.min_possible ? PlaneKind::Possible : PlaneKind::Approximate;
 }
 
 bool PlaneDecision::isResolved() const {
   return measure_.tolerance() >= std::min(measure_.resolution(), detection_rules.coarsest_tolerance * cloud_.extent);
+}
+
+bool PlaneDecision::isPlace() const {
+  return measure_.cutShare() > detection_rules.most_cut;
 }
 
 bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {

@@ -37,6 +37,9 @@ public:
   /// \param plane input frame.
   void decideBy(double confidence, SymmetryPlane& plane) const;
 
+  /// Whether the picture cuts the cloud off all around: a place, such as a table, and no object.
+  bool isPlace() const;
+
   /// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
   bool explainsAll(const SymmetryPlane& plane) const;
 

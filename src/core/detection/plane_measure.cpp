@@ -12,6 +12,7 @@
 #include "core/geometry/point_samples.h"
 #include "core/geometry/symmetric_share.h"
 #include "core/scan/sensor_noise.h"
+#include "core/scan/single_view.h"
 
 namespace pcl_symmetry {
 
@@ -35,6 +36,8 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                      ? options.absolute_tolerance / cloud.scale
                      : std::max(options.tolerance * cloud.extent,
                                 std::min(resolution_, options.most_tolerance * cloud.extent))),
+      cut_share_(resolution_ > 0.0 ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), detection_rules.beside_outline)
+                              : 0.0),
       thinness_(
           thinnessOf(cloud.points, cloud.principal_axes, cloud.rules().thin_tolerances * tolerance_, lineTolerance())),
       halves_(cloud.rules().by_halves

@@ -38,6 +38,9 @@ public:
   /// The least tolerance that the sensor resolves, normalized frame; 0 where its errors are not known.
   double resolution() const { return resolution_; }
 
+  /// Share of the outline of an organized scan at which the picture cut it off; 0 of other clouds.
+  double cutShare() const { return cut_share_; }
+
   /// What is left of the cloud at the tolerance.
   Thinness thinness() const { return thinness_; }
 
@@ -110,7 +113,7 @@ private:
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
   const DetectionOptions& options_;
-  double resolution_, tolerance_;
+  double resolution_, tolerance_, cut_share_;
   Thinness thinness_;
   std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
   /// Within one and two tolerances, of the points themselves and the surface of the others.

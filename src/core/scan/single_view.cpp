@@ -1,9 +1,12 @@
 #include "core/scan/single_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "core/base/constants.h"
 #include "core/base/median.h"
 #include "core/geometry/surface_normals.h"
 #include "core/scan/scan_rules.h"
@@ -89,6 +92,30 @@ std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Ve
     return std::nullopt;
   if (layeredShare(points, viewpoint) > kScan.most_layered) return std::nullopt;
   return visibility;
+}
+
+double cutShare(const PointsRef& points, const Visibility& seen, double margin) {
+  const Eigen::Vector3d viewpoint = seen.viewpoint();
+  Eigen::Vector3d forward = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < points.cols(); ++i) forward += (points.col(i).cast<double>() - viewpoint).normalized();
+  forward.normalize();
+  const Eigen::Vector3d u = forward.unitOrthogonal(), v = forward.cross(u);
+  std::array<Eigen::Vector3d, 72> outermost;  // every 5 degrees; displacements in the picture
+  outermost.fill(Eigen::Vector3d::Zero());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint, aside = ray / ray.dot(forward) - forward;
+    const double turned = std::atan2(v.dot(aside), u.dot(aside)) / (2.0 * kPi) + 0.5;
+    Eigen::Vector3d& most = outermost[static_cast<std::size_t>(turned * 72.0) % 72];
+    if (aside.squaredNorm() > most.squaredNorm()) most = aside;
+  }
+  double count = 0.0, num_cut = 0.0;
+  for (const Eigen::Vector3d& aside : outermost) {
+    if (aside.isZero()) continue;
+    const Eigen::Vector3d beside = viewpoint + forward + aside + margin * aside.normalized();
+    count += 1.0;
+    num_cut += seen.depthBehind(beside) == std::numeric_limits<double>::infinity() ? 1.0 : 0.0;
+  }
+  return num_cut / std::max(1.0, count);
 }
 
 }  // namespace pcl_symmetry

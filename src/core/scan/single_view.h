@@ -37,4 +37,10 @@ std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Ve
 /// \return a value in [0, 1]; 0 for fewer than two points.
 double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
+/// How much of a cloud the picture cut off.
+/// \param points 3 x N, finite, N >= 1, seen within 75 degrees of one direction.
+/// \param margin tangent of the angle beyond the outermost points at which the picture is looked up.
+/// \return share of the directions of the outline, seen from the viewpoint, in which no ray passed beside the cloud.
+double cutShare(const PointsRef& points, const Visibility& seen, double margin);
+
 }  // namespace pcl_symmetry

@@ -58,4 +58,38 @@ TEST(OpenSurfaces, SheetThatIsAlikeOnBothSidesKeepsItsPlane) {
   EXPECT_GT(std::abs(detection.planes.front().normal().x()), std::cos(1.0 * kDegree));
 }
 
+/// Two boxes on a table, of which the picture shows a disc of 80 pixels.
+Scan tableInDisc() {
+  const BlockObject table{{{{0.0, 0.0, -0.05}, {3.0, 3.0, 0.05}},
+                           {{-0.5, 0.0, 0.2}, {0.25, 0.15, 0.2}},
+                           {{0.5, 0.0, 0.2}, {0.25, 0.15, 0.2}}},
+                          {}};
+  Scan view = scan(table, {0.0, -5.0, 4.0});
+  for (int v = 0; v < view.height; ++v)
+    for (int u = 0; u < view.width; ++u)
+      if (std::hypot(u - 0.5 * (view.width - 1), v - 0.5 * (view.height - 1)) > 40.0)
+        view.pixels.col(v * view.width + u).setConstant(std::numeric_limits<float>::quiet_NaN());
+  return view;
+}
+
+/// \param outside depth of the pixels without a point.
+Visibility seenWith(const Scan& view, float outside) {
+  const Visibility seen = view.visibility();
+  std::vector<float> depths;
+  for (int v = 0; v < view.height; ++v)
+    for (int u = 0; u < view.width; ++u) depths.push_back(std::isfinite(seen.depth(u, v)) ? seen.depth(u, v) : outside);
+  Eigen::Matrix3d camera;
+  camera << view.focal, 0.0, 0.5 * (view.width - 1), 0.0, view.focal, 0.5 * (view.height - 1), 0.0, 0.0, 1.0;
+  const Visibility::Projection projection = camera * view.T_camera_object.matrix().topRows<3>();
+  return Visibility(projection, view.width, view.height, std::move(depths)).withDepthErrors(1e-6);
+}
+
+TEST(OpenSurfaces, TableThatThePictureCutsOffIsPossibleAtMost) {
+  const Scan view = tableInDisc();
+  const Points cloud = view.cloud();
+  const Visibility whole = seenWith(view, Visibility::kBackground), cut = seenWith(view, Visibility::kNoRay);
+  EXPECT_TRUE(hasSymmetry(detectPlanes({cloud, &whole}))) << "a round table";
+  EXPECT_FALSE(hasSymmetry(detectPlanes({cloud, &cut})));
+}
+
 }  // namespace
