@@ -119,6 +119,20 @@ SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Store
   return {std::move(view->seen), view->as_stored ? ViewpointSource::Stored : ViewpointSource::Inferred};
 }
 
+Eigen::Vector4d unitPlane(const Eigen::Vector4d& coefficients) {
+  const double length = coefficients.head<3>().norm();
+  if (!(length > 0.0) || !coefficients.allFinite())
+    throwBadArgument("ground: must be four finite numbers A,B,C,D, not all of A, B, C zero");
+  return coefficients / length;
+}
+
+SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const Points& points, double tolerance) {
+  if (!seen.visibility()) return seen;
+  const double sign = ground.dot(seen.visibility()->viewpoint().homogeneous()) < 0.0 ? -1.0 : 1.0;
+  const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
+  return seen.withSupport(sign * ground, tolerance * diagonal);
+}
+
 std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height) {
   pcl::Indices finite;
   for (Eigen::Index i = 0; i < pixels.cols(); ++i)

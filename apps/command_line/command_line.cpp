@@ -105,6 +105,16 @@ CommandLine& CommandLine::choice(const std::string& name, std::string& value, co
   });
 }
 
+CommandLine& CommandLine::plane(const std::string& name, std::optional<Eigen::Vector4d>& value,
+                                const std::string& help) {
+  return add(name, "A,B,C,D", help, [&value, name](const std::string& text) {
+    const std::vector<double> numbers = parseNumbers("-" + name, text);
+    if (numbers.size() != 4 || (numbers[0] == 0.0 && numbers[1] == 0.0 && numbers[2] == 0.0))
+      rejectValue("-" + name, text, "must be four numbers A,B,C,D, of which A, B and C are not all zero");
+    value = Eigen::Vector4d(numbers[0], numbers[1], numbers[2], numbers[3]);
+  });
+}
+
 CommandLine& CommandLine::number(const std::string& name, double& value, const Range& range, const std::string& help) {
   return add(name, "F", help + " (" + shortest(value) + ")",
              [&value, range, name](const std::string& text) { value = parseNumber("-" + name, text, range); });

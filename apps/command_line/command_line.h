@@ -51,6 +51,8 @@ public:
   CommandLine& vector(const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help);
   /// A vector that must not be zero.
   CommandLine& direction(const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help);
+  /// A plane a x + b y + c z + d = 0.
+  CommandLine& plane(const std::string& name, std::optional<Eigen::Vector4d>& value, const std::string& help);
   CommandLine& common(CommonOptions& options, unsigned flags);
 
   /// Reads the arguments into the bound variables.

@@ -78,6 +78,10 @@ Viewpoint shifted(Viewpoint viewpoint, const Eigen::Vector3d& shift) {
   return viewpoint;
 }
 
+Eigen::Vector4d shifted(const Eigen::Vector4d& plane, const Eigen::Vector3d& shift) {
+  return {plane[0], plane[1], plane[2], plane[3] + plane.head<3>().dot(shift)};
+}
+
 Eigen::Vector3d shiftedBack(const Eigen::Vector3d& point, const Eigen::Vector3d& shift) {
   // Adding zero would turn -0 into 0.
   return shift.isZero(0.0) ? point : Eigen::Vector3d(point + shift);

@@ -38,6 +38,9 @@ pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const
 /// \return the viewpoint in the frame of the shifted points
 Viewpoint shifted(Viewpoint viewpoint, const Eigen::Vector3d& shift);
 
+/// \return a plane a x + b y + c z + d = 0 in the frame of the shifted points
+Eigen::Vector4d shifted(const Eigen::Vector4d& plane, const Eigen::Vector3d& shift);
+
 /// \return the point of the shifted points in the input frame
 Eigen::Vector3d shiftedBack(const Eigen::Vector3d& point, const Eigen::Vector3d& shift);
 

@@ -45,6 +45,7 @@ struct PlanesOptions {
   std::optional<double> tolerance;
   std::string method = "sampled";
   bool method_given = false, as_published = false;
+  std::optional<Eigen::Vector4d> ground;
   CommonOptions common;
 };
 
@@ -82,6 +83,9 @@ CommandLine commandLine(PlanesOptions& options) {
               "the estimator of the map (Sections 4.2 and 4.3); exact with -as_published")
       .flag("as_published", options.as_published,
             "refine the maxima of the map as the paper does (Section 4.4), without a decision")
+      .plane("ground", options.ground,
+             "what the object stands on: a x + b y + c z + d = 0; with a viewpoint, sparse points of a LiDAR are then "
+             "decided by the box around them")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "largest number of planes reported")
       .common(options.common, kShapeFlags | kSigma | kVolumes);
   options.batch.addTo(line);
@@ -343,6 +347,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     if (options.tolerance) refinement.setTolerance(*options.tolerance);
     refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
     refinement.setAsPublished(options.as_published);
+    if (options.ground) refinement.setGround(shifted(*options.ground, input.shift()));
     if (input.volume)
       refinement.setInputVolume(input.volume, input.levels);
     else

@@ -141,6 +141,12 @@ public:
   void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
   const Viewpoint& getViewpoint() const { return viewpoint_; }
 
+  /// The plane that the object stands on, a x + b y + c z + d = 0 in the frame of the input: nothing of it lies below.
+  /// It counts where there is a viewpoint. Sparse points without order, as those of a LiDAR's rings, are then decided
+  /// by the middle plane of the upright box around them.
+  /// \throws pcl::BadArgumentException for a zero normal or a value that is not finite.
+  void setGround(const Eigen::Vector4d& coefficients) { ground_ = detail::unitPlane(coefficients); }
+
   /// Gives what the scanners of a scene saw, made once for the analyses of all its objects, in place of what the
   /// viewpoint and the input tell.
   /// \param seen in the frame of the input; null (default): each analysis finds out for itself.
@@ -168,11 +174,12 @@ protected:
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.
   std::optional<Visibility> seenSpace(const Points& points) {
     const bool is_part = this->use_indices_ && this->indices_->size() < this->input_->size();
-    const SeenSpace seen = seen_space_ ? *seen_space_
-                           : is_part && viewpoint_.mode != Viewpoint::Mode::None
-                               ? detail::seenOfPart(detail::ScannerOutput(*this->input_), *this->indices_, viewpoint_,
-                                                    DetectionOptions().tolerance)
-                               : detail::findSeenSpace(*this->input_, points, viewpoint_);
+    SeenSpace seen = seen_space_ ? *seen_space_
+                     : is_part && viewpoint_.mode != Viewpoint::Mode::None
+                         ? detail::seenOfPart(detail::ScannerOutput(*this->input_), *this->indices_, viewpoint_,
+                                              DetectionOptions().tolerance)
+                         : detail::findSeenSpace(*this->input_, points, viewpoint_);
+    if (ground_) seen = detail::standingOn(seen, *ground_, points, DetectionOptions().tolerance);
     viewpoint_source_ = seen.source();
     used_viewpoint_.reset();
     if (seen.visibility()) used_viewpoint_ = seen.visibility()->viewpoint();
@@ -181,6 +188,7 @@ protected:
 
 private:
   Viewpoint viewpoint_;
+  std::optional<Eigen::Vector4d> ground_;
   SeenSpace::ConstPtr seen_space_;
   ViewpointSource viewpoint_source_ = ViewpointSource::None;
   std::optional<Eigen::Vector3d> used_viewpoint_;

@@ -172,6 +172,17 @@ SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& poin
   return seenFrom(points, viewpoint, storedPose(cloud));
 }
 
+/// \return the plane with a unit normal.
+/// \throws pcl::BadArgumentException for a zero normal or a value that is not finite.
+Eigen::Vector4d unitPlane(const Eigen::Vector4d& coefficients);
+
+/// The same space for points that stand on a ground.
+/// \param ground a plane with a unit normal of any sign; the viewpoint lies above it.
+/// \param points 3 x N, N >= 1.
+/// \param tolerance by which they may seem to reach into it, as a share of their diagonal.
+/// \return \p seen itself where it has no viewpoint.
+SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const Points& points, double tolerance);
+
 /// Seen, free and unknown space about a part of a scene: its other points hide it, and behind the supporting planes
 /// that it stands on or before, which PCL's sample consensus finds, none of it is.
 /// \param part indices of its points, at least one of them finite.

@@ -25,6 +25,10 @@ DetectedPlanes planesOfVolume(const ScalarGrid& volume, const DetectionOptions& 
 DetectedPlanes planesAsPublished(Points points, const GaussianEdt* edt, const SymmetryMap& map,
                                  const DetectionOptions& options);
 
+/// Where points that stand on a ground are too far apart for a surface, as those of a LiDAR's rings: the middle plane
+/// of their upright box decides in place of what was found.
+void decideByUprightBox(DetectedPlanes& found, const Visibility& seen, const DetectionOptions& options);
+
 /// \param all finite points of a cloud.
 /// \param cloud_size points of the cloud.
 /// \param samples 3 x N, finite, the surface that reflected points are compared with, same frame; N = 0: no surface.
@@ -63,6 +67,9 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
         use_input_normals_ ? detail::normalsOf(*input_, this->getUsedIndices()) : std::nullopt;
     found_ = detail::foundPlanes(std::move(points), edt_.get(), map_, options_, search, seen, normals);
     if (mesh_ && !seen) refineOnMesh(*mesh_, found_, options_);
+    const bool has_rows = this->getViewpointSource() == ViewpointSource::Rays;
+    if (seen && !has_rows && !seen->supports().empty() && found_.reason.empty())
+      detail::decideByUprightBox(found_, *seen, options_);
     return std::move(found_.planes);
   });
 }

@@ -1,0 +1,189 @@
+#include "core/detection/upright_box.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/base/median.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+struct UprightBoxRules {
+  int num_angles = 180;     // in a quarter of a turn: half a degree each
+  double trimmed = 0.01;    // share of the points beyond each side
+  double near = 0.1;        // shorter sides of the box within which a point is near a side
+  double meets = 0.03;      // diagonals within which a reflection meets what a beam met
+  double beam_reach = 2.0;  // distances of neighboring beams within which a beam tells of a reflection
+  // Logit of the confidence, by the share near a side and by the root of the share in free space. Fitted to 284 virtual
+  // scans of vehicles and of asymmetric shapes of the training half, with 16 to 64 rings at 5 to 25 m. Cross-validated,
+  // 65 % of the vehicles are right, 10 % wrong, and 3 % of the asymmetric shapes are called symmetric.
+  double confidence = 0.7, of_near = 4.15, of_free = -15.6;
+};
+
+constexpr UprightBoxRules kBox;
+constexpr int kBeams = 3;  // that tell of a reflection
+
+/// The extent of some values without a share at both ends.
+std::array<double, 2> extentOf(std::vector<double>& values) {
+  const auto trim = static_cast<std::ptrdiff_t>(std::lround(kBox.trimmed * static_cast<double>(values.size() - 1)));
+  const auto low = values.begin() + trim, high = values.end() - 1 - trim;
+  std::nth_element(values.begin(), low, values.end());
+  const double least = *low;
+  std::nth_element(values.begin(), high, values.end());
+  return {least, *high};
+}
+
+double distanceFrom(const std::array<double, 2>& sides, double value) {
+  return std::min(std::abs(value - sides[0]), std::abs(value - sides[1]));
+}
+
+/// A rectangle around points seen from above, and how far they are off its sides.
+struct Rectangle {
+  std::array<Eigen::Vector3d, 2> axes;  // unit, horizontal
+  std::array<std::array<double, 2>, 2> sides;
+  std::vector<double> distances;  // of each point from the nearest side
+  double sq_error = 0.0;          // mean
+};
+
+Rectangle rectangleAt(const PointsRef& points, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  Rectangle rectangle{{u, v}, {}, std::vector<double>(static_cast<std::size_t>(points.cols()), 0.0), 0.0};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Eigen::RowVectorXf along = rectangle.axes[k].cast<float>().transpose() * points;
+    std::vector<double> values(along.data(), along.data() + along.size());
+    rectangle.sides[k] = extentOf(values);
+    for (Eigen::Index i = 0; i < along.size(); ++i) {
+      double& distance = rectangle.distances[static_cast<std::size_t>(i)];
+      const double off = distanceFrom(rectangle.sides[k], along[i]);
+      distance = k == 0 ? off : std::min(distance, off);
+    }
+  }
+  for (const double distance : rectangle.distances) rectangle.sq_error += distance * distance;
+  rectangle.sq_error /= static_cast<double>(points.cols());
+  return rectangle;
+}
+
+Rectangle bestRectangle(const PointsRef& points, const Eigen::Vector3d& up) {
+  const Eigen::Vector3d x = up.unitOrthogonal(), y = up.cross(x);
+  std::optional<Rectangle> best;
+  for (int k = 0; k < kBox.num_angles; ++k) {
+    const double angle = 0.5 * kPi * k / kBox.num_angles;
+    const Eigen::Vector3d u = std::cos(angle) * x + std::sin(angle) * y;
+    Rectangle tried = rectangleAt(points, u, up.cross(u));
+    if (!best || tried.sq_error < best->sq_error) best = std::move(tried);
+  }
+  return *best;
+}
+
+/// What beams of a scanner tell of points: whether they met something there, passed freely, or do not tell.
+class Beams {
+public:
+  enum class Meets { Surface, Nothing, Unknown };
+
+  Beams(const PointsRef& points, const Eigen::Vector3d& viewpoint, double distance)
+      : viewpoint_(viewpoint), distance_(distance), directions_(3, points.cols()), ranges_(points.cols()) {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint;
+      ranges_[i] = ray.norm();
+      directions_.col(i) = (ray / ranges_[i]).cast<float>();
+    }
+    search_ = makeFlannSearch(directions_);
+    surface_ = makeFlannSearch(points);
+    std::vector<int> closest;
+    std::vector<float> sq_distances, apart;
+    search_->search(directions_, kBeams + 2, closest, sq_distances);
+    for (std::size_t i = kBeams + 1; i < sq_distances.size(); i += kBeams + 2) apart.push_back(sq_distances[i]);
+    sq_reach_ = static_cast<float>(kBox.beam_reach * kBox.beam_reach) * median(std::move(apart));
+  }
+
+  std::vector<Meets> at(const Points& places) const {
+    Points directions(3, places.cols());
+    Eigen::VectorXd ranges(places.cols());
+    for (Eigen::Index i = 0; i < places.cols(); ++i) {
+      const Eigen::Vector3d ray = places.col(i).cast<double>() - viewpoint_;
+      ranges[i] = ray.norm();
+      directions.col(i) = (ray / ranges[i]).cast<float>();
+    }
+    std::vector<int> beams, closest;
+    std::vector<float> sq_aside, sq_distances;
+    search_->search(directions, kBeams, beams, sq_aside);
+    surface_->search(places, 1, closest, sq_distances);
+    std::vector<Meets> met(static_cast<std::size_t>(places.cols()), Meets::Unknown);
+    for (std::size_t i = 0; i < met.size(); ++i) {
+      bool meets = sq_distances[i] <= distance_ * distance_, all_pass = true;
+      for (std::size_t k = kBeams * i; k < kBeams * (i + 1); ++k) {
+        const double behind = ranges[static_cast<Eigen::Index>(i)] - ranges_[beams[k]];
+        const bool tells = sq_aside[k] <= sq_reach_;
+        meets |= tells && std::abs(behind) <= distance_;
+        all_pass &= tells && behind < -distance_;
+      }
+      met[i] = meets ? Meets::Surface : all_pass ? Meets::Nothing : Meets::Unknown;
+    }
+    return met;
+  }
+
+private:
+  Eigen::Vector3d viewpoint_;
+  double distance_;
+  Points directions_;
+  Eigen::VectorXd ranges_;
+  ClosestPointSearch::Ptr search_, surface_;
+  float sq_reach_ = 0.0f;
+};
+
+}  // namespace
+
+std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
+                                              const Eigen::Vector3d& viewpoint) {
+  const Rectangle box = bestRectangle(points, up.normalized());
+  const auto width = [&](std::size_t k) { return box.sides[k][1] - box.sides[k][0]; };
+  const std::size_t across = width(0) <= width(1) ? 0 : 1;
+  const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
+  const double reach = kBox.meets * diagonal;
+  if (!(width(across) > 2.0 * reach)) return std::nullopt;
+  SymmetryPlane plane(ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])));
+  Points reflected(3, points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    reflected.col(i) = plane.reflect(points.col(i).cast<double>()).cast<float>();
+  const std::vector<Beams::Meets> met = Beams(points, viewpoint, reach).at(reflected);
+  double num_moved = 0.0, num_met = 0.0, num_free = 0.0;
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    plane.point_support.push_back(met[i] == Beams::Meets::Surface ? 1.0f : 0.0f);
+    if (2.0 * std::abs(plane.signedDistance(points.col(static_cast<Eigen::Index>(i)).cast<double>())) <= reach)
+      continue;
+    num_moved += 1.0;
+    num_met += met[i] == Beams::Meets::Surface ? 1.0 : 0.0;
+    num_free += met[i] == Beams::Meets::Nothing ? 1.0 : 0.0;
+  }
+  if (!(num_met > 0.0)) return std::nullopt;
+  const auto num_near = std::count_if(box.distances.begin(), box.distances.end(),
+                                      [&](double distance) { return distance < kBox.near * width(across); });
+  const double near = static_cast<double>(num_near) / static_cast<double>(points.cols());
+  plane.confidence =
+      1.0 / (1.0 + std::exp(-(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(num_free / num_moved))));
+  plane.share = num_met / (num_met + num_free);
+  plane.share_low = num_met / num_moved;
+  plane.share_high = 1.0 - num_free / num_moved;
+  plane.support = num_met / num_moved;
+  plane.seen = (num_met + num_free) / num_moved;
+  plane.residual = std::sqrt(box.sq_error);
+  plane.converged = true;
+  return plane;
+}
+
+double spacingOf(const PointsRef& points) {
+  constexpr int kNeighbors = 8;
+  std::vector<int> closest;
+  std::vector<float> sq_distances, spacing;
+  makeFlannSearch(points)->search(points, kNeighbors + 1, closest, sq_distances);
+  // pi r^2 holds the neighbors within r.
+  for (std::size_t i = kNeighbors; i < sq_distances.size(); i += kNeighbors + 1)
+    spacing.push_back(std::sqrt(static_cast<float>(kPi) * sq_distances[i] / kNeighbors));
+  return median(std::move(spacing));
+}
+
+}  // namespace pcl_symmetry

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "pcl_symmetry/core/plane_types.h"
+#include "pcl_symmetry/core/point_set.h"
+
+namespace pcl_symmetry {
+
+/// Symmetry of what the rings of a spinning LiDAR show of a vehicle (not in the paper). Rings are no surface: few
+/// points have a counterpart, one or two sides are seen, and between two rings nothing was looked at. Straight sides
+/// and where they end tell more.
+///
+/// The upright box of least L-shape error is that whose sides the points are nearest to, seen from above: its angle is
+/// tried in steps of half a degree, its sides are quantiles of 1 and 99 %. The middle plane along its longer side is
+/// the candidate. Its confidence is a logistic function of the share of the points near a side, and of the share that
+/// it maps to where beams passed freely.
+/// \param points 3 x N, finite, N >= 20, of what stands on a ground.
+/// \param up normal of the ground.
+/// \param viewpoint of the scanner.
+/// \return with confidence, share, support, seen and the support of each point; nothing where the points do not resolve
+/// a box.
+std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
+                                              const Eigen::Vector3d& viewpoint);
+
+/// \return distance between neighboring points, median, input units.
+double spacingOf(const PointsRef& points);
+
+}  // namespace pcl_symmetry
