@@ -28,7 +28,8 @@ using namespace pcl_symmetry::apps;
 
 struct SceneToolOptions {
   std::optional<std::string> input, output, database_path, png_path, html_path, watched;
-  bool no_frames = false, no_completion = false;
+  bool no_frames = false, no_completion = false, no_separation = false;
+  std::optional<Eigen::Vector4d> ground;
   SceneOptions scene;
   CommonOptions common;
 };
@@ -47,6 +48,8 @@ CommandLine commandLine(SceneToolOptions& o) {
       .text("watch", "FOLDER", o.watched,
             "handles each .pcd or .ply that is written to this folder or moved there, one line of JSON each, until "
             "interrupted")
+      .plane("ground", o.ground,
+             "what the objects stand on, a x + b y + c z + d = 0, in place of supporting planes that are searched for")
       .number("max_range", o.scene.max_range, Range::atLeast(0),
               "points farther from the sensor are left out, input units; 0 = none is")
       .number("plane_distance", o.scene.plane_distance, Range::atLeast(0),
@@ -60,7 +63,7 @@ CommandLine commandLine(SceneToolOptions& o) {
               "with -database: least confidence of a name that is accepted")
       .number("min_confidence", o.scene.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
-      .flag("separate", o.scene.separate, "cuts objects that touch apart where their surface bends inwards")
+      .flag("no_separation", o.no_separation, "leaves objects that touch together")
       .flag("filter", o.scene.filter, "takes the errors of a depth camera out of organized frames first")
       .flag("no_frames", o.no_frames, "leaves the frames of the objects out")
       .flag("no_completion", o.no_completion, "leaves the completion of the objects out")
@@ -76,6 +79,7 @@ SymmetryScene makeScene(const SceneToolOptions& options) {
   used.num_threads = used.recognition.num_threads = options.common.threads;
   used.frames = !options.no_frames;
   used.complete = !options.no_completion;
+  used.separate = !options.no_separation;
   scene.setOptions(used);
   if (options.database_path) {
     checkReadableFile(*options.database_path);
@@ -95,8 +99,9 @@ InputShape loadFrame(const Console& console, const std::string& path, const Comm
 }
 
 SceneAnalysis analyse(const Console& console, SymmetryScene& scene, const InputShape& input,
-                      const CommonOptions& common) {
-  scene.setViewpoint(shifted(common.viewpoint, input.shift()));
+                      const SceneToolOptions& options) {
+  scene.setViewpoint(shifted(options.common.viewpoint, input.shift()));
+  if (options.ground) scene.setGround(shifted(*options.ground, input.shift()));
   scene.setInputCloud(input.points);
   Step searching(console, "Searching objects");
   SceneAnalysis found;
@@ -128,7 +133,7 @@ int watch(const SceneToolOptions& options) {
     try {
       namingFile(*path, [&] {
         const InputShape input = loadFrame(console, *path, options.common);
-        line = describeScene(input, analyse(console, scene, input, options.common));
+        line = describeScene(input, analyse(console, scene, input, options));
       });
     } catch (const InputError& error) {
       line = {{"file", *path}, {"error", error.what()}};
@@ -157,7 +162,7 @@ int run(int argc, char** argv) {
   const Console console(options.common.quiet);
   const InputShape input = loadFrame(console, *options.input, options.common);
   SymmetryScene searched = makeScene(options);
-  const SceneAnalysis scene = analyse(console, searched, input, options.common);
+  const SceneAnalysis scene = analyse(console, searched, input, options);
   const std::string table = tableOf(scene, input.shift());
   std::fputs(table.c_str(), stdout);
   if (options.common.json_path) writeText(*options.common.json_path, jsonText(describeScene(input, scene)) + "\n");
@@ -168,7 +173,7 @@ int run(int argc, char** argv) {
     drawScene(input, scene, *options.png_path);
     drawing.done();
   }
-  if (options.html_path) writePage(overview(input, scene), {*options.input, table}, *options.html_path);
+  if (options.html_path) writePage(selectableObjects(input, scene), {*options.input, table}, *options.html_path);
   return 0;
 }
 

@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <vector>
 
-#include "io/json_values.h"
-#include "io/exact_coordinates.h"
+#include "core/geometry/viewing_frame.h"
 #include "io/answer_words.h"
 #include "io/cloud_fields.h"
-#include "core/geometry/viewing_frame.h"
+#include "io/exact_coordinates.h"
+#include "io/json_values.h"
 
 namespace pcl_symmetry::apps {
 
@@ -86,6 +86,15 @@ std::string summaryOf(const SceneObject& object) {
   return text;
 }
 
+/// What an object was decided at, in words.
+std::string toleranceOf(const SceneObject& object) {
+  if (!(object.diameter > 0.0)) return "";
+  const auto share = [&](double length) { return 100.0 * length / object.diameter; };
+  std::string text = formatted("decided at %.1f %% of the diameter", share(object.tolerance));
+  if (object.resolution > 0.0) text += formatted(", the sensor resolves %.1f %%", share(object.resolution));
+  return text;
+}
+
 nlohmann::json describeFrame(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   nlohmann::json json{{"center", numbersOf(shiftedBack(frame.center, shift))}, {"axes", nlohmann::json::array()}};
   for (int k = 0; k < 3; ++k) json["axes"].push_back(numbersOf(frame.axes.col(k)));
@@ -96,11 +105,10 @@ nlohmann::json describeFrame(const SymmetryFrame& frame, const Eigen::Vector3d& 
 }
 
 nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& shift) {
-  nlohmann::json json{{"num_points", object.indices.size()},
-                      {"planes", nlohmann::json::array()},
-                      {"axes", nlohmann::json::array()},
-                      {"centers", nlohmann::json::array()},
-                      {"models", nlohmann::json::array()}};
+  nlohmann::json json{{"num_points", object.indices.size()}, {"planes", nlohmann::json::array()},
+                      {"axes", nlohmann::json::array()},     {"centers", nlohmann::json::array()},
+                      {"models", nlohmann::json::array()},   {"tolerance", object.tolerance},
+                      {"resolution", object.resolution},     {"diameter", object.diameter}};
   if (!object.reason.empty()) json["reason"] = object.reason;
   for (const SymmetryPlane& plane : object.planes)
     json["planes"].push_back({{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
@@ -128,6 +136,25 @@ nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& 
          {"merit", model.score.merit()},
          {"T_model_scene", rowMajor(shiftedBack(model.T_model_scan, shift, Eigen::Vector3d::Zero()))}});
   return json;
+}
+
+nlohmann::json describeJunction(const SceneJunction& junction) {
+  return {{"objects", {junction.first + 1, junction.second + 1}},
+          {"num_points", {junction.num_points[0], junction.num_points[1]}},
+          {"joined", junction.isJoined()},
+          {"together", junction.together},
+          {"apart", junction.apart}};
+}
+
+std::string summaryOf(const SceneJunction& junction) {
+  const std::string first = std::to_string(junction.first + 1),
+                    points = " of " + std::to_string(junction.num_points[0]) + " and " +
+                             std::to_string(junction.num_points[1]) + " points";
+  const std::string shares = formatted("one symmetry explains %.0f %% of both", 100.0 * junction.together) +
+                             formatted(", their own %.0f %%", 100.0 * junction.apart);
+  return (junction.isJoined() ? first + ": joined from pieces" + points
+                              : first + " and " + std::to_string(junction.second + 1) + " touch") +
+         ": " + shares + "\n";
 }
 
 /// Of each point of the scene its object, from 1 on; -1 for those of supporting planes, 0 for others.
@@ -200,6 +227,7 @@ std::string tableOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift) {
     if (object.completed_by) text += ", " + counted(object.added.size(), "point") + " added";
     text += "\n";
   }
+  for (const SceneJunction& junction : scene.junctions) text += summaryOf(junction);
   return text;
 }
 
@@ -211,6 +239,7 @@ nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene
                       {"cluster_distance", scene.cluster_distance},
                       {"supports", nlohmann::json::array()},
                       {"objects", nlohmann::json::array()},
+                      {"junctions", nlohmann::json::array()},
                       {"timing_ms", timingJson(scene.timing_ms)}};
   if (scene.seen->visibility())
     json["viewpoint"]["position"] = numbersOf(shiftedBack(scene.seen->visibility()->viewpoint(), input.shift()));
@@ -220,6 +249,7 @@ nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene
                                 {"num_points", support.indices.size()}});
   }
   for (const SceneObject& object : scene.objects) json["objects"].push_back(describeObject(object, input.shift()));
+  for (const SceneJunction& junction : scene.junctions) json["junctions"].push_back(describeJunction(junction));
   return json;
 }
 
@@ -265,6 +295,21 @@ PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
   picture.points = points;
   picture.panels = {panel};
   lookFromSensor(picture, scene, middle);
+  return picture;
+}
+
+PictureScene selectableObjects(const InputShape& input, const SceneAnalysis& scene) {
+  PictureScene picture = overview(input, scene);
+  const std::vector<int> all = picture.panels.front().segments;
+  for (std::size_t k = 0; k < scene.objects.size() && k < kMostPanels; ++k) {
+    PicturePanel panel;
+    for (const int segment : all) panel.segments.push_back(segment == static_cast<int>(k) ? segment : -1);
+    markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
+                 segmentColor(static_cast<int>(k)));
+    panel.label = std::to_string(k + 1) + ": " + summaryOf(scene.objects[k]);
+    if (const std::string decided = toleranceOf(scene.objects[k]); !decided.empty()) panel.label += "; " + decided;
+    picture.panels.push_back(std::move(panel));
+  }
   return picture;
 }
 

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "pictures/picture.h"
 #include "io/input_shape.h"
 #include "pcl_symmetry/symmetry_scene.h"
+#include "pictures/picture.h"
 
 namespace pcl_symmetry::apps {
 
@@ -22,6 +22,9 @@ pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis&
 
 /// The scene from where the sensor stood, each object in a colour of its own with its plane or axis.
 PictureScene overview(const InputShape& input, const SceneAnalysis& scene);
+
+/// The same, and the first objects one by one, each with its planes and axes and what it was decided at.
+PictureScene selectableObjects(const InputShape& input, const SceneAnalysis& scene);
 
 /// The overview, and each object with what its symmetry adds.
 void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path);

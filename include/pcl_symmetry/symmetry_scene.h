@@ -5,6 +5,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -34,9 +35,8 @@ struct SceneOptions {
   double max_range = 0.0;
   /// Points of a cluster that are analysed, >= 100: time grows with them; half makes weak planes less certain.
   int max_points = 5'000;
-  /// Cuts objects that touch apart where their surface bends inwards. In coarse frames, faces that are seen at a slant
-  /// may come off, too.
-  bool separate = false;
+  /// Cuts objects that touch apart where their surface bends inwards, and joins pieces that one symmetry explains.
+  bool separate = true;
   /// Takes the errors of depth cameras out of organized frames, see withoutDepthErrors(): smoother completions, but the
   /// planes of boxes, whose edges it rounds, are decided less often.
   bool filter = false;
@@ -66,6 +66,9 @@ struct SceneObject {
   std::vector<SymmetryPlane> planes;    ///< as in Detection, frame of the scene
   std::vector<SymmetryAxis> axes;       ///< as in Detection
   std::vector<SymmetryCenter> centers;  ///< as in Detection
+  double tolerance = 0.0;               ///< that was decided at, input units
+  double resolution = 0.0;              ///< least tolerance that the sensor resolves, input units; 0 = not known
+  double diameter = 0.0;                ///< greatest distance between two points, input units
   std::optional<SymmetryFrame> frame;   ///< nothing without SceneOptions::frames
   /// The plane that the object was completed by: the best one, or through the axis and across the view. Nothing where
   /// no plane decides.
@@ -74,11 +77,26 @@ struct SceneObject {
   Recognition models;                    ///< best first; empty without a database, and where the object is unknown
 };
 
+/// Two pieces that touch, cut apart where the surface bends inwards, and what symmetry says of them: one object where
+/// one symmetry explains both.
+struct SceneJunction {
+  /// Objects that they belong to, indices into SceneAnalysis::objects; one object where symmetry joined the pieces.
+  std::size_t first = 0, second = 0;
+  std::array<std::size_t, 2> num_points{};  ///< of the pieces
+  /// Share of their points that the best symmetry of both maps onto them, in [0, 1], of those that land where the
+  /// sensor saw; 0 where there is none.
+  double together = 0.0;
+  double apart = 0.0;  ///< the same, each piece by its own symmetries; a piece without one adds nothing
+
+  bool isJoined() const { return first == second; }  ///< by symmetry
+};
+
 /// What SymmetryScene found.
 struct SceneAnalysis {
   SeenSpace::ConstPtr seen;                               ///< what the sensor saw, for further analyses
   std::vector<SupportingPlane> supports;                  ///< tables, floors and walls, as they were found
   std::vector<SceneObject> objects;                       ///< most points first
+  std::vector<SceneJunction> junctions;                   ///< with SceneOptions::separate
   double plane_distance = 0.0;                            ///< that was used, input units
   double cluster_distance = 0.0;                          ///< that was used, input units
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
@@ -97,7 +115,8 @@ pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointClou
 /// Finds the objects of a scene and their symmetries.
 ///
 /// Supporting planes are found by PCL's sample consensus and left out; the rest falls into clusters by PCL's Euclidean
-/// clustering, with distances that follow from the points. What
+/// clustering, with distances that follow from the points. Objects that touch are cut apart where the surface bends
+/// inwards (PCL's supervoxels and locally convex patches); pieces that one symmetry explains are joined again. What
 /// the sensor saw is made once of the whole scene (SeenSpace), so that an object in front does not count as seen empty
 /// space beside the one behind it. Space behind a supporting plane counts as free of the objects before it
 /// (SeenSpace::withSupport()).
@@ -115,8 +134,14 @@ public:
   void setOptions(const SceneOptions& options);
   const SceneOptions& getOptions() const { return options_; }  ///< see setOptions()
 
-  /// Where the sensor stood; by default the data decide, see SeenSpace.
+  /// Where the sensor stood; by default the rays of an organized cloud, or else its sensor_origin_, which may be in the
+  /// middle of the scene, as that of a spinning LiDAR.
   void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
+
+  /// The plane that objects stand on, a x + b y + c z + d = 0 in the frame of the scene, in place of supporting planes
+  /// that are searched for: points within SceneOptions::plane_distance belong to it.
+  /// \throws pcl::BadArgumentException for a zero normal or a value that is not finite.
+  void setGround(const Eigen::Vector4d& coefficients);
 
   /// Names objects by the models that they show. Null (default): objects have no names.
   void setDatabase(const std::shared_ptr<const SymmetryDatabase>& database) { database_ = database; }
@@ -138,6 +163,7 @@ public:
 private:
   SceneOptions options_;
   Viewpoint viewpoint_;
+  std::optional<Eigen::Vector4d> ground_;
   std::shared_ptr<const SymmetryDatabase> database_;
   Cloud::ConstPtr input_;
 };

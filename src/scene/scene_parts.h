@@ -44,6 +44,13 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
 std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
                                           const std::optional<Eigen::Vector3d>& viewpoint, double distance);
 
+/// A supporting plane that is known.
+/// \param plane unit normal of any sign; its side is that of the viewpoint, or else that of most points.
+/// \param distance of points that belong to it, > 0.
+SupportingPlane supportOf(const SymmetryScene::Cloud& scene, const pcl::Indices& points,
+                          const std::optional<Eigen::Vector3d>& viewpoint, const Eigen::Vector4d& plane,
+                          double distance);
+
 /// \return those of the points that belong to no support.
 pcl::Indices withoutSupports(const pcl::Indices& points, const std::vector<SupportingPlane>& supports,
                              std::size_t scene_size);

@@ -13,6 +13,7 @@
 #include "scene/object_feet.h"
 #include "scene/scene_parts.h"
 #include "scene/support_bulge.h"
+#include "scene/symmetric_joining.h"
 
 namespace pcl_symmetry {
 
@@ -32,6 +33,20 @@ pcl::Indices nearPoints(const Cloud& scene, const std::optional<Eigen::Vector3d>
   return points;
 }
 
+/// What the sensor of a frame saw. A frame was seen from its viewpoint by definition: where rows and columns do not
+/// show one, and none is given, it is the one that is stored with the frame, also amid the points.
+SeenSpace::ConstPtr seenSpaceOf(const Cloud& frame, const Viewpoint& viewpoint) {
+  if (viewpoint.mode == Viewpoint::Mode::Auto) {
+    const Viewpoint stored{Viewpoint::Mode::Given, frame.sensor_origin_.head<3>().cast<double>()};
+    const bool has_points = std::any_of(frame.begin(), frame.end(), [&](const pcl::PointXYZ& point) {
+      return pcl::isXYZFinite(point) && point.getVector3fMap() != frame.sensor_origin_.head<3>();
+    });
+    if (!frame.isOrganized() && has_points)
+      return std::make_shared<const SeenSpace>(*SeenSpace(frame, stored).visibility(), ViewpointSource::Stored);
+  }
+  return std::make_shared<const SeenSpace>(frame, viewpoint);
+}
+
 /// The plane that shows most of the far side of an object.
 std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const Visibility* seen) {
   const bool has_plane = !object.planes.empty() && object.planes.front().kind == PlaneKind::Symmetry;
@@ -45,105 +60,116 @@ std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const 
   return object.planes.front();
 }
 
-/// Of one object.
+/// Of single objects.
 class ObjectAnalysis {
 public:
   /// \param found has what the sensor saw and the supporting planes.
   /// \param spacing of the points, input units.
-  ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, double spacing, const SceneOptions& options,
+  ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, double spacing, SceneOptions options,
                  const SymmetryDatabase* database)
-      : scene_(scene), found_(found), spacing_(spacing), options_(options), database_(database) {}
+      : scene_(scene), found_(found), spacing_(spacing), options_(std::move(options)), database_(database) {}
 
-  SceneObject analyse(const pcl::Indices& cluster) {
-    seen_ = std::make_shared<const SeenSpace>(
-        detail::seenOfObject(*found_.seen, *scene_, found_.supports, cluster,
-                             {spacing_, found_.plane_distance, found_.cluster_distance}, options_.detection.tolerance));
+  SeenSpace seenOf(const pcl::Indices& object) const {
+    return detail::seenOfObject(*found_.seen, *scene_, found_.supports, object,
+                                {spacing_, found_.plane_distance, found_.cluster_distance},
+                                options_.detection.tolerance);
+  }
+
+  SceneObject withPlanes(const pcl::Indices& indices) const {
     SceneObject object;
-    object.indices = cluster;
-    findPlanes(object);
-    if (!object.reason.empty()) return object;
-    if (options_.frames) findFrame(object);
-    if (options_.complete) complete(object);
-    if (database_) object.models = database_->recognize(*scene_, cluster, options_.recognition, seen_);
+    object.indices = indices;
+    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+    refinement.setOptions(options_.detection);
+    prepare(refinement, object, std::make_shared<const SeenSpace>(seenOf(indices)));
+    object.planes = refinement.compute();
+    object.axes = refinement.getAxes();
+    object.centers = refinement.getCenters();
+    object.tolerance = refinement.getUsedTolerance();
+    object.resolution = refinement.getResolution();
+    object.diameter = refinement.getDiameter();
+    object.reason = refinement.getReason();
     return object;
+  }
+
+  /// Adds what follows from the planes.
+  void finish(SceneObject& object) const {
+    if (!object.reason.empty()) return;
+    const auto seen = std::make_shared<const SeenSpace>(seenOf(object.indices));
+    if (options_.frames) findFrame(object, seen);
+    if (options_.complete) complete(object, *seen);
+    if (database_) object.models = database_->recognize(*scene_, object.indices, options_.recognition, seen);
   }
 
 private:
   template <typename Analysis>
-  void prepare(Analysis& analysis, const SceneObject& object) const {
+  void prepare(Analysis& analysis, const SceneObject& object, const SeenSpace::ConstPtr& seen) const {
     analysis.setNumberOfThreads(options_.num_threads);
     analysis.setMaxPoints(static_cast<std::size_t>(options_.max_points));
     analysis.setInputCloud(scene_);
     analysis.setIndices(pcl::make_shared<pcl::Indices>(object.indices));
-    analysis.setSeenSpace(seen_);
+    analysis.setSeenSpace(seen);
   }
 
-  void findPlanes(SceneObject& object) const {
-    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-    refinement.setOptions(options_.detection);
-    prepare(refinement, object);
-    object.planes = refinement.compute();
-    object.axes = refinement.getAxes();
-    object.centers = refinement.getCenters();
-    object.reason = refinement.getReason();
-  }
-
-  void findFrame(SceneObject& object) const {
+  void findFrame(SceneObject& object, const SeenSpace::ConstPtr& seen) const {
     SymmetryAlignment<pcl::PointXYZ> alignment;
     FrameOptions options = options_.frame;
     options.turns = false;
     alignment.setOptions(options);
-    prepare(alignment, object);
+    prepare(alignment, object, seen);
     SymmetryFrame frame = alignment.compute();
     if (!frame.equivalent.empty()) object.frame = std::move(frame);
   }
 
-  void complete(SceneObject& object) const {
-    object.completed_by = completingPlane(object, seen_->visibility());
+  void complete(SceneObject& object, const SeenSpace& seen) const {
+    object.completed_by = completingPlane(object, seen.visibility());
     if (!object.completed_by) return;
     const Cloud cluster(*scene_, object.indices);
     const CompletedCloud<pcl::PointXYZ> completed =
-        completeBySymmetry(cluster, *object.completed_by, options_.completion, *seen_);
+        completeBySymmetry(cluster, *object.completed_by, options_.completion, seen);
     pcl::copyPointCloud(completed.cloud, completed.added, object.added);
   }
 
   const Cloud::ConstPtr& scene_;
   const SceneAnalysis& found_;
-  SeenSpace::ConstPtr seen_;  // for the object
   const double spacing_;
-  const SceneOptions& options_;
+  const SceneOptions options_;
   const SymmetryDatabase* database_;
 };
 
-/// \return clusters whose objects do not touch, most points first.
-std::vector<pcl::Indices> separated(const Cloud& scene, const std::vector<pcl::Indices>& clusters, double spacing,
-                                    int min_points) {
-  std::vector<pcl::Indices> all;
-  for (const pcl::Indices& cluster : clusters)
-    for (pcl::Indices& piece : detail::convexPieces(scene, cluster, spacing))
-      if (piece.size() >= static_cast<std::size_t>(min_points)) all.push_back(std::move(piece));
+/// Pieces of clusters.
+struct Pieces {
+  std::vector<pcl::Indices> indices;  // most points first
+  std::vector<int> cluster_of;
+};
+
+Pieces piecesOf(const Cloud& scene, const std::vector<pcl::Indices>& clusters,
+                const std::optional<Eigen::Vector3d>& viewpoint, double spacing, const SceneOptions& options) {
+  std::vector<std::pair<pcl::Indices, int>> all;
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    if (!options.separate || !viewpoint) {
+      all.emplace_back(clusters[k], static_cast<int>(k));
+      continue;
+    }
+    for (pcl::Indices& piece : detail::convexPieces(scene, clusters[k], *viewpoint, spacing))
+      if (piece.size() >= static_cast<std::size_t>(options.min_points))
+        all.emplace_back(std::move(piece), static_cast<int>(k));
+  }
   std::stable_sort(all.begin(), all.end(),
-                   [](const pcl::Indices& a, const pcl::Indices& b) { return a.size() > b.size(); });
-  return all;
+                   [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
+  Pieces pieces;
+  for (auto& [indices, cluster] : all) {
+    pieces.indices.push_back(std::move(indices));
+    pieces.cluster_of.push_back(cluster);
+  }
+  return pieces;
 }
 
-/// \param spacing of the points, input units.
-/// \return the objects of the clusters, in their order. Where there are no fewer clusters than threads, each has one.
-std::vector<SceneObject> analyseObjects(const Cloud::ConstPtr& scene, const std::vector<pcl::Indices>& clusters,
-                                        const SceneAnalysis& found, double spacing, const SceneOptions& options,
-                                        const SymmetryDatabase* database) {
-  SceneOptions of_object = options;
-  int num_at_once = 1;
-  if (const int num_threads = resolveNumThreads(options.num_threads);
-      clusters.size() >= static_cast<std::size_t>(num_threads)) {
-    num_at_once = num_threads;
-    of_object.num_threads = of_object.recognition.num_threads = 1;
-  }
-  std::vector<SceneObject> objects(clusters.size());
-  parallelBlocks(clusters.size(), num_at_once, [&](std::size_t k) {
-    objects[k] = ObjectAnalysis(scene, found, spacing, of_object, database).analyse(clusters[k]);
-  });
-  return objects;
+/// Options for one of several objects: where there are no fewer objects than threads, each has one.
+SceneOptions ofOneObject(const SceneOptions& options, std::size_t num_objects) {
+  SceneOptions of_one = options;
+  if (num_objects >= static_cast<std::size_t>(resolveNumThreads(options.num_threads)))
+    of_one.num_threads = of_one.recognition.num_threads = 1;
+  return of_one;
 }
 
 }  // namespace
@@ -165,19 +191,23 @@ void SymmetryScene::setOptions(const SceneOptions& options) {
   detail::changeOptions(options_, [&](SceneOptions& changed) { changed = options; });
 }
 
+void SymmetryScene::setGround(const Eigen::Vector4d& coefficients) {
+  ground_ = detail::unitPlane(coefficients);
+}
+
 SceneAnalysis SymmetryScene::compute() const {
   SceneAnalysis analysis;
   Stopwatch watch;
   const auto timed = [&](const char* stage) { analysis.timing_ms.emplace_back(stage, watch.lap()); };
   Cloud::ConstPtr frame = input_;
-  if (frame) analysis.seen = std::make_shared<const SeenSpace>(*frame, viewpoint_);
+  if (frame) analysis.seen = seenSpaceOf(*frame, viewpoint_);
   const double seen_ms = watch.lap();
   // What the database reads is ready when the clusters are: planes are searched for by one thread.
   std::future<void> prepared;
   if (database_ && analysis.seen && analysis.seen->visibility() && resolveNumThreads(options_.num_threads) > 1)
     prepared = std::async(std::launch::async, [&] { database_->prepare(); });
   if (frame && options_.filter) frame = withoutDepthErrors(frame, *analysis.seen, options_.num_threads);
-  if (frame != input_) analysis.seen = std::make_shared<const SeenSpace>(*frame, viewpoint_);
+  if (frame != input_) analysis.seen = seenSpaceOf(*frame, viewpoint_);
   std::optional<Eigen::Vector3d> viewpoint;
   if (analysis.seen && analysis.seen->visibility()) viewpoint = analysis.seen->visibility()->viewpoint();
   const pcl::Indices points = frame ? nearPoints(*frame, viewpoint, options_.max_range) : pcl::Indices();
@@ -194,23 +224,45 @@ SceneAnalysis SymmetryScene::compute() const {
     detail::warnOfNoAnswer("SymmetryScene", "scene: all points at one place");
     return analysis;
   }
-  analysis.supports = detail::findSupports(frame, points, viewpoint, analysis.plane_distance);
+  if (ground_)
+    analysis.supports = {detail::supportOf(*frame, points, viewpoint, *ground_, analysis.plane_distance)};
+  else
+    analysis.supports = detail::findSupports(frame, points, viewpoint, analysis.plane_distance);
   timed("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
-  std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
-                                                            analysis.cluster_distance, options_.min_points);
-  if (options_.separate) clusters = separated(*frame, clusters, distances.spacing, options_.min_points);
-  detail::returnFeet(frame, analysis.supports, clusters, distances.spacing, analysis.cluster_distance);
-  const auto is_bulge = [&](const pcl::Indices& cluster) {
-    return detail::isBulge(*frame, cluster, analysis.supports, options_.detection.tolerance, analysis.cluster_distance);
-  };
-  clusters.erase(std::remove_if(clusters.begin(), clusters.end(), is_bulge), clusters.end());
+  Pieces pieces = piecesOf(*frame,
+                           detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
+                                                analysis.cluster_distance, options_.min_points),
+                           viewpoint, distances.spacing, options_);
+  detail::returnFeet(frame, analysis.supports, pieces.indices, distances.spacing, analysis.cluster_distance);
+  for (std::size_t k = pieces.indices.size(); k-- > 0;) {
+    if (!detail::isBulge(*frame, pieces.indices[k], analysis.supports, options_.detection.tolerance,
+                         analysis.cluster_distance))
+      continue;
+    pieces.indices.erase(pieces.indices.begin() + static_cast<std::ptrdiff_t>(k));
+    pieces.cluster_of.erase(pieces.cluster_of.begin() + static_cast<std::ptrdiff_t>(k));
+  }
   timed("clusters");
-  if (database_ && !clusters.empty() && viewpoint) {
+  const auto of = [&](std::size_t num_objects) {
+    return ObjectAnalysis(frame, analysis, distances.spacing, ofOneObject(options_, num_objects), database_.get());
+  };
+  detail::JoinedPieces joined = detail::joinBySymmetry(
+      {frame, analysis.supports, distances.spacing, analysis.plane_distance, analysis.cluster_distance,
+       options_.detection.tolerance, options_.num_threads,
+       [&](const pcl::Indices& object) { return of(1).seenOf(object); },
+       [&](const pcl::Indices& object, std::size_t num_objects) { return of(num_objects).withPlanes(object); }},
+      pieces.indices, pieces.cluster_of);
+  analysis.objects = std::move(joined.objects);
+  analysis.junctions = std::move(joined.junctions);
+  timed("planes");
+  if (database_ && !analysis.objects.empty() && viewpoint) {
     prepared.valid() ? prepared.get() : database_->prepare();
     timed("database");
   }
-  analysis.objects = analyseObjects(frame, clusters, analysis, distances.spacing, options_, database_.get());
+  const std::size_t num_objects = analysis.objects.size();
+  const bool one_each = num_objects >= static_cast<std::size_t>(resolveNumThreads(options_.num_threads));
+  parallelBlocks(num_objects, one_each ? options_.num_threads : 1,
+                 [&](std::size_t k) { of(num_objects).finish(analysis.objects[k]); });
   timed("objects");
   return analysis;
 }

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <set>
 
+#include "core/geometry/viewing_frame.h"
 #include "pcl/error_message.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -19,6 +21,10 @@ namespace pcl_symmetry {
 namespace {
 
 using Cloud = SymmetryScene::Cloud;
+
+double sq(double x) {
+  return x * x;
+}
 
 Cloud::Ptr pictureOf(const test::Scan& scan) {
   auto cloud = pcl::make_shared<Cloud>(scan.width, scan.height);
@@ -100,7 +106,7 @@ TEST(SymmetryScene, ObjectsStandOnTheTableWithTheirFeet) {
       std::count_if(scene.supports[0].indices.begin(), scene.supports[0].indices.end(), [&](pcl::index_t i) {
         return twoBoxes().ids[static_cast<std::size_t>(i)] != 0 && (*cloud)[i].z > 0.25 * scene.plane_distance;
       });
-  EXPECT_LE(num_feet, 5) << "single pixels on the sides of the boxes, far from their other points";
+  EXPECT_LE(num_feet, 8) << "single pixels on the sides of the boxes, far from their other points";
   for (const SceneObject& object : scene.objects) {
     float lowest = 1.0f;
     for (const pcl::index_t i : object.indices) lowest = std::min(lowest, (*cloud)[i].z);
@@ -297,6 +303,214 @@ TEST(SymmetryScene, ALargeBoxIsNoTable) {
   const SceneAnalysis scene = analysed(pictureOf(box));
   ASSERT_EQ(scene.objects.size(), 1u);
   EXPECT_GT(scene.objects[0].indices.size(), 0.9 * static_cast<double>(box.cloud().cols()));
+}
+
+/// Distance along a ray to where it meets a body, in lengths of the direction; infinite where it does not.
+using Body = std::function<double(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction)>;
+
+Body block(const Eigen::Vector3d& center, const Eigen::Vector3d& half, double turn = 0.0) {
+  return [=](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+    const Eigen::AngleAxisd back(-turn, Eigen::Vector3d::UnitZ());
+    return test::Block{Eigen::Vector3d::Zero(), half}.hit(back * (origin - center), back * direction);
+  };
+}
+
+/// Upright, from z = low to z = high.
+Body cylinder(const Eigen::Vector2d& axis, double radius, double low, double high) {
+  return [=](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+    const Eigen::Vector2d from = origin.head<2>() - axis, along = direction.head<2>();
+    const double a = along.squaredNorm(), b = from.dot(along), root = b * b - a * (from.squaredNorm() - sq(radius));
+    const double wall = root >= 0.0 ? (-b - std::sqrt(root)) / a : std::numeric_limits<double>::infinity();
+    const double z = origin.z() + wall * direction.z();
+    if (wall > 0.0 && z >= low && z <= high) return wall;
+    const double lid = (high - origin.z()) / direction.z();
+    return lid > 0.0 && (from + lid * along).norm() <= radius ? lid : std::numeric_limits<double>::infinity();
+  };
+}
+
+/// A frame of a camera that looks at bodies on a table, and the body that each pixel shows; -1: the table, or none.
+struct Frame {
+  Cloud::Ptr cloud = pcl::make_shared<Cloud>(640, 480);
+  std::vector<int> ids;
+
+  explicit Frame(const std::vector<Body>& bodies) : ids(cloud->size(), -1) {
+    const Eigen::Vector3d origin(0.25, -0.75, 0.6);
+    const Eigen::Matrix3d R_scene_camera =
+        viewingFrame((Eigen::Vector3d(0.0, 0.0, 0.05) - origin).normalized()).transpose();
+    for (std::size_t i = 0; i < cloud->size(); ++i) {
+      const Eigen::Vector3d pixel(static_cast<double>(i % 640) - 319.5, static_cast<double>(i / 640) - 239.5, 700.0);
+      const Eigen::Vector3d direction = R_scene_camera * pixel;
+      double nearest = -origin.z() / direction.z();  // of the table, z = 0
+      const Eigen::Vector2d on_table = (origin + nearest * direction).head<2>();
+      if (!(nearest > 0.0) || on_table.norm() > 0.6) nearest = std::numeric_limits<double>::quiet_NaN();
+      for (std::size_t k = 0; k < bodies.size(); ++k) {
+        const double hit = bodies[k](origin, direction);
+        if (!std::isfinite(hit) || hit >= nearest) continue;
+        nearest = hit;
+        ids[i] = static_cast<int>(k);
+      }
+      (*cloud)[i].getVector3fMap() = (origin + nearest * direction).cast<float>();
+    }
+    cloud->is_dense = false;
+  }
+
+  /// Body of most of the points of an object, and the share of it.
+  std::pair<int, double> bodyOf(const SceneObject& object, std::size_t num_bodies) const {
+    std::vector<double> counts(num_bodies, 0.0);
+    for (const pcl::index_t i : object.indices)
+      if (ids[static_cast<std::size_t>(i)] >= 0)
+        counts[static_cast<std::size_t>(ids[static_cast<std::size_t>(i)])] += 1;
+    const auto most = std::max_element(counts.begin(), counts.end());
+    return {static_cast<int>(most - counts.begin()), *most / static_cast<double>(object.indices.size())};
+  }
+};
+
+void expectOneObjectEach(const std::vector<Body>& bodies) {
+  const Frame frame(bodies);
+  const SceneAnalysis scene = analysed(frame.cloud);
+  ASSERT_EQ(scene.objects.size(), bodies.size());
+  std::set<int> found;
+  for (const SceneObject& object : scene.objects) {
+    const auto [body, share] = frame.bodyOf(object, bodies.size());
+    EXPECT_GT(share, 0.95);
+    found.insert(body);
+  }
+  EXPECT_EQ(found.size(), bodies.size());
+  ASSERT_EQ(scene.junctions.size(), bodies.size() - 1);
+  for (const SceneJunction& junction : scene.junctions) {
+    EXPECT_FALSE(junction.isJoined());
+    EXPECT_LT(std::max(junction.first, junction.second), scene.objects.size());
+    EXPECT_GE(junction.apart, 0.0);
+    EXPECT_LE(junction.together, 1.0);
+  }
+}
+
+TEST(SymmetryScene, ABoxBesideABoxAreTwo) {
+  expectOneObjectEach({block({-0.1, 0.0, 0.1}, {0.1, 0.06, 0.1}), block({0.08, -0.02, 0.05}, {0.08, 0.1, 0.05})});
+}
+
+TEST(SymmetryScene, AStackAreTwo) {
+  expectOneObjectEach(
+      {block({0.0, 0.0, 0.05}, {0.15, 0.12, 0.05}), block({0.01, 0.02, 0.15}, {0.08, 0.06, 0.05}, 0.4)});
+}
+
+TEST(SymmetryScene, ABoxBeforeACylinderAreTwo) {
+  expectOneObjectEach({cylinder({0.0, 0.1}, 0.07, 0.0, 0.2), block({0.0, -0.03, 0.05}, {0.1, 0.06, 0.05})});
+}
+
+TEST(SymmetryScene, AMugAndItsHandleAreOne) {
+  const Frame frame({cylinder({0.0, 0.0}, 0.08, 0.0, 0.2), block({0.12, -0.04, 0.11}, {0.06, 0.012, 0.06}, -0.3)});
+  const SceneAnalysis scene = analysed(frame.cloud);
+  ASSERT_EQ(scene.objects.size(), 1u);
+  ASSERT_EQ(scene.junctions.size(), 1u) << "convexity cuts the handle off";
+  EXPECT_TRUE(scene.junctions[0].isJoined());
+  EXPECT_GT(scene.junctions[0].together, 0.9);
+  ASSERT_FALSE(scene.objects[0].planes.empty());
+  EXPECT_EQ(scene.objects[0].planes[0].kind, PlaneKind::Symmetry) << "through the handle";
+  EXPECT_TRUE(scene.objects[0].axes.empty());
+}
+
+TEST(SymmetryScene, TheInsideOfABowlIsOne) {
+  // A cone that opens upwards: its inside bends inwards everywhere.
+  const Body bowl = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+    double nearest = std::numeric_limits<double>::infinity();
+    // (x^2 + y^2) = (0.05 + z / 2)^2 from z = 0 to z = 0.16; the side towards the camera first.
+    const double u = 0.05 + 0.5 * origin.z(), w = 0.5 * direction.z();
+    const double a = direction.head<2>().squaredNorm() - w * w, b = origin.head<2>().dot(direction.head<2>()) - u * w;
+    const double root = b * b - a * (origin.head<2>().squaredNorm() - u * u);
+    if (root < 0.0) return nearest;
+    for (const double hit : {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a}) {
+      const double z = origin.z() + hit * direction.z();
+      if (hit > 0.0 && z >= 0.0 && z <= 0.16) nearest = std::min(nearest, hit);
+    }
+    return nearest;
+  };
+  const Frame frame({bowl});
+  for (const SceneObject& object : analysed(frame.cloud).objects)
+    EXPECT_GT(object.indices.size(), 5000u) << "in a piece";
+}
+
+TEST(SymmetryScene, KnowsTheGroundThatIsGiven) {
+  SymmetryScene scene;
+  SceneOptions options;
+  options.max_points = 1000;
+  options.frames = false;
+  scene.setOptions(options);
+  scene.setInputCloud(pictureOf(twoBoxes().scan));
+  scene.setGround({0.0, 0.0, -2.0, 0.0});
+  const SceneAnalysis found = scene.compute();
+  ASSERT_EQ(found.supports.size(), 1u);
+  EXPECT_EQ(found.supports[0].coefficients, Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)) << "towards the viewer";
+  EXPECT_EQ(found.objects.size(), 2u);
+  EXPECT_EQ(test::messageOf([&] { scene.setGround(Eigen::Vector4d(0.0, 0.0, 0.0, 1.0)); }),
+            "ground: must be four finite numbers A,B,C,D, not all of A, B, C zero");
+}
+
+/// What the rings of a LiDAR at 0 0 0 see of vehicles around it, and of the ground 1.7 m below.
+Cloud::Ptr sweep(const std::vector<Body>& bodies) {
+  auto cloud = pcl::make_shared<Cloud>();
+  RandomStream random(7);
+  for (int ring = 0; ring < 64; ++ring)
+    for (int column = 0; column < 1800; ++column) {
+      const double fall = M_PI / 180.0 * (-24.8 + 26.8 * ring / 63.0), turn = M_PI * column / 900.0;
+      const Eigen::Vector3d ray(std::cos(fall) * std::cos(turn), std::cos(fall) * std::sin(turn), std::sin(fall));
+      double nearest = ray.z() < 0.0 ? -1.7 / ray.z() : std::numeric_limits<double>::infinity();
+      for (const Body& body : bodies) nearest = std::min(nearest, body(Eigen::Vector3d::Zero(), ray));
+      if (!(nearest < 60.0)) continue;
+      nearest += 0.02 * (random.uniform() + random.uniform() + random.uniform() - 1.5);
+      cloud->emplace_back(nearest * ray.x(), nearest * ray.y(), nearest * ray.z());
+    }
+  return cloud;
+}
+
+/// A box with a cabin behind its middle, in meters.
+std::vector<Body> vehicle(double x, double y, double turn) {
+  const Eigen::Vector3d back(-0.7 * std::cos(turn), -0.7 * std::sin(turn), 0.0);
+  return {block({x, y, -1.15}, {2.2, 0.9, 0.4}, turn),
+          block(Eigen::Vector3d(x, y, -0.5) + back, {1.2, 0.8, 0.25}, turn)};
+}
+
+TEST(SymmetryScene, FindsVehiclesAroundALidar) {
+  std::vector<Body> bodies;
+  const std::vector<std::array<double, 3>> poses{{9.0, 3.0, -0.6}, {-9.0, 6.0, 0.3}, {2.0, -12.0, -0.5}};
+  for (const auto& [x, y, turn] : poses)
+    for (const Body& part : vehicle(x, y, turn)) bodies.push_back(part);
+  SymmetryScene searched;
+  SceneOptions options;
+  options.frames = options.complete = false;
+  searched.setOptions(options);
+  searched.setInputCloud(sweep(bodies));
+  const SceneAnalysis scene = searched.compute();
+  EXPECT_EQ(scene.seen->source(), ViewpointSource::Stored) << "amid the points";
+  ASSERT_GE(scene.supports.size(), 1u);
+  EXPECT_GT(scene.supports[0].coefficients[2], 0.99);
+  ASSERT_EQ(scene.objects.size(), poses.size());
+  for (const SceneObject& object : scene.objects) {
+    ASSERT_FALSE(object.planes.empty());
+    EXPECT_EQ(object.planes[0].kind, PlaneKind::Symmetry);
+    const bool is_right = std::any_of(poses.begin(), poses.end(), [&](const auto& pose) {
+      const Eigen::Vector3d across(-std::sin(pose[2]), std::cos(pose[2]), 0.0);
+      return std::abs(across.dot(object.planes[0].normal())) > std::cos(5.0 * M_PI / 180.0) &&
+             std::abs(object.planes[0].signedDistance({pose[0], pose[1], -1.2})) < 0.2;
+    });
+    EXPECT_TRUE(is_right) << object.planes[0].coefficients().transpose();
+  }
+}
+
+TEST(SymmetryMaximaRefinement, NeedsAGroundForTheBoxOfAVehicle) {
+  const Cloud::ConstPtr points = sweep(vehicle(12.0, 4.0, -0.3));
+  auto car = pcl::make_shared<Cloud>();
+  for (const pcl::PointXYZ& point : *points)
+    if (point.z > -1.5f) car->push_back(point);
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(car);
+  refinement.setViewpoint(Eigen::Vector3d::Zero());
+  refinement.setGround({0.0, 0.0, 1.0, 1.7});
+  const auto planes = refinement.compute();
+  ASSERT_EQ(planes.size(), 1u);
+  EXPECT_EQ(planes[0].kind, PlaneKind::Symmetry);
+  EXPECT_GT(std::abs(planes[0].normal().dot(Eigen::Vector3d(std::sin(0.3), std::cos(0.3), 0.0))), 0.99);
+  EXPECT_EQ(planes[0].point_support.size(), car->size());
 }
 
 TEST(SymmetryScene, DataWithoutAnswerGiveNoObject) {

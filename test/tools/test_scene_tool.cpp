@@ -13,9 +13,9 @@
 #include <thread>
 #include <vector>
 
-#include "tools/tool_run.h"
 #include "io/shape_input.h"
 #include "shapes/table.h"
+#include "tools/tool_run.h"
 
 namespace {
 
@@ -50,6 +50,7 @@ TEST_F(SceneTool, WritesWhatItFinds) {
   EXPECT_EQ(report["viewpoint"]["from"], "rays");
   ASSERT_EQ(report["supports"].size(), 1u);
   EXPECT_NEAR(report["supports"][0]["coefficients"][2].get<double>(), 1.0, 0.01);
+  EXPECT_TRUE(report["junctions"].empty()) << "the boxes do not touch";
   std::size_t num_added = 0;
   for (const nlohmann::json& object : report["objects"]) {
     EXPECT_EQ(object["frame"]["transform"].size(), 16u);
@@ -66,6 +67,8 @@ TEST_F(SceneTool, WritesWhatItFinds) {
   const std::string page = contentOf(folder_ / "page.html");
   EXPECT_NE(page.find("1 supporting plane, 2 objects"), std::string::npos);
   EXPECT_NE(page.find("</html>"), std::string::npos);
+  EXPECT_NE(page.find("2: "), std::string::npos) << "objects one by one";
+  EXPECT_NE(page.find("decided at 1.0 % of the diameter"), std::string::npos);
 }
 
 /// The tool as a program that runs beside the test.
@@ -104,6 +107,27 @@ bool comesToHold(const std::string& file, const Holds& holds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return false;
+}
+
+TEST_F(SceneTool, TellsWhatTouches) {
+  // A second box on the first one, turned by none but off its middle.
+  const test::Table stack({{0.0, 0.0, 0.0}, {-0.1, 0.33, 0.24}});
+  pcl::PointCloud<pcl::PointXYZ> cloud(stack.scan.width, stack.scan.height);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud[i].getVector3fMap() = stack.scan.pixels.col(static_cast<Eigen::Index>(i));
+  const std::string file = folder_ / "stack.pcd", report_file = folder_ / "stack.json";
+  pcl::io::savePCDFileBinary(file, cloud);
+  ASSERT_EQ(run(file + " -ground 0,0,1,0 -no_frames -max_points 1000 -json " + report_file), 0) << error_;
+  const nlohmann::json report = nlohmann::json::parse(contentOf(report_file));
+  EXPECT_EQ(report["supports"][0]["coefficients"], (std::vector<double>{0.0, 0.0, 1.0, 0.0}));
+  for (const nlohmann::json& junction : report["junctions"]) {
+    EXPECT_EQ(junction["joined"].get<bool>(), junction["objects"][0] == junction["objects"][1]);
+    EXPECT_NE(output_.find(" explains "), std::string::npos);
+  }
+  ASSERT_EQ(run(file + " -no_separation -no_frames -max_points 1000 -json " + report_file), 0) << error_;
+  const nlohmann::json together = nlohmann::json::parse(contentOf(report_file));
+  EXPECT_EQ(together["objects"].size(), 1u);
+  EXPECT_TRUE(together["junctions"].empty());
 }
 
 TEST_F(SceneTool, WatchesAFolder) {
@@ -167,6 +191,8 @@ TEST_F(SceneTool, RefusesWhatIsNoScene) {
   EXPECT_EQ(run(scene_ + " -database " + (folder_ / "none.db")), 1);
   EXPECT_NE(error_.find("none.db"), std::string::npos) << error_;
   EXPECT_EQ(run(scene_ + " -min_points 3"), 2);
+  EXPECT_EQ(run(scene_ + " -ground 0,0,1"), 2);
+  EXPECT_NE(error_.find("-ground = 0,0,1, must be four numbers A,B,C,D"), std::string::npos) << error_;
   EXPECT_EQ(run(scene_ + " out.txt"), 2);
 }
 

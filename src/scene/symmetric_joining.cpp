@@ -1,0 +1,532 @@
+#include "scene/symmetric_joining.h"
+
+#include <pcl/features/normal_3d.h>
+#include <pcl/kdtree/kdtree_flann.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "core/base/parallel.h"
+#include "core/scan/sensor_noise.h"
+
+namespace pcl_symmetry::detail {
+
+namespace {
+
+using Cloud = SymmetryScene::Cloud;
+
+// Points of a piece that are reflected. derived: a share of one half is known to 2 %.
+constexpr std::size_t kReflected = 500;
+// Least share of the points of a piece that its symmetry maps onto the surface, of those that land where the sensor
+// saw. chosen: a handle or a box that is thrown into free space leaves less than half.
+constexpr double kExplained = 0.9;
+// Share of the points of a piece that have to land where the sensor saw; of fewer, a plane says nothing of the piece.
+constexpr double kTold = 0.1;
+// Radians, and diagonals of the union: planes and axes within these are one, as in the judgement of real frames.
+constexpr double kSameAngle = 5.0 * kPi / 180.0, kSameOffset = 0.03;
+// Share of the height of the union above which the smaller piece has to begin to hang. chosen: half is the noise of a
+// foot, twice the height of handles.
+constexpr double kHangs = 0.1;
+// Share of the points of a piece that may lie below its foot or above its top: flying pixels.
+constexpr double kTrimmed = 0.02;
+// Spacings around a point that its normal is taken from: a supervoxel's radius, which takes the noise of a camera out.
+constexpr double kNormalSpacings = 5.0;
+// Least horizontal part of a normal that tells where an upright axis is.
+constexpr double kLevel = 0.3;
+// Rounds of the fit of an axis to normals, and diagonals that a normal may miss it by; later ones weigh less.
+constexpr int kAxisRounds = 5;
+constexpr double kMisses = 0.05;
+// Radians within which a normal points to the axis, and the share of such normals of round pieces. derived: of the
+// faces of a box with a square base a third.
+constexpr double kPointsTo = 15.0 * kPi / 180.0, kRoundShare = 0.7;
+// Share of the points of a round piece that have such a normal, and of the height of the lower piece that both have in
+// common: what stands on another object is not beside it.
+constexpr double kWalls = 0.1, kBeside = 0.5;
+// Share of the points of two pieces that their own symmetries have to explain for the cut to stay: that of one of
+// them. Thickness of a
+// piece over its length, both root mean squares, below which it is flat.
+constexpr double kOwn = 0.25, kFlatShare = 0.1;
+constexpr int kAnglesOfAxis = 4;  // planes that stand for an axis, 45 degrees apart
+
+double sq(double x) {
+  return x * x;
+}
+
+Eigen::Vector3d positionOf(const Cloud& scene, pcl::index_t i) {
+  return scene[i].getVector3fMap().cast<double>();
+}
+
+Eigen::Vector3d centroidOf(const Cloud& scene, const pcl::Indices& points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const pcl::index_t i : points) sum += positionOf(scene, i);
+  return sum / static_cast<double>(points.size());
+}
+
+/// Of both, ascending.
+pcl::Indices indicesOf(const SceneObject& a, const SceneObject& b) {
+  pcl::Indices all;
+  std::merge(a.indices.begin(), a.indices.end(), b.indices.begin(), b.indices.end(), std::back_inserter(all));
+  return all;
+}
+
+ReflectionPlane planeThrough(const SymmetryAxis& axis, const Eigen::Vector3d& normal) {
+  return {normal, normal.normalized().dot(axis.point) * normal.norm()};
+}
+
+std::vector<ReflectionPlane> planesThrough(const SymmetryAxis& axis) {
+  std::vector<ReflectionPlane> planes;
+  const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
+  for (int k = 0; k < kAnglesOfAxis; ++k) {
+    const double angle = kPi * k / kAnglesOfAxis;
+    planes.push_back(planeThrough(axis, std::cos(angle) * u + std::sin(angle) * v));
+  }
+  return planes;
+}
+
+/// The planes that decide; some of those through the axis of a body of revolution.
+std::vector<ReflectionPlane> decidingPlanes(const SceneObject& object) {
+  if (!object.axes.empty()) return planesThrough(object.axes.front());
+  std::vector<ReflectionPlane> planes;
+  for (const SymmetryPlane& plane : object.planes)
+    if (plane.kind == PlaneKind::Symmetry) planes.push_back(plane);
+  return planes;
+}
+
+/// How many points of a piece a reflection maps where.
+struct Landings {
+  double own = 0.0, other = 0.0;  ///< onto the piece itself, onto the other one
+  double off = 0.0;               ///< to where the sensor saw that there is nothing
+  double all = 0.0;               ///< with those that land in unknown space
+
+  double told() const { return own + other + off; }
+  bool tells() const { return told() >= kTold * all; }
+  double share() const { return told() > 0.0 ? (own + other) / told() : 0.0; }
+};
+
+/// Two pieces that may be one object.
+class Pair {
+public:
+  Pair(const JoiningScene& scene, const SceneObject& larger, const SceneObject& smaller)
+      : scene_(scene), pieces_{&larger, &smaller}, indices_(indicesOf(larger, smaller)), reflected_(reflectedOf()) {
+    tree_.setInputCloud(scene.frame, pcl::make_shared<pcl::Indices>(indices_));
+    seen_ = scene.seen_of(indices_);
+    Points points(3, static_cast<Eigen::Index>(indices_.size()));
+    for (std::size_t i = 0; i < indices_.size(); ++i)
+      points.col(static_cast<Eigen::Index>(i)) = (*scene.frame)[indices_[i]].getVector3fMap();
+    diagonal_ = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
+    center_ = points.rowwise().mean().cast<double>();
+    double tolerance = std::max(scene.spacing, scene.tolerance * diagonal_);
+    if (seen_.visibility()) tolerance = std::max(tolerance, resolvedTolerance(points, *seen_.visibility()));
+    reach_ = 2.0 * tolerance;
+  }
+
+  /// Whether one symmetry may explain both, as far as their own ones tell.
+  bool isPlausible() const {
+    const SceneObject &larger = *pieces_[0], &smaller = *pieces_[1];
+    if (larger.axes.empty()) return false;
+    return hangs() || (!smaller.axes.empty() && isSame(larger.axes.front(), smaller.axes.front()));
+  }
+
+  /// Whether the pieces are bodies of their own: a good part of their points is explained by symmetries of the piece,
+  /// and neither is a face of a body or a bulge of a wall.
+  bool isCutBySymmetry(double share_apart) const {
+    return share_apart >= kOwn && !isFlat(*pieces_[0]) && !isFlat(*pieces_[1]);
+  }
+
+  const pcl::Indices& indices() const { return indices_; }
+
+  /// Share of the points of both whose normals point to one upright line: nothing where the pieces are not of one body
+  /// of revolution, side by side. Noise pulls the line towards the points, too far for reflections to meet the surface.
+  std::optional<double> roundShare() const {
+    if (scene_.supports.empty()) return std::nullopt;
+    const SupportingPlane& support = nearestSupport();
+    const std::array<double, 2> heights[] = {heightsOf(support, *pieces_[0]), heightsOf(support, *pieces_[1])};
+    const double beside = std::min(heights[0][1], heights[1][1]) - std::max(heights[0][0], heights[1][0]);
+    if (beside < kBeside * std::min(heights[0][1] - heights[0][0], heights[1][1] - heights[1][0])) return std::nullopt;
+    const Eigen::Vector3d up = support.coefficients.head<3>();
+    const std::vector<Wall> walls = wallsOf(up);
+    Eigen::Vector3d at = center_;
+    for (int round = 0; round < kAxisRounds; ++round) {
+      Eigen::Matrix3d a = up * up.transpose();  // leaves the height where it is
+      Eigen::Vector3d b = a * center_;
+      for (const Wall& wall : walls) {
+        const double off = wall.aside.dot(wall.point - at) / (kMisses * diagonal_);
+        const double weight = round == 0 ? 1.0 : 1.0 / (1.0 + off * off);
+        a += weight * wall.aside * wall.aside.transpose();
+        b += weight * wall.aside.dot(wall.point) * wall.aside;
+      }
+      at = a.ldlt().solve(b);
+      if (!at.allFinite() || (at - center_).norm() > diagonal_) return std::nullopt;
+    }
+    std::array<double, 2> num_walls{}, num_round{};
+    for (const Wall& wall : walls) {
+      Eigen::Vector3d inwards = at - wall.point;
+      inwards -= up * up.dot(inwards);
+      num_walls[wall.piece] += 1.0;
+      num_round[wall.piece] += std::abs(wall.aside.dot(inwards)) <= std::sin(kPointsTo) * inwards.norm() ? 1.0 : 0.0;
+    }
+    for (std::size_t k = 0; k < 2; ++k)
+      if (num_walls[k] < kWalls * static_cast<double>(reflected_[k].size()) ||
+          num_round[k] < kRoundShare * num_walls[k])
+        return std::nullopt;
+    return shareOfBoth(num_round[0] / num_walls[0], num_round[1] / num_walls[1]);
+  }
+
+  /// Whether a symmetry of both explains each, and leaves the axis of the larger one, or a plane through it.
+  bool areOne(const SceneObject& together) const {
+    const SymmetryAxis& axis = pieces_[0]->axes.front();
+    if (!together.axes.empty() && !isSame(axis, together.axes.front())) return false;
+    const std::vector<ReflectionPlane> planes = decidingPlanes(together);
+    return std::any_of(planes.begin(), planes.end(), [&](const auto& plane) { return contains(plane, axis); }) &&
+           explains(planes, !together.axes.empty());
+  }
+
+  /// Share of the points that one symmetry explains: the best of those of the union, where it is known, and of the
+  /// pieces.
+  double shareTogether(const SceneObject* together) const {
+    std::vector<ReflectionPlane> planes;
+    for (const SceneObject* object : {together, pieces_[0], pieces_[1]})
+      if (object)
+        for (const ReflectionPlane& plane : decidingPlanes(*object)) planes.push_back(plane);
+    if (const auto through = throughAxisOfLarger()) planes.push_back(*through);
+    double best = 0.0;
+    for (const ReflectionPlane& plane : planes) {
+      const Landings a = landings(0, plane), b = landings(1, plane);
+      if (a.tells() && b.tells()) best = std::max(best, shareOfBoth(a.share(), b.share()));
+    }
+    return best;
+  }
+
+  /// Share of the points that the symmetries of the pieces explain, each those of its own.
+  double shareApart() const {
+    std::array<double, 2> shares{};
+    for (int k = 0; k < 2; ++k)
+      for (const ReflectionPlane& plane : decidingPlanes(*pieces_[k])) {
+        const Landings own = landings(k, plane);
+        if (own.told() > 0.0) shares[k] = std::max(shares[k], own.own / own.told());
+      }
+    return shareOfBoth(shares[0], shares[1]);
+  }
+
+private:
+  std::array<pcl::Indices, 2> reflectedOf() const {
+    std::array<pcl::Indices, 2> some;
+    for (int k = 0; k < 2; ++k) {
+      const pcl::Indices& all = pieces_[k]->indices;
+      const std::size_t stride = 1 + (all.size() - 1) / kReflected;
+      for (std::size_t i = 0; i < all.size(); i += stride) some[k].push_back(all[i]);
+    }
+    return some;
+  }
+
+  double shareOfBoth(double of_larger, double of_smaller) const {
+    const auto a = static_cast<double>(pieces_[0]->indices.size()), b = static_cast<double>(pieces_[1]->indices.size());
+    return (a * of_larger + b * of_smaller) / (a + b);
+  }
+
+  Landings landings(int piece, const ReflectionPlane& plane) const {
+    Landings result;
+    pcl::Indices closest(1);
+    std::vector<float> sq_distance(1);
+    for (const pcl::index_t i : reflected_[piece]) {
+      const Eigen::Vector3d x = positionOf(*scene_.frame, i);
+      if (2.0 * std::abs(plane.signedDistance(x)) <= reach_) continue;  // what does not move says nothing
+      result.all += 1.0;
+      pcl::PointXYZ at;
+      at.getVector3fMap() = plane.reflect(x).cast<float>();
+      tree_.nearestKSearch(at, 1, closest, sq_distance);
+      if (sq_distance[0] <= sq(reach_))
+        (isOf(piece, closest[0]) ? result.own : result.other) += 1.0;
+      else if (!seen_.visibility() || seen_.visibility()->depthBehind(plane.reflect(x)) < -reach_)
+        result.off += 1.0;
+    }
+    return result;
+  }
+
+  bool isOf(int piece, pcl::index_t i) const {
+    const pcl::Indices& points = pieces_[piece]->indices;
+    return std::binary_search(points.begin(), points.end(), i);
+  }
+
+  /// Whether no piece contradicts these planes, and each has one that tells something of it: for planes that are not
+  /// those of one axis, a symmetry of the piece by itself.
+  bool explains(const std::vector<ReflectionPlane>& planes, bool of_axis) const {
+    std::array<bool, 2> is_explained{};
+    for (const ReflectionPlane& plane : planes)
+      for (int k = 0; k < 2; ++k) {
+        const Landings all = landings(k, plane);
+        if (!all.tells()) continue;
+        if (all.share() < kExplained) return false;
+        is_explained[k] = is_explained[k] || of_axis || all.own >= kExplained * (all.own + all.other);
+      }
+    return is_explained[0] && is_explained[1];
+  }
+
+  /// A point of a piece with a normal that is not upright.
+  struct Wall {
+    int piece;
+    Eigen::Vector3d point, aside;  // aside: across the normal, level
+  };
+
+  std::vector<Wall> wallsOf(const Eigen::Vector3d& up) const {
+    std::vector<Wall> walls;
+    pcl::Indices around;
+    std::vector<float> sq_distances;
+    for (int k = 0; k < 2; ++k)
+      for (const pcl::index_t i : reflected_[k]) {
+        Eigen::Vector4f normal;
+        float curvature = 0.0f;
+        if (tree_.radiusSearch((*scene_.frame)[i], kNormalSpacings * scene_.spacing, around, sq_distances) < 3 ||
+            !pcl::computePointNormal(*scene_.frame, around, normal, curvature))
+          continue;
+        const Eigen::Vector3d aside = up.cross(normal.head<3>().cast<double>());
+        if (aside.norm() >= kLevel) walls.push_back({k, positionOf(*scene_.frame, i), aside.normalized()});
+      }
+    return walls;
+  }
+
+  bool isSame(const SymmetryAxis& a, const SymmetryAxis& b) const {
+    const Eigen::Vector3d from = a.point + a.direction.dot(center_ - a.point) * a.direction;
+    const Eigen::Vector3d to = b.point + b.direction.dot(center_ - b.point) * b.direction;
+    return std::abs(a.direction.dot(b.direction)) >= std::cos(kSameAngle) &&
+           (from - to).norm() <= kSameOffset * diagonal_;
+  }
+
+  bool contains(const ReflectionPlane& plane, const SymmetryAxis& axis) const {
+    const Eigen::Vector3d middle = axis.point + axis.direction.dot(center_ - axis.point) * axis.direction;
+    return std::abs(plane.normal().dot(axis.direction)) <= std::sin(kSameAngle) &&
+           std::abs(plane.signedDistance(middle)) <= kSameOffset * diagonal_;
+  }
+
+  std::optional<ReflectionPlane> throughAxisOfLarger() const {
+    if (pieces_[0]->axes.empty()) return std::nullopt;
+    const SymmetryAxis& axis = pieces_[0]->axes.front();
+    const Eigen::Vector3d aside = centroidOf(*scene_.frame, pieces_[1]->indices) - axis.point;
+    const Eigen::Vector3d normal = axis.direction.cross(aside);
+    if (!(normal.norm() > 0.0)) return std::nullopt;
+    return planeThrough(axis, normal.normalized());
+  }
+
+  bool isFlat(const SceneObject& piece) const {
+    const Eigen::Vector3d center = centroidOf(*scene_.frame, piece.indices);
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    for (const pcl::index_t i : piece.indices) {
+      const Eigen::Vector3d x = positionOf(*scene_.frame, i) - center;
+      squares += x * x.transpose() / static_cast<double>(piece.indices.size());
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares, Eigen::EigenvaluesOnly);
+    return solver.eigenvalues()[0] < sq(kFlatShare) * solver.eigenvalues()[2];
+  }
+
+  const SupportingPlane& nearestSupport() const {
+    const auto foot = [&](const SupportingPlane& support) {
+      return std::min(footOf(support, *pieces_[0]), footOf(support, *pieces_[1]));
+    };
+    return *std::min_element(scene_.supports.begin(), scene_.supports.end(),
+                             [&](const auto& a, const auto& b) { return foot(a) < foot(b); });
+  }
+
+  /// Whether the smaller piece does not stand where the larger one stands.
+  bool hangs() const {
+    if (scene_.supports.empty()) return true;
+    const SupportingPlane& support = nearestSupport();
+    return footOf(support, *pieces_[1]) - footOf(support, *pieces_[0]) >
+           std::max(2.0 * scene_.plane_distance, kHangs * diagonal_);
+  }
+
+  /// From its foot to its top, without flying pixels.
+  std::array<double, 2> heightsOf(const SupportingPlane& support, const SceneObject& piece) const {
+    std::vector<double> heights;
+    for (const pcl::index_t i : piece.indices)
+      heights.push_back(support.coefficients.dot(positionOf(*scene_.frame, i).homogeneous().eval()));
+    const auto foot = heights.begin() + static_cast<std::ptrdiff_t>(kTrimmed * static_cast<double>(heights.size()));
+    const auto top = heights.end() - 1 - (foot - heights.begin());
+    std::nth_element(heights.begin(), foot, heights.end());
+    const double lowest = *foot;
+    std::nth_element(heights.begin(), top, heights.end());
+    return {lowest, *top};
+  }
+
+  double footOf(const SupportingPlane& support, const SceneObject& piece) const { return heightsOf(support, piece)[0]; }
+
+  const JoiningScene& scene_;
+  std::array<const SceneObject*, 2> pieces_;  // the larger one first
+  pcl::Indices indices_;                      // of both
+  std::array<pcl::Indices, 2> reflected_;
+  pcl::KdTreeFLANN<pcl::PointXYZ> tree_{false};
+  SeenSpace seen_;
+  double diagonal_ = 0.0, reach_ = 0.0;
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
+};
+
+bool touch(const JoiningScene& scene, const SceneObject& larger, const SceneObject& smaller) {
+  pcl::KdTreeFLANN<pcl::PointXYZ> tree(false);
+  tree.setInputCloud(scene.frame, pcl::make_shared<pcl::Indices>(larger.indices));
+  pcl::Indices closest(1);
+  std::vector<float> sq_distance(1);
+  return std::any_of(smaller.indices.begin(), smaller.indices.end(), [&](pcl::index_t i) {
+    return tree.nearestKSearch((*scene.frame)[i], 1, closest, sq_distance) > 0 &&
+           sq_distance[0] <= scene.cluster_distance * scene.cluster_distance;
+  });
+}
+
+/// What was decided of a pair.
+struct Verdict {
+  bool are_one = false;
+  std::optional<SceneObject> object;  // the one object, where it was analysed
+  double together = 0.0, apart = 0.0;
+};
+
+/// Pieces, those of them that were united, and the pairs that touch.
+class Joining {
+public:
+  using PiecePair = std::pair<std::size_t, std::size_t>;  // the larger one first
+
+  Joining(const JoiningScene& scene, const std::vector<pcl::Indices>& pieces, const std::vector<int>& cluster_of)
+      : scene_(scene), objects_(pieces.size()), owners_(pieces.size()) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      objects_[i].indices = pieces[i];
+      owners_[i] = i;
+    }
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      for (std::size_t j = i + 1; j < pieces.size(); ++j)
+        if (cluster_of[i] == cluster_of[j] && touch(scene, objects_[i], objects_[j])) pairs_[larger(i, j)] = {};
+  }
+
+  void analyseAll() {
+    std::set<std::size_t> left;
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+      if (owners_[i] == i) left.insert(i);
+    analyse(left);
+  }
+
+  /// Unites pairs until decide(pair, number of pairs) unites none.
+  /// \param tell whether these pairs are told as junctions.
+  /// \param again whether united pieces are analysed.
+  template <typename Decide>
+  void unite(const Decide& decide, bool tell, bool again) {
+    std::vector<PiecePair> asked;
+    for (const auto& [pair, shares] : pairs_) asked.push_back(pair);
+    while (!asked.empty()) {
+      std::vector<Verdict> verdicts(asked.size());
+      parallelBlocks(asked.size(), scene_.num_threads, [&](std::size_t k) {
+        verdicts[k] = decide(Pair(scene_, objects_[asked[k].first], objects_[asked[k].second]), asked.size());
+      });
+      std::set<std::size_t> changed, unknown;
+      for (std::size_t k = 0; k < asked.size(); ++k) {
+        Verdict& verdict = verdicts[k];
+        pairs_[asked[k]] = {verdict.together, verdict.apart};
+        const std::size_t to = owner(asked[k].first), from = owner(asked[k].second);
+        // What was analysed holds for pieces as they were; other pairs are asked again.
+        const bool is_stale = verdict.object && (changed.count(to) || changed.count(from));
+        if (!verdict.are_one || to == from || is_stale) continue;
+        if (tell) junctions_.push_back(junctionOf(asked[k]));
+        if (verdict.object) {
+          objects_[to] = std::move(*verdict.object);
+        } else {
+          objects_[to].indices = indicesOf(objects_[to], objects_[from]);
+          unknown.insert(to);
+        }
+        unknown.erase(from);
+        owners_[from] = to;
+        changed.insert({to, from});
+      }
+      if (again) analyse(unknown);
+      asked.clear();
+      std::map<PiecePair, std::array<double, 2>> left;
+      for (const auto& [pair, shares] : pairs_) {
+        const std::size_t i = owner(pair.first), j = owner(pair.second);
+        if (i != j && left.emplace(larger(i, j), shares).second && (changed.count(i) || changed.count(j)))
+          asked.push_back(larger(i, j));
+      }
+      pairs_ = std::move(left);
+    }
+  }
+
+  JoinedPieces result() && {
+    std::vector<std::size_t> order, numbers(objects_.size());
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+      if (owners_[i] == i) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return objects_[a].indices.size() > objects_[b].indices.size();
+    });
+    JoinedPieces result;
+    for (const auto& [pair, shares] : pairs_) junctions_.push_back(junctionOf(pair));
+    for (const std::size_t i : order) {
+      numbers[i] = result.objects.size();
+      result.objects.push_back(std::move(objects_[i]));
+    }
+    for (SceneJunction& junction : junctions_) {
+      junction.first = numbers[owner(junction.first)];
+      junction.second = numbers[owner(junction.second)];
+    }
+    result.junctions = std::move(junctions_);
+    return result;
+  }
+
+private:
+  std::size_t owner(std::size_t i) const {
+    while (owners_[i] != i) i = owners_[i];
+    return i;
+  }
+
+  void analyse(const std::set<std::size_t>& objects) {
+    const std::vector<std::size_t> all(objects.begin(), objects.end());
+    parallelBlocks(all.size(), scene_.num_threads,
+                   [&](std::size_t k) { objects_[all[k]] = scene_.analyse(objects_[all[k]].indices, all.size()); });
+  }
+
+  PiecePair larger(std::size_t i, std::size_t j) const {
+    return objects_[i].indices.size() >= objects_[j].indices.size() ? PiecePair(i, j) : PiecePair(j, i);
+  }
+
+  SceneJunction junctionOf(const PiecePair& pair) const {
+    const auto& [i, j] = pair;
+    const auto& [together, apart] = pairs_.at(pair);
+    return {i, j, {objects_[i].indices.size(), objects_[j].indices.size()}, together, apart};
+  }
+
+  const JoiningScene& scene_;
+  std::vector<SceneObject> objects_;
+  std::vector<std::size_t> owners_;                   // of each piece, the one that it was united with
+  std::map<PiecePair, std::array<double, 2>> pairs_;  // that touch: shares together and apart
+  std::vector<SceneJunction> junctions_;              // of pieces that symmetry joined
+};
+
+}  // namespace
+
+JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::Indices>& pieces,
+                            const std::vector<int>& cluster_of) {
+  Joining joining(scene, pieces, cluster_of);
+  const auto are_round = [](const Pair& pair, std::size_t) {
+    const std::optional<double> share = pair.roundShare();
+    return Verdict{share.has_value(), std::nullopt, share.value_or(0.0), 0.0};
+  };
+  const auto are_one = [&](const Pair& pair, std::size_t num_pairs) {
+    if (!pair.isPlausible()) return Verdict();
+    Verdict verdict{false, scene.analyse(pair.indices(), num_pairs), 0.0, pair.shareApart()};
+    verdict.are_one = pair.areOne(*verdict.object);
+    verdict.together = pair.shareTogether(&*verdict.object);
+    return verdict;
+  };
+  const auto are_not_cut = [](const Pair& pair, std::size_t) {
+    const double apart = pair.shareApart();
+    return Verdict{!pair.isCutBySymmetry(apart), std::nullopt, pair.shareTogether(nullptr), apart};
+  };
+  joining.unite(are_round, true, false);
+  joining.analyseAll();
+  joining.unite(are_one, true, true);
+  joining.unite(are_not_cut, false, true);
+  return std::move(joining).result();
+}
+
+}  // namespace pcl_symmetry::detail

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "pcl_symmetry/symmetry_scene.h"
+
+namespace pcl_symmetry::detail {
+
+/// What SymmetryScene knows when it joins pieces.
+struct JoiningScene {
+  SymmetryScene::Cloud::ConstPtr frame;
+  const std::vector<SupportingPlane>& supports;
+  double spacing;           ///< of neighboring points, input units
+  double plane_distance;    ///< of the points of a supporting plane, input units
+  double cluster_distance;  ///< between points of one object, input units
+  double tolerance;         ///< how far a symmetric surface may be off, as a share of the diagonal
+  int num_threads;          ///< 0 = one per core
+  /// What the sensor saw, for an object with these points.
+  std::function<SeenSpace(const pcl::Indices&)> seen_of;
+  /// The planes and axes of an object with these points, one of several that are analysed at once, by several threads.
+  std::function<SceneObject(const pcl::Indices&, std::size_t num_objects)> analyse;
+};
+
+struct JoinedPieces {
+  std::vector<SceneObject> objects;      ///< with planes and axes, most points first
+  std::vector<SceneJunction> junctions;  ///< of the pieces that touch
+};
+
+/// Of the cuts that convexity makes, keeps those that symmetry confirms.
+///
+/// Pieces side by side whose normals point to one upright line are of one body of revolution: the two halves of the
+/// inside of a bowl. A bottle and its neck are one where both turn about one axis, a mug and its handle where the
+/// handle does not stand on what the mug stands on, and a plane through the axis of the mug explains both: the union
+/// has a plane or an axis that decides, which is a symmetry of each piece by itself. Pieces stay apart if symmetries of
+/// their own explain most of their points and neither is flat, as a face of a box or a part of a wall; all others are
+/// united again.
+/// \param pieces of clusters, ascending indices.
+/// \param cluster_of number of the cluster of each piece.
+JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::Indices>& pieces,
+                            const std::vector<int>& cluster_of);
+
+}  // namespace pcl_symmetry::detail
