@@ -163,6 +163,7 @@ FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& option
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options, const Visibility* visibility,
                             const MakeSearch& make_search) {
   options.validate();
+  if (options.as_published) return publishedFrame(points, options);
   SymmetryFrame frame;
   Stopwatch watch;
   const auto done = [&](const char* stage) { frame.timing_ms.emplace_back(stage, watch.lap()); };

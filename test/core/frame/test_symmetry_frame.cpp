@@ -218,6 +218,18 @@ TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(SymmetryFrame, AsPublishedFindsTheAxesOfABox) {
+  FrameOptions options;
+  options.as_published = true;
+  const Eigen::Isometry3d pose = test::randomPose(4);
+  const auto shape = test::moved(test::box(6000, Sampling::Random, 4), pose);
+  const SymmetryFrame frame = symmetryFrame(shape.cloud(), options);
+  expectRightHanded(frame);
+  EXPECT_LT(axisError(frame.axes, pose.linear()), 4.0 * kDegree) << "as fine as the bins of the map";
+  EXPECT_LT((frame.center - pose.translation()).norm(), 0.05);
+  EXPECT_EQ(frame.equivalent.size(), 4u);
+}
+
 TEST(SymmetryFrame, OfDegeneratePointsIsFiniteOrRefused) {
   RandomStream random(1);
   Points line(3, 100), flat(3, 400), two(3, 2), same = Points::Ones(3, 20);
