@@ -1,5 +1,6 @@
 #include "scene/convex_pieces.h"
 
+#include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/segmentation/lccp_segmentation.h>
 #include <pcl/segmentation/supervoxel_clustering.h>
 
@@ -31,7 +32,7 @@ constexpr std::uint32_t kFewest = 15;
 }  // namespace
 
 std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
-                                       const Eigen::Vector3d& viewpoint, double spacing) {
+                                       const Eigen::Vector3d& viewpoint, double spacing, int min_points) {
   const auto voxel = static_cast<float>(kVoxelSpacings * spacing);
   const auto supervoxel = static_cast<float>(kSupervoxelVoxels * voxel);
   pcl::SupervoxelClustering<pcl::PointXYZ> clustering(voxel, supervoxel);
@@ -56,11 +57,28 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
   const pcl::PointCloud<pcl::PointXYZL>::Ptr labelled = clustering.getLabeledCloud();
   segmentation.relabelCloud(*labelled);
   std::map<std::uint32_t, pcl::Indices> of_label;
-  for (std::size_t i = 0; i < cluster.size(); ++i)
-    if ((*labelled)[i].label > 0) of_label[(*labelled)[i].label].push_back(cluster[i]);
-  if (of_label.size() < 2) return {cluster};  // with its points that no supervoxel holds
+  for (std::size_t i = 0; i < cluster.size(); ++i) of_label[(*labelled)[i].label].push_back(cluster[i]);
   std::vector<pcl::Indices> pieces;
-  for (auto& [label, piece] : of_label) pieces.push_back(std::move(piece));
+  pcl::Indices rest, all;  // points that no supervoxel holds have label 0
+  std::vector<std::size_t> piece_of;
+  for (auto& [label, piece] : of_label) {
+    if (label == 0 || piece.size() < static_cast<std::size_t>(min_points)) {
+      rest.insert(rest.end(), piece.begin(), piece.end());
+      continue;
+    }
+    all.insert(all.end(), piece.begin(), piece.end());
+    piece_of.resize(all.size(), pieces.size());
+    pieces.push_back(std::move(piece));
+  }
+  if (pieces.size() < 2) return {cluster};
+  pcl::KdTreeFLANN<pcl::PointXYZ> tree;
+  tree.setInputCloud(pcl::make_shared<SymmetryScene::Cloud>(scene, all));
+  pcl::Indices closest(1);
+  std::vector<float> sq_distance(1);
+  for (const pcl::index_t i : rest)
+    if (tree.nearestKSearch(scene[i], 1, closest, sq_distance) > 0)
+      pieces[piece_of[static_cast<std::size_t>(closest[0])]].push_back(i);
+  for (pcl::Indices& piece : pieces) std::sort(piece.begin(), piece.end());
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const pcl::Indices& a, const pcl::Indices& b) { return a.size() > b.size(); });
   return pieces;

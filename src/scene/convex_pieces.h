@@ -11,8 +11,9 @@ namespace pcl_symmetry::detail {
 /// \param cluster indices of finite points.
 /// \param viewpoint of the sensor, which tells inside from outside.
 /// \param spacing of neighbouring points, input units, > 0.
-/// \return the pieces, most points first; pieces of a few supervoxels belong to the neighbor that they share most with.
+/// \param min_points of a piece; points of smaller ones belong to the nearest piece.
+/// \return the pieces, most points first, which hold all points of the cluster.
 std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
-                                       const Eigen::Vector3d& viewpoint, double spacing);
+                                       const Eigen::Vector3d& viewpoint, double spacing, int min_points);
 
 }  // namespace pcl_symmetry::detail

@@ -150,9 +150,8 @@ Pieces piecesOf(const Cloud& scene, const std::vector<pcl::Indices>& clusters,
       all.emplace_back(clusters[k], static_cast<int>(k));
       continue;
     }
-    for (pcl::Indices& piece : detail::convexPieces(scene, clusters[k], *viewpoint, spacing))
-      if (piece.size() >= static_cast<std::size_t>(options.min_points))
-        all.emplace_back(std::move(piece), static_cast<int>(k));
+    for (pcl::Indices& piece : detail::convexPieces(scene, clusters[k], *viewpoint, spacing, options.min_points))
+      all.emplace_back(std::move(piece), static_cast<int>(k));
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
@@ -230,18 +229,14 @@ SceneAnalysis SymmetryScene::compute() const {
     analysis.supports = detail::findSupports(frame, points, viewpoint, analysis.plane_distance);
   timed("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
-  Pieces pieces = piecesOf(*frame,
-                           detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
-                                                analysis.cluster_distance, options_.min_points),
-                           viewpoint, distances.spacing, options_);
+  std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
+                                                            analysis.cluster_distance, options_.min_points);
+  const auto is_bulge = [&](const pcl::Indices& cluster) {
+    return detail::isBulge(*frame, cluster, analysis.supports, options_.detection.tolerance, analysis.cluster_distance);
+  };
+  clusters.erase(std::remove_if(clusters.begin(), clusters.end(), is_bulge), clusters.end());
+  Pieces pieces = piecesOf(*frame, clusters, viewpoint, distances.spacing, options_);
   detail::returnFeet(frame, analysis.supports, pieces.indices, distances.spacing, analysis.cluster_distance);
-  for (std::size_t k = pieces.indices.size(); k-- > 0;) {
-    if (!detail::isBulge(*frame, pieces.indices[k], analysis.supports, options_.detection.tolerance,
-                         analysis.cluster_distance))
-      continue;
-    pieces.indices.erase(pieces.indices.begin() + static_cast<std::ptrdiff_t>(k));
-    pieces.cluster_of.erase(pieces.cluster_of.begin() + static_cast<std::ptrdiff_t>(k));
-  }
   timed("clusters");
   const auto of = [&](std::size_t num_objects) {
     return ObjectAnalysis(frame, analysis, distances.spacing, ofOneObject(options_, num_objects), database_.get());
