@@ -44,13 +44,15 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
     return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
   };
   if (auto found = placed(across.direction())) return found;
-  // The cells of a slender part tell no angle apart; its surface does.
+  // The cells of a slender part tell no angle apart; its surface does, within less than the tolerance.
+  constexpr double kSharp = 0.25;
+  const RotationFit sharp = fit.withLimits({kSharp * fit.limits().tolerance, options.max_feature});
   double least = std::numeric_limits<double>::infinity();
   Eigen::Vector3d best = across.direction();
   for (int k = 0; k < num_angles; ++k) {
     const Eigen::Vector3d direction = rotationAbout(main.line.direction(), width * k / num_angles) * across.direction();
     const OffShares shares =
-        fit.offShares(rotationAbout(direction, kPi), across.origin(), rotation_rules.num_some_points);
+        sharp.offShares(rotationAbout(direction, kPi), across.origin(), rotation_rules.num_some_points);
     if (!(shares.off < least)) continue;
     least = shares.off;
     best = direction;
