@@ -62,7 +62,7 @@ struct CloudRegistration : RegisteredPose {
   /// to 0.3 with 100, which is not enough to know, 0.4 to 0.6 with 400 and 0.6 or more with 1000.
   static constexpr double kLeastOnSurface = 0.45;
 
-  /// Share of the source's points (of the target's, where that alone was seen from one side) that lie on the surface of
+  /// Lower limit of the share of the source's points (of the target's, where that alone was seen from one side) that lie on the surface of
   /// the other cloud in the best pose, within 2 % of its radius or what noise asks for, in [0, 1].
   double on_surface = 0.0;
 

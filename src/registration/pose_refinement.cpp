@@ -3,6 +3,7 @@
 #include <pcl/registration/icp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -133,7 +134,10 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
 
 double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
   const double width = std::max(kContact, std::min(kMostContact, std::max(scan.noise, model.noise)));
-  return PoseScorer(scan, model).score(T_model_scan, {kJudgedPoints, width, true, true}).support;
+  const double share = PoseScorer(scan, model).score(T_model_scan, {kJudgedPoints, width, true, true}).support;
+  // derived: three standard errors of a share, at most half over the root of the number of points.
+  const auto size = std::min<double>(kJudgedPoints, static_cast<double>(scan.points.cols()));
+  return std::max(0.0, share - 1.5 / std::sqrt(size));
 }
 
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model, const RefinementTarget& target,

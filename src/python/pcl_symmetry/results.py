@@ -636,7 +636,7 @@ class Registration(Result):
     converged: bool
     """Whether both clouds have 100 points, the merit is at least 0.4 and on_surface at least 0.45."""
     on_surface: float
-    """Share of the source's points that lie on the surface of the target, within 2 % of its radius or what noise asks for."""
+    """Lower limit of the share of the source's points that lie on the surface of the target, within 2 % of its radius."""
     poses: List[Tuple["Doubles", PoseScore]]
     """(transform, score), best first: poses that symmetry makes equal have like merits."""
     covariance: Optional["Doubles"]
