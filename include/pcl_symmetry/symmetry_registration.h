@@ -53,8 +53,8 @@ struct RegisteredPose {
 
 /// The best pose of a cloud in another one, and the next ones.
 struct CloudRegistration : RegisteredPose {
-  /// Whether a pose was found that both clouds support: its merit, whose width grows with the spacing of the points, and
-  /// the surface itself, so that points too few to tell a wrong object from the right one do not converge.
+  /// Whether a pose was found that both clouds support: its merit, whose width grows with the spacing of the points,
+  /// and the surface itself, so that points too few to tell a wrong object from the right one do not converge.
   bool converged(double min_merit = 0.4) const {
     return covariance.has_value() && score.merit() >= min_merit && on_surface >= kLeastOnSurface;
   }
@@ -62,8 +62,9 @@ struct CloudRegistration : RegisteredPose {
   /// to 0.3 with 100, which is not enough to know, 0.4 to 0.6 with 400 and 0.6 or more with 1000.
   static constexpr double kLeastOnSurface = 0.45;
 
-  /// Lower limit of the share of the source's points (of the target's, where that alone was seen from one side) that lie on the surface of
-  /// the other cloud in the best pose, within 2 % of its radius or what noise asks for, in [0, 1].
+  /// Lower limit of the share of the source's points (of the target's, where that alone was seen from one side) that
+  /// lie on the surface of the other cloud in the best pose, within 2 % of its radius or what noise asks for, in [0,
+  /// 1].
   double on_surface = 0.0;
 
   /// Distinct poses by falling merit, the best one first, at most PoseSearchOptions::max_poses: those that symmetry
