@@ -316,7 +316,7 @@ Body block(const Eigen::Vector3d& center, const Eigen::Vector3d& half, double tu
 }
 
 /// Upright, from z = low to z = high.
-Body cylinder(const Eigen::Vector2d& axis, double radius, double low, double high) {
+Body uprightCylinder(const Eigen::Vector2d& axis, double radius, double low, double high) {
   return [=](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
     const Eigen::Vector2d from = origin.head<2>() - axis, along = direction.head<2>();
     const double a = along.squaredNorm(), b = from.dot(along), root = b * b - a * (from.squaredNorm() - sq(radius));
@@ -395,11 +395,12 @@ TEST(SymmetryScene, AStackAreTwo) {
 }
 
 TEST(SymmetryScene, ABoxBeforeACylinderAreTwo) {
-  expectOneObjectEach({cylinder({0.0, 0.1}, 0.07, 0.0, 0.2), block({0.0, -0.03, 0.05}, {0.1, 0.06, 0.05})});
+  expectOneObjectEach({uprightCylinder({0.0, 0.1}, 0.07, 0.0, 0.2), block({0.0, -0.03, 0.05}, {0.1, 0.06, 0.05})});
 }
 
 TEST(SymmetryScene, AMugAndItsHandleAreOne) {
-  const Frame frame({cylinder({0.0, 0.0}, 0.08, 0.0, 0.2), block({0.12, -0.04, 0.11}, {0.06, 0.012, 0.06}, -0.3)});
+  const Frame frame(
+      {uprightCylinder({0.0, 0.0}, 0.08, 0.0, 0.2), block({0.12, -0.04, 0.11}, {0.06, 0.012, 0.06}, -0.3)});
   const SceneAnalysis scene = analysed(frame.cloud);
   ASSERT_EQ(scene.objects.size(), 1u);
   ASSERT_EQ(scene.junctions.size(), 1u) << "convexity cuts the handle off";
