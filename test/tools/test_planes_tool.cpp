@@ -167,8 +167,9 @@ TEST_F(PlanesTool, ThrowsNoHandleIntoEmptySpace) {
   for (int seed = 0; seed < 5; ++seed) {
     ASSERT_EQ(run(mug + " -quiet -seed " + std::to_string(seed) + " -json " + (folder_ / "a.json")), 0) << error_;
     for (const auto& plane : nlohmann::json::parse(contentOf(folder_ / "a.json"))["planes"])
-      if (plane["kind"] == "symmetry")
+      if (plane["kind"] == "symmetry") {
         EXPECT_GT(std::abs(plane["coefficients"][1].get<double>()), std::cos(0.09)) << seed;
+      }
   }
 }
 

@@ -169,6 +169,9 @@ protected:
     used_viewpoint_.reset();
   }
 
+  /// \return whether the caller may have told what the object stands on, by setGround() or setSeenSpace().
+  bool hasGivenSupport() const { return ground_ || seen_space_; }
+
   /// \param points selected from the input, 3 x N, N >= 1.
   /// \return what the scanner saw; nothing without a viewpoint.
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.

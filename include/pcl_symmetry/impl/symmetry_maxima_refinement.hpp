@@ -68,7 +68,7 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     found_ = detail::foundPlanes(std::move(points), edt_.get(), map_, options_, search, seen, normals);
     if (mesh_ && !seen) refineOnMesh(*mesh_, found_, options_);
     const bool has_rows = this->getViewpointSource() == ViewpointSource::Rays;
-    if (seen && !has_rows && !seen->supports().empty() && found_.reason.empty())
+    if (seen && this->hasGivenSupport() && !has_rows && !seen->supports().empty() && found_.reason.empty())
       detail::decideByUprightBox(found_, *seen, options_);
     return std::move(found_.planes);
   });

@@ -143,7 +143,8 @@ float beyondEnd(const OutermostPoints& cloud, const Points& normals, const Outer
   const float gap = (normal.dot(piece.last(-normal)) - farthest) / unit;
   const float is_beyond = ramp(gap, -evidence_rules.behind, -evidence_rules.in_front);
   if (is_beyond <= 0.0f) return 0.0f;
-  const float reach = (evidence_rules.behind + std::max(0.0f, gap)) * unit;
+  // The surface has to end beside the piece, or within 60 degrees of the way to it.
+  const float reach = (evidence_rules.behind + 2.0f * std::max(0.0f, gap)) * unit;
   float cosines = 0.0f, count = 0.0f, cosines_before = 0.0f, count_before = 0.0f;
   cloud.visitFrom(normal, lastOf(cloud, normal, farthest, unit) - evidence_rules.last_points * unit,
                   [&](Eigen::Index i, const Eigen::Vector3f& x, float) {

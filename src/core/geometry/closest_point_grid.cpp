@@ -31,7 +31,7 @@ ClosestPointGrid::ClosestPointGrid(const PointsRef& points, int num_cells) : n_(
     nearest = point;
   };
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Array3i cell = cellOf(points.col(i)).cast<int>();
+    const Eigen::Array3i cell = cellOf(points.col(i));
     offer(static_cast<int>(i), cell.x(), cell.y(), cell.z());
   }
   for (int corner = 0; corner < 8; ++corner) {

@@ -18,13 +18,17 @@ public:
   /// \return index of the point closest to the center of the cell that contains \p x; for an \p x outside the cube, of
   /// the nearest cell at its border. A few cells have a point that is only nearly the closest.
   int closest(const Eigen::Vector3f& x) const {
-    const Eigen::Array3f cell = cellOf(x);
-    return nearest_[indexOf(static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z()))];
+    const Eigen::Array3i cell = cellOf(x);
+    return nearest_[indexOf(cell.x(), cell.y(), cell.z())];
   }
 
 private:
-  Eigen::Array3f cellOf(const Eigen::Vector3f& x) const {
-    return ((x - origin_) / cell_size_).array().max(0.0f).min(last_);
+  /// The first cell for coordinates that are no numbers.
+  Eigen::Array3i cellOf(const Eigen::Vector3f& x) const {
+    const auto cell = [&](int k) {
+      return static_cast<int>(std::min(last_, std::max(0.0f, (x[k] - origin_[k]) / cell_size_)));
+    };
+    return {cell(0), cell(1), cell(2)};
   }
   std::size_t indexOf(int x, int y, int z) const { return (static_cast<std::size_t>(z) * n_ + y) * n_ + x; }
 
