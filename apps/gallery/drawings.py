@@ -5,10 +5,11 @@ usage: python3 apps/gallery/drawings.py PICTURE OUT.png [FILE ...]
   frames               mugs and mailboxes with their axes, by center of mass and PCA, and by symmetry (Figure 10)
   scan_centers MESH    eight scans of a mesh, and the centers found in each, by symmetry and by mass (Figure 11)
   medial_axis CONTOUR… the medial axes of planar shapes, ASCII PCD (the other half of Figure 3)
-  failure_frame MESH, failure_completion MESH, failure_pose, failure_name, failure_rotations
+  volume               a head made of ellipsoids, tilted, with a lesion on one side: its plane and its asymmetry
+  failure_frame MESH, failure_completion MESH, failure_pose, failure_name, failure_rotations, failure_volume
                        answers that the data do not tell, or that the tolerance passes over
 
-Needs python3-matplotlib, python3-open3d, the tool pcl_symmetry_scan on PATH, and the module (PYTHONPATH=build/src/python).
+Needs python3-matplotlib, python3-open3d, pcl_symmetry_scan and pcl_symmetry_planes on PATH, and the module (PYTHONPATH=build/src/python).
 """
 
 import subprocess
@@ -269,9 +270,46 @@ def failure_rotations(out):
     sheet.save(out)
 
 
+def head(out, gain_per_mm):
+    """Planes of a volume of 1 mm voxels, drawn by the tool. The lesion is to one side; the head leans by 12 degrees.
+
+    gain_per_mm: by what share the intensity grows to one side, as near a coil of an MR scanner.
+    """
+    size = np.array([180, 200, 180])
+    x = np.indices(size).reshape(3, -1).T + 0.5 - size / 2
+    gain = np.exp(gain_per_mm * x[:, 0])
+    c, s = np.cos(np.radians(12)), np.sin(np.radians(12))
+    x = x @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) + (4, 0, 0)
+    side = np.abs(x[:, 0])
+    values = np.zeros(len(x))
+    for center, half_axes, value in (((0, 0, 0), (68, 84, 80), 400), ((0, 60, -45), (30, 34, 30), 400),
+                                     ((0, 0, 0), (62, 78, 74), 900), ((14, -14, 0), (7, 30, 12), 300),
+                                     ((24, 62, -8), (12, 18, 12), 600), ((0, 64, -48), (22, 26, 22), 600),
+                                     ((30, -50, -40), (26, 22, 16), 700)):
+        values[(((np.column_stack([side, x[:, 1:]]) - center) / half_axes) ** 2).sum(1) < 1] = value
+    values[np.linalg.norm(x - (-40, 15, 0), axis=1) < 13] = 1300
+    values = gain * values + np.random.default_rng(1).normal(0, 25, len(values))
+    header = ("ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+              f"DimSize = {size[0]} {size[1]} {size[2]}\nElementSpacing = 1 1 1\n"
+              "ElementType = MET_FLOAT\nElementDataFile = LOCAL\n")
+    with tempfile.TemporaryDirectory() as folder:
+        image = values.reshape(size).astype("<f4").tobytes(order="F")
+        Path(folder, "head.mha").write_bytes(header.encode() + image)
+        subprocess.run(["pcl_symmetry_planes", f"{folder}/head.mha", "-png", out], check=True)
+
+
+def volume(out):
+    head(out, 0)
+
+
+def failure_volume(out):
+    """An intensity that grows to one side moves the plane, and fills the picture of the asymmetry."""
+    head(out, 0.006)
+
+
 if __name__ == "__main__":
-    pictures = {f.__name__: f for f in (frames, scan_centers, medial_axis, failure_frame, failure_completion, failure_pose,
-                                        failure_name, failure_rotations)}
+    pictures = {f.__name__: f for f in (frames, scan_centers, medial_axis, volume, failure_frame, failure_completion,
+                                        failure_pose, failure_name, failure_rotations, failure_volume)}
     if len(sys.argv) < 3 or sys.argv[1] not in pictures:
         print(__doc__)
         sys.exit(0 if "-h" in sys.argv or "--help" in sys.argv else 2)

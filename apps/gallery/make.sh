@@ -174,7 +174,7 @@ draw_failures_of_all() {
   for name in frame completion; do
     draw "failure_$name" "${drawings[@]}" "failure_$name" "$gallery/failure_$name.png" hand.off
   done
-  for name in pose name rotations; do
+  for name in pose name rotations volume; do
     draw "failure_$name" "${drawings[@]}" "failure_$name" "$gallery/failure_$name.png"
   done
 }
@@ -184,6 +184,7 @@ draw_figure_1
 draw_figure_2
 draw_figure_3
 draw_figures_7_8_and_10
+draw volume "${drawings[@]}" volume "$gallery/volume.png"
 draw figure_11 "${drawings[@]}" scan_centers "$gallery/figure_11.png" car.ply
 draw_figure_15
 draw_figure_16

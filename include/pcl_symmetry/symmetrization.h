@@ -16,9 +16,9 @@ template <typename PointT>
 struct SymmetrizedCloud {
   pcl::PointCloud<PointT> cloud;  ///< points of the input, moved, then their reflections; not organized
   pcl::Indices sources;  ///< for each point the index in the input of the point that it is, or is the reflection of
-  /// Of each point of the input, see SymmetrizedShape::asymmetry, and their mean and greatest absolute value.
-  std::vector<float> asymmetry;
-  double mean_asymmetry = 0.0, greatest_asymmetry = 0.0;
+  std::vector<float> asymmetry;     ///< of each point of the input, see SymmetrizedShape
+  double mean_asymmetry = 0.0;      ///< mean absolute value of these
+  double greatest_asymmetry = 0.0;  ///< greatest absolute value of these
 };
 
 /// Makes a cloud whose halves are the mean of both sides, or one side and its reflection. Reflected points have their
@@ -56,9 +56,11 @@ SymmetrizedCloud<PointT> symmetrize(const pcl::PointCloud<PointT>& cloud, const 
 
 /// A mesh that a plane maps onto itself.
 struct SymmetrizedMesh {
-  pcl::PolygonMesh mesh;         ///< the polygons of the input; its vertices moved, with all their fields
-  std::vector<float> asymmetry;  ///< of each vertex of the input, see SymmetrizedShape
-  double mean_asymmetry = 0.0, greatest_asymmetry = 0.0, deviation = 0.0;  ///< see SymmetrizedShape
+  pcl::PolygonMesh mesh;            ///< the polygons of the input; its vertices moved, with all their fields
+  std::vector<float> asymmetry;     ///< of each vertex of the input, see SymmetrizedShape
+  double mean_asymmetry = 0.0;      ///< mean absolute value of these
+  double greatest_asymmetry = 0.0;  ///< greatest absolute value of these
+  double deviation = 0.0;           ///< see SymmetrizedShape
 };
 
 /// The same for a mesh, whose polygons stay. Its vertices have float coordinates x, y and z.

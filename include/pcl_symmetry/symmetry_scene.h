@@ -80,8 +80,10 @@ struct SceneObject {
 /// Two pieces that touch, cut apart where the surface bends inwards, and what symmetry says of them: one object where
 /// one symmetry explains both.
 struct SceneJunction {
-  /// Objects that they belong to, indices into SceneAnalysis::objects; one object where symmetry joined the pieces.
-  std::size_t first = 0, second = 0;
+  /// Index into SceneAnalysis::objects of the object of the first piece; that of the second is the same where symmetry
+  /// joined them.
+  std::size_t first = 0;
+  std::size_t second = 0;                   ///< the same of the second piece
   std::array<std::size_t, 2> num_points{};  ///< of the pieces
   /// Share of their points that the best symmetry of both maps onto them, in [0, 1], of those that land where the
   /// sensor saw; 0 where there is none.

@@ -13,14 +13,15 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Motions x -> R (x - center) + center that map a shape onto itself: R is a reflection or a rotation. They move
 /// together, as those of a group or the planes of a frame.
 struct MotionsAbout {
-  std::vector<Eigen::Matrix3d> linear;
+  std::vector<Eigen::Matrix3d> linear;               ///< R of each motion
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< input frame
 
   /// The reflection across a plane.
   /// \param near the center is the point of the plane that is closest to it.
   static MotionsAbout across(const ReflectionPlane& plane, const Eigen::Vector3d& near);
+  /// The reflection across a plane through the center.
   void addReflection(const Eigen::Vector3d& unit_normal);
-  /// Turns that stand for turns by any angle.
+  /// Rotations that represent those by any angle.
   void addTurns(const Eigen::Vector3d& unit_axis);
 };
 
@@ -39,10 +40,10 @@ public:
   /// \throws std::invalid_argument for an index that is no vertex, and a mesh without area.
   MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles);
 
-  /// A turn of the axes of motions, R becomes turn R turn^T, and their new center, input frame.
+  /// A rotation of the axes of motions, and their new center.
   struct Placement {
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< R becomes turn R turn^T
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< input frame
   };
   /// Where motions map the surface best onto itself: least squares of the distances of samples from the mesh, and of
   /// its open borders from the borders, with a weight that leaves out what does not agree. Steps are those of Iterative

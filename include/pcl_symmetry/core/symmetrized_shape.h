@@ -69,6 +69,8 @@ struct LandmarkAsymmetry {
   double object_rms = 0.0;
 };
 
+/// \param pairs landmarks and their counterparts. \param midline landmarks that have none. Input frame, finite.
+/// \param plane of object symmetry.
 LandmarkAsymmetry landmarkAsymmetry(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs,
                                     const std::vector<Eigen::Vector3d>& midline, const ReflectionPlane& plane);
 

@@ -272,8 +272,12 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     const double chance = chanceLevel(few, center, stride, maxima, options.num_threads);
     if (chance > kRules.most_chance)
       throw std::invalid_argument("volume: the body is round, planes in all directions map it onto itself");
+    const auto confidence = [&](const SymmetryPlane& plane) {
+      const double beyond_chance = std::clamp((plane.support - chance) / (1.0 - chance), 0.0, 1.0);
+      return beyond_chance * beyond_chance;
+    };
     for (SymmetryPlane& plane : maxima) {
-      if (!options.approximate && (plane.support - chance) / (1.0 - chance) < options.min_confidence) continue;
+      if (!options.approximate && confidence(plane) < options.min_confidence) continue;
       const int before = plane.iterations;
       plane = all.refined(plane, strideFor(fine.f, 500'000), 10, 1e-4);
       const Comparison comparison = few.compare(plane, 1, false);
@@ -284,7 +288,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       plane.residual = comparison.residual;
     }
     for (SymmetryPlane& plane : distinct(maxima)) {
-      plane.confidence = std::clamp((plane.support - chance) / (1.0 - chance), 0.0, 1.0);
+      plane.confidence = confidence(plane);
       plane.share = plane.share_low = plane.share_high = plane.support;
       plane.kind = plane.confidence >= options.min_confidence ? PlaneKind::Symmetry : PlaneKind::Approximate;
       if (options.approximate || plane.kind == PlaneKind::Symmetry) found.planes.push_back(plane);

