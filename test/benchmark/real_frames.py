@@ -8,7 +8,7 @@ kinect: the learn frames of segmentation/mOSD, in which people labelled boxes an
 middle planes of boxes and the axes of cylinders, fitted to the labelled points. Each object is given alone, with its rows
 and columns, and in the whole frame, where the object found counts that overlaps the label the most, by half and more.
 lidar: vehicles in the frames 000950 and 000965, in boxes that people drew: the reference is the middle plane along the
-vehicle. The points in a box are given with the viewpoint of the sensor, and without.
+vehicle. The points in a box are given with the viewpoint of the sensor and the ground, and without.
 Right is what lies within 5 degrees and 3 % of the extent of the object (vehicles: 4 %). Without --tools, the Python module
 answers for single clouds, and frames are left out. --export writes the clouds; --judge reads NAME.json or NAME.txt of
 each cloud, and of a frame NAME.json with {"objects": [{"planes": [], "axes": [], "pixels": [positions in the frame]}]}.
@@ -261,7 +261,7 @@ def kinect_frame(frame, arguments):
 
 
 def lidar_frame(frame, arguments):
-    """Rows of the vehicles of one frame, with and without the viewpoint."""
+    """Rows of the vehicles of one frame, with viewpoint and ground, and without."""
     points = read_sweep(arguments.repository, f"data/example/lidar/{frame}.pcd")
     labels = json.loads(show(arguments.repository, f"data/example/label/{frame}.json"))
     rows, exported = [], {}
@@ -277,10 +277,11 @@ def lidar_frame(frame, arguments):
         p, n = points[inside].round(4), axes[:, 1]  # a tenth of a millimeter
         truth = {"shape": "vehicle", "planes": [{"coefficients": [*map(float, n), float(-n @ center)]}], "center": center,
                  "extent": float(np.linalg.norm(np.ptp(p, axis=0)))}  # fmt: skip
-        for way, sensor in (("with viewpoint", np.eye(4)), ("without", None)):
+        ground = {"ground": f"0,0,1,{-(center[2] - size[2] / 2):.3f}"} if arguments.tool else {}  # what the wheels stand on
+        for way, sensor, options in (("with viewpoint and ground", np.eye(4), ground), ("without", None, {})):
             name = f"{frame}_{number}_{way.split()[0]}"
             exported[name] = truth
-            answers = bench.ask(name, p, sensor, arguments)
+            answers = bench.ask(name, p, sensor, arguments, **options)
             rows.append({"cloud": name, "way": way, "shape": "vehicle", **judge(answers, truth, 0.04)})
     return {"rows": rows, "truths": exported}
 
