@@ -166,7 +166,8 @@ TEST_F(PlanesTool, ThrowsNoHandleIntoEmptySpace) {
   if (!std::filesystem::exists(mug)) GTEST_SKIP() << mug << " is absent";
   for (int seed = 0; seed < 5; ++seed) {
     ASSERT_EQ(run(mug + " -quiet -seed " + std::to_string(seed) + " -json " + (folder_ / "a.json")), 0) << error_;
-    for (const auto& plane : nlohmann::json::parse(contentOf(folder_ / "a.json"))["planes"])
+    const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+    for (const auto& plane : report["planes"])
       if (plane["kind"] == "symmetry") {
         EXPECT_GT(std::abs(plane["coefficients"][1].get<double>()), std::cos(0.09)) << seed;
       }
@@ -178,7 +179,8 @@ TEST_F(PlanesTool, FindsNoSymmetryOfAnOpenWavySheet) {
   if (!std::filesystem::exists(sheet)) GTEST_SKIP() << sheet << " is absent";
   for (int seed = 0; seed < 20; ++seed) {
     ASSERT_EQ(run(sheet + " -quiet -seed " + std::to_string(seed) + " -json " + (folder_ / "a.json")), 0) << error_;
-    for (const auto& plane : nlohmann::json::parse(contentOf(folder_ / "a.json"))["planes"])
+    const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+    for (const auto& plane : report["planes"])
       EXPECT_NE(plane["kind"], "symmetry") << seed;
   }
 }
