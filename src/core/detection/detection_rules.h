@@ -69,7 +69,7 @@ struct DetectionRules {
   int look_samples = 2000;       ///< samples of a quick look
   std::array<double, 2> tolerances{1.0, 2.0};  ///< at which shares are measured, see PlaneEvidence
 
-  double beside_outline = 0.06;  ///< tangent of the angle beside an outline at which the picture is looked up
+  double beside_outline = 0.1;  ///< share of its radius beside an outline at which the picture is looked up
 
   // Deciding.
   double most_cut = 0.3;               ///< share of the outline that the picture may cut off; tables in frames: 0.36

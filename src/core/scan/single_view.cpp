@@ -111,7 +111,7 @@ double cutShare(const PointsRef& points, const Visibility& seen, double margin) 
   double count = 0.0, num_cut = 0.0;
   for (const Eigen::Vector3d& aside : outermost) {
     if (aside.isZero()) continue;
-    const Eigen::Vector3d beside = viewpoint + forward + aside + margin * aside.normalized();
+    const Eigen::Vector3d beside = viewpoint + forward + (1.0 + margin) * aside;
     count += 1.0;
     num_cut += seen.depthBehind(beside) == std::numeric_limits<double>::infinity() ? 1.0 : 0.0;
   }
