@@ -2,8 +2,8 @@
 
 #include <pcl/ModelCoefficients.h>
 
-#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/exports.h"
 
 /// Planes and axes of symmetry as models of PCL's segmentation, and back. The header of the coefficients is left empty.
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/viewpoint_score.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

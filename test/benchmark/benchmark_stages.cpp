@@ -22,8 +22,8 @@
 #include "core/matching/view_code.h"
 #include "core/registration/ranked_poses.h"
 #include "models.h"
-#include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 
@@ -103,7 +103,8 @@ void needsMap(benchmark::State& state, const Points& points, const GaussianEdt& 
 void needsDetection(benchmark::State& state, const Points& points, std::size_t num_planes, int num_maps = 1) {
   const DetectionOptions options;
   const GaussianEdt edt(points, edtOptions(1));
-  const PlaneGrid grid(options.expert.num_theta, options.expert.num_phi, options.expert.num_radius, edt.center(), edt.radius());
+  const PlaneGrid grid(options.expert.num_theta, options.expert.num_phi, options.expert.num_radius, edt.center(),
+                       edt.radius());
   needsTransform(state, edt);
   for (int i = 0; i < num_maps; ++i) needsMap(state, points, edt, grid, options.expert.num_samples);
   needs(state, "nine_nearest", static_cast<double>(points.cols()));

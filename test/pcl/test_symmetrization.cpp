@@ -73,8 +73,7 @@ TEST(MirroredCorrespondences, AreThoseOfPCL) {
   EXPECT_EQ(pairs[0].index_query, 1);
   EXPECT_EQ(pairs[0].index_match, 2);
   EXPECT_NEAR(pairs[0].distance, 1e-6f, 1e-8f) << "squared";
-  EXPECT_NE(messageOf([&] { mirroredCorrespondences(cloud, kPlane, -1.0); }).find("max_distance"),
-            std::string::npos);
+  EXPECT_NE(messageOf([&] { mirroredCorrespondences(cloud, kPlane, -1.0); }).find("max_distance"), std::string::npos);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pcl_symmetry/core/mesh_surface.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/mesh_surface.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/planar_transform.h"
-#include "pcl_symmetry/core/detect_planes.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/scalar_grid.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -13,8 +13,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 ///
 /// Of a SymmetryPlane, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the body,
 /// `seen` the share of the body whose reflection lies within the volume, and `residual` the root mean square of
-/// f(x) - f(gamma x). `confidence` is no probability here: ((c - c0) / (1 - c0))^2, where c0 is what three quarters of the
-/// planes reach that pass through the center of mass in all directions, but for those near a maximum. It is 0 for a
+/// f(x) - f(gamma x). `confidence` is no probability here: ((c - c0) / (1 - c0))^2, where c0 is what three quarters of
+/// the planes reach that pass through the center of mass in all directions, but for those near a maximum. It is 0 for a
 /// plane like any other and 1 where both halves are equal; squared, as the variance that a correlation explains.
 /// \param options edt.num_cells, max_candidates, max_planes, min_confidence, approximate, seed and num_threads count.
 /// \param levels the intensities that count.

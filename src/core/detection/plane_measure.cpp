@@ -37,7 +37,7 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                      : std::max(options.tolerance * cloud.extent,
                                 std::min(resolution_, options.most_tolerance * cloud.extent))),
       cut_share_(resolution_ > 0.0 ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), detection_rules.beside_outline)
-                              : 0.0),
+                                   : 0.0),
       thinness_(
           thinnessOf(cloud.points, cloud.principal_axes, cloud.rules().thin_tolerances * tolerance_, lineTolerance())),
       halves_(cloud.rules().by_halves

@@ -170,7 +170,8 @@ SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Ei
       const auto column = static_cast<Eigen::Index>(i);
       const int j = other.vertices[i];
       const bool is_pair = j >= 0 && other.vertices[static_cast<std::size_t>(j)] == static_cast<int>(i);
-      const Eigen::Vector3f place = is_pair ? Eigen::Vector3f(before.col(j)) : Eigen::Vector3f(other.points.col(column));
+      const Eigen::Vector3f place =
+          is_pair ? Eigen::Vector3f(before.col(j)) : Eigen::Vector3f(other.points.col(column));
       moved.col(column) = movedTo(before.col(column), reflected(place, normal), normal, half);
     }
   }
