@@ -7,6 +7,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
+#include "core/geometry/reflected_points.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
@@ -146,10 +147,7 @@ std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eig
   const double reach = kBox.meets * diagonal;
   if (!(width(across) > 2.0 * reach)) return std::nullopt;
   SymmetryPlane plane(ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])));
-  Points reflected(3, points.cols());
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    reflected.col(i) = plane.reflect(points.col(i).cast<double>()).cast<float>();
-  const std::vector<Beams::Meets> met = Beams(points, viewpoint, reach).at(reflected);
+  const std::vector<Beams::Meets> met = Beams(points, viewpoint, reach).at(reflectedPoints(points, plane));
   double num_moved = 0.0, num_met = 0.0, num_free = 0.0;
   for (std::size_t i = 0; i < met.size(); ++i) {
     plane.point_support.push_back(met[i] == Beams::Meets::Surface ? 1.0f : 0.0f);

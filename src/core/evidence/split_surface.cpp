@@ -10,6 +10,7 @@
 
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/reflected_points.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
@@ -50,10 +51,7 @@ SplitSurface::SplitSurface(const Points& points, std::uint64_t seed, int num_thr
 }
 
 std::vector<float> SplitSurface::reflectedDistances(const ReflectionPlane& plane) const {
-  Points reflected(3, first_.cols());
-  for (Eigen::Index i = 0; i < first_.cols(); ++i)
-    reflected.col(i) = plane.reflect(first_.col(i).cast<double>()).cast<float>();
-  return distances(reflected);
+  return distances(reflectedPoints(first_, plane));
 }
 
 double SplitSurface::ownScore(int num_cells, double sigma, const BoundingBall& ball, int num_threads) const {

@@ -9,6 +9,15 @@
 
 namespace pcl_symmetry {
 
+std::vector<Eigen::Vector3i> finiteTriangles(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles) {
+  std::vector<Eigen::Vector3i> finite;
+  for (const Eigen::Vector3i& triangle : triangles) {
+    for (const int i : triangle) check(i >= 0 && i < vertices.cols(), "triangle vertex", i, "an index of a vertex");
+    if (vertices(Eigen::all, triangle).allFinite()) finite.push_back(triangle);
+  }
+  return finite;
+}
+
 Points sampleTriangles(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles, int num_points,
                        std::uint64_t seed) {
   check(num_points >= 1, "num_points", num_points, ">= 1");
@@ -16,9 +25,7 @@ Points sampleTriangles(const PointsRef& vertices, const std::vector<Eigen::Vecto
   std::vector<Eigen::Vector3i> used;
   double area = 0.0;
   const auto vertex = [&](int i) -> Eigen::Vector3d { return vertices.col(i).cast<double>(); };
-  for (const Eigen::Vector3i& triangle : triangles) {
-    for (int k = 0; k < 3; ++k)
-      check(triangle[k] >= 0 && triangle[k] < vertices.cols(), "triangle vertex", triangle[k], "an index of a vertex");
+  for (const Eigen::Vector3i& triangle : finiteTriangles(vertices, triangles)) {
     const Eigen::Vector3d a = vertex(triangle[0]);
     const double share = 0.5 * (vertex(triangle[1]) - a).cross(vertex(triangle[2]) - a).norm();
     if (!std::isfinite(share) || share == 0.0) continue;

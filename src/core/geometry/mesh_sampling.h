@@ -7,6 +7,10 @@
 
 namespace pcl_symmetry {
 
+/// \return the triangles whose vertices are finite.
+/// \throws std::invalid_argument for an index out of range.
+std::vector<Eigen::Vector3i> finiteTriangles(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles);
+
 /// Points spread evenly over triangles: one in each of num_points equal shares of the total area.
 /// \param vertices 3 x V, input units.
 /// \param triangles indices into the vertices; triangles with a vertex that is not finite are left out.

@@ -137,24 +137,19 @@ struct MeshSurface::Parts {
 };
 
 MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles) {
-  Points corners(3, static_cast<Eigen::Index>(3 * triangles.size()));
-  std::vector<Eigen::Vector3i> faces;
-  for (const Eigen::Vector3i& triangle : triangles) {
-    const int first = 3 * static_cast<int>(faces.size());
-    for (int k = 0; k < 3; ++k) {
-      check(triangle[k] >= 0 && triangle[k] < vertices.cols(), "triangle vertex", triangle[k], "an index of a vertex");
-      corners.col(first + k) = vertices.col(triangle[k]);
-    }
-    if (corners.middleCols(first, 3).allFinite()) faces.emplace_back(first, first + 1, first + 2);
+  std::vector<Eigen::Vector3i> faces = finiteTriangles(vertices, triangles);
+  Points corners(3, 3 * faces.size());
+  for (int t = 0; t < static_cast<int>(faces.size()); ++t) {
+    for (int k = 0; k < 3; ++k) corners.col(3 * t + k) = vertices.col(faces[t][k]);
+    faces[t] << 3 * t, 3 * t + 1, 3 * t + 2;
   }
-  corners.conservativeResize(3, static_cast<Eigen::Index>(3 * faces.size()));
   const auto parts = std::make_shared<Parts>();
   parts->ball = boundingBall(corners);
   check(parts->ball.radius > 0.0, "extent of the mesh", parts->ball.radius, "> 0");
   corners = normalizePoints(corners, parts->ball.center, parts->ball.radius);
 
   parts->faces.tree = std::make_unique<TriangleTree>(corners, faces);
-  parts->faces.directions.resize(3, static_cast<Eigen::Index>(faces.size()));
+  parts->faces.directions.resize(3, faces.size());
   for (Eigen::Index t = 0; t < parts->faces.directions.cols(); ++t) {
     const Eigen::Vector3f u = corners.col(3 * t + 1) - corners.col(3 * t),
                           v = corners.col(3 * t + 2) - corners.col(3 * t);
@@ -175,17 +170,16 @@ MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vec
   if (length_up_to.back() > 0.0) {
     Parts::Surface& borders = parts->borders;
     borders.tree = std::make_unique<TriangleTree>(corners, edges);
-    borders.directions.resize(3, static_cast<Eigen::Index>(edges.size()));
+    borders.directions.resize(3, edges.size());
     for (std::size_t e = 0; e < edges.size(); ++e)
-      borders.directions.col(static_cast<Eigen::Index>(e)) =
-          (corners.col(edges[e][1]) - corners.col(edges[e][0])).normalized();
+      borders.directions.col(e) = (corners.col(edges[e][1]) - corners.col(edges[e][0])).normalized();
     borders.samples.resize(3, kMesh.border_samples);
     std::size_t e = 0;
     for (int i = 0; i < kMesh.border_samples; ++i) {
       const double target = (i + 0.5) * length_up_to.back() / kMesh.border_samples;
       while (e + 1 < edges.size() && length_up_to[e + 1] < target) ++e;
-      borders.samples.col(i) = corners.col(edges[e][0]) + static_cast<float>(target - length_up_to[e]) *
-                                                              borders.directions.col(static_cast<Eigen::Index>(e));
+      borders.samples.col(i) =
+          corners.col(edges[e][0]) + static_cast<float>(target - length_up_to[e]) * borders.directions.col(e);
     }
   }
   parts_ = parts;

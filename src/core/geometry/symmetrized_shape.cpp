@@ -9,7 +9,9 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/geometry/diameter.h"
+#include "core/geometry/mesh_sampling.h"
 #include "core/geometry/open_edges.h"
+#include "core/geometry/reflected_points.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangle_tree.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -23,16 +25,15 @@ struct SymmetrizingRules {
   float paired = 0.5f;  // of the distance of the second closest vertex: closer ones are counterparts
   float gap = 0.02f;    // radii beside a border, beyond which the other side has a hole there
   float at_border = 1e-5f;   // radii
-  int judged = 5000;         // vertices that the deviation is of
+  int judged = 5000;         // vertices that the deviation is measured at
   float beside = 2.0f;       // spacings beside a sample of a cloud, beyond which nothing is there
   double pair_share = 0.01;  // of the diameter, greatest distance of a counterpart by default
 };
 constexpr SymmetrizingRules kSymmetrizing;
-constexpr std::size_t kVerticesAtATime = 1024;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// The plane through 0 with this normal.
+/// Across the plane through 0 with this normal.
 Eigen::Vector3f reflected(const Eigen::Vector3f& x, const Eigen::Vector3f& normal) {
   return x - 2.0f * normal.dot(x) * normal;
 }
@@ -64,14 +65,14 @@ OtherSide otherSide(const Points& vertices, const std::vector<Eigen::Vector3i>& 
                     const Eigen::Vector3f& normal, const std::vector<char>& used, int num_threads) {
   const TriangleTree tree(vertices, triangles);
   OtherSide found{Points(3, vertices.cols()), std::vector<int>(used.size(), -1)};
-  parallelRanges(used.size(), kVerticesAtATime, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(used.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!used[i]) continue;
-      const Eigen::Vector3f x = reflected(vertices.col(static_cast<Eigen::Index>(i)), normal);
+      const Eigen::Vector3f x = reflected(vertices.col(i), normal);
       const ClosestOnTriangles closest = tree.closestTo(x);
-      found.points.col(static_cast<Eigen::Index>(i)) = closest.point;
+      found.points.col(i) = closest.point;
       float least = std::numeric_limits<float>::infinity(), second = least;
-      for (const int corner : triangles[static_cast<std::size_t>(closest.triangle)]) {
+      for (const int corner : triangles[closest.triangle]) {
         const float distance = (vertices.col(corner) - x).norm();
         if (distance < least) {
           second = least;
@@ -87,23 +88,25 @@ OtherSide otherSide(const Points& vertices, const std::vector<Eigen::Vector3i>& 
   return found;
 }
 
-/// Marks vertices whose reflection lies beside a border, where the other side has nothing.
-std::vector<char> missing(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles, const Points& normals,
-                          const Eigen::Vector3f& normal, const OtherSide& other) {
-  std::vector<char> is_missing(static_cast<std::size_t>(vertices.cols()), 0);
+/// Which of the vertices used move: all but those whose reflection lies beside a border, where the other side has
+/// nothing.
+std::vector<char> movingVertices(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles,
+                                 const Points& normals, const Eigen::Vector3f& normal, const OtherSide& other,
+                                 const std::vector<char>& used) {
+  std::vector<char> moves = used;
   std::vector<Eigen::Vector3i> segments;
   for (const auto& [a, b] : openEdges(vertices, triangles)) segments.emplace_back(a, b, b);
-  if (segments.empty()) return is_missing;
+  if (segments.empty()) return moves;
   const TriangleTree borders(vertices, segments);
-  for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i]) continue;
     const Eigen::Vector3f apart = reflected(vertices.col(i), normal) - other.points.col(i);
     const Eigen::Vector3f across = reflected(normals.col(i).stableNormalized(), normal);
     if (!((apart - across.dot(apart) * across).norm() > kSymmetrizing.gap)) continue;
     const float reach = kSymmetrizing.at_border;
-    is_missing[static_cast<std::size_t>(i)] =
-        borders.closestTo(other.points.col(i)).sq_distance < reach * reach ? 1 : 0;
+    moves[i] = !(borders.closestTo(other.points.col(i)).sq_distance < reach * reach);
   }
-  return is_missing;
+  return moves;
 }
 
 /// Mean and greatest absolute value of the asymmetry.
@@ -123,22 +126,14 @@ void summarize(SymmetrizedShape& shape, const std::vector<double>& weights) {
 
 SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles,
                                  const ReflectionPlane& plane, SymmetrizedHalf half, int num_threads) {
-  std::vector<char> used(static_cast<std::size_t>(vertices.cols()), 0);
-  std::vector<Eigen::Vector3i> finite;
+  const std::vector<Eigen::Vector3i> finite = finiteTriangles(vertices, triangles);
+  std::vector<char> used(vertices.cols(), 0);
   Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3i& triangle : triangles) {
-    bool is_finite = true;
-    for (int k = 0; k < 3; ++k) {
-      check(triangle[k] >= 0 && triangle[k] < vertices.cols(), "triangle vertex", triangle[k], "an index of a vertex");
-      is_finite = is_finite && vertices.col(triangle[k]).allFinite();
+  for (const Eigen::Vector3i& triangle : finite)
+    for (const int i : triangle) {
+      used[i] = 1;
+      box.extend(vertices.col(i).cast<double>());
     }
-    if (!is_finite) continue;
-    finite.push_back(triangle);
-    for (int k = 0; k < 3; ++k) {
-      used[static_cast<std::size_t>(triangle[k])] = 1;
-      box.extend(vertices.col(triangle[k]).cast<double>());
-    }
-  }
   const double radius = box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
   check(radius > 0.0, "extent of the mesh", radius, "> 0");
   const Eigen::Vector3d middle = box.center();
@@ -151,14 +146,13 @@ SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Ei
   result.points = vertices;
   result.asymmetry.assign(used.size(), kNone);
   OtherSide other = otherSide(moved, finite, normal, used, num_threads);
-  const std::vector<char> is_missing = missing(moved, finite, normals, normal, other);
+  const std::vector<char> moves = movingVertices(moved, finite, normals, normal, other, used);
   std::vector<double> areas(used.size(), 0.0);
   for (std::size_t i = 0; i < used.size(); ++i) {
-    if (!used[i] || is_missing[i]) continue;
-    const auto column = static_cast<Eigen::Index>(i);
-    areas[i] = normals.col(column).norm();
-    const Eigen::Vector3f apart = moved.col(column) - reflected(other.points.col(column), normal);
-    result.asymmetry[i] = static_cast<float>(radius) * normals.col(column).stableNormalized().dot(apart);
+    if (!moves[i]) continue;
+    areas[i] = normals.col(i).norm();
+    const Eigen::Vector3f apart = moved.col(i) - reflected(other.points.col(i), normal);
+    result.asymmetry[i] = static_cast<float>(radius) * normals.col(i).stableNormalized().dot(apart);
   }
   summarize(result, areas);
 
@@ -166,27 +160,24 @@ SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Ei
     if (pass > 0) other = otherSide(moved, finite, normal, used, num_threads);
     const Points before = moved;
     for (std::size_t i = 0; i < used.size(); ++i) {
-      if (!used[i] || is_missing[i]) continue;
-      const auto column = static_cast<Eigen::Index>(i);
+      if (!moves[i]) continue;
       const int j = other.vertices[i];
-      const bool is_pair = j >= 0 && other.vertices[static_cast<std::size_t>(j)] == static_cast<int>(i);
-      const Eigen::Vector3f place =
-          is_pair ? Eigen::Vector3f(before.col(j)) : Eigen::Vector3f(other.points.col(column));
-      moved.col(column) = movedTo(before.col(column), reflected(place, normal), normal, half);
+      const bool is_pair = j >= 0 && other.vertices[j] == static_cast<int>(i);
+      Eigen::Vector3f counterpart = other.points.col(i);
+      if (is_pair) counterpart = before.col(j);
+      moved.col(i) = movedTo(before.col(i), reflected(counterpart, normal), normal, half);
     }
   }
 
   std::vector<char> judged(used.size(), 0);
   const std::size_t stride = std::max<std::size_t>(1, used.size() / kSymmetrizing.judged);
-  for (std::size_t i = 0; i < used.size(); i += stride) judged[i] = used[i] && !is_missing[i] ? 1 : 0;
+  for (std::size_t i = 0; i < used.size(); i += stride) judged[i] = moves[i];
   other = otherSide(moved, finite, normal, judged, num_threads);
   for (std::size_t i = 0; i < used.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
     if (judged[i])
       result.deviation =
-          std::max(result.deviation, radius * (reflected(moved.col(column), normal) - other.points.col(column)).norm());
-    if (used[i] && !is_missing[i])
-      result.points.col(column) = (origin + radius * moved.col(column).cast<double>()).cast<float>();
+          std::max(result.deviation, radius * (reflected(moved.col(i), normal) - other.points.col(i)).norm());
+    if (moves[i]) result.points.col(i) = (origin + radius * moved.col(i).cast<double>()).cast<float>();
   }
   return result;
 }
@@ -195,32 +186,29 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
                                   int num_threads) {
   SymmetrizedShape result;
   result.points = points;
-  result.asymmetry.assign(static_cast<std::size_t>(points.cols()), kNone);
+  result.asymmetry.assign(points.cols(), kNone);
   const auto search = makeFlannSearch(points);
   const LocalGeometry geometry = localGeometry(result.points, *search, kNumSupportNeighbours, num_threads);
   const Eigen::Vector3d center = centerOfMass(points);
-  Points images(3, points.cols());
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    images.col(i) = plane.reflect(points.col(i).cast<double>()).cast<float>();
+  const Points images = reflectedPoints(points, plane);
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search->search(images, 1, closest, sq_distances);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const auto index = static_cast<std::size_t>(i);
     const Eigen::Vector3d x = points.col(i).cast<double>(), image = images.col(i).cast<double>();
     const bool is_left = plane.signedDistance(x) < 0.0;
     if (half == SymmetrizedHalf::Mean || is_left == (half == SymmetrizedHalf::Left))
       result.kept.push_back(static_cast<int>(i));
-    const Eigen::Vector3d across = geometry.normals.col(closest[index]).cast<double>();
-    const Eigen::Vector3d apart = image - points.col(closest[index]).cast<double>();
+    const Eigen::Vector3d across = geometry.normals.col(closest[i]).cast<double>();
+    const Eigen::Vector3d apart = image - points.col(closest[i]).cast<double>();
     const double height = across.dot(apart);
     if (std::sqrt(std::max(0.0, apart.squaredNorm() - height * height)) >
-        kSymmetrizing.beside * geometry.spacing[static_cast<std::size_t>(closest[index])])
+        kSymmetrizing.beside * geometry.spacing[closest[i]])
       continue;
     const Eigen::Vector3d other = plane.reflect(image - height * across);
     const Eigen::Vector3d normal = geometry.normals.col(i).cast<double>();
     const double outward = normal.dot(x - center) < 0.0 ? -1.0 : 1.0;
-    result.asymmetry[index] = static_cast<float>(outward * normal.dot(x - other));
+    result.asymmetry[i] = static_cast<float>(outward * normal.dot(x - other));
     if (half == SymmetrizedHalf::Mean) result.points.col(i) = (0.5 * (x + other)).cast<float>();
   }
   summarize(result, std::vector<double>(result.asymmetry.size(), 1.0));
@@ -232,10 +220,7 @@ MirroredPairs mirroredPairs(const PointsRef& points, const ReflectionPlane& plan
   MirroredPairs pairs;
   if (points.cols() == 0) return pairs;
   if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * farthestPair(points);
-  Points images(3, points.cols());
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    images.col(i) = plane.reflect(points.col(i).cast<double>()).cast<float>();
-  makeFlannSearch(points)->search(images, 1, pairs.index, pairs.sq_distances);
+  makeFlannSearch(points)->search(reflectedPoints(points, plane), 1, pairs.index, pairs.sq_distances);
   for (std::size_t i = 0; i < pairs.index.size(); ++i)
     if (pairs.sq_distances[i] > max_distance * max_distance) pairs.index[i] = -1;
   return pairs;
@@ -248,7 +233,7 @@ LandmarkAsymmetry landmarkAsymmetry(const std::vector<std::pair<Eigen::Vector3d,
   for (const auto& [first, second] : pairs) {
     result.paired.emplace_back(plane.reflect(first) - second);
     paired += result.paired.back().squaredNorm();
-    object += 2.0 * 0.25 * result.paired.back().squaredNorm();  // both are half of the vector from their mean
+    object += 0.5 * result.paired.back().squaredNorm();  // each of the two is half of it off their mean
   }
   for (const Eigen::Vector3d& landmark : midline) {
     result.unpaired.push_back(plane.signedDistance(landmark));

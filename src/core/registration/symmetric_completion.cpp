@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/geometry/reflected_points.h"
 #include "core/geometry/surface_normals.h"
 
 namespace pcl_symmetry {
@@ -20,9 +21,7 @@ std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane
   if (points.cols() == 0) return completing;
   const auto search = makeFlannSearch(points);
   const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, options.num_threads);
-  Points reflected(3, points.cols());
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    reflected.col(i) = plane.reflect(points.col(i).cast<double>()).cast<float>();
+  const Points reflected = reflectedPoints(points, plane);
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search->search(reflected, 1, closest, sq_distances);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/geometry/reflected_points.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
@@ -66,12 +67,9 @@ std::optional<GlobalPlane> globalPlane(const std::vector<PartPlane>& planes) {
 }
 
 std::vector<int> reflectedElements(const SurfaceGraph& graph, const ReflectionPlane& plane) {
-  Points reflected(3, graph.centers.cols());
-  for (Eigen::Index i = 0; i < reflected.cols(); ++i)
-    reflected.col(i) = plane.reflect(graph.centers.col(i).cast<double>()).cast<float>();
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeFlannSearch(graph.centers)->search(reflected, 1, closest, sq_distances);
+  makeFlannSearch(graph.centers)->search(reflectedPoints(graph.centers, plane), 1, closest, sq_distances);
   return closest;
 }
 

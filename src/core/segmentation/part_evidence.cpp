@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/random.h"
+#include "core/geometry/reflected_points.h"
 #include "core/segmentation/body_evidence.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/surface_patches.h"
@@ -37,11 +38,8 @@ std::vector<std::vector<int>> imagesOfPatches(const Patches& patches, const std:
   const auto search = makeFlannSearch(patches.centers);
   for (const PartPlane& plane : planes) {
     if (plane.share < kMappedShare) continue;
-    Points reflected(3, patches.size());
-    for (int p = 0; p < patches.size(); ++p)
-      reflected.col(p) = plane.plane.reflect(patches.centers.col(p).cast<double>()).cast<float>();
     std::vector<float> sq_distances;
-    search->search(reflected, 1, images.emplace_back(), sq_distances);
+    search->search(reflectedPoints(patches.centers, plane.plane), 1, images.emplace_back(), sq_distances);
   }
   return images;
 }
