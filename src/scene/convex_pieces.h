@@ -10,7 +10,7 @@ namespace pcl_symmetry::detail {
 /// surface bends inwards, as between a box and another one that it leans on.
 /// \param cluster indices of finite points.
 /// \param viewpoint of the sensor, which tells inside from outside.
-/// \param spacing of neighbouring points, input units, > 0.
+/// \param spacing of neighboring points, input units, > 0.
 /// \param min_points of a piece; points of smaller ones belong to the nearest piece.
 /// \return the pieces, most points first, which hold all points of the cluster.
 std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,

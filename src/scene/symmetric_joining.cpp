@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-
 #include <map>
 #include <optional>
 #include <set>
@@ -17,49 +16,13 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/scan/sensor_noise.h"
+#include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
 
 namespace {
 
 using Cloud = SymmetryScene::Cloud;
-
-// Points of a piece that are reflected. derived: a share of one half is known to 2 %.
-constexpr std::size_t kReflected = 500;
-// Least share of the points of a piece that its symmetry maps onto the surface, of those that land where the sensor
-// saw. chosen: a handle or a box that is thrown into free space leaves less than half.
-constexpr double kExplained = 0.9;
-// Share of the points of a piece that have to land where the sensor saw; of fewer, a plane says nothing of the piece.
-constexpr double kTold = 0.1;
-// Radians, and diagonals of the union: planes and axes within these are one, as in the judgement of real frames.
-constexpr double kSameAngle = 5.0 * kPi / 180.0, kSameOffset = 0.03;
-// Share of the height of the union above which the smaller piece has to begin to hang. chosen: half is the noise of a
-// foot, twice the height of handles.
-constexpr double kHangs = 0.1;
-// Share of the points of a piece that may lie below its foot or above its top: flying pixels.
-constexpr double kTrimmed = 0.02;
-// Spacings around a point that its normal is taken from: a supervoxel's radius, which takes the noise of a camera out.
-constexpr double kNormalSpacings = 5.0;
-// Least horizontal part of a normal that tells where an upright axis is.
-constexpr double kLevel = 0.3;
-// Rounds of the fit of an axis to normals, and diagonals that a normal may miss it by; later ones weigh less.
-constexpr int kAxisRounds = 5;
-constexpr double kMisses = 0.05;
-// Radians within which a normal points to the axis, and the share of such normals of round pieces. derived: of the
-// faces of a box with a square base a third.
-constexpr double kPointsTo = 15.0 * kPi / 180.0, kRoundShare = 0.7;
-// Share of the points of a round piece that have such a normal, and of the height of the lower piece that both have in
-// common: what stands on another object is not beside it.
-constexpr double kWalls = 0.1, kBeside = 0.5;
-// Share of the points of two pieces that their own symmetries have to explain for the cut to stay: that of one of
-// them. Thickness of a
-// piece over its length, both root mean squares, below which it is flat.
-constexpr double kOwn = 0.25, kFlatShare = 0.1;
-constexpr int kAnglesOfAxis = 4;  // planes that stand for an axis, 45 degrees apart
-
-double sq(double x) {
-  return x * x;
-}
 
 Eigen::Vector3d positionOf(const Cloud& scene, pcl::index_t i) {
   return scene[i].getVector3fMap().cast<double>();
@@ -85,15 +48,15 @@ ReflectionPlane planeThrough(const SymmetryAxis& axis, const Eigen::Vector3d& no
 std::vector<ReflectionPlane> planesThrough(const SymmetryAxis& axis) {
   std::vector<ReflectionPlane> planes;
   const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
-  for (int k = 0; k < kAnglesOfAxis; ++k) {
-    const double angle = kPi * k / kAnglesOfAxis;
+  for (int k = 0; k < scene_rules.planes_of_axis; ++k) {
+    const double angle = kPi * k / scene_rules.planes_of_axis;
     planes.push_back(planeThrough(axis, std::cos(angle) * u + std::sin(angle) * v));
   }
   return planes;
 }
 
-/// The planes that decide; some of those through the axis of a body of revolution.
-std::vector<ReflectionPlane> decidingPlanes(const SceneObject& object) {
+/// The planes of symmetry of an object; of a body of revolution some of those through its axis.
+std::vector<ReflectionPlane> planesOf(const SceneObject& object) {
   if (!object.axes.empty()) return planesThrough(object.axes.front());
   std::vector<ReflectionPlane> planes;
   for (const SymmetryPlane& plane : object.planes)
@@ -104,12 +67,12 @@ std::vector<ReflectionPlane> decidingPlanes(const SceneObject& object) {
 /// How many points of a piece a reflection maps where.
 struct Landings {
   double own = 0.0, other = 0.0;  ///< onto the piece itself, onto the other one
-  double off = 0.0;               ///< to where the sensor saw that there is nothing
+  double off = 0.0;               ///< into free space
   double all = 0.0;               ///< with those that land in unknown space
 
-  double told() const { return own + other + off; }
-  bool tells() const { return told() >= kTold * all; }
-  double share() const { return told() > 0.0 ? (own + other) / told() : 0.0; }
+  double known() const { return own + other + off; }
+  bool isInformative() const { return known() >= scene_rules.informative * all; }
+  double share() const { return known() > 0.0 ? (own + other) / known() : 0.0; }
 };
 
 /// Two pieces that may be one object.
@@ -119,9 +82,8 @@ public:
       : scene_(scene), pieces_{&larger, &smaller}, indices_(indicesOf(larger, smaller)), reflected_(reflectedOf()) {
     tree_.setInputCloud(scene.frame, pcl::make_shared<pcl::Indices>(indices_));
     seen_ = scene.seen_of(indices_);
-    Points points(3, static_cast<Eigen::Index>(indices_.size()));
-    for (std::size_t i = 0; i < indices_.size(); ++i)
-      points.col(static_cast<Eigen::Index>(i)) = (*scene.frame)[indices_[i]].getVector3fMap();
+    Points points(3, indices_.size());
+    for (std::size_t i = 0; i < indices_.size(); ++i) points.col(i) = (*scene.frame)[indices_[i]].getVector3fMap();
     diagonal_ = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
     center_ = points.rowwise().mean().cast<double>();
     double tolerance = std::max(scene.spacing, scene.tolerance * diagonal_);
@@ -129,37 +91,37 @@ public:
     reach_ = 2.0 * tolerance;
   }
 
-  /// Whether one symmetry may explain both, as far as their own ones tell.
+  /// Whether one symmetry may explain both, by what is known of the pieces.
   bool isPlausible() const {
     const SceneObject &larger = *pieces_[0], &smaller = *pieces_[1];
     if (larger.axes.empty()) return false;
     return hangs() || (!smaller.axes.empty() && isSame(larger.axes.front(), smaller.axes.front()));
   }
 
-  /// Whether the pieces are bodies of their own: a good part of their points is explained by symmetries of the piece,
-  /// and neither is a face of a body or a bulge of a wall.
+  /// Whether the pieces are two bodies: symmetries of their own explain them, and neither is a face or part of a wall.
   bool isCutBySymmetry(double share_apart) const {
-    return share_apart >= kOwn && !isFlat(*pieces_[0]) && !isFlat(*pieces_[1]);
+    return share_apart >= scene_rules.own && !isFlat(*pieces_[0]) && !isFlat(*pieces_[1]);
   }
 
   const pcl::Indices& indices() const { return indices_; }
 
-  /// Share of the points of both whose normals point to one upright line: nothing where the pieces are not of one body
-  /// of revolution, side by side. Noise pulls the line towards the points, too far for reflections to meet the surface.
+  /// Share of the points of both whose normals point to one upright line; nothing unless the pieces stand side by side
+  /// and are of one body of revolution. Noise pulls the line too far toward the points for reflections to fit.
   std::optional<double> roundShare() const {
     if (scene_.supports.empty()) return std::nullopt;
     const SupportingPlane& support = nearestSupport();
     const std::array<double, 2> heights[] = {heightsOf(support, *pieces_[0]), heightsOf(support, *pieces_[1])};
     const double beside = std::min(heights[0][1], heights[1][1]) - std::max(heights[0][0], heights[1][0]);
-    if (beside < kBeside * std::min(heights[0][1] - heights[0][0], heights[1][1] - heights[1][0])) return std::nullopt;
+    if (beside < scene_rules.beside * std::min(heights[0][1] - heights[0][0], heights[1][1] - heights[1][0]))
+      return std::nullopt;
     const Eigen::Vector3d up = support.coefficients.head<3>();
     const std::vector<Wall> walls = wallsOf(up);
     Eigen::Vector3d at = center_;
-    for (int round = 0; round < kAxisRounds; ++round) {
+    for (int round = 0; round < scene_rules.axis_rounds; ++round) {
       Eigen::Matrix3d a = up * up.transpose();  // leaves the height where it is
       Eigen::Vector3d b = a * center_;
       for (const Wall& wall : walls) {
-        const double off = wall.aside.dot(wall.point - at) / (kMisses * diagonal_);
+        const double off = wall.aside.dot(wall.point - at) / (scene_rules.misses * diagonal_);
         const double weight = round == 0 ? 1.0 : 1.0 / (1.0 + off * off);
         a += weight * wall.aside * wall.aside.transpose();
         b += weight * wall.aside.dot(wall.point) * wall.aside;
@@ -172,11 +134,12 @@ public:
       Eigen::Vector3d inwards = at - wall.point;
       inwards -= up * up.dot(inwards);
       num_walls[wall.piece] += 1.0;
-      num_round[wall.piece] += std::abs(wall.aside.dot(inwards)) <= std::sin(kPointsTo) * inwards.norm() ? 1.0 : 0.0;
+      num_round[wall.piece] +=
+          std::abs(wall.aside.dot(inwards)) <= std::sin(scene_rules.points_to) * inwards.norm() ? 1.0 : 0.0;
     }
     for (std::size_t k = 0; k < 2; ++k)
-      if (num_walls[k] < kWalls * static_cast<double>(reflected_[k].size()) ||
-          num_round[k] < kRoundShare * num_walls[k])
+      if (num_walls[k] < scene_rules.walls * static_cast<double>(reflected_[k].size()) ||
+          num_round[k] < scene_rules.round_share * num_walls[k])
         return std::nullopt;
     return shareOfBoth(num_round[0] / num_walls[0], num_round[1] / num_walls[1]);
   }
@@ -185,34 +148,33 @@ public:
   bool areOne(const SceneObject& together) const {
     const SymmetryAxis& axis = pieces_[0]->axes.front();
     if (!together.axes.empty() && !isSame(axis, together.axes.front())) return false;
-    const std::vector<ReflectionPlane> planes = decidingPlanes(together);
+    const std::vector<ReflectionPlane> planes = planesOf(together);
     return std::any_of(planes.begin(), planes.end(), [&](const auto& plane) { return contains(plane, axis); }) &&
            explains(planes, !together.axes.empty());
   }
 
-  /// Share of the points that one symmetry explains: the best of those of the union, where it is known, and of the
-  /// pieces.
+  /// Share of the points that the best symmetry of the union, where it is known, or of a piece explains.
   double shareTogether(const SceneObject* together) const {
     std::vector<ReflectionPlane> planes;
     for (const SceneObject* object : {together, pieces_[0], pieces_[1]})
       if (object)
-        for (const ReflectionPlane& plane : decidingPlanes(*object)) planes.push_back(plane);
+        for (const ReflectionPlane& plane : planesOf(*object)) planes.push_back(plane);
     if (const auto through = throughAxisOfLarger()) planes.push_back(*through);
     double best = 0.0;
     for (const ReflectionPlane& plane : planes) {
       const Landings a = landings(0, plane), b = landings(1, plane);
-      if (a.tells() && b.tells()) best = std::max(best, shareOfBoth(a.share(), b.share()));
+      if (a.isInformative() && b.isInformative()) best = std::max(best, shareOfBoth(a.share(), b.share()));
     }
     return best;
   }
 
-  /// Share of the points that the symmetries of the pieces explain, each those of its own.
+  /// Share of the points that are explained by a symmetry of their own piece.
   double shareApart() const {
     std::array<double, 2> shares{};
     for (int k = 0; k < 2; ++k)
-      for (const ReflectionPlane& plane : decidingPlanes(*pieces_[k])) {
+      for (const ReflectionPlane& plane : planesOf(*pieces_[k])) {
         const Landings own = landings(k, plane);
-        if (own.told() > 0.0) shares[k] = std::max(shares[k], own.own / own.told());
+        if (own.known() > 0.0) shares[k] = std::max(shares[k], own.own / own.known());
       }
     return shareOfBoth(shares[0], shares[1]);
   }
@@ -222,7 +184,7 @@ private:
     std::array<pcl::Indices, 2> some;
     for (int k = 0; k < 2; ++k) {
       const pcl::Indices& all = pieces_[k]->indices;
-      const std::size_t stride = 1 + (all.size() - 1) / kReflected;
+      const std::size_t stride = 1 + (all.size() - 1) / scene_rules.reflected;
       for (std::size_t i = 0; i < all.size(); i += stride) some[k].push_back(all[i]);
     }
     return some;
@@ -239,12 +201,12 @@ private:
     std::vector<float> sq_distance(1);
     for (const pcl::index_t i : reflected_[piece]) {
       const Eigen::Vector3d x = positionOf(*scene_.frame, i);
-      if (2.0 * std::abs(plane.signedDistance(x)) <= reach_) continue;  // what does not move says nothing
+      if (2.0 * std::abs(plane.signedDistance(x)) <= reach_) continue;  // what stays is uninformative
       result.all += 1.0;
       pcl::PointXYZ at;
       at.getVector3fMap() = plane.reflect(x).cast<float>();
       tree_.nearestKSearch(at, 1, closest, sq_distance);
-      if (sq_distance[0] <= sq(reach_))
+      if (sq_distance[0] <= reach_ * reach_)
         (isOf(piece, closest[0]) ? result.own : result.other) += 1.0;
       else if (!seen_.visibility() || seen_.visibility()->depthBehind(plane.reflect(x)) < -reach_)
         result.off += 1.0;
@@ -257,16 +219,16 @@ private:
     return std::binary_search(points.begin(), points.end(), i);
   }
 
-  /// Whether no piece contradicts these planes, and each has one that tells something of it: for planes that are not
-  /// those of one axis, a symmetry of the piece by itself.
+  /// Whether no piece contradicts these planes, and each has an informative one: unless the planes are those of an
+  /// axis, a symmetry of the piece by itself.
   bool explains(const std::vector<ReflectionPlane>& planes, bool of_axis) const {
     std::array<bool, 2> is_explained{};
     for (const ReflectionPlane& plane : planes)
       for (int k = 0; k < 2; ++k) {
         const Landings all = landings(k, plane);
-        if (!all.tells()) continue;
-        if (all.share() < kExplained) return false;
-        is_explained[k] = is_explained[k] || of_axis || all.own >= kExplained * (all.own + all.other);
+        if (!all.isInformative()) continue;
+        if (all.share() < scene_rules.explained) return false;
+        is_explained[k] = is_explained[k] || of_axis || all.own >= scene_rules.explained * (all.own + all.other);
       }
     return is_explained[0] && is_explained[1];
   }
@@ -285,33 +247,36 @@ private:
       for (const pcl::index_t i : reflected_[k]) {
         Eigen::Vector4f normal;
         float curvature = 0.0f;
-        if (tree_.radiusSearch((*scene_.frame)[i], kNormalSpacings * scene_.spacing, around, sq_distances) < 3 ||
+        if (tree_.radiusSearch((*scene_.frame)[i], scene_rules.normal_spacings * scene_.spacing, around, sq_distances) <
+                3 ||
             !pcl::computePointNormal(*scene_.frame, around, normal, curvature))
           continue;
         const Eigen::Vector3d aside = up.cross(normal.head<3>().cast<double>());
-        if (aside.norm() >= kLevel) walls.push_back({k, positionOf(*scene_.frame, i), aside.normalized()});
+        if (aside.norm() >= scene_rules.level) walls.push_back({k, positionOf(*scene_.frame, i), aside.normalized()});
       }
     return walls;
   }
 
+  /// The point of an axis that is closest to the center of both.
+  Eigen::Vector3d middleOf(const SymmetryAxis& axis) const {
+    return axis.point + axis.direction.dot(center_ - axis.point) * axis.direction;
+  }
+
   bool isSame(const SymmetryAxis& a, const SymmetryAxis& b) const {
-    const Eigen::Vector3d from = a.point + a.direction.dot(center_ - a.point) * a.direction;
-    const Eigen::Vector3d to = b.point + b.direction.dot(center_ - b.point) * b.direction;
-    return std::abs(a.direction.dot(b.direction)) >= std::cos(kSameAngle) &&
-           (from - to).norm() <= kSameOffset * diagonal_;
+    return std::abs(a.direction.dot(b.direction)) >= std::cos(scene_rules.same_angle) &&
+           (middleOf(a) - middleOf(b)).norm() <= scene_rules.same_offset * diagonal_;
   }
 
   bool contains(const ReflectionPlane& plane, const SymmetryAxis& axis) const {
-    const Eigen::Vector3d middle = axis.point + axis.direction.dot(center_ - axis.point) * axis.direction;
-    return std::abs(plane.normal().dot(axis.direction)) <= std::sin(kSameAngle) &&
-           std::abs(plane.signedDistance(middle)) <= kSameOffset * diagonal_;
+    return std::abs(plane.normal().dot(axis.direction)) <= std::sin(scene_rules.same_angle) &&
+           std::abs(plane.signedDistance(middleOf(axis))) <= scene_rules.same_offset * diagonal_;
   }
 
+  /// The plane through the axis of the larger piece and the smaller piece.
   std::optional<ReflectionPlane> throughAxisOfLarger() const {
     if (pieces_[0]->axes.empty()) return std::nullopt;
     const SymmetryAxis& axis = pieces_[0]->axes.front();
-    const Eigen::Vector3d aside = centroidOf(*scene_.frame, pieces_[1]->indices) - axis.point;
-    const Eigen::Vector3d normal = axis.direction.cross(aside);
+    const Eigen::Vector3d normal = axis.direction.cross(centroidOf(*scene_.frame, pieces_[1]->indices) - axis.point);
     if (!(normal.norm() > 0.0)) return std::nullopt;
     return planeThrough(axis, normal.normalized());
   }
@@ -324,9 +289,10 @@ private:
       squares += x * x.transpose() / static_cast<double>(piece.indices.size());
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues()[0] < sq(kFlatShare) * solver.eigenvalues()[2];
+    return solver.eigenvalues()[0] < std::pow(scene_rules.flat, 2) * solver.eigenvalues()[2];
   }
 
+  /// The support that a piece comes closest to.
   const SupportingPlane& nearestSupport() const {
     const auto foot = [&](const SupportingPlane& support) {
       return std::min(footOf(support, *pieces_[0]), footOf(support, *pieces_[1]));
@@ -340,7 +306,7 @@ private:
     if (scene_.supports.empty()) return true;
     const SupportingPlane& support = nearestSupport();
     return footOf(support, *pieces_[1]) - footOf(support, *pieces_[0]) >
-           std::max(2.0 * scene_.plane_distance, kHangs * diagonal_);
+           std::max(2.0 * scene_.plane_distance, scene_rules.hangs * diagonal_);
   }
 
   /// From its foot to its top, without flying pixels.
@@ -348,7 +314,8 @@ private:
     std::vector<double> heights;
     for (const pcl::index_t i : piece.indices)
       heights.push_back(support.coefficients.dot(positionOf(*scene_.frame, i).homogeneous().eval()));
-    const auto foot = heights.begin() + static_cast<std::ptrdiff_t>(kTrimmed * static_cast<double>(heights.size()));
+    const auto foot =
+        heights.begin() + static_cast<std::ptrdiff_t>(scene_rules.trimmed * static_cast<double>(heights.size()));
     const auto top = heights.end() - 1 - (foot - heights.begin());
     std::nth_element(heights.begin(), foot, heights.end());
     const double lowest = *foot;
@@ -410,10 +377,10 @@ public:
   }
 
   /// Unites pairs until decide(pair, number of pairs) unites none.
-  /// \param tell whether these pairs are told as junctions.
+  /// \param report whether these pairs are reported as junctions.
   /// \param again whether united pieces are analysed.
   template <typename Decide>
-  void unite(const Decide& decide, bool tell, bool again) {
+  void unite(const Decide& decide, bool report, bool again) {
     std::vector<PiecePair> asked;
     for (const auto& [pair, shares] : pairs_) asked.push_back(pair);
     while (!asked.empty()) {
@@ -429,7 +396,7 @@ public:
         // What was analysed holds for pieces as they were; other pairs are asked again.
         const bool is_stale = verdict.object && (changed.count(to) || changed.count(from));
         if (!verdict.are_one || to == from || is_stale) continue;
-        if (tell) junctions_.push_back(junctionOf(asked[k]));
+        if (report) junctions_.push_back(junctionOf(asked[k]));
         if (verdict.object) {
           objects_[to] = std::move(*verdict.object);
         } else {
