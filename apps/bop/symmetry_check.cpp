@@ -8,6 +8,7 @@
 
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
+#include "io/formatted.h"
 #include "io/json_values.h"
 
 namespace pcl_symmetry::apps {
@@ -166,10 +167,7 @@ void addMissing(const ObjectSymmetries& found, const ObjectSymmetries& given, co
 }
 
 std::string angleText(double angle) {
-  if (angle == 0.0) return "any angle";
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.2f degrees", angle / kDegree);
-  return text;
+  return angle == 0.0 ? "any angle" : formatted("%.2f degrees", angle / kDegree);
 }
 
 }  // namespace

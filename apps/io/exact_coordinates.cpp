@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
+
+#include "io/formatted.h"
 
 namespace pcl_symmetry::apps {
 
@@ -116,9 +117,7 @@ int lengthDigits(const Eigen::Vector3d& shift) {
 }
 
 std::string spelled(const Eigen::Vector3d& point, int digits) {
-  char text[96];
-  std::snprintf(text, sizeof(text), "%.*g %.*g %.*g", digits, point.x(), digits, point.y(), digits, point.z());
-  return text;
+  return formatted("%.*g %.*g %.*g", digits, point.x(), digits, point.y(), digits, point.z());
 }
 
 }  // namespace pcl_symmetry::apps

@@ -1,9 +1,8 @@
 #include "io/turn_values.h"
 
-#include <cstdio>
-
-#include "io/json_values.h"
 #include "io/exact_coordinates.h"
+#include "io/formatted.h"
+#include "io/json_values.h"
 
 namespace pcl_symmetry::apps {
 
@@ -23,10 +22,9 @@ nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Ve
 
 std::string lineOf(const SymmetryTurn& turn, const Eigen::Vector3d& shift) {
   const std::string order = turn.fold > 0 ? "axis of order " + std::to_string(turn.fold) : "axis of revolution";
-  char line[128];
-  std::snprintf(line, sizeof(line), " along %.6f %.6f %.6f, confidence %.3f\n", turn.direction.x(), turn.direction.y(),
-                turn.direction.z(), turn.confidence);
-  return order + ": through " + spelled(shiftedBack(turn.point, shift), lengthDigits(shift)) + line;
+  return order + ": through " + spelled(shiftedBack(turn.point, shift), lengthDigits(shift)) +
+         formatted(" along %.6f %.6f %.6f, confidence %.3f\n", turn.direction.x(), turn.direction.y(),
+                   turn.direction.z(), turn.confidence);
 }
 
 }  // namespace pcl_symmetry::apps

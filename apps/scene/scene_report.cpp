@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "core/geometry/viewing_frame.h"
 #include "io/answer_words.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
+#include "io/formatted.h"
 #include "io/json_values.h"
 
 namespace pcl_symmetry::apps {
@@ -52,12 +52,6 @@ std::size_t numPlanes(const SceneObject& object, PlaneKind kind) {
 
 std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
-std::string formatted(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
 }
 
 /// What was found of an object, in words.

@@ -1,14 +1,14 @@
 /// The canonical frame of a cloud by its symmetry, or the transform that brings it to another one; completion, and
-/// symmetrised shapes with their asymmetry.
+/// symmetrized shapes with their asymmetry.
 #include <pcl/common/io.h>
 #include <pcl/console/print.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -22,6 +22,7 @@
 #include "command_line/run_tool.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
+#include "io/formatted.h"
 #include "io/input_shape.h"
 #include "io/json_values.h"
 #include "io/mesh_output.h"
@@ -71,8 +72,7 @@ CommandLine commandLine(AlignOptions& options) {
           "reflection of its other side there, along the normal; -html and -png show it")
       .text("landmarks", "FILE", options.landmarks,
             "with -symmetrise: lines of six numbers, a landmark and its counterpart, or of three, one of the midline; "
-            "their "
-            "asymmetry is reported")
+            "their asymmetry is reported")
       .flag("as_published", options.as_published, "the frame by the paper's own method, to the letter of Section 5.1")
       .flag("complete", options.complete,
             "reflect the cloud across its best plane of symmetry, except into space that was seen to be empty; the "
@@ -104,9 +104,7 @@ SymmetryFrame computeFrame(const Console& console, const InputShape& input, cons
 
 /// The plane through an axis of revolution that takes the side that was seen to the other.
 ReflectionPlane planeThrough(const SymmetryAxis& axis, const Eigen::Vector3d& scanner) {
-  // A scanner closer to the axis than this share of its distance tells no direction. chosen: far below what a scan
-  // resolves; half and twice change no plane.
-  constexpr double kLeastSine = 1e-6;
+  constexpr double kLeastSine = 1e-6;  // a scanner that is closer to the axis gives no direction
   const Eigen::Vector3d to_scanner = scanner - axis.point;
   const Eigen::Vector3d across = to_scanner - axis.direction.dot(to_scanner) * axis.direction;
   const Eigen::Vector3d normal =
@@ -196,8 +194,8 @@ nlohmann::json landmarksJson(const Landmarks& landmarks, const ReflectionPlane& 
   return json;
 }
 
-/// A symmetrised shape in the frame of the shifted points, and what is reported about it.
-struct Symmetrised {
+/// A symmetrized shape in the frame of the shifted points, and what is reported about it.
+struct Symmetrized {
   pcl::PCLPointCloud2 fields;  ///< of a cloud
   std::optional<pcl::PolygonMesh> mesh;
   std::vector<float> asymmetry;  ///< of each point of the input
@@ -221,61 +219,55 @@ void setPositions(pcl::PCLPointCloud2& fields, const pcl::PointCloud<pcl::PointX
   }
 }
 
-Symmetrised symmetrise(const Console& console, const InputShape& input, const AlignOptions& options,
-                       const CommonOptions& common) {
+Symmetrized symmetrized(const Console& console, const InputShape& input, const AlignOptions& options,
+                        const CommonOptions& common) {
   const ReflectionPlane plane = bestPlane(console, input, common);
   Step step(console, "Symmetrising");
   const SymmetrizedHalf half = options.symmetrise == "left"    ? SymmetrizedHalf::Left
                                : options.symmetrise == "right" ? SymmetrizedHalf::Right
                                                                : SymmetrizedHalf::Mean;
-  Symmetrised result;
+  Symmetrized result;
   const Eigen::Vector4d coefficients = shiftedBack(plane, input.shift()).coefficients();
   result.json = {{"half", options.symmetrise}, {"plane", numbersOf(coefficients)}};
-  double mean = 0.0, greatest = 0.0;
+  const auto report = [&](const auto& shape) {
+    result.asymmetry = shape.asymmetry;
+    result.json["mean_asymmetry"] = shape.mean_asymmetry;
+    result.json["greatest_asymmetry"] = shape.greatest_asymmetry;
+    result.text = formatted("asymmetry: mean %.4g, greatest %.4g\n", shape.mean_asymmetry, shape.greatest_asymmetry);
+  };
   if (input.shape.mesh) {
     const SymmetrizedMesh shape = symmetrize(*input.shape.mesh, plane, half, common.threads);
+    report(shape);
     result.mesh = shape.mesh;
-    result.asymmetry = shape.asymmetry;
-    mean = shape.mean_asymmetry;
-    greatest = shape.greatest_asymmetry;
     result.json["deviation"] = shape.deviation;
   } else {
     const SymmetrizedCloud<pcl::PointXYZ> shape = symmetrize(*input.points, plane, half, common.threads);
-    result.asymmetry = shape.asymmetry;
-    mean = shape.mean_asymmetry;
-    greatest = shape.greatest_asymmetry;
+    report(shape);
     const std::size_t size = shape.sources.size() / 2;
     pcl::PCLPointCloud2 kept;
     pcl::copyPointCloud(withFields(input.fields(), {"asymmetry"}, {result.asymmetry}),
-                        pcl::Indices(shape.sources.begin(), shape.sources.begin() + static_cast<std::ptrdiff_t>(size)),
-                        kept);
+                        pcl::Indices(shape.sources.begin(), shape.sources.begin() + size), kept);
     setPositions(kept, shape.cloud, input.shift());
     pcl::Indices all(size);
-    for (std::size_t i = 0; i < size; ++i) all[i] = static_cast<pcl::index_t>(i);
+    std::iota(all.begin(), all.end(), 0);
     result.fields = appendCopies(kept, all, "reflected_of");
     movePoints(result.fields, shiftedBack(plane, input.shift()).reflection(), size);
   }
-  result.json["mean_asymmetry"] = mean;
-  result.json["greatest_asymmetry"] = greatest;
-  char text[96];
-  std::snprintf(text, sizeof(text), "asymmetry: mean %.4g, greatest %.4g\n", mean, greatest);
-  result.text = text;
   if (options.landmarks) {
-    result.json["landmarks"] = landmarksJson(readLandmarks(*options.landmarks, input.shift()), plane);
-    std::snprintf(text, sizeof(text), "landmarks: object asymmetry %.4g, paired %.4g, root mean square\n",
-                  result.json["landmarks"]["object_rms"].get<double>(),
-                  result.json["landmarks"]["paired_rms"].get<double>());
-    result.text += text;
+    const nlohmann::json found = landmarksJson(readLandmarks(*options.landmarks, input.shift()), plane);
+    result.text += formatted("landmarks: object asymmetry %.4g, paired %.4g, root mean square\n",
+                             found["object_rms"].get<double>(), found["paired_rms"].get<double>());
+    result.json["landmarks"] = found;
   }
   step.done();
   return result;
 }
 
-/// The input with the colours of its asymmetry: blue inside, yellow outside of the reflection of the other side.
-PictureScene sceneOf(const InputShape& input, const Symmetrised& symmetrised) {
+/// The input with the colors of its asymmetry: blue inside, yellow outside of the reflection of the other side.
+PictureScene sceneOf(const InputShape& input, const Symmetrized& shape) {
   constexpr double kShown = 0.97;  // share of the points within the scale: a few that stick out hide no other
   std::vector<float> sizes;
-  for (const float value : symmetrised.asymmetry)
+  for (const float value : shape.asymmetry)
     if (std::isfinite(value)) sizes.push_back(std::abs(value));
   const auto last = sizes.begin() + static_cast<std::ptrdiff_t>(kShown * static_cast<double>(sizes.size()));
   if (last != sizes.end()) std::nth_element(sizes.begin(), last, sizes.end());
@@ -285,11 +277,9 @@ PictureScene sceneOf(const InputShape& input, const Symmetrised& symmetrised) {
   scene.mesh = input.shape.mesh;
   scene.show_color_bar = false;
   PicturePanel panel;
-  char label[96];
-  std::snprintf(label, sizeof(label), "asymmetry: blue %.3g inside, yellow %.3g outside", scale, scale);
-  panel.label = label;
+  panel.label = formatted("asymmetry: blue %.3g inside, yellow %.3g outside", scale, scale);
   panel.show_points = !scene.mesh;
-  for (const float value : symmetrised.asymmetry)
+  for (const float value : shape.asymmetry)
     panel.support.push_back(std::isfinite(value) ? std::min(1.0f, std::max(0.0f, 0.5f + 0.5f * value / scale)) : 0.5f);
   scene.panels = {panel};
   return scene;
@@ -317,7 +307,7 @@ PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
   return scene;
 }
 
-/// The target, and the input where the motion brings it, in two colours.
+/// The target, and the input where the motion brings it, in two colors.
 PictureScene sceneOf(const InputShape& input, const InputShape& target, const Eigen::Isometry3d& T_target_input) {
   const pcl::PointCloud<pcl::PointXYZ>::Ptr both(new pcl::PointCloud<pcl::PointXYZ>(*target.points));
   for (const pcl::PointXYZ& point : *input.points) {
@@ -361,12 +351,9 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
 
 std::string linesOf(const Eigen::Isometry3d& motion, int digits) {
   std::string lines;
-  for (int row = 0; row < 4; ++row) {
-    char text[96];
-    std::snprintf(text, sizeof(text), "%12.6f %12.6f %12.6f %12.*g\n", motion(row, 0), motion(row, 1), motion(row, 2),
-                  digits, motion(row, 3));
-    lines += text;
-  }
+  for (int row = 0; row < 4; ++row)
+    lines += formatted("%12.6f %12.6f %12.6f %12.*g\n", motion(row, 0), motion(row, 1), motion(row, 2), digits,
+                       motion(row, 3));
   return lines;
 }
 
@@ -399,23 +386,16 @@ nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift
 
 std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   std::string lines = "center " + spelled(shiftedBack(frame.center, shift), lengthDigits(shift)) + "\n";
-  for (int k = 0; k < 3; ++k) {
-    char text[128];
-    std::snprintf(text, sizeof(text), "axis %d %9.6f %9.6f %9.6f  score %.3f%s\n", k + 1, frame.axes(0, k),
-                  frame.axes(1, k), frame.axes(2, k), frame.scores[k],
-                  frame.revolution_axis == k ? "  axis of revolution" : "");
-    lines += text;
-  }
+  for (int k = 0; k < 3; ++k)
+    lines += formatted("axis %d %9.6f %9.6f %9.6f  score %.3f%s\n", k + 1, frame.axes(0, k), frame.axes(1, k),
+                       frame.axes(2, k), frame.scores[k], frame.revolution_axis == k ? "  axis of revolution" : "");
   for (const SymmetryTurn& turn : frame.turns)
     if (turn.confidence >= DetectionOptions().min_confidence) lines += lineOf(turn, shift);
   double others = 0.0;
   for (std::size_t i = 1; i < frame.probable.size(); ++i) others += frame.probable[i].probability;
-  char text[96];
-  if (!frame.probable.empty()) {
-    std::snprintf(text, sizeof(text), "probability of these axes %.2f, of %zu others %.2f\n",
-                  frame.probable.front().probability, frame.probable.size() - 1, others);
-    lines += text;
-  }
+  if (!frame.probable.empty())
+    lines += formatted("probability of these axes %.2f, of %zu others %.2f\n", frame.probable.front().probability,
+                       frame.probable.size() - 1, others);
   return lines;
 }
 
@@ -467,25 +447,25 @@ void analyse(const AlignOptions& options, FileJob& job) {
   const InputShape input = loadInput(console, job.path(), common);
   Motion motion =
       options.target ? toTarget(console, input, options, common) : toOwnFrame(console, input, options, common);
-  std::optional<Symmetrised> symmetrised;
+  std::optional<Symmetrized> shape;
   if (options.symmetrise != "none" && motion.converged) {
     if (options.output && input.shape.mesh) checkMeshExtension(job.output(*options.output));
-    symmetrised = symmetrise(console, input, options, common);
-    motion.text += symmetrised->text;
-    motion.json["symmetrised"] = symmetrised->json;
-    if (motion.scene) motion.scene = sceneOf(input, *symmetrised);
+    shape = symmetrized(console, input, options, common);
+    motion.text += shape->text;
+    motion.json["symmetrised"] = shape->json;
+    if (motion.scene) motion.scene = sceneOf(input, *shape);
   }
   job.report({motion.text, motion.json, rowsOf(motion)});
   if (!motion.converged) throw InputError(job.path() + ": does not fit " + *options.target + " in any pose");
   if (options.html_path) writePage(*motion.scene, {job.path(), motion.text}, job.output(*options.html_path));
   if (options.png_path) renderPicture(*motion.scene, job.output(*options.png_path), 800, 600);
-  if (symmetrised && symmetrised->mesh) {
+  if (shape && shape->mesh) {
     const Eigen::Isometry3d T_output_shifted = motion.transform * Eigen::Translation3d(input.shift());
     if (options.output)
-      saveMesh(job.output(*options.output), *symmetrised->mesh, T_output_shifted, "asymmetry", symmetrised->asymmetry);
+      saveMesh(job.output(*options.output), *shape->mesh, T_output_shifted, "asymmetry", shape->asymmetry);
     return;
   }
-  pcl::PCLPointCloud2 fields = symmetrised ? std::move(symmetrised->fields) : input.fields();
+  pcl::PCLPointCloud2 fields = shape ? std::move(shape->fields) : input.fields();
   if (options.complete) complete(console, input, common, fields);
   if (options.output) save(console, input.shape, std::move(fields), motion.transform, job.output(*options.output));
 }

@@ -12,6 +12,7 @@
 #include "command_line/console.h"
 #include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
+#include "io/formatted.h"
 #include "io/json_values.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/core/symmetry_map.h"
@@ -105,10 +106,8 @@ void checkFlat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Isomet
   const Eigen::Vector3d variance = sq_sum / num_points - (sum / num_points).cwiseAbs2();
   const double unevenness = std::sqrt(std::max(0.0, variance.z()) / (variance.x() + variance.y()));
   if (unevenness <= kMaxUnevenness) return;
-  char text[160];
-  std::snprintf(text, sizeof(text), ": its points lie %.0f %% of their extent off a plane, must be <= %.0f %%",
-                100.0 * unevenness, 100.0 * kMaxUnevenness);
-  throw InputError(input + text);
+  throw InputError(input + formatted(": its points lie %.0f %% of their extent off a plane, must be <= %.0f %%",
+                                     100.0 * unevenness, 100.0 * kMaxUnevenness));
 }
 
 /// Reads, transforms and prints one shape.

@@ -2,7 +2,6 @@
 /// plane, axis or center there.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +13,7 @@
 #include "command_line/run_tool.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
+#include "io/formatted.h"
 #include "io/input_shape.h"
 #include "io/method_names.h"
 #include "io/shape_output.h"
@@ -241,16 +241,15 @@ void analyse(const MapOptions& options, FileJob& job) {
 
   std::string text;
   for (const std::string& line_of_best : map.lines) text += line_of_best + "\n";
-  char range[96];
-  std::snprintf(range, sizeof(range), "symmetry of the %s through the points: %.3f to %.3f\n", map.of.c_str(),
-                mapped.least, mapped.greatest);
+  text +=
+      formatted("symmetry of the %s through the points: %.3f to %.3f\n", map.of.c_str(), mapped.least, mapped.greatest);
   nlohmann::json json{{"file", job.path()},
                       {"num_points", mapped.symmetry.size()},
                       {"least", mapped.least},
                       {"greatest", mapped.greatest},
                       {"timing_ms", {{"transform", transforming_ms}, {"points", mapping_ms}}}};
   if (!map.best.empty()) json[map.of] = map.best;
-  job.report({text + range, json, {{mapped.symmetry.size(), mapped.least, mapped.greatest}}});
+  job.report({text, json, {{mapped.symmetry.size(), mapped.least, mapped.greatest}}});
   if (options.output) savePoints(input, mapped, job.output(*options.output));
   writeSpace(options, job, input, map, mapped.finite.points);
   if (options.png_path) drawPoints(map, mapped, job.output(*options.png_path), options.size);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "io/answer_words.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
+#include "io/formatted.h"
 #include "io/input_shape.h"
 #include "io/json_values.h"
 #include "io/method_names.h"
@@ -35,9 +35,6 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
-// panels of a picture; chosen: twice makes panels too small to read, half hides planes
-constexpr std::size_t kMaxPanels = 9;
-
 struct PlanesOptions {
   BatchOptions batch;
   std::optional<std::string> png_path, html_path, support_path, profile_path;
@@ -49,7 +46,7 @@ struct PlanesOptions {
   CommonOptions common;
 };
 
-// one row a plane, axis or center; what does not apply is empty
+/// One row a plane, axis or center; what does not apply is empty.
 const std::vector<std::string> kColumns = {"number",     "kind",  "a",       "b",     "c",    "d",
                                            "x",          "y",     "z",       "dx",    "dy",   "dz",
                                            "confidence", "share", "support", "score", "seen", "deviation"};
@@ -112,14 +109,6 @@ struct Findings {
   bool empty() const { return planes.empty() && axes.empty() && centers.empty() && turns.empty(); }
 };
 
-/// \return what printf() prints.
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
-
 /// How far the best plane of a shape without symmetry is off.
 std::string lineOfBest(const SymmetryPlane& best, double tolerance, const Eigen::Vector3d& shift, int digits) {
   const Eigen::Vector4d c = printedCoefficients(best, shift);
@@ -127,7 +116,7 @@ std::string lineOfBest(const SymmetryPlane& best, double tolerance, const Eigen:
                    c[0], c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
 }
 
-/// What the sensor leaves open.
+/// What the sensor resolves.
 std::string lineOfTolerance(const Findings& findings) {
   const double share = 100.0 * findings.tolerance / findings.diameter;
   if (findings.tolerance >= findings.resolution)
@@ -136,7 +125,7 @@ std::string lineOfTolerance(const Findings& findings) {
                    100.0 * findings.resolution / findings.diameter);
 }
 
-/// What a sheet leaves open.
+/// Of points that lie on a plane.
 std::string lineOfFlat(const ReflectionPlane& flat, const Eigen::Vector3d& shift, int digits) {
   const Eigen::Vector4d c = printedCoefficients(flat, shift);
   return formatted("flat: the points lie on the plane %.6f %.6f %.6f %.*g; to be mirrored in it says nothing\n", c[0],
@@ -262,37 +251,31 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
 }
 
 std::vector<PicturePanel> panelsOf(const Findings& findings) {
+  constexpr std::size_t kMostPanels = 9;
   std::vector<PicturePanel> panels;
-  for (const SymmetryAxis& axis : findings.axes) {
-    PicturePanel panel;
-    panel.label = formatted("axis of revolution: confidence %.2f", axis.confidence);
-    panel.axes = {{axis.point, axis.direction}};
-    panels.push_back(panel);
-  }
-  for (const SymmetryTurn& turn : findings.turns) {
-    PicturePanel panel;
-    panel.label = formatted("axis of order %d: confidence %.2f", turn.fold, turn.confidence);
-    panel.axes = {{turn.point, turn.direction}};
-    panels.push_back(panel);
-  }
+  const auto add = [&](const std::string& label) -> PicturePanel& {
+    panels.emplace_back().label = label;
+    return panels.back();
+  };
+  for (const SymmetryAxis& axis : findings.axes)
+    add(formatted("axis of revolution: confidence %.2f", axis.confidence)).axes = {{axis.point, axis.direction}};
+  for (const SymmetryTurn& turn : findings.turns)
+    add(formatted("axis of order %d: confidence %.2f", turn.fold, turn.confidence)).axes = {
+        {turn.point, turn.direction}};
   for (const SymmetryCenter& center : findings.centers) {
-    PicturePanel panel;
-    panel.label = formatted("every plane through the center: confidence %.2f", center.confidence);
+    PicturePanel& panel = add(formatted("every plane through the center: confidence %.2f", center.confidence));
     for (int k = 0; k < 3; ++k) panel.axes.push_back({center.point, Eigen::Vector3d::Unit(k)});
-    panels.push_back(panel);
   }
-  for (std::size_t k = 0; k < findings.planes.size() && panels.size() < kMaxPanels; ++k) {
+  for (std::size_t k = 0; k < findings.planes.size() && panels.size() < kMostPanels; ++k) {
     const SymmetryPlane& plane = findings.planes[k];
-    PicturePanel panel;
-    panel.label = formatted("plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(plane.kind),
-                            plane.confidence, plane.support);
+    PicturePanel& panel = add(formatted("plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(plane.kind),
+                                        plane.confidence, plane.support));
     panel.support.assign(findings.support[k].begin(), findings.support[k].end());
     PlanePatch patch;
     patch.normal = plane.normal();
     patch.offset = plane.offset();
     patch.color = distinctColor(k);
     panel.planes = {patch};
-    panels.push_back(panel);
   }
   if (panels.empty()) panels.push_back({"no symmetry plane"});
   return panels;
@@ -433,14 +416,13 @@ void saveProfile(const InputShape& input, const Findings& findings, const std::s
 void draw(const Console& console, const InputShape& input, const Findings& findings, const std::string& path) {
   Step drawing(console, "Drawing " + path);
   if (input.volume) {
-    const std::optional<ReflectionPlane> plane =
-        findings.planes.empty() ? std::nullopt : std::optional<ReflectionPlane>(findings.planes[0]);
+    std::optional<ReflectionPlane> plane;
+    if (!findings.planes.empty()) plane = findings.planes[0];
     writeImage(drawVolumeSlices(*input.volume, input.levels, plane, 400), path);
-    drawing.done();
-    return;
+  } else {
+    const PictureScene scene = makeScene(input.points, findings);
+    renderPicture(scene, path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
   }
-  const PictureScene scene = makeScene(input.points, findings);
-  renderPicture(scene, path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
   drawing.done();
 }
 

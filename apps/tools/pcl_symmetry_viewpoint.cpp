@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "command_line/run_tool.h"
 #include "core/base/constants.h"
 #include "io/exact_coordinates.h"
+#include "io/formatted.h"
 #include "io/input_shape.h"
 #include "io/json_values.h"
 #include "io/shape_output.h"
@@ -63,10 +63,8 @@ nlohmann::json toJson(const SelectedView& view, const Eigen::Vector3d& shift) {
 }
 
 std::string lineOf(const char* name, const SelectedView& view) {
-  char text[96];
-  std::snprintf(text, sizeof(text), "%-6s %9.6f %9.6f %9.6f %7.3f\n", name, view.direction.x(), view.direction.y(),
-                view.direction.z(), view.score);
-  return text;
+  return formatted("%-6s %9.6f %9.6f %9.6f %7.3f\n", name, view.direction.x(), view.direction.y(), view.direction.z(),
+                   view.score);
 }
 
 PictureScene sceneOf(const InputShape& input, const SelectedView& view, const std::string& label) {
@@ -162,9 +160,7 @@ struct ChosenViews {
 };
 
 std::string tableOf(const ChosenViews& views) {
-  char head[64];
-  std::snprintf(head, sizeof(head), "%-6s %9s %9s %9s %7s\n", "view", "x", "y", "z", "score");
-  std::string table = head;
+  std::string table = formatted("%-6s %9s %9s %9s %7s\n", "view", "x", "y", "z", "score");
   for (std::size_t i = 0; i < views.good.size(); ++i) table += lineOf(i == 0 ? "best" : "good", views.good[i]);
   return table + lineOf("worst", views.worst);
 }

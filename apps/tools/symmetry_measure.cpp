@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <utility>
 
 #include "command_line/file_errors.h"
 #include "io/exact_coordinates.h"
+#include "io/formatted.h"
 #include "io/json_values.h"
 #include "io/method_names.h"
 #include "pcl_symmetry/axial_symmetry_transform.h"
@@ -77,11 +77,9 @@ SymmetryMeasure ofAxes(const InputShape& input, const CommonOptions& common, int
     const Eigen::Vector3d d = maximum.axis.direction();
     const Eigen::Vector3d local = maximum.axis.projection(map->grid.center());
     const Eigen::Vector3d p = shiftedBack(local, input.shift());
-    char text[200];
-    std::snprintf(text, sizeof text, "axis %9.6f %9.6f %9.6f through %.6g %.6g %.6g  %s  D %.3f", d.x(), d.y(), d.z(),
-                  p.x(), p.y(), p.z(),
-                  maximum.fold == 0 ? "any angle" : ("fold " + std::to_string(maximum.fold)).c_str(), maximum.value);
-    measure.lines.emplace_back(text);
+    const std::string angles = maximum.fold == 0 ? "any angle" : "fold " + std::to_string(maximum.fold);
+    measure.lines.push_back(formatted("axis %9.6f %9.6f %9.6f through %.6g %.6g %.6g  %s  D %.3f", d.x(), d.y(), d.z(),
+                                      p.x(), p.y(), p.z(), angles.c_str(), maximum.value));
     measure.best.push_back({{"point", {p.x(), p.y(), p.z()}},
                             {"direction", {d.x(), d.y(), d.z()}},
                             {"fold", maximum.fold},
@@ -112,9 +110,7 @@ SymmetryMeasure ofCenters(const InputShape& input, const CommonOptions& common) 
   SymmetryMeasure measure{"centers", map->values.size(), through};
   const Eigen::Vector3d p = shiftedBack(map->center(map->strongest()), input.shift());
   const double value = map->values[map->strongest()];
-  char text[200];
-  std::snprintf(text, sizeof text, "center %.6g %.6g %.6g  D %.3f", p.x(), p.y(), p.z(), value);
-  measure.lines.emplace_back(text);
+  measure.lines.push_back(formatted("center %.6g %.6g %.6g  D %.3f", p.x(), p.y(), p.z(), value));
   measure.best.push_back({{"point", {p.x(), p.y(), p.z()}}, {"symmetry", value}});
   return measure;
 }

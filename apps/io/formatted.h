@@ -1,0 +1,17 @@
+/// Text as printf() writes it.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace pcl_symmetry::apps {
+
+/// \return what printf() prints.
+template <typename... Values>
+std::string formatted(const char* format, Values... values) {
+  std::string text(static_cast<std::size_t>(std::snprintf(nullptr, 0, format, values...)), '\0');
+  std::snprintf(text.data(), text.size() + 1, format, values...);
+  return text;
+}
+
+}  // namespace pcl_symmetry::apps
