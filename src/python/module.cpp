@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -79,13 +80,33 @@ MeshSurface meshSurface(const AnyArray& vertices, const AnyArray& faces) {
   return {mesh.vertices.points(), mesh.triangles};
 }
 
+/// \return options with their seed and number of threads.
+template <typename Options>
+Options optionsWith(std::uint64_t seed, int threads) {
+  Options options;
+  options.seed = seed;
+  options.num_threads = threads;
+  return options;
+}
+
+/// \return the enumerator whose name, in their order, is \p value.
+/// \throws std::invalid_argument for another name.
+template <typename Enum>
+Enum named(const char* parameter, const std::string& value, const std::array<std::string, 3>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == value) return static_cast<Enum>(i);
+  throw std::invalid_argument(parameter + (" = " + value) + ", must be " + names[0] + ", " + names[1] + " or " +
+                              names[2]);
+}
+
+TransformMethod methodNamed(const std::string& method) {
+  return named<TransformMethod>("method", method, {"sampled", "convolution", "voting"});
+}
+
 /// \param faces None for a cloud.
 SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, const ReflectionPlane& plane,
                             const std::string& half, int threads) {
-  const std::vector<std::string> names{"mean", "left", "right"};
-  const auto at = std::find(names.begin(), names.end(), half);
-  if (at == names.end()) throw std::invalid_argument("half = " + half + ", must be mean, left or right");
-  const auto kept = static_cast<SymmetrizedHalf>(at - names.begin());
+  const auto kept = named<SymmetrizedHalf>("half", half, {"mean", "left", "right"});
   if (!faces.is_none()) {
     const MeshInput mesh(points, {arrayOf("faces", faces)});
     const py::gil_scoped_release release;
@@ -106,18 +127,10 @@ Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3
   axis.direction = direction;
   const py::gil_scoped_release release;
   const std::vector<ProfilePoint> profile = revolutionProfile(input.points(), axis, num_points);
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(profile.size()), 4);
+  Eigen::MatrixXd rows(profile.size(), 4);
   for (std::size_t i = 0; i < profile.size(); ++i)
-    rows.row(static_cast<Eigen::Index>(i)) << profile[i].radius, profile[i].height, profile[i].spread, profile[i].count;
+    rows.row(i) << profile[i].radius, profile[i].height, profile[i].spread, profile[i].count;
   return rows;
-}
-
-/// \throws std::invalid_argument for another name.
-TransformMethod methodNamed(const std::string& method) {
-  const std::vector<std::string> names{"sampled", "convolution", "voting"};
-  const auto at = std::find(names.begin(), names.end(), method);
-  if (at == names.end()) throw std::invalid_argument("method = " + method + ", must be sampled, convolution or voting");
-  return static_cast<TransformMethod>(at - names.begin());
 }
 
 PlaneSearch planes(const py::array& points, const py::object& viewpoint, DetectionOptions options,
@@ -141,9 +154,11 @@ PlaneSearch planes(const py::array& points, const py::object& viewpoint, Detecti
   return search;
 }
 
-/// \param volume first index along x, as nibabel has it.
-ScalarGrid gridOf(const py::array_t<float, py::array::f_style | py::array::forcecast>& volume,
-                  const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin, const Eigen::Matrix3d& direction) {
+/// First index along x, as nibabel has it.
+using VolumeArray = py::array_t<float, py::array::f_style | py::array::forcecast>;
+
+ScalarGrid gridOf(const VolumeArray& volume, const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin,
+                  const Eigen::Matrix3d& direction) {
   if (volume.ndim() != 3) throw std::invalid_argument("volume = array of another shape, must have three axes");
   const ScalarGrid::Size size{static_cast<int>(volume.shape(0)), static_cast<int>(volume.shape(1)),
                               static_cast<int>(volume.shape(2))};
@@ -151,17 +166,14 @@ ScalarGrid gridOf(const py::array_t<float, py::array::f_style | py::array::force
                     std::vector<float>(volume.data(), volume.data() + volume.size()));
 }
 
-PlaneSearch volumePlanes(const py::array_t<float, py::array::f_style | py::array::forcecast>& volume,
-                         const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin,
+PlaneSearch volumePlanes(const VolumeArray& volume, const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin,
                          const Eigen::Matrix3d& direction, const std::pair<double, double>& levels, bool approximate,
                          int max_planes, std::uint64_t seed, int threads) {
   const ScalarGrid grid = gridOf(volume, spacing, origin, direction);
   const py::gil_scoped_release release;
-  DetectionOptions options;
+  auto options = optionsWith<DetectionOptions>(seed, threads);
   options.approximate = approximate;
   options.max_planes = max_planes;
-  options.seed = seed;
-  options.num_threads = threads;
   PlaneSearch search;
   search.found = detectVolumePlanes(grid, options, {levels.first, levels.second});
   return search;
@@ -172,17 +184,11 @@ std::vector<std::vector<float>> descriptors(const AnyArray& points, bool input_a
                                             std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 20'000, seed);
   const py::gil_scoped_release release;
-  DescriptorOptions options;
+  auto options = optionsWith<DescriptorOptions>(seed, threads);
   options.by_equation_1 = by_equation_1;
-  options.seed = seed;
-  options.num_threads = threads;
   Eigen::Isometry3d T_frame_input(Eigen::Translation3d(-centerOfMass(input.points())));
-  if (!input_axes) {
-    FrameOptions frame_options;
-    frame_options.seed = seed;
-    frame_options.num_threads = threads;
-    T_frame_input = symmetryFrame(input.points(), frame_options).T_canonical_input;
-  }
+  if (!input_axes)
+    T_frame_input = symmetryFrame(input.points(), optionsWith<FrameOptions>(seed, threads)).T_canonical_input;
   SymmetryDescriptors all = symmetryDescriptors(input.points(), T_frame_input, options);
   return {std::move(all.prst), std::move(all.prsd), std::move(all.gedt)};
 }
@@ -193,10 +199,8 @@ PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method,
   const TransformMethod estimator = methodNamed(method);
   const py::gil_scoped_release release;
   const GaussianEdt edt(input.points());
-  PublishedOptions options;
+  auto options = optionsWith<PublishedOptions>(seed, threads);
   options.num_points = num_points;
-  options.seed = seed;
-  options.num_threads = threads;
   PlaneSearch search;
   search.found.planes =
       publishedPlanes(input.points(), edt, publishedMap(input.points(), edt, estimator, seed, threads), options);
@@ -207,10 +211,8 @@ std::vector<float> localSymmetryOf(const AnyArray& points, double scale, std::ui
   const InputPoints input("points", points, 0, seed);
   const py::gil_scoped_release release;
   const GaussianEdt edt(input.points());
-  LocalSymmetryOptions options;
+  auto options = optionsWith<LocalSymmetryOptions>(seed, threads);
   options.scale = scale * edt.radius();
-  options.seed = seed;
-  options.num_threads = threads;
   return localSymmetry(edt, input.points(), options);
 }
 
@@ -219,10 +221,8 @@ SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::si
   const InputPoints input("points", points, max_points, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   const py::gil_scoped_release release;
-  FrameOptions options;
+  auto options = optionsWith<FrameOptions>(seed, threads);
   options.as_published = as_published;
-  options.seed = seed;
-  options.num_threads = threads;
   SymmetryFrame found = symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
   if (mesh && !seen) refineOnMesh(*mesh, found);
   return found;
@@ -251,28 +251,23 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray&
   return {rowsOf(added), rows};
 }
 
-/// Points that a cloud's parts are found with, as SymmetrySegmentation has it.
-constexpr std::size_t kMostSegmentedPoints = 30'000;  // chosen: half blurs small parts, twice takes twice the time
-/// As SymmetrySegmentation has it. chosen: half leaves gaps between points, twice joins sheets that lie close.
-constexpr int kCloudNeighbours = 12;
-
 std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions& options) {
-  const InputPoints input("points", points, kMostSegmentedPoints, options.seed);
+  constexpr int kMostPoints = 30'000, kNumNeighbors = 12;  // as in SymmetrySegmentation
+  const InputPoints input("points", points, kMostPoints, options.seed);
   const py::gil_scoped_release release;
   const PointsRef used = input.points();
-  if (used.cols() <= kCloudNeighbours)
-    throw std::invalid_argument("points: too few to have parts, must be more than 12");
+  if (used.cols() <= kNumNeighbors) throw std::invalid_argument("points: too few to have parts, must be more than 12");
   const ClosestPointSearch::Ptr search = makeFlannSearch(used);
   std::vector<int> found, labels(input.numRows(), -1);
   std::vector<float> sq_distances;
-  search->search(used, kCloudNeighbours + 1, found, sq_distances);
-  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(used.cols()));
-  for (std::size_t i = 0; i < neighbours.size(); ++i)
-    for (int k = 0; k <= kCloudNeighbours; ++k) {
-      const int j = found[i * (kCloudNeighbours + 1) + static_cast<std::size_t>(k)];
-      if (j != static_cast<int>(i) && neighbours[i].size() < kCloudNeighbours) neighbours[i].push_back(j);
+  search->search(used, kNumNeighbors + 1, found, sq_distances);
+  std::vector<std::vector<int>> neighbors(used.cols());
+  for (std::size_t i = 0; i < neighbors.size(); ++i)
+    for (int k = 0; k <= kNumNeighbors; ++k) {
+      const int j = found[i * (kNumNeighbors + 1) + k];
+      if (j != static_cast<int>(i) && neighbors[i].size() < kNumNeighbors) neighbors[i].push_back(j);
     }
-  const Segmentation parts = segmentSurface(cloudGraph(used, neighbours), options);
+  const Segmentation parts = segmentSurface(cloudGraph(used, neighbors), options);
   if (input.rows().empty()) return parts.labels;
   for (std::size_t i = 0; i < input.rows().size(); ++i) labels[input.rows()[i]] = parts.labels[i];
   return labels;
@@ -280,10 +275,8 @@ std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions
 
 std::vector<int> segment(const AnyArray& points, const py::object& faces, int parts,
                          const std::function<void(double)>& progress, std::uint64_t seed, int threads) {
-  SegmentationOptions options;
+  auto options = optionsWith<SegmentationOptions>(seed, threads);
   options.num_parts = parts;
-  options.seed = seed;
-  options.num_threads = threads;
   if (progress)
     options.progress = [&progress](double share) {
       const py::gil_scoped_acquire acquire;
@@ -301,9 +294,7 @@ Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, st
   const InputPoints input("points", points, 0, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   const py::gil_scoped_release release;
-  DescriptionOptions options;
-  options.seed = seed;
-  options.num_threads = threads;
+  const auto options = optionsWith<DescriptionOptions>(seed, threads);
   return describeShape(input.points(), options, seen ? &*seen : nullptr).signatures.transpose();
 }
 
@@ -396,14 +387,12 @@ void addPlaneFunctions(py::module_& module) {
       [](const AnyArray& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
          bool approximate, int max_planes, const py::object& normals, std::size_t max_points, bool evidence,
          std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
-        DetectionOptions options;
+        auto options = optionsWith<DetectionOptions>(seed, threads);
         options.tolerance = tolerance;
         options.absolute_tolerance = absolute_tolerance;
         options.approximate = approximate;
         options.max_planes = max_planes;
         options.evidence = evidence;
-        options.seed = seed;
-        options.num_threads = threads;
         return planes(points, viewpoint, options, max_points, normals, mesh);
       },
       py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto", py::arg("tolerance") = standard.tolerance,
@@ -448,11 +437,9 @@ void addMeshFunctions(py::module_& module) {
   py::class_<SymmetrizedShape>(module, "Symmetrized")
       .def_property_readonly("points", [](const SymmetrizedShape& s) { return rowsOf(s.points); })
       .def_readonly("kept", &SymmetrizedShape::kept)
-      .def_property_readonly("asymmetry",
-                             [](const SymmetrizedShape& s) {
-                               return py::array_t<float>(static_cast<py::ssize_t>(s.asymmetry.size()),
-                                                         s.asymmetry.data());
-                             })
+      .def_property_readonly(
+          "asymmetry",
+          [](const SymmetrizedShape& s) { return py::array_t<float>(s.asymmetry.size(), s.asymmetry.data()); })
       .def_readonly("mean_asymmetry", &SymmetrizedShape::mean_asymmetry)
       .def_readonly("greatest_asymmetry", &SymmetrizedShape::greatest_asymmetry)
       .def_readonly("deviation", &SymmetrizedShape::deviation);
