@@ -23,6 +23,11 @@ class PlanesTool : public ToolTest {
 protected:
   PlanesTool() : ToolTest(toolPath("planes")) {}
 
+  nlohmann::json reportOf(const std::string& arguments) {
+    EXPECT_EQ(run(arguments + " -json " + (folder_ / "report.json")), 0) << error_;
+    return nlohmann::json::parse(contentOf(folder_ / "report.json"));
+  }
+
   const std::string box_ =
       folder_.write("box.off",
                     "OFF\n8 6 12\n-1 -1.5 -2\n1 -1.5 -2\n1 1.5 -2\n-1 1.5 -2\n-1 -1.5 2\n1 -1.5 2\n1 1.5 2\n-1 1.5 2\n"
@@ -77,8 +82,7 @@ TEST_F(PlanesTool, WritesTheProfileOfABodyOfRevolution) {
 }
 
 TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
-  ASSERT_EQ(run(box_ + " -json " + (folder_ / "a.json")), 0) << error_;
-  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+  const nlohmann::json report = reportOf(box_);
   ASSERT_EQ(report["planes"].size(), 3u);
   std::array<int, 3> along{};
   for (const auto& plane : report["planes"]) {
@@ -110,8 +114,7 @@ TEST_F(PlanesTool, KeepsCoordinatesBeyondFloatPrecision) {
       off += std::to_string(center[k] + (i >> k & 1 ? half[k] : -half[k])) + (k < 2 ? " " : "\n");
   off += "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
   const std::string far = folder_.write("far.off", off);
-  ASSERT_EQ(run(far + " -json " + (folder_ / "a.json") + " -support " + (folder_ / "s.pcd")), 0) << error_;
-  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+  const nlohmann::json report = reportOf(far + " -support " + (folder_ / "s.pcd"));
   ASSERT_EQ(report["planes"].size(), 3u);
   std::array<int, 3> along{};
   for (const auto& plane : report["planes"]) {
@@ -142,10 +145,9 @@ TEST_F(PlanesTool, KeepsCoordinatesBeyondFloatPrecision) {
 }
 
 TEST_F(PlanesTool, SaysNone) {
-  ASSERT_EQ(run(tetrahedron_ + " -quiet -json " + (folder_ / "t.json")), 0) << error_;
+  const nlohmann::json answer = reportOf(tetrahedron_ + " -quiet");
   EXPECT_EQ(output_.find("no symmetry plane\nbest plane "), 0u) << output_;
   EXPECT_EQ(error_, "");
-  const nlohmann::json answer = nlohmann::json::parse(contentOf(folder_ / "t.json"));
   EXPECT_TRUE(answer["planes"].empty());
   EXPECT_LT(answer["best"]["share"].get<double>(), 0.9);
   EXPECT_GT(answer["best"]["deviation"].get<double>(), answer["tolerance"].get<double>());
@@ -165,8 +167,7 @@ TEST_F(PlanesTool, ThrowsNoHandleIntoEmptySpace) {
   const std::string mug = dataFile("field/mug.ply");
   if (!std::filesystem::exists(mug)) GTEST_SKIP() << mug << " is absent";
   for (int seed = 0; seed < 5; ++seed) {
-    ASSERT_EQ(run(mug + " -quiet -seed " + std::to_string(seed) + " -json " + (folder_ / "a.json")), 0) << error_;
-    const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+    const nlohmann::json report = reportOf(mug + " -quiet -seed " + std::to_string(seed));
     for (const auto& plane : report["planes"])
       if (plane["kind"] == "symmetry") {
         EXPECT_GT(std::abs(plane["coefficients"][1].get<double>()), std::cos(0.09)) << seed;
@@ -178,10 +179,8 @@ TEST_F(PlanesTool, FindsNoSymmetryOfAnOpenWavySheet) {
   const std::string sheet = dataFile("field/open_sheet.off");
   if (!std::filesystem::exists(sheet)) GTEST_SKIP() << sheet << " is absent";
   for (int seed = 0; seed < 20; ++seed) {
-    ASSERT_EQ(run(sheet + " -quiet -seed " + std::to_string(seed) + " -json " + (folder_ / "a.json")), 0) << error_;
-    const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
-    for (const auto& plane : report["planes"])
-      EXPECT_NE(plane["kind"], "symmetry") << seed;
+    const nlohmann::json report = reportOf(sheet + " -quiet -seed " + std::to_string(seed));
+    for (const auto& plane : report["planes"]) EXPECT_NE(plane["kind"], "symmetry") << seed;
   }
 }
 
@@ -189,8 +188,7 @@ TEST_F(PlanesTool, CallsNoFrameOfATableSymmetric) {
   for (const char* name : {"milk_cartoon_all_small_clorox", "rs1", "table_scene_mug_stereo_textured"}) {
     const std::string frame = dataFile("scans/" + std::string(name) + ".pcd");
     if (!std::filesystem::exists(frame)) GTEST_SKIP() << frame << " is absent";
-    ASSERT_EQ(run(frame + " -quiet -json " + (folder_ / "a.json")), 0) << error_;
-    const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+    const nlohmann::json report = reportOf(frame + " -quiet");
     EXPECT_TRUE(report["axes"].empty()) << name;
     for (const auto& plane : report["planes"]) EXPECT_NE(plane["kind"], "symmetry") << name;
   }
@@ -211,8 +209,7 @@ TEST_F(PlanesTool, WritesTheSupportOfEveryPointAndKeepsItsFields) {
     }
     return text;
   }());
-  ASSERT_EQ(run(input + " -support " + (folder_ / "s.pcd") + " -json " + (folder_ / "s.json")), 0) << error_;
-  const std::size_t num_planes = nlohmann::json::parse(contentOf(folder_ / "s.json"))["planes"].size();
+  const std::size_t num_planes = reportOf(input + " -support " + (folder_ / "s.pcd"))["planes"].size();
   ASSERT_GE(num_planes, 1u);
   const Shape shape = loadShape(folder_ / "s.pcd");
   std::vector<std::string> names;
@@ -239,8 +236,7 @@ TEST_F(PlanesTool, WritesTheSupportOfEveryPointAndKeepsItsFields) {
 TEST_F(PlanesTool, GivesTheSameBytesForAnyNumberOfThreads) {
   std::string expected;
   for (const char* threads : {"1", "3"}) {
-    ASSERT_EQ(run(box_ + " -threads " + threads + " -json " + (folder_ / "j.json")), 0);
-    auto report = nlohmann::json::parse(contentOf(folder_ / "j.json"));
+    auto report = reportOf(box_ + " -threads " + threads);
     report.erase("timing_ms");
     if (expected.empty()) expected = report.dump();
     EXPECT_EQ(report.dump(), expected) << threads << " threads";
@@ -250,8 +246,7 @@ TEST_F(PlanesTool, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST_F(PlanesTool, ReportsAnAxisOfRevolution) {
   const std::string cylinder =
       folder_.write("cylinder.off", latheOFF({{0.001, -1.0}, {0.6, -1.0}, {0.6, 1.0}, {0.001, 1.0}}, 128));
-  ASSERT_EQ(run(cylinder + " -json " + (folder_ / "c.json")), 0) << error_;
-  const nlohmann::json report = nlohmann::json::parse(contentOf(folder_ / "c.json"));
+  const nlohmann::json report = reportOf(cylinder);
   ASSERT_EQ(report["axes"].size(), 1u);
   const auto& axis = report["axes"][0];
   const auto direction = axis["direction"].get<std::vector<double>>(), point = axis["point"].get<std::vector<double>>();
@@ -266,8 +261,7 @@ TEST_F(PlanesTool, ReportsAnAxisOfRevolution) {
   EXPECT_NE(output_.find("axis of revolution"), std::string::npos);
 
   const std::string ball = folder_.write("ball.off", sphereOFF());
-  ASSERT_EQ(run(ball + " -json " + (folder_ / "b.json")), 0) << error_;
-  const nlohmann::json round = nlohmann::json::parse(contentOf(folder_ / "b.json"));
+  const nlohmann::json round = reportOf(ball);
   ASSERT_EQ(round["centers"].size(), 1u);
   EXPECT_TRUE(round["planes"].empty());
   EXPECT_TRUE(round["axes"].empty());
