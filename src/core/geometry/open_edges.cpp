@@ -1,12 +1,13 @@
 #include "core/geometry/open_edges.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace pcl_symmetry {
 
 std::vector<std::pair<int, int>> openEdges(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles) {
-  std::vector<int> order(static_cast<std::size_t>(vertices.cols())), same(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  std::vector<int> order(vertices.cols()), same(order.size());
+  std::iota(order.begin(), order.end(), 0);
   const auto before = [&](int a, int b) {
     for (int k = 0; k < 3; ++k)
       if (vertices(k, a) != vertices(k, b)) return vertices(k, a) < vertices(k, b);

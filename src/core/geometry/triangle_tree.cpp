@@ -145,8 +145,6 @@ void TriangleTree::distancesTo(const Leaf& leaf, const Ray& ray, Lanes& distance
 
 RayHit TriangleTree::search(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
                             float farthest, bool any) const {
-  // 2^31 triangles have 16 levels of four children; each leaves at most three behind
-  constexpr int kMostOpen = 64;
   RayHit hit;
   hit.distance = farthest;
   if (nodes_.empty()) return hit;
@@ -221,7 +219,6 @@ Eigen::Vector3f closestOffset(const Eigen::Vector3f& u, const Eigen::Vector3f& v
 }  // namespace
 
 ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x) const {
-  constexpr int kMostOpen = 64;  // derived: as for rays
   ClosestOnTriangles found;
   if (nodes_.empty()) return found;
   struct Open {
@@ -255,9 +252,10 @@ ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x) const {
       }
     const int behind = depth;
     for (int k = 0; k < node.num_children; ++k) {
-      int place = depth++;
-      for (; place > behind && stack[place - 1].sq_distance < sq_distances[k]; --place) stack[place] = stack[place - 1];
-      stack[place] = {sq_distances[k], node.child[k]};
+      int position = depth++;
+      for (; position > behind && stack[position - 1].sq_distance < sq_distances[k]; --position)
+        stack[position] = stack[position - 1];
+      stack[position] = {sq_distances[k], node.child[k]};
     }
   }
   return found;

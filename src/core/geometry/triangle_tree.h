@@ -43,7 +43,8 @@ public:
   ClosestOnTriangles closestTo(const Eigen::Vector3f& x) const;
 
 private:
-  static constexpr int kWidth = 4;  // floats in the smallest vector register of current processors
+  static constexpr int kWidth = 4;      // floats in the smallest vector register of current processors
+  static constexpr int kMostOpen = 64;  // 2^31 triangles have 16 levels; each leaves at most three children behind
   using Lanes = float[kWidth];
 
   struct Node {
