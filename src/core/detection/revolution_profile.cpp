@@ -29,30 +29,28 @@ struct ProfileRules {
 };
 constexpr ProfileRules kProfile;
 
-using Place = Eigen::Vector2d;
-
-/// Where the parabola through the points near a place passes it.
-struct FittedPlace {
-  Place place;
+/// Where the parabola through the points near a position passes it.
+struct FittedPosition {
+  Eigen::Vector2d position;  // radius, height
   double spread;
   int count;
 };
 
-FittedPlace fittedPlace(const std::vector<Place>& points, Place place, double width) {
-  FittedPlace result{place, 0.0, 0};
+FittedPosition fittedPosition(const std::vector<Eigen::Vector2d>& points, Eigen::Vector2d position, double width) {
+  FittedPosition result{position, 0.0, 0};
   for (int move = 0; move < kProfile.moves; ++move) {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
     double sum = 0.0;
-    std::vector<std::pair<Place, double>> nearby;
-    for (const Place& x : points) {
-      const double share = (x - result.place).norm() / width, weight = (1.0 - share * share) * (1.0 - share * share);
+    std::vector<std::pair<Eigen::Vector2d, double>> nearby;
+    for (const Eigen::Vector2d& x : points) {
+      const double share = (x - result.position).norm() / width, weight = (1.0 - share * share) * (1.0 - share * share);
       if (share >= 1.0) continue;
       nearby.emplace_back(x, weight);
       mean += weight * x;
       sum += weight;
     }
-    if (static_cast<int>(nearby.size()) < kProfile.least_points || !(sum > 0.0)) return {place, 0.0, 0};
+    if (static_cast<int>(nearby.size()) < kProfile.least_points || !(sum > 0.0)) return {position, 0.0, 0};
     mean /= sum;
     for (const auto& [x, weight] : nearby) spread += weight * (x - mean) * (x - mean).transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
@@ -60,25 +58,25 @@ FittedPlace fittedPlace(const std::vector<Place>& points, Place place, double wi
     Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
     for (const auto& [x, weight] : nearby) {
-      const double t = along.dot(x - result.place) / width;
+      const double t = along.dot(x - result.position) / width;
       const Eigen::Vector3d powers(1.0, t, t * t);
       h += weight * powers * powers.transpose();
-      g += weight * across.dot(x - result.place) * powers;
+      g += weight * across.dot(x - result.position) * powers;
     }
     const Eigen::Vector3d parabola = h.ldlt().solve(g);
-    if (!parabola.allFinite()) return {place, 0.0, 0};
+    if (!parabola.allFinite()) return {position, 0.0, 0};
     // Beside the curve as far as along it, so that the weights cut nothing off.
     double sq_sum = 0.0;
     result.count = 0;
-    for (const Place& x : points) {
-      const double t = along.dot(x - result.place) / width;
-      const double off = across.dot(x - result.place) - parabola.dot(Eigen::Vector3d(1.0, t, t * t));
+    for (const Eigen::Vector2d& x : points) {
+      const double t = along.dot(x - result.position) / width;
+      const double off = across.dot(x - result.position) - parabola.dot(Eigen::Vector3d(1.0, t, t * t));
       if (std::abs(t) > 0.5 || std::abs(off) > width) continue;
       sq_sum += off * off;
       ++result.count;
     }
     result.spread = std::sqrt(sq_sum / std::max(1, result.count));
-    result.place += parabola[0] * across;
+    result.position += parabola[0] * across;
   }
   return result;
 }
@@ -88,73 +86,73 @@ FittedPlace fittedPlace(const std::vector<Place>& points, Place place, double wi
 std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const SymmetryAxis& axis, int num_points) {
   check(num_points >= 2, "num_points", num_points, ">= 2");
   const Eigen::Vector3d direction = axis.direction.normalized();
-  std::vector<Place> places;
+  std::vector<Eigen::Vector2d> positions;
   Eigen::AlignedBox2d box;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     if (!points.col(i).allFinite()) continue;
     const Eigen::Vector3d x = points.col(i).cast<double>() - axis.point;
     const double height = direction.dot(x);
-    places.emplace_back((x - height * direction).norm(), height);
-    box.extend(places.back());
+    positions.emplace_back((x - height * direction).norm(), height);
+    box.extend(positions.back());
   }
-  constexpr std::size_t kLeastPoints = 20;
-  check(places.size() >= kLeastPoints, "number of points", places.size(), ">= 20");
+  check(positions.size() >= 20, "number of points", positions.size(), ">= 20");
   const double extent = box.diagonal().norm();
   check(extent > 0.0, "extent of the points", extent, "> 0");
 
   // One start a cell; the cells that the curve passes tell how long it is.
   const auto startsFor = [&](double cell) {
-    std::map<std::pair<std::int64_t, std::int64_t>, std::pair<Place, int>> cells;
-    for (const Place& place : places) {
-      auto& [sum, count] = cells[{static_cast<std::int64_t>(std::floor(place.x() / cell)),
-                                  static_cast<std::int64_t>(std::floor(place.y() / cell))}];
+    std::map<std::pair<std::int64_t, std::int64_t>, std::pair<Eigen::Vector2d, int>> cells;
+    for (const Eigen::Vector2d& position : positions) {
+      auto& [sum, count] = cells[{static_cast<std::int64_t>(std::floor(position.x() / cell)),
+                                  static_cast<std::int64_t>(std::floor(position.y() / cell))}];
       if (count++ == 0) sum.setZero();
-      sum += place;
+      sum += position;
     }
-    std::vector<Place> starts;
+    std::vector<Eigen::Vector2d> starts;
     for (const auto& [key, entry] : cells) starts.emplace_back(entry.first / entry.second);
     return starts;
   };
   double width = kProfile.first_width * extent;
-  // Points near the axis again with the sign of their radius turned: the curve goes on beyond it.
-  std::vector<Place> around = places;
-  for (const Place& place : places)
-    if (place.x() < kProfile.most_width * extent) around.emplace_back(-place.x(), place.y());
+  // Points near the axis again with a negative radius: the curve continues beyond it.
+  std::vector<Eigen::Vector2d> around = positions;
+  for (const Eigen::Vector2d& position : positions)
+    if (position.x() < kProfile.most_width * extent) around.emplace_back(-position.x(), position.y());
   {
     std::vector<double> spreads;
-    for (const Place& start : startsFor(width))
-      if (const FittedPlace fit = fittedPlace(around, start, width); fit.count > 0) spreads.push_back(fit.spread);
+    for (const Eigen::Vector2d& start : startsFor(width))
+      if (const FittedPosition fit = fittedPosition(around, start, width); fit.count > 0) spreads.push_back(fit.spread);
     if (!spreads.empty())
       width = std::min(kProfile.most_width * extent,
                        std::max(kProfile.least_width * extent, kProfile.widths * median(std::move(spreads))));
   }
   const double step = 2.0 * extent / num_points;  // a vase is about twice as long as it is high
-  std::vector<FittedPlace> curve;
-  for (const Place& start : startsFor(step)) {
-    const FittedPlace fit = fittedPlace(around, start, width);
-    // The parabola goes on beyond the ends of the curve, and noise has starts of its own.
-    if (fit.count == 0 || fit.place.x() < 0.0 || (fit.place - start).norm() > width) continue;
-    const bool is_known = std::any_of(curve.begin(), curve.end(), [&](const FittedPlace& other) {
-      return (other.place - fit.place).norm() < kProfile.apart * step;
+  std::vector<FittedPosition> curve;
+  for (const Eigen::Vector2d& start : startsFor(step)) {
+    const FittedPosition fit = fittedPosition(around, start, width);
+    // The parabola continues beyond the ends of the curve, and noise has starts of its own.
+    if (fit.count == 0 || fit.position.x() < 0.0 || (fit.position - start).norm() > width) continue;
+    const bool is_known = std::any_of(curve.begin(), curve.end(), [&](const FittedPosition& other) {
+      return (other.position - fit.position).norm() < kProfile.apart * step;
     });
     if (!is_known) curve.push_back(fit);
   }
 
   if (curve.empty()) return {};
-  const auto density = [&](const FittedPlace& fit) { return fit.count / std::max(fit.place.x(), width); };
+  const auto density = [&](const FittedPosition& fit) { return fit.count / std::max(fit.position.x(), width); };
   std::vector<double> densities;
-  for (const FittedPlace& fit : curve) densities.push_back(density(fit));
+  for (const FittedPosition& fit : curve) densities.push_back(density(fit));
   const double least = kProfile.least_density * median(std::move(densities));
-  curve.erase(std::remove_if(curve.begin(), curve.end(), [&](const FittedPlace& fit) { return density(fit) < least; }),
-              curve.end());
+  curve.erase(
+      std::remove_if(curve.begin(), curve.end(), [&](const FittedPosition& fit) { return density(fit) < least; }),
+      curve.end());
 
-  // In order along the curve: from an end to the next place each time, then the next piece.
+  // In order along the curve, piece by piece.
   std::vector<ProfilePoint> profile;
   std::vector<char> is_listed(curve.size(), 0);
-  const auto closestTo = [&](const Place& x) {
+  const auto closestTo = [&](const Eigen::Vector2d& x) {
     std::size_t best = curve.size();
     for (std::size_t i = 0; i < curve.size(); ++i)
-      if (!is_listed[i] && (best == curve.size() || (curve[i].place - x).norm() < (curve[best].place - x).norm()))
+      if (!is_listed[i] && (best == curve.size() || (curve[i].position - x).norm() < (curve[best].position - x).norm()))
         best = i;
     return best;
   };
@@ -163,22 +161,22 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
     for (std::size_t at = start; at < curve.size();) {
       order.push_back(at);
       is_listed[at] = 1;
-      const std::size_t next = closestTo(curve[at].place);
-      at = next < curve.size() && (curve[next].place - curve[at].place).norm() < kProfile.next * step ? next
-                                                                                                      : curve.size();
+      const std::size_t next = closestTo(curve[at].position);
+      at = next < curve.size() && (curve[next].position - curve[at].position).norm() < kProfile.next * step
+               ? next
+               : curve.size();
     }
     return order;
   };
   while (profile.size() < curve.size()) {
     const std::size_t any = closestTo({0.0, box.min().y()});
     const std::vector<char> before = is_listed;
-    const std::vector<std::size_t> first = walk(any);
-    // The walk ends at an end of the piece; from there it visits the whole of it.
+    const std::size_t end = walk(any).back();
     is_listed = before;
-    std::vector<std::size_t> order = walk(first.back());
-    if (curve[order.front()].place.y() > curve[order.back()].place.y()) std::reverse(order.begin(), order.end());
+    std::vector<std::size_t> order = walk(end);  // from an end of the piece to the other one
+    if (curve[order.front()].position.y() > curve[order.back()].position.y()) std::reverse(order.begin(), order.end());
     for (const std::size_t i : order)
-      profile.push_back({curve[i].place.x(), curve[i].place.y(), curve[i].spread, curve[i].count});
+      profile.push_back({curve[i].position.x(), curve[i].position.y(), curve[i].spread, curve[i].count});
   }
   return profile;
 }

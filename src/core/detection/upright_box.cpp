@@ -19,15 +19,13 @@ struct UprightBoxRules {
   double trimmed = 0.01;    // share of the points beyond each side
   double near = 0.1;        // shorter sides of the box within which a point is near a side
   double meets = 0.03;      // diagonals within which a reflection meets what a beam met
-  double beam_reach = 2.0;  // distances of neighboring beams within which a beam tells of a reflection
-  // Logit of the confidence, by the share near a side and by the root of the share in free space. Fitted to 284 virtual
-  // scans of vehicles and of asymmetric shapes of the training half, with 16 to 64 rings at 5 to 25 m. Cross-validated,
-  // 65 % of the vehicles are right, 10 % wrong, and 3 % of the asymmetric shapes are called symmetric.
+  double beam_reach = 2.0;  // distances of neighboring beams within which a beam is informative
+  int beams = 3;            // nearest a reflection
+  // Logit of the confidence, by the share near a side and the root of the share in free space, fitted to 284 virtual
+  // scans with 16 to 64 rings at 5 to 25 m; cross-validated, 3 % of asymmetric shapes are called symmetric.
   double confidence = 0.7, of_near = 4.15, of_free = -15.6;
 };
-
 constexpr UprightBoxRules kBox;
-constexpr int kBeams = 3;  // that tell of a reflection
 
 /// The extent of some values without a share at both ends.
 std::array<double, 2> extentOf(std::vector<double>& values) {
@@ -52,13 +50,13 @@ struct Rectangle {
 };
 
 Rectangle rectangleAt(const PointsRef& points, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
-  Rectangle rectangle{{u, v}, {}, std::vector<double>(static_cast<std::size_t>(points.cols()), 0.0), 0.0};
+  Rectangle rectangle{{u, v}, {}, std::vector<double>(points.cols(), 0.0), 0.0};
   for (std::size_t k = 0; k < 2; ++k) {
     const Eigen::RowVectorXf along = rectangle.axes[k].cast<float>().transpose() * points;
     std::vector<double> values(along.data(), along.data() + along.size());
     rectangle.sides[k] = extentOf(values);
     for (Eigen::Index i = 0; i < along.size(); ++i) {
-      double& distance = rectangle.distances[static_cast<std::size_t>(i)];
+      double& distance = rectangle.distances[i];
       const double off = distanceFrom(rectangle.sides[k], along[i]);
       distance = k == 0 ? off : std::min(distance, off);
     }
@@ -80,47 +78,38 @@ Rectangle bestRectangle(const PointsRef& points, const Eigen::Vector3d& up) {
   return *best;
 }
 
-/// What beams of a scanner tell of points: whether they met something there, passed freely, or do not tell.
+/// Whether the beams of a scanner met something at a point, passed freely, or did neither.
 class Beams {
 public:
   enum class Meets { Surface, Nothing, Unknown };
 
   Beams(const PointsRef& points, const Eigen::Vector3d& viewpoint, double distance)
-      : viewpoint_(viewpoint), distance_(distance), directions_(3, points.cols()), ranges_(points.cols()) {
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint;
-      ranges_[i] = ray.norm();
-      directions_.col(i) = (ray / ranges_[i]).cast<float>();
-    }
+      : viewpoint_(viewpoint), distance_(distance) {
+    directions_ = directionsTo(points, ranges_);
     search_ = makeFlannSearch(directions_);
     surface_ = makeFlannSearch(points);
     std::vector<int> closest;
     std::vector<float> sq_distances, apart;
-    search_->search(directions_, kBeams + 2, closest, sq_distances);
-    for (std::size_t i = kBeams + 1; i < sq_distances.size(); i += kBeams + 2) apart.push_back(sq_distances[i]);
+    search_->search(directions_, kBox.beams + 2, closest, sq_distances);
+    for (std::size_t i = kBox.beams + 1; i < sq_distances.size(); i += kBox.beams + 2) apart.push_back(sq_distances[i]);
     sq_reach_ = static_cast<float>(kBox.beam_reach * kBox.beam_reach) * median(std::move(apart));
   }
 
-  std::vector<Meets> at(const Points& places) const {
-    Points directions(3, places.cols());
-    Eigen::VectorXd ranges(places.cols());
-    for (Eigen::Index i = 0; i < places.cols(); ++i) {
-      const Eigen::Vector3d ray = places.col(i).cast<double>() - viewpoint_;
-      ranges[i] = ray.norm();
-      directions.col(i) = (ray / ranges[i]).cast<float>();
-    }
+  std::vector<Meets> at(const Points& reflected) const {
+    Eigen::VectorXd ranges;
+    const Points directions = directionsTo(reflected, ranges);
     std::vector<int> beams, closest;
     std::vector<float> sq_aside, sq_distances;
-    search_->search(directions, kBeams, beams, sq_aside);
-    surface_->search(places, 1, closest, sq_distances);
-    std::vector<Meets> met(static_cast<std::size_t>(places.cols()), Meets::Unknown);
+    search_->search(directions, kBox.beams, beams, sq_aside);
+    surface_->search(reflected, 1, closest, sq_distances);
+    std::vector<Meets> met(reflected.cols(), Meets::Unknown);
     for (std::size_t i = 0; i < met.size(); ++i) {
       bool meets = sq_distances[i] <= distance_ * distance_, all_pass = true;
-      for (std::size_t k = kBeams * i; k < kBeams * (i + 1); ++k) {
-        const double behind = ranges[static_cast<Eigen::Index>(i)] - ranges_[beams[k]];
-        const bool tells = sq_aside[k] <= sq_reach_;
-        meets |= tells && std::abs(behind) <= distance_;
-        all_pass &= tells && behind < -distance_;
+      for (std::size_t k = kBox.beams * i; k < kBox.beams * (i + 1); ++k) {
+        const double behind = ranges[i] - ranges_[beams[k]];
+        const bool is_close = sq_aside[k] <= sq_reach_;
+        meets |= is_close && std::abs(behind) <= distance_;
+        all_pass &= is_close && behind < -distance_;
       }
       met[i] = meets ? Meets::Surface : all_pass ? Meets::Nothing : Meets::Unknown;
     }
@@ -128,6 +117,17 @@ public:
   }
 
 private:
+  Points directionsTo(const PointsRef& points, Eigen::VectorXd& ranges) const {
+    Points directions(3, points.cols());
+    ranges.resize(points.cols());
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint_;
+      ranges[i] = ray.norm();
+      directions.col(i) = (ray / ranges[i]).cast<float>();
+    }
+    return directions;
+  }
+
   Eigen::Vector3d viewpoint_;
   double distance_;
   Points directions_;
@@ -151,8 +151,7 @@ std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eig
   double num_moved = 0.0, num_met = 0.0, num_free = 0.0;
   for (std::size_t i = 0; i < met.size(); ++i) {
     plane.point_support.push_back(met[i] == Beams::Meets::Surface ? 1.0f : 0.0f);
-    if (2.0 * std::abs(plane.signedDistance(points.col(static_cast<Eigen::Index>(i)).cast<double>())) <= reach)
-      continue;
+    if (2.0 * std::abs(plane.signedDistance(points.col(i).cast<double>())) <= reach) continue;
     num_moved += 1.0;
     num_met += met[i] == Beams::Meets::Surface ? 1.0 : 0.0;
     num_free += met[i] == Beams::Meets::Nothing ? 1.0 : 0.0;
