@@ -74,11 +74,11 @@ SymmetrizedMesh symmetrize(const pcl::PolygonMesh& mesh, const ReflectionPlane& 
 /// from the reflection, as PCL's correspondences have it.
 /// \throws pcl::BadArgumentException for a negative distance.
 template <typename PointT>
-pcl::Correspondences mirroredCorrespondences(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
-                                             double max_distance = 0.0) {
+pcl::Correspondences reflectedCorrespondences(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
+                                              double max_distance = 0.0) {
   return detail::withBadArguments([&] {
     const detail::SelectedPoints all = detail::selectPoints(cloud, nullptr, cloud.size(), 0);
-    const MirroredPairs pairs = mirroredPairs(all.points, plane, max_distance);
+    const ReflectedPairs pairs = reflectedPairs(all.points, plane, max_distance);
     pcl::Correspondences result;
     for (std::size_t i = 0; i < pairs.index.size(); ++i)
       if (pairs.index[i] >= 0) result.emplace_back(all.indices[i], all.indices[pairs.index[i]], pairs.sq_distances[i]);

@@ -43,16 +43,12 @@ TEST(Symmetrize, ACloudKeepsItsFieldsAndItsReflections) {
 }
 
 TEST(Symmetrize, AMeshKeepsItsPolygons) {
-  pcl::PolygonMesh mesh;
+  pcl::PolygonMesh mesh = boxMesh();
   pcl::PointCloud<pcl::PointXYZ> corners;
-  for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1 ? 1.1f : -1.0f, i & 2 ? 0.7f : -0.7f, i & 4 ? 0.5f : -0.5f);
+  pcl::fromPCLPointCloud2(mesh.cloud, corners);
+  for (pcl::PointXYZ& corner : corners)
+    if (corner.x > 0.0f) corner.x = 1.1f;
   pcl::toPCLPointCloud2(corners, mesh.cloud);
-  for (const std::vector<int>& face :
-       {std::vector<int>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}}) {
-    pcl::Vertices polygon;
-    polygon.vertices.assign(face.begin(), face.end());
-    mesh.polygons.push_back(polygon);
-  }
   const SymmetrizedMesh result = symmetrize(mesh, kPlane);
   ASSERT_EQ(result.mesh.polygons.size(), 6u);
   pcl::PointCloud<pcl::PointXYZ> moved;
@@ -63,17 +59,17 @@ TEST(Symmetrize, AMeshKeepsItsPolygons) {
   EXPECT_NE(messageOf([&] { symmetrize(mesh, kPlane); }).find("extent of the mesh"), std::string::npos);
 }
 
-TEST(MirroredCorrespondences, AreThoseOfPCL) {
+TEST(ReflectedCorrespondences, AreThoseOfPCL) {
   pcl::PointCloud<pcl::PointXYZ> cloud;
   const float none = std::numeric_limits<float>::quiet_NaN();
   for (const auto& [x, y] : {std::pair{none, 0.0f}, {1.0f, 0.0f}, {-1.001f, 0.0f}, {2.0f, 1.0f}})
     cloud.emplace_back(x, y, 0.0f);
-  const pcl::Correspondences pairs = mirroredCorrespondences(cloud, kPlane, 0.01);
+  const pcl::Correspondences pairs = reflectedCorrespondences(cloud, kPlane, 0.01);
   ASSERT_EQ(pairs.size(), 2u);
   EXPECT_EQ(pairs[0].index_query, 1);
   EXPECT_EQ(pairs[0].index_match, 2);
   EXPECT_NEAR(pairs[0].distance, 1e-6f, 1e-8f) << "squared";
-  EXPECT_NE(messageOf([&] { mirroredCorrespondences(cloud, kPlane, -1.0); }).find("max_distance"), std::string::npos);
+  EXPECT_NE(messageOf([&] { reflectedCorrespondences(cloud, kPlane, -1.0); }).find("max_distance"), std::string::npos);
 }
 
 }  // namespace

@@ -26,6 +26,30 @@ struct Mesh {
   }
 };
 
+struct TriangleMesh {
+  Points vertices;
+  std::vector<Eigen::Vector3i> triangles;
+};
+
+/// A box with a corner at the origin.
+inline TriangleMesh boxOfTriangles(float x, float y, float z) {
+  TriangleMesh mesh{Points(3, 8),
+                    {{0, 2, 3},
+                     {0, 3, 1},
+                     {4, 5, 7},
+                     {4, 7, 6},
+                     {0, 1, 5},
+                     {0, 5, 4},
+                     {1, 3, 7},
+                     {1, 7, 5},
+                     {3, 2, 6},
+                     {3, 6, 7},
+                     {2, 0, 4},
+                     {2, 4, 6}}};
+  for (int i = 0; i < 8; ++i) mesh.vertices.col(i) << (i & 1 ? x : 0), (i & 2 ? y : 0), (i & 4 ? z : 0);
+  return mesh;
+}
+
 /// The surface of a set of unit cubes, in quads, outward.
 /// \param filled whether the cube with this lowest corner belongs to the body, asked within [0, size)^3.
 template <typename Filled>

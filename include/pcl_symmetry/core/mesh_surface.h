@@ -22,12 +22,12 @@ struct MotionsAbout {
   /// The reflection across a plane through the center.
   void addReflection(const Eigen::Vector3d& unit_normal);
   /// Rotations that represent those by any angle.
-  void addTurns(const Eigen::Vector3d& unit_axis);
+  void addRotations(const Eigen::Vector3d& unit_axis);
 };
 
 /// How much of a mesh a motion maps onto the mesh.
 struct MeshShares {
-  double share = 1.0;      ///< of the area, that it maps to within the tolerance
+  double share = 1.0;      ///< of the area, mapped to within the tolerance
   double deviation = 0.0;  ///< 97 % of the area stay within it, input units
   double residual = 0.0;   ///< root mean square distance of what stays within the tolerance, input units
 };
@@ -40,10 +40,10 @@ public:
   /// \throws std::invalid_argument for an index that is no vertex, and a mesh without area.
   MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles);
 
-  /// A rotation of the axes of motions, and their new center.
+  /// A rotation Q of the axes of motions, and their new center.
   struct Placement {
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< R becomes turn R turn^T
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< input frame
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< R becomes Q R Q^T
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();        ///< input frame
   };
   /// Where motions map the surface best onto itself: least squares of the distances of samples from the mesh, and of
   /// its open borders from the borders, with a weight that leaves out what does not agree. Steps are those of Iterative
@@ -57,7 +57,7 @@ public:
   MeshShares shares(const ReflectionPlane& plane, double tolerance) const;
 
   const BoundingBall& ball() const;  ///< of the triangles, input frame
-  int numSamples() const;            ///< that shares are of
+  int numSamples() const;            ///< that shares are measured on
 
 private:
   struct Parts;

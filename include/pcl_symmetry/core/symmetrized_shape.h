@@ -10,7 +10,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// What the halves of a symmetrised shape are.
+/// What the halves of a symmetrized shape are.
 enum class SymmetrizedHalf {
   Mean,  ///< both the mean of the two sides
   Left,  ///< both the side that the normal of the plane points away from
@@ -20,7 +20,7 @@ enum class SymmetrizedHalf {
 /// A shape that a plane maps onto itself, and how far the given one was from it.
 struct SymmetrizedShape {
   Points points;  ///< 3 x N, the given points moved, input frame
-  /// Of a cloud: indices of the points that are in the symmetrised one, which consists of them and of their
+  /// Of a cloud: indices of the points that are in the symmetrized one, which consists of them and of their
   /// reflections. Empty for a mesh, whose vertices all stay.
   std::vector<int> kept;
   /// N, by how much the shape at a given point lies outside of the reflection of its other side: signed distance along
@@ -33,7 +33,7 @@ struct SymmetrizedShape {
   double deviation = 0.0;
 };
 
-/// Symmetrises a mesh whose triangles stay: each vertex moves to the mean of itself and of the reflection of the other
+/// Symmetrizes a mesh whose triangles stay: each vertex moves to the mean of itself and of the reflection of the other
 /// side there, or to one of the two.
 /// \param vertices 3 x V, input units; those that are not finite stay, and triangles with them are left out.
 /// \param triangles indices of vertices.
@@ -42,21 +42,21 @@ struct SymmetrizedShape {
 SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles,
                                  const ReflectionPlane& plane, SymmetrizedHalf half, int num_threads = 0);
 
-/// Symmetrises a cloud: points move to the mean of the surface at them and of the reflection of the other side there.
+/// Symmetrizes a cloud: points move to the mean of the surface at them and of the reflection of the other side there.
 /// The signs of its asymmetry take normals to point away from the center of mass.
 /// \param points 3 x N, finite, N >= 1, input units.
 SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane& plane, SymmetrizedHalf half,
                                   int num_threads = 0);
 
 /// The counterpart of each point: the point closest to its reflection.
-struct MirroredPairs {
+struct ReflectedPairs {
   std::vector<int> index;           ///< N; -1 where no point is within the distance, as on the unseen side of a scan
   std::vector<float> sq_distances;  ///< N, of the counterpart from the reflection, squared input units
 };
 
 /// \param points 3 x N, finite.
 /// \param max_distance of a counterpart from the reflection, input units, >= 0; 0 = 1 % of the diameter.
-MirroredPairs mirroredPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance = 0.0);
+ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance = 0.0);
 
 /// The asymmetry of landmarks, as morphometrics takes it.
 struct LandmarkAsymmetry {

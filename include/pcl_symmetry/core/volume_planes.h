@@ -16,7 +16,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// f(x) - f(gamma x). `confidence` is no probability here: ((c - c0) / (1 - c0))^2, where c0 is what three quarters of
 /// the planes reach that pass through the center of mass in all directions, but for those near a maximum. It is 0 for a
 /// plane like any other and 1 where both halves are equal; squared, as the variance that a correlation explains.
-/// \param options edt.num_cells, max_candidates, max_planes, min_confidence, approximate, seed and num_threads count.
+/// \param options num_cells, max_candidates, max_planes, min_confidence, approximate, seed and num_threads count.
 /// \param levels the intensities that count.
 /// \return planes at least as confident as min_confidence, and with `approximate` the other maxima; best first. A
 /// volume without an answer gives a reason.

@@ -9,18 +9,12 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Share of the surface that a symmetry maps to within the tolerance (DetectionOptions::tolerance).
-constexpr double kSymmetricShare = 0.97;
-// The least and, less 1, the greatest confidence: what the fitted confidence of samples reaches.
-constexpr double kLeastConfidence = 0.003;
-// Radians: a plane closer than this to the one that a flat shape lies in moves nothing.
-constexpr double kSameAsFlat = 0.02;
-
 /// The probability that at least 97 % of the surface is within the tolerance, where a share of its samples is.
 double confidenceOf(double share, int num_samples) {
-  const double deviation = std::sqrt(kSymmetricShare * (1.0 - kSymmetricShare) / num_samples);
-  const double confidence = 0.5 * std::erfc(-(share - kSymmetricShare) / deviation / std::sqrt(2.0));
-  return std::min(std::max(confidence, kLeastConfidence), 1.0 - kLeastConfidence);
+  constexpr double kSymmetric = 0.97, kLeast = 0.003;  // the least and, less 1, the greatest confidence of samples
+  const double deviation = std::sqrt(kSymmetric * (1.0 - kSymmetric) / num_samples);
+  const double confidence = 0.5 * std::erfc(-(share - kSymmetric) / deviation / std::sqrt(2.0));
+  return std::clamp(confidence, kLeast, 1.0 - kLeast);
 }
 
 void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, const DetectionOptions& options) {
@@ -47,14 +41,12 @@ bool areOne(const SymmetryPlane& a, const SymmetryPlane& b, const BoundingBall& 
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  const auto is_flat = [&](const ReflectionPlane& plane) {
-    return found.flat && plane.angleTo(*found.flat) < kSameAsFlat;
-  };
+  constexpr double kSameAsFlat = 0.02;  // radians; a reflection across the plane of a flat shape is uninformative
   std::vector<SymmetryPlane> kept;
   std::optional<SymmetryPlane> dropped;
   for (SymmetryPlane& plane : found.planes) {
     if (plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible) {
-      if (!is_flat(plane)) refine(mesh, plane, found.tolerance, options);
+      if (!(found.flat && plane.angleTo(*found.flat) < kSameAsFlat)) refine(mesh, plane, found.tolerance, options);
       if (std::any_of(kept.begin(), kept.end(),
                       [&](const SymmetryPlane& other) { return areOne(other, plane, mesh.ball(), options); }))
         continue;
@@ -80,9 +72,9 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   }
   for (SymmetryAxis& axis : found.axes) {
     MotionsAbout motions{{}, axis.point};
-    motions.addTurns(axis.direction);
+    motions.addRotations(axis.direction);
     const MeshSurface::Placement placed = mesh.fitted(motions);
-    axis.direction = placed.turn * axis.direction;
+    axis.direction = placed.rotation * axis.direction;
     axis.point = placed.center + axis.direction.dot(mesh.ball().center - placed.center) * axis.direction;
   }
   for (SymmetryCenter& center : found.centers) {

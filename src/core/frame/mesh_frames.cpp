@@ -18,15 +18,15 @@ void refineOnMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries) {
   if (symmetries.discrete.empty() && symmetries.continuous.empty()) return;
   MotionsAbout motions{{}, symmetries.center};
   for (const Eigen::Isometry3d& motion : symmetries.discrete) motions.linear.push_back(motion.linear());
-  for (const ContinuousSymmetry& axis : symmetries.continuous) motions.addTurns(axis.axis);
+  for (const ContinuousSymmetry& axis : symmetries.continuous) motions.addRotations(axis.axis);
   const MeshSurface::Placement placed = mesh.fitted(motions);
   symmetries.center = placed.center;
   for (Eigen::Isometry3d& motion : symmetries.discrete) {
-    motion.linear() = placed.turn * motion.linear() * placed.turn.transpose();
+    motion.linear() = placed.rotation * motion.linear() * placed.rotation.transpose();
     motion.translation() = placed.center - motion.linear() * placed.center;
   }
   for (ContinuousSymmetry& axis : symmetries.continuous)
-    axis = {symmetries.kind == RotationGroupKind::Spherical ? axis.axis : placed.turn * axis.axis, placed.center};
+    axis = {symmetries.kind == RotationGroupKind::Spherical ? axis.axis : placed.rotation * axis.axis, placed.center};
 }
 
 void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {

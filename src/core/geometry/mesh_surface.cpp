@@ -30,17 +30,17 @@ struct MeshRules {
   double settled = 1e-9;       // length of a step that ends the fit: below what float coordinates resolve
   double longest_step = 0.05;  // radians and radii: samples of the other side are not reached in one step
   double widths = 2.5;         // medians of the distances, the width of the weights: most samples of a symmetry agree
-  double first_width = 0.05;   // of the weights, halved each step: the ends of a bar are few, and off by what they tell
+  double first_width = 0.05;   // of the weights, halved each step: the ends of a bar are few, and far off
   double least_width = 1e-4;   // of the weights, far above rounding
   double exact_cost = 1e-6;    // of all samples: rounding
   double touching = 1e-5;      // distance below which its direction is rounding, and the normal counts
   double stiffness = 1e-9;     // of the greatest, below which nothing fixes a direction
   double judged_width = 0.01;  // of what tells which step is best: half the default tolerance
-  double farthest_turn = 0.45;  // radians and radii: a fit that goes farther left its symmetry
+  double farthest = 0.45;      // radians and radii: a fit that goes farther left its symmetry
 };
 constexpr MeshRules kMesh;
 
-/// Least squares in a small turn omega of all axes and a move t of the center.
+/// Least squares in a small rotation omega of all axes and a translation t of the center.
 struct MotionSums {
   Matrix6d h = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
@@ -70,9 +70,9 @@ void MotionsAbout::addReflection(const Eigen::Vector3d& unit_normal) {
   linear.emplace_back(Eigen::Matrix3d::Identity() - 2.0 * unit_normal * unit_normal.transpose());
 }
 
-void MotionsAbout::addTurns(const Eigen::Vector3d& unit_axis) {
-  constexpr int kNumTurns = 4;  // by the golden angle: they fit no polygon
-  for (int k = 1; k <= kNumTurns; ++k)
+void MotionsAbout::addRotations(const Eigen::Vector3d& unit_axis) {
+  constexpr int kNumRotations = 4;  // by the golden angle: they fit no polygon
+  for (int k = 1; k <= kNumRotations; ++k)
     linear.emplace_back(Eigen::AngleAxisd(kGoldenAngle * k, unit_axis).toRotationMatrix());
 }
 
@@ -189,8 +189,8 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
   const BoundingBall& ball = parts_->ball;
   MotionsAbout moving{motions.linear, (motions.center - ball.center) / ball.radius};
   const Eigen::Vector3d start = moving.center;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  Placement best{turn, motions.center};
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Placement best{rotation, motions.center};
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMesh.iterations; ++i) {
     MotionSums sums;
@@ -198,11 +198,11 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
     parts_->addTo(sums, parts_->faces, kMesh.fitted_samples, moving, width);
     if (parts_->borders.tree) parts_->addTo(sums, parts_->borders, kMesh.border_samples, moving, width);
     const bool is_near =
-        Eigen::AngleAxisd(turn).angle() < kMesh.farthest_turn && (moving.center - start).norm() < kMesh.farthest_turn;
+        Eigen::AngleAxisd(rotation).angle() < kMesh.farthest && (moving.center - start).norm() < kMesh.farthest;
     if (!is_near) break;
-    // Of equally good steps the last counts: it polishes.
+    // The last of equally good steps is the most exact.
     if (sums.cost <= least * (1.0 + kMesh.least_width) + kMesh.exact_cost) {
-      best = {turn, ball.center + ball.radius * moving.center};
+      best = {rotation, ball.center + ball.radius * moving.center};
       least = std::min(least, sums.cost);
     }
     const Vector6d step = sums.step();
@@ -211,7 +211,7 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
     if (is_done || !step.allFinite()) break;
     const Eigen::Matrix3d next =
         angle > 0.0 ? Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
-    turn = next * turn;
+    rotation = next * rotation;
     for (Eigen::Matrix3d& linear : moving.linear) linear = next * linear * next.transpose();
     moving.center += step.tail<3>();
   }
@@ -220,7 +220,7 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
 
 ReflectionPlane MeshSurface::fitted(const ReflectionPlane& plane) const {
   const Placement placed = fitted(MotionsAbout::across(plane, parts_->ball.center));
-  const Eigen::Vector3d normal = placed.turn * plane.normal();
+  const Eigen::Vector3d normal = placed.rotation * plane.normal();
   return {normal, normal.dot(placed.center)};
 }
 

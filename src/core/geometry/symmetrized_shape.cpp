@@ -215,9 +215,9 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
   return result;
 }
 
-MirroredPairs mirroredPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance) {
+ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance) {
   check(max_distance >= 0.0, "max_distance", max_distance, ">= 0");
-  MirroredPairs pairs;
+  ReflectedPairs pairs;
   if (points.cols() == 0) return pairs;
   if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * farthestPair(points);
   makeFlannSearch(points)->search(reflectedPoints(points, plane), 1, pairs.index, pairs.sq_distances);

@@ -12,6 +12,13 @@
 namespace pcl_symmetry {
 namespace {
 
+SymmetryAxis zAxis() {
+  SymmetryAxis axis;
+  axis.point.setZero();
+  axis.direction = Eigen::Vector3d::UnitZ();
+  return axis;
+}
+
 /// Radius of a vase at a height in [0, 1].
 double radiusOfVase(double height) {
   return 0.25 + 0.1 * std::sin(2.0 * kPi * height) - 0.05 * height;
@@ -37,9 +44,7 @@ Points vase(const SymmetryAxis& axis, int size) {
 }
 
 TEST(RevolutionProfile, ReachesTheAxisAndIsExactWithoutNoise) {
-  SymmetryAxis axis;
-  axis.point.setZero();
-  axis.direction = Eigen::Vector3d::UnitZ();
+  const SymmetryAxis axis = zAxis();
   const std::vector<ProfilePoint> profile = revolutionProfile(vase(axis, 20'000), axis);
   double least = 1.0;
   for (const ProfilePoint& point : profile) {
@@ -51,11 +56,8 @@ TEST(RevolutionProfile, ReachesTheAxisAndIsExactWithoutNoise) {
 }
 
 TEST(RevolutionProfile, RefusesTooFewPoints) {
-  SymmetryAxis axis;
-  axis.point.setZero();
-  axis.direction = Eigen::Vector3d::UnitZ();
-  EXPECT_THROW(revolutionProfile(Points::Random(3, 19), axis), std::invalid_argument);
-  EXPECT_THROW(revolutionProfile(Points::Random(3, 100), axis, 1), std::invalid_argument);
+  EXPECT_THROW(revolutionProfile(Points::Random(3, 19), zAxis()), std::invalid_argument);
+  EXPECT_THROW(revolutionProfile(Points::Random(3, 100), zAxis(), 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,19 +8,14 @@
 #include <stdexcept>
 
 #include "core/base/constants.h"
+#include "shapes/meshes.h"
 
 namespace pcl_symmetry {
 namespace {
 
-using Triangles = std::vector<Eigen::Vector3i>;
-
-/// Box of 30 x 2 x 1 with a corner at the origin.
 MeshSurface bar() {
-  Points corners(3, 8);
-  for (int i = 0; i < 8; ++i) corners.col(i) = Eigen::Vector3f(i & 1 ? 30 : 0, i & 2 ? 2 : 0, i & 4 ? 1 : 0);
-  const Triangles triangles{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                            {1, 3, 7}, {1, 7, 5}, {3, 2, 6}, {3, 6, 7}, {2, 0, 4}, {2, 4, 6}};
-  return {corners, triangles};
+  const test::TriangleMesh mesh = test::boxOfTriangles(30, 2, 1);
+  return {mesh.vertices, mesh.triangles};
 }
 
 MeshSurface rectangle() {
@@ -53,7 +48,7 @@ TEST(MeshSurface, FitsRotationsAsAWhole) {
     half_turns.linear.push_back(
         Eigen::AngleAxisd(kPi, Eigen::Vector3d(tilt * Eigen::Vector3d::Unit(k))).toRotationMatrix());
   const MeshSurface::Placement placed = bar().fitted(half_turns);
-  EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(placed.turn * tilt)).angle(), 1e-5);
+  EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(placed.rotation * tilt)).angle(), 1e-5);
   EXPECT_TRUE(placed.center.isApprox(Eigen::Vector3d(15.0, 1.0, 0.5), 1e-5));
 }
 

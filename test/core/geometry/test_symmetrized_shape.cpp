@@ -9,22 +9,17 @@
 #include "core/base/constants.h"
 #include "core/geometry/mesh_sampling.h"
 #include "core/geometry/triangle_tree.h"
+#include "shapes/meshes.h"
 
 namespace pcl_symmetry {
 namespace {
 
 const ReflectionPlane kPlane(Eigen::Vector3d::UnitX(), 0.0);
 
-struct Mesh {
-  Points vertices;
-  std::vector<Eigen::Vector3i> triangles;
-};
-
 /// A spheroid of semi-axes 1, 0.8, 0.6 whose vertices x -> -x maps onto each other, with a bump on its right side: a
 /// cosine of \p height along the normal, as wide as \p radius.
-Mesh bumped(int rings, int around, double height, double radius) {
-  Mesh mesh;
-  mesh.vertices.resize(3, rings * around);
+test::TriangleMesh bumped(int rings, int around, double height, double radius) {
+  test::TriangleMesh mesh{Points(3, rings * around), {}};
   const Eigen::Vector3d axes(1.0, 0.8, 0.6), top(1.0, 0.0, 0.0);
   for (int i = 0; i < rings; ++i)
     for (int k = 0; k < around; ++k) {
@@ -51,7 +46,7 @@ Mesh bumped(int rings, int around, double height, double radius) {
 }
 
 TEST(SymmetrizedMesh, IsItsOwnReflection) {
-  const Mesh mesh = bumped(100, 200, 0.05, 0.6);
+  const test::TriangleMesh mesh = bumped(100, 200, 0.05, 0.6);
   for (const SymmetrizedHalf half : {SymmetrizedHalf::Mean, SymmetrizedHalf::Left, SymmetrizedHalf::Right}) {
     const SymmetrizedShape shape = symmetrizedMesh(mesh.vertices, mesh.triangles, kPlane, half);
     EXPECT_LT(shape.deviation, 1e-5 * 2.0) << "of the diameter";
@@ -69,13 +64,13 @@ TEST(SymmetrizedMesh, IsItsOwnReflection) {
   }
 }
 
-TEST(MirroredPairs, FindsWhatIsThere) {
+TEST(ReflectedPairs, FindsWhatIsThere) {
   Points points(3, 4);
   points << 1, -1.001f, 2, 0, 0, 0, 1, 3, 0, 0, 0, 0;
-  const MirroredPairs pairs = mirroredPairs(points, kPlane, 0.01);
+  const ReflectedPairs pairs = reflectedPairs(points, kPlane, 0.01);
   EXPECT_EQ(pairs.index, (std::vector<int>{1, 0, -1, 3}));
   EXPECT_NEAR(pairs.sq_distances[0], 1e-6, 1e-8);
-  EXPECT_THROW(mirroredPairs(points, kPlane, -1.0), std::invalid_argument);
+  EXPECT_THROW(reflectedPairs(points, kPlane, -1.0), std::invalid_argument);
 }
 
 TEST(LandmarkAsymmetry, MeasuresPairsAndTheMidline) {
