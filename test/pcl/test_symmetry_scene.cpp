@@ -22,10 +22,6 @@ namespace {
 
 using Cloud = SymmetryScene::Cloud;
 
-double sq(double x) {
-  return x * x;
-}
-
 Cloud::Ptr pictureOf(const test::Scan& scan) {
   auto cloud = pcl::make_shared<Cloud>(scan.width, scan.height);
   for (std::size_t i = 0; i < cloud->size(); ++i)
@@ -49,7 +45,7 @@ SceneAnalysis analysed(const Cloud::ConstPtr& cloud, bool frames = false) {
 void expectPlanesAcrossAxes(const SceneObject& object) {
   for (const SymmetryPlane& plane : object.planes) {
     if (plane.kind != PlaneKind::Symmetry) continue;
-    EXPECT_GT(plane.normal().cwiseAbs().maxCoeff(), std::cos(3.0 * M_PI / 180.0))
+    EXPECT_GT(plane.normal().cwiseAbs().maxCoeff(), std::cos(3.0 * kPi / 180.0))
         << "confidence " << plane.confidence << ", normal " << plane.normal().transpose();
   }
 }
@@ -64,7 +60,7 @@ TEST(SymmetryScene, TakesTheTableOutAndFindsWhatStandsOnIt) {
   const SceneAnalysis scene = analysed(pictureOf(twoBoxes().scan), true);
   ASSERT_EQ(scene.supports.size(), 1u);
   EXPECT_LT((scene.supports[0].coefficients - Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)).norm(), 0.02)
-      << "towards the viewer";
+      << "toward the viewer";
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(scene.seen->source(), ViewpointSource::Rays);
   std::set<int> found;
@@ -319,7 +315,7 @@ Body block(const Eigen::Vector3d& center, const Eigen::Vector3d& half, double tu
 Body uprightCylinder(const Eigen::Vector2d& axis, double radius, double low, double high) {
   return [=](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
     const Eigen::Vector2d from = origin.head<2>() - axis, along = direction.head<2>();
-    const double a = along.squaredNorm(), b = from.dot(along), root = b * b - a * (from.squaredNorm() - sq(radius));
+    const double a = along.squaredNorm(), b = from.dot(along), root = b * b - a * (from.squaredNorm() - radius * radius);
     const double wall = root >= 0.0 ? (-b - std::sqrt(root)) / a : std::numeric_limits<double>::infinity();
     const double z = origin.z() + wall * direction.z();
     if (wall > 0.0 && z >= low && z <= high) return wall;
@@ -358,8 +354,7 @@ struct Frame {
   std::pair<int, double> bodyOf(const SceneObject& object, std::size_t num_bodies) const {
     std::vector<double> counts(num_bodies, 0.0);
     for (const pcl::index_t i : object.indices)
-      if (ids[static_cast<std::size_t>(i)] >= 0)
-        counts[static_cast<std::size_t>(ids[static_cast<std::size_t>(i)])] += 1;
+      if (ids[i] >= 0) counts[ids[i]] += 1;
     const auto most = std::max_element(counts.begin(), counts.end());
     return {static_cast<int>(most - counts.begin()), *most / static_cast<double>(object.indices.size())};
   }
@@ -412,10 +407,10 @@ TEST(SymmetryScene, AMugAndItsHandleAreOne) {
 }
 
 TEST(SymmetryScene, TheInsideOfABowlIsOne) {
-  // A cone that opens upwards: its inside bends inwards everywhere.
+  // A cone that opens upward: its inside bends inward everywhere.
   const Body bowl = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
     double nearest = std::numeric_limits<double>::infinity();
-    // (x^2 + y^2) = (0.05 + z / 2)^2 from z = 0 to z = 0.16; the side towards the camera first.
+    // (x^2 + y^2) = (0.05 + z / 2)^2 from z = 0 to z = 0.16; the side toward the camera first.
     const double u = 0.05 + 0.5 * origin.z(), w = 0.5 * direction.z();
     const double a = direction.head<2>().squaredNorm() - w * w, b = origin.head<2>().dot(direction.head<2>()) - u * w;
     const double root = b * b - a * (origin.head<2>().squaredNorm() - u * u);
@@ -441,7 +436,7 @@ TEST(SymmetryScene, KnowsTheGroundThatIsGiven) {
   scene.setGround({0.0, 0.0, -2.0, 0.0});
   const SceneAnalysis found = scene.compute();
   ASSERT_EQ(found.supports.size(), 1u);
-  EXPECT_EQ(found.supports[0].coefficients, Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)) << "towards the viewer";
+  EXPECT_EQ(found.supports[0].coefficients, Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)) << "toward the viewer";
   EXPECT_EQ(found.objects.size(), 2u);
   EXPECT_EQ(test::messageOf([&] { scene.setGround(Eigen::Vector4d(0.0, 0.0, 0.0, 1.0)); }),
             "ground: must be four finite numbers A,B,C,D, not all of A, B, C zero");
@@ -453,7 +448,7 @@ Cloud::Ptr sweep(const std::vector<Body>& bodies) {
   RandomStream random(7);
   for (int ring = 0; ring < 64; ++ring)
     for (int column = 0; column < 1800; ++column) {
-      const double fall = M_PI / 180.0 * (-24.8 + 26.8 * ring / 63.0), turn = M_PI * column / 900.0;
+      const double fall = kPi / 180.0 * (-24.8 + 26.8 * ring / 63.0), turn = kPi * column / 900.0;
       const Eigen::Vector3d ray(std::cos(fall) * std::cos(turn), std::cos(fall) * std::sin(turn), std::sin(fall));
       double nearest = ray.z() < 0.0 ? -1.7 / ray.z() : std::numeric_limits<double>::infinity();
       for (const Body& body : bodies) nearest = std::min(nearest, body(Eigen::Vector3d::Zero(), ray));
@@ -491,7 +486,7 @@ TEST(SymmetryScene, FindsVehiclesAroundALidar) {
     EXPECT_EQ(object.planes[0].kind, PlaneKind::Symmetry);
     const bool is_right = std::any_of(poses.begin(), poses.end(), [&](const auto& pose) {
       const Eigen::Vector3d across(-std::sin(pose[2]), std::cos(pose[2]), 0.0);
-      return std::abs(across.dot(object.planes[0].normal())) > std::cos(5.0 * M_PI / 180.0) &&
+      return std::abs(across.dot(object.planes[0].normal())) > std::cos(5.0 * kPi / 180.0) &&
              std::abs(object.planes[0].signedDistance({pose[0], pose[1], -1.2})) < 0.2;
     });
     EXPECT_TRUE(is_right) << object.planes[0].coefficients().transpose();
