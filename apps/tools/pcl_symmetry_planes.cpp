@@ -125,7 +125,7 @@ std::string lineOfTolerance(const Findings& findings) {
                    100.0 * findings.resolution / findings.diameter);
 }
 
-/// Of points that lie on a plane.
+/// The plane that all points lie on.
 std::string lineOfFlat(const ReflectionPlane& flat, const Eigen::Vector3d& shift, int digits) {
   const Eigen::Vector4d c = printedCoefficients(flat, shift);
   return formatted("flat: the points lie on the plane %.6f %.6f %.6f %.*g; to be mirrored in it says nothing\n", c[0],
@@ -164,41 +164,36 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
 std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const Eigen::Vector3d& shift) {
   const nlohmann::json none;
   std::vector<std::vector<nlohmann::json>> rows;
-  const auto add = [&](std::size_t number, const char* kind, const std::optional<SymmetryPlane>& plane,
-                       const std::optional<Eigen::Vector3d>& point, const std::optional<Eigen::Vector3d>& direction,
-                       std::vector<nlohmann::json> measures) {
+  const auto add = [&](std::size_t number, const char* kind, const std::vector<double>& plane,
+                       const std::vector<double>& point, const std::vector<double>& direction,
+                       const std::vector<nlohmann::json>& measures) {
     std::vector<nlohmann::json> row{number, kind};
-    const Eigen::Vector4d c = plane ? shiftedBack(*plane, shift).coefficients() : Eigen::Vector4d::Zero();
-    for (int k = 0; k < 4; ++k) row.push_back(plane ? nlohmann::json(c[k]) : none);
-    const Eigen::Vector3d x = point ? shiftedBack(*point, shift) : Eigen::Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) row.push_back(point ? nlohmann::json(x[k]) : none);
-    for (int k = 0; k < 3; ++k) row.push_back(direction ? nlohmann::json((*direction)[k]) : none);
+    for (std::size_t k = 0; k < 4; ++k) row.push_back(plane.empty() ? none : nlohmann::json(plane[k]));
+    for (std::size_t k = 0; k < 3; ++k) row.push_back(point.empty() ? none : nlohmann::json(point[k]));
+    for (std::size_t k = 0; k < 3; ++k) row.push_back(direction.empty() ? none : nlohmann::json(direction[k]));
     row.insert(row.end(), measures.begin(), measures.end());
     rows.push_back(row);
   };
-  for (std::size_t i = 0; i < findings.planes.size(); ++i) {
-    const SymmetryPlane& p = findings.planes[i];
-    add(i + 1, toString(p.kind), p, std::nullopt, std::nullopt,
+  const auto addPlane = [&](std::size_t number, const char* kind, const SymmetryPlane& p) {
+    add(number, kind, numbersOf(shiftedBack(p, shift).coefficients()), {}, {},
         {p.confidence, p.share, p.support, p.score, p.seen, p.deviation});
-  }
-  for (std::size_t i = 0; i < findings.axes.size(); ++i) {
-    const SymmetryAxis& axis = findings.axes[i];
-    add(i + 1, "axis", std::nullopt, axis.point, axis.direction,
+  };
+  const auto at = [&](const Eigen::Vector3d& point) { return numbersOf(shiftedBack(point, shift)); };
+  std::size_t number = 0;
+  for (const SymmetryPlane& plane : findings.planes) addPlane(++number, toString(plane.kind), plane);
+  number = 0;
+  for (const SymmetryAxis& axis : findings.axes)
+    add(++number, "axis", {}, at(axis.point), numbersOf(axis.direction),
         {axis.confidence, none, axis.support, axis.score, none, none});
-  }
-  for (std::size_t i = 0; i < findings.turns.size(); ++i) {
-    const SymmetryTurn& turn = findings.turns[i];
-    add(i + 1, "turn", std::nullopt, turn.point, turn.direction, {turn.confidence, none, none, none, none, none});
-  }
-  for (std::size_t i = 0; i < findings.centers.size(); ++i) {
-    const SymmetryCenter& center = findings.centers[i];
-    add(i + 1, "center", std::nullopt, center.point, std::nullopt,
+  number = 0;
+  for (const SymmetryTurn& turn : findings.turns)
+    add(++number, "turn", {}, at(turn.point), numbersOf(turn.direction),
+        {turn.confidence, none, none, none, none, none});
+  number = 0;
+  for (const SymmetryCenter& center : findings.centers)
+    add(++number, "center", {}, at(center.point), {},
         {center.confidence, none, center.support, center.score, none, none});
-  }
-  if (findings.best)
-    add(1, "best", findings.best, std::nullopt, std::nullopt,
-        {findings.best->confidence, findings.best->share, findings.best->support, findings.best->score,
-         findings.best->seen, findings.best->deviation});
+  if (findings.best) addPlane(1, "best", *findings.best);
   return rows;
 }
 

@@ -1,6 +1,7 @@
 /// CT and MR volumes as files: the same plane from every format, and a sentence for bad ones.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>

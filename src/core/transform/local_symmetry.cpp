@@ -21,6 +21,9 @@ std::vector<float> localSymmetry(const GaussianEdt& edt, const PointsRef& points
   options.validate();
   const double cell = edt.cellSize(), scale = options.scale / cell;
   const auto& values = edt.values();
+  std::vector<Eigen::Vector3d> normals;
+  for (int k = 0; k < options.num_directions; ++k)
+    normals.push_back(spiralDirection(k, options.num_directions, k * kGoldenAngle));
   std::vector<float> result(points.cols(), 0.0f);
   parallelRanges(result.size(), 64, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -52,8 +55,7 @@ std::vector<float> localSymmetry(const GaussianEdt& edt, const PointsRef& points
                                               up_to.size() - 1);
         drawn.emplace_back(cells[at], 1.0 / std::max(1e-3, edt.atCell(p + cells[at])));
       }
-      for (int k = 0; k < options.num_directions; ++k) {
-        const Eigen::Vector3d normal = spiralDirection(k, options.num_directions, k * kGoldenAngle);
+      for (const Eigen::Vector3d& normal : normals) {
         double total = 0.0;
         for (const auto& [x, weight] : drawn) total += weight * edt.atCell(p + x - 2.0 * normal.dot(x) * normal);
         result[i] = std::max(result[i], static_cast<float>(total / options.num_samples));
