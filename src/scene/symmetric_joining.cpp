@@ -34,7 +34,7 @@ Eigen::Vector3d centroidOf(const Cloud& scene, const pcl::Indices& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Of both, ascending.
+/// Indices of both, ascending.
 pcl::Indices indicesOf(const SceneObject& a, const SceneObject& b) {
   pcl::Indices all;
   std::merge(a.indices.begin(), a.indices.end(), b.indices.begin(), b.indices.end(), std::back_inserter(all));
@@ -64,7 +64,7 @@ std::vector<ReflectionPlane> planesOf(const SceneObject& object) {
   return planes;
 }
 
-/// How many points of a piece a reflection maps where.
+/// Where a reflection maps the points of a piece: counts.
 struct Landings {
   double own = 0.0, other = 0.0;  ///< onto the piece itself, onto the other one
   double off = 0.0;               ///< into free space
@@ -309,7 +309,7 @@ private:
            std::max(2.0 * scene_.plane_distance, scene_rules.hangs * diagonal_);
   }
 
-  /// From its foot to its top, without flying pixels.
+  /// Heights of the foot and the top of a piece, without flying pixels.
   std::array<double, 2> heightsOf(const SupportingPlane& support, const SceneObject& piece) const {
     std::vector<double> heights;
     for (const pcl::index_t i : piece.indices)
@@ -346,7 +346,7 @@ bool touch(const JoiningScene& scene, const SceneObject& larger, const SceneObje
   });
 }
 
-/// What was decided of a pair.
+/// The decision on a pair.
 struct Verdict {
   bool are_one = false;
   std::optional<SceneObject> object;  // the one object, where it was analysed

@@ -27,14 +27,13 @@ struct JoinedPieces {
   std::vector<SceneJunction> junctions;  ///< of the pieces that touch
 };
 
-/// Of the cuts that convexity makes, keeps those that symmetry confirms.
+/// Keeps those of the cuts between convex pieces that symmetry confirms.
 ///
-/// Pieces side by side whose normals point to one upright line are of one body of revolution: the two halves of the
-/// inside of a bowl. A bottle and its neck are one where both turn about one axis, a mug and its handle where the
-/// handle does not stand on what the mug stands on, and a plane through the axis of the mug explains both: the union
-/// has a plane or an axis that decides, which is a symmetry of each piece by itself. Pieces stay apart if symmetries of
-/// their own explain most of their points and neither is flat, as a face of a box or a part of a wall; all others are
-/// united again.
+/// Pieces side by side whose normals point to one upright line belong to one body of revolution, as the two halves of
+/// the inside of a bowl. A bottle and its neck are one where both have the same axis; a mug and its handle where the
+/// handle does not stand on the support of the mug, and the union has a plane through the axis of the mug, or that
+/// axis, that explains each piece by itself. Pieces stay apart if their own symmetries explain many of their points and
+/// neither is flat, as a face of a box or a part of a wall is; all others are united again.
 /// \param pieces of clusters, ascending indices.
 /// \param cluster_of number of the cluster of each piece.
 JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::Indices>& pieces,

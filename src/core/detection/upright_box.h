@@ -8,14 +8,14 @@
 
 namespace pcl_symmetry {
 
-/// Symmetry of what the rings of a spinning LiDAR show of a vehicle (not in the paper). Rings are no surface: few
-/// points have a counterpart, one or two sides are seen, and between two rings nothing was looked at. Straight sides
-/// and where they end tell more.
+/// Symmetry of a vehicle in the rings of a spinning LiDAR (not in the paper). Rings are no surface: few points have a
+/// counterpart, one or two sides are seen, and the space between two rings is unknown. Straight sides and their ends
+/// are more informative.
 ///
-/// The upright box of least L-shape error is that whose sides the points are nearest to, seen from above: its angle is
-/// tried in steps of half a degree, its sides are quantiles of 1 and 99 %. The middle plane along its longer side is
-/// the candidate. Its confidence is a logistic function of the share of the points near a side, and of the share that
-/// it maps to where beams passed freely.
+/// Seen from above, the points are nearest to the sides of the upright box of least L-shape error. Its angle is tried
+/// in steps of half a degree; its sides are quantiles of 1 and 99 %. The middle plane along its longer side is the
+/// candidate. Its confidence is a logistic function of the share of the points near a side and of the share that it
+/// maps into free space.
 /// \param points 3 x N, finite, N >= 20, of what stands on a ground.
 /// \param up normal of the ground.
 /// \param viewpoint of the scanner.

@@ -23,7 +23,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Lengths are in radii of the bounding ball.
 struct MeshRules {
-  int samples = 4000;          // of the area, that shares are of; an error of 0.3 % at the limit of 97 %
+  int samples = 4000;          // that shares are measured on: an error of 0.3 % at the limit of 97 %
   int fitted_samples = 2000;   // that motions are fitted to
   int border_samples = 1000;   // of the open borders
   int iterations = 40;         // at most; exact surfaces take three to six
