@@ -460,6 +460,17 @@ class Meshes(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "half = both, must be mean, left or right"):
             pcl_symmetry.symmetrize(mesh, plane, "both")
 
+    def test_a_body_of_revolution_has_a_profile(self):
+        rng = np.random.default_rng(2)
+        angle, height = rng.uniform(0, 2 * np.pi, 20_000), rng.uniform(0, 1, 20_000)
+        radius = 0.3 + 0.1 * np.cos(4 * height)
+        points = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+        axis = pcl_symmetry.planes(points).axes[0]
+        found = axis.profile(points)
+        expected = 0.3 + 0.1 * np.cos(4 * (axis.point + np.outer(found.height, axis.direction))[:, 2])
+        np.testing.assert_allclose(found.radius, expected, atol=0.01)
+        self.assertLess(np.median(found.spread), 0.005)
+
 
 def has_pcl():
     return any(Path(pcl_symmetry.__file__).parent.glob("_recognition*"))
