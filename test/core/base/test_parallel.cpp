@@ -16,14 +16,6 @@ namespace {
 
 using namespace pcl_symmetry;
 
-TEST(Parallel, EveryBlockRunsOnce) {
-  for (const int num_threads : {0, 1, 2, 8}) {
-    std::vector<std::atomic<int>> runs(1000);
-    parallelBlocks(runs.size(), num_threads, [&](std::size_t b) { ++runs[b]; });
-    for (const auto& run : runs) ASSERT_EQ(run, 1) << num_threads << " threads";
-  }
-}
-
 TEST(Parallel, AForkedChildRunsLoopsAfterItsParentHas) {
   const auto sum = [] {
     std::atomic<int> result{0};

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 
 #include "pcl_symmetry/core/detect_planes.h"
@@ -40,19 +39,13 @@ std::vector<NamedScan> scans() {
 }
 
 TEST(Scans, TruePlanesAreAmongTheAnswers) {
-  int num_planes = 0, num_found = 0, num_certain = 0, num_wrong = 0, num_without = 0;
+  int num_planes = 0, num_found = 0, num_wrong = 0;
   for (const auto& [name, scan] : scans()) {
     const Points cloud = scan.cloud();
     const Visibility visibility = scan.visibility();
-    const Detection detection = detectPlanes({cloud, &visibility}), blind = detectPlanes(cloud);
+    const Detection detection = detectPlanes({cloud, &visibility});
     int found_here = 0;
-    for (const ReflectionPlane& plane : scan.planes) {
-      const SymmetryPlane* found = find(detection, plane, cloud);
-      const SymmetryPlane* unseen = find(blind, plane, cloud);
-      found_here += found ? 1 : 0;
-      num_certain += found && found->kind == PlaneKind::Symmetry ? 1 : 0;
-      num_without += unseen ? 1 : 0;
-    }
+    for (const ReflectionPlane& plane : scan.planes) found_here += find(detection, plane, cloud) ? 1 : 0;
     double best_wrong = 0.0, best_true = 0.0;
     for (const SymmetryPlane& plane : detection.planes) {
       EXPECT_TRUE(plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible) << name;
@@ -72,8 +65,6 @@ TEST(Scans, TruePlanesAreAmongTheAnswers) {
     num_planes += static_cast<int>(scan.planes.size());
     num_found += found_here;
   }
-  std::printf("%d of %d true planes, %d called symmetries (wrongly %d); %d without the viewpoint\n", num_found,
-              num_planes, num_certain, num_wrong, num_without);
   EXPECT_EQ(num_found, num_planes);
   // The README's rate of scans of asymmetric objects that are called symmetric is 21 %: 1.9 of nine scans.
   EXPECT_LE(num_wrong, static_cast<int>(0.21 * static_cast<double>(scans().size())));
@@ -97,11 +88,6 @@ TEST(Scans, SameBytesForAnyNumberOfThreads) {
       EXPECT_EQ(detection.planes[i].seen, one->planes[i].seen);
     }
   }
-}
-
-TEST(Scans, WholeCloudsAreSeenWhole) {
-  for (const SymmetryPlane& plane : detectPlanes(box(4000, Sampling::Random, 5).cloud()).planes)
-    EXPECT_NEAR(plane.seen, 1.0, 1e-6);
 }
 
 }  // namespace

@@ -13,19 +13,6 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-TEST(LocalGeometry, NormalsOfASphereAreRadial) {
-  const Points points = sphere(4000, 4).cloud();
-  const LocalGeometry geometry = localGeometry(points, *makeFlannSearch(points), 8, 0);
-  // Eight neighbors span a cap of angle sqrt(8 * 4 / 4000) = 0.09; the fitted normal is off by a fraction of it.
-  double mean = 0.0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    EXPECT_NEAR(geometry.normals.col(i).norm(), 1.0f, 1e-5f);
-    const double cosine = std::abs(geometry.normals.col(i).dot(points.col(i)));
-    mean += std::acos(std::min(1.0, cosine)) / static_cast<double>(points.cols());
-  }
-  EXPECT_LT(mean, 0.5 * 0.09);
-}
-
 TEST(LocalGeometry, SpacingMeasuresDensity) {
   // spacing^2 * density = pi r_k^2 density / k; the count within r is Poisson, so that pi r_k^2 density is Gamma(k)
   // with mean k: the mean of the ratio is 1, that of n samples of 8 neighbors each (every point counts in about 8
@@ -49,17 +36,6 @@ TEST(LocalGeometry, OfFewOrCoincidentPointsIsDefined) {
       EXPECT_NEAR(geometry.normals.col(i).norm(), 1.0f, 1e-5f);
       EXPECT_TRUE(std::isfinite(geometry.spacing[i]));
     }
-  }
-}
-
-TEST(LocalGeometry, SameBytesForAnyNumberOfThreads) {
-  const Points points = asymmetricBlob(3000, 7).cloud();
-  const auto search = makeFlannSearch(points);
-  const LocalGeometry one = localGeometry(points, *search, 8, 1);
-  for (const int num_threads : {2, 8}) {
-    const LocalGeometry many = localGeometry(points, *search, 8, num_threads);
-    EXPECT_EQ(many.normals, one.normals);
-    EXPECT_EQ(many.spacing, one.spacing);
   }
 }
 

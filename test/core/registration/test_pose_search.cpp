@@ -38,21 +38,6 @@ TEST(PoseSearch, FindsAnyPoseOfAWhole) {
   }
 }
 
-TEST(PoseSearch, GivesTheSamePosesForAnyNumberOfThreads) {
-  const PosedSurface model = surface(asymmetricBlob(1000, 1).cloud()), scan = surface(asymmetricBlob(1000, 2).cloud());
-  PoseSearchOptions options;
-  options.num_rotations = 200;
-  std::vector<RankedPose> expected;
-  for (const int threads : {1, 2, 8}) {
-    options.num_threads = threads;
-    const std::vector<RankedPose> poses = searchPoses(scan, model, {}, options);
-    if (expected.empty()) expected = poses;
-    ASSERT_EQ(poses.size(), expected.size());
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      EXPECT_EQ(poses[i].T_model_scan.matrix(), expected[i].T_model_scan.matrix());
-  }
-}
-
 TEST(PoseSearchOptions, RefusesOptionsOutOfRange) {
   const auto refused = [](const auto& change) {
     PoseSearchOptions options;

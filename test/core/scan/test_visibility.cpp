@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -178,40 +177,6 @@ TEST(Visibility, HiddenShareTellsAScanFromAWhole) {
   const double hidden = Visibility::fromPoints(whole, kViewpoint)->hiddenShare(whole, 0.1);
   EXPECT_GT(hidden, 0.3);
   EXPECT_LT(hidden, 0.6);
-}
-
-/// The points of some pixels.
-Points pointsOf(const Scan& scan, const std::vector<int>& pixels) {
-  Points points(3, static_cast<Eigen::Index>(pixels.size()));
-  for (std::size_t i = 0; i < pixels.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = scan.pixels.col(pixels[i]);
-  return points;
-}
-
-TEST(Visibility, AnObjectInFrontHidesWhatLiesBehindIt) {
-  const Table table;
-  // A third of the pixels at random: in full rows, the edge of the object in front looks like a side of the picture.
-  std::vector<int> pixels = table.pixelsOf(1);
-  RandomStream drawn(2);
-  pixels.erase(std::remove_if(pixels.begin(), pixels.end(), [&](int) { return drawn.below(3) != 0; }), pixels.end());
-  const Visibility alone = *Visibility::fromPoints(pointsOf(table.scan, pixels), table.scan.viewpoint);
-  const auto scene = Visibility::ofScene(table.scan.cloud(), table.scan.viewpoint);
-  ASSERT_TRUE(scene);
-  const Visibility truth = table.scan.visibility();
-  int num_hidden = 0, num_hidden_alone = 0, num_known = 0;
-  const Block& box = table.blocks.blocks[1];
-  RandomStream random(1);
-  for (int i = 0; i < 4000; ++i) {
-    const Eigen::Vector3d unit(symmetric(random), symmetric(random), symmetric(random));
-    const Eigen::Vector3d x = box.center + 1.2 * box.half.cwiseProduct(unit);
-    if (truth.depthBehind(x) > 0.1) {  // the box in front is 0.16 deep and 0.25 before
-      ++num_hidden;
-      num_hidden_alone += alone.depthBehind(x) >= 0.0 ? 1 : 0;
-      num_known += scene->depthBehind(x) < 0.0 ? 1 : 0;
-    }
-  }
-  ASSERT_GT(num_hidden, 500);
-  EXPECT_LT(num_hidden_alone, 0.9 * num_hidden) << "the cluster alone takes hidden space for seen empty";
-  EXPECT_LT(num_known, 0.01 * num_hidden) << "but for the borders of pixels";
 }
 
 TEST(Visibility, OutsideThePictureOfASceneNothingIsKnown) {

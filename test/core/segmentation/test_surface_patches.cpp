@@ -23,18 +23,6 @@ TEST(SurfacePatches, AreAsManyAsAskedForAndConnected) {
   }
 }
 
-TEST(SurfacePatches, SmallPiecesJoinTheClosestPatch) {
-  // Two cubes apart and a small triangle beside the right one: two patches, one for each cube.
-  test::Mesh mesh = test::voxelMesh(12, [](int x, int y, int z) { return y < 2 && z < 2 && (x < 2 || x >= 10); });
-  const int a = mesh.add({12.5f, 1, 1}), b = mesh.add({12.5f, 1.1f, 1}), c = mesh.add({12.5f, 1, 1.1f});
-  mesh.polygons.push_back({a, b, c});
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
-  const std::vector<int> patches = growPatches(graph, 2, 0.0f);
-  ASSERT_EQ(numPatches(patches), 2);
-  for (int i = 0; i < graph.size(); ++i)
-    EXPECT_EQ(patches[i] == patches.back(), graph.centers(0, i) > 6.0f) << "element " << i;
-}
-
 TEST(SurfacePatches, BordersPreferConcaveEdges) {
   // Four quads in a row, folded upwards behind the first. Which side of an open strip is outward is chance: the fold is
   // made concave below.

@@ -173,12 +173,6 @@ TEST(Merging, ConcavityWithoutTheBodySeparatesTheCubes) {
   EXPECT_NE(segmentAt(graph, segmentation, kLeftCube), segmentAt(graph, segmentation, kRightCube));
 }
 
-TEST(Merging, SoupIsCutAsTheMeshIs) {
-  const Mesh mesh = test::dumbbell(), soup = test::soupOf(mesh);
-  EXPECT_EQ(segmentSurface(meshGraph(soup.vertices, soup.polygons)).labels,
-            segmentSurface(meshGraph(mesh.vertices, mesh.polygons)).labels);
-}
-
 TEST(Merging, PiecesThatNothingJoinsAreSegmentsAndCrumbsJoinTheClosest) {
   // Two cubes apart, and a small triangle beside the right one.
   Mesh mesh = test::voxelMesh(22, [](int x, int y, int z) { return y < 8 && z < 8 && (x < 8 || x >= 14); });

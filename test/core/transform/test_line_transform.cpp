@@ -144,20 +144,6 @@ TEST(Stability, MapMovesByAtMostTwiceTheChangeOfTheFunction) {
   }
 }
 
-TEST(Stability, NoiseLeavesTheLinesOfAStarfish) {
-  const std::vector<LineMaximum> clean = linesOf(starfish(0.0, 1));
-  const std::vector<LineMaximum> noisy = linesOf(starfish(0.02, 7));
-  ASSERT_GE(noisy.size(), 5u);
-  for (int k = 0; k < 5; ++k) {
-    EXPECT_GT(noisy[k].value, noisy.size() > 5 ? 1.3 * noisy[5].value : 0.0);
-    double nearest = kPi;
-    for (int j = 0; j < 5; ++j) nearest = std::min(nearest, noisy[k].line.angleTo(clean[j].line));
-    // Noise of 2 % on 2400 points: the mean over the contour of its moment about the center moves a line by about
-    // 0.02 / (0.6 sqrt(2400)) = 0.04 degrees; ten times that.
-    EXPECT_LT(nearest, 0.4 * kDegree);
-  }
-}
-
 TEST(PointSymmetry2D, TheCenterOfACircleIsTheDarkestPoint) {
   const GaussianEdt2D edt(regularPolygon(2400));
   const LineMap map = lineTransform(edt, LineGrid(96, 96, edt.center(), edt.radius()), edt.center());

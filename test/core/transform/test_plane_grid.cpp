@@ -140,32 +140,6 @@ TEST(PlaneGrid, StepsLeadAcrossTheSeamsAsDerived) {
   EXPECT_TRUE(*g.step({5, 6, 0}, 1, 1, 0) == (Bin{5, 3, 4}));
 }
 
-/// Bins in phi that cover one step of theta in a row.
-int expectedReach(const PlaneGrid& g, int t) {
-  return std::min(g.numPhi() / 2, static_cast<int>(std::ceil(g.thetaStep() / (g.phiStep() * std::sin(g.theta(t))))));
-}
-
-TEST(PlaneGrid, TwentySixNeighborsWhereBinsAreNoSlivers) {
-  const PlaneGrid g = planeGrid(16, 16, 16);  // phi steps are four theta steps wide: no slivers where sin(theta) > 1/4
-  int num_checked = 0;
-  for (std::size_t i = 0; i < g.size(); ++i) {
-    const Bin bin = g.bin(i);
-    const int above = std::max(0, bin.theta - 1);
-    if (bin.radius == 0 || bin.radius + 1 == g.numRadius() || expectedReach(g, above) != 1) continue;
-    ++num_checked;
-    const auto neighbors = g.neighbors(bin);
-    ASSERT_EQ(neighbors.size(), 26u);
-    ASSERT_TRUE(std::is_sorted(neighbors.begin(), neighbors.end()));
-    for (const std::size_t n : neighbors) {
-      const Bin other = g.bin(n);
-      if (expectedReach(g, std::max(0, other.theta - 1)) != 1) continue;
-      const auto back = g.neighbors(other);
-      ASSERT_TRUE(std::binary_search(back.begin(), back.end(), i)) << i << " and " << n;
-    }
-  }
-  EXPECT_EQ(num_checked, 12 * 16 * 14);  // rows 4 ... 15: sin of the row above, 3.5 * 5.625 degrees, is 0.337
-}
-
 TEST(PlaneGrid, NeighborsCoverAStepOfThetaAllAround) {
   // Near the pole too: every bin of the same r whose normal lies within a step of theta along a circle of latitude.
   const PlaneGrid g = planeGrid(32, 128, 3);
