@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <vector>
 
 #include "pcl/damaged_database.h"
 #include "recognition/database_schema.h"

@@ -43,26 +43,17 @@ TEST(ModelCoefficients, AxesGoThereAndBack) {
 
 TEST(ModelCoefficients, RefuseWhatIsNoPlaneOrLine) {
   const float none = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(messageOf([] {
-              planeFromModelCoefficients(coefficientsOf({1, 0, 0}));
-            }),
-            "number of coefficients = 3, must be 4");
-  EXPECT_EQ(messageOf([] {
-              axisFromModelCoefficients(coefficientsOf({1, 0, 0, 1}));
-            }),
-            "number of coefficients = 4, must be 6");
-  EXPECT_NE(messageOf([&] {
-              planeFromModelCoefficients(coefficientsOf({1, 0, none, 1}));
-            }).find("finite"),
-            std::string::npos);
-  EXPECT_NE(messageOf([] {
-              planeFromModelCoefficients(coefficientsOf({0, 0, 0, 1}));
-            }).find("zero"),
-            std::string::npos);
-  EXPECT_NE(messageOf([] {
-              axisFromModelCoefficients(coefficientsOf({1, 1, 1, 0, 0, 0}));
-            }).find("zero"),
-            std::string::npos);
+  const auto refusedAsPlane = [](const std::vector<float>& values) {
+    return messageOf([&] { planeFromModelCoefficients(coefficientsOf(values)); });
+  };
+  const auto refusedAsAxis = [](const std::vector<float>& values) {
+    return messageOf([&] { axisFromModelCoefficients(coefficientsOf(values)); });
+  };
+  EXPECT_EQ(refusedAsPlane({1, 0, 0}), "number of coefficients = 3, must be 4");
+  EXPECT_EQ(refusedAsAxis({1, 0, 0, 1}), "number of coefficients = 4, must be 6");
+  EXPECT_NE(refusedAsPlane({1, 0, none, 1}).find("finite"), std::string::npos);
+  EXPECT_NE(refusedAsPlane({0, 0, 0, 1}).find("zero"), std::string::npos);
+  EXPECT_NE(refusedAsAxis({1, 1, 1, 0, 0, 0}).find("zero"), std::string::npos);
 }
 
 }  // namespace

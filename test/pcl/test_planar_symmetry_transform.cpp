@@ -39,21 +39,6 @@ TEST(PlanarSymmetryTransform, TakesMeshesByArea) {
   EXPECT_NEAR(map.grid.radius(), Eigen::Vector3d(1.0, 0.7, 0.4).norm(), 0.03);
 }
 
-TEST(PlanarSymmetryTransform, DrawsFromLargeCloudsAndDoesNotDependOnThreads) {
-  const auto cloud = test::toCloud(test::box(20000, Sampling::Random, 4));
-  std::vector<float> values;
-  for (const int num_threads : {1, 2, 8}) {
-    PlanarSymmetryTransform<pcl::PointXYZ> transform;
-    transform.setInputCloud(cloud);
-    transform.setMaxPoints(1500);
-    transform.setGridSize(16);
-    transform.setNumberOfThreads(num_threads);
-    const SymmetryMap map = transform.compute();
-    if (values.empty()) values = map.values;
-    EXPECT_EQ(map.values, values) << num_threads << " threads";
-  }
-}
-
 TEST(PlanarSymmetryTransform, SaysWhatIsWrongWithFieldValueAndRule) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   EXPECT_NE(messageOf([&] { transform.setGridSize(4); }).find("num_cells = 4, must be in [8, 512]"), std::string::npos);

@@ -36,18 +36,6 @@ TEST(PlanarSymmetryTransform2D, LinesOfATiltedRectangleArePlanesAcrossItsSheet) 
   }
 }
 
-TEST(PlanarSymmetryTransform2D, FlatCloudsKeepTheirAxes) {
-  Transform transform;
-  Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
-  shift.translation() = Eigen::Vector3d(3.0, -1.0, 5.0);
-  transform.setInputCloud(toSheet(regularPolygon(3), shift));
-  transform.setGridSize(64);
-  transform.compute();
-  EXPECT_TRUE(transform.getSheetPose().linear().isIdentity());
-  ASSERT_GE(transform.getLines().size(), 3u);
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(transform.getLines()[k].line.signedDistance({3.0, -1.0}), 0.0, 0.01);
-}
-
 TEST(PlanarSymmetryTransform2D, HonoursIndicesAndTheGivenWidth) {
   const auto cloud = toSheet(rectangle(1.6, 0.9, 800), Eigen::Isometry3d::Identity());
   cloud->emplace_back(9.0f, 3.0f, 0.0f);

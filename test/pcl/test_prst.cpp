@@ -1,11 +1,9 @@
 #include <gtest/gtest.h>
 #include <pcl/features/feature.h>
-#include <pcl/io/pcd_io.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/base/random.h"
@@ -113,19 +111,6 @@ TEST(PRSTEstimation, WorksWithPointTypesThatAreNotPrecompiled) {
   estimation.compute(output);
   ASSERT_EQ(output.size(), 1u);
   EXPECT_EQ(descriptorDistance(output[0], describe(box, true)[0]), 0.0f);
-}
-
-TEST(PRSTEstimation, SurvivesAFile) {
-  const auto output = describe(boxCloud(), true);
-  const std::string path = testing::TempDir() + "prst_estimation.pcd";
-  for (const bool binary : {true, false}) {
-    ASSERT_EQ(pcl::io::savePCDFile(path, output, binary), 0);
-    pcl::PointCloud<PRSTSignature32768> loaded;
-    ASSERT_EQ(pcl::io::loadPCDFile(path, loaded), 0);
-    ASSERT_EQ(loaded.size(), 1u);
-    EXPECT_LT(descriptorDistance(loaded[0], output[0]), 1e-4f);
-  }
-  std::remove(path.c_str());
 }
 
 TEST(PRSTEstimation, CloudsWithoutAnswerGiveAnEmptyOutputAndAWarning) {

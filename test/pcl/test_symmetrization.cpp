@@ -1,7 +1,6 @@
 #include "pcl_symmetry/symmetrization.h"
 
 #include <gtest/gtest.h>
-#include <pcl/conversions.h>
 #include <pcl/point_types.h>
 
 #include <cmath>
@@ -9,7 +8,6 @@
 
 #include "pcl/clouds.h"
 #include "pcl/error_message.h"
-#include "pcl/pcl_meshes.h"
 
 namespace {
 

@@ -98,21 +98,6 @@ TEST_F(SymmetryDatabaseTest, FindsShapesOfAnySizeInAnyPose) {
   }
 }
 
-TEST_F(SymmetryDatabaseTest, RecognizesWithPoseAndKnowsWhatItDoesNotKnow) {
-  SymmetryDatabase database(":memory:");
-  fill(database);
-  const Recognition found =
-      database.recognize(rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2), optionsForRandomPoints());
-  ASSERT_FALSE(found.empty());
-  EXPECT_EQ(found[0].name, "plate");
-  EXPECT_GT(found[0].confidence, 0.25);
-  EXPECT_LE(found[0].confidence, 1.0);
-  const Eigen::Isometry3d error = found[0].T_model_scan * elsewhere();
-  EXPECT_LT(error.translation().norm(), 0.05);
-  EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.05);
-  EXPECT_TRUE(database.recognize(ball(), optionsForRandomPoints()).empty());
-}
-
 TEST_F(SymmetryDatabaseTest, RecognizesAViewWithItsPose) {
   SymmetryDatabase database(":memory:");
   fill(database);

@@ -39,14 +39,6 @@ TEST(DetectSymmetryPlanes, TakesMeshes) {
   EXPECT_EQ(numFound(test::box(100, Sampling::Mirrored, 1), planes, 1.0 * test::kDegree, 0.02), 3);
 }
 
-TEST(DetectSymmetryPlanes, GivesNoPlanesWhereThereIsNoAnswer) {
-  for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
-    if (!cloud) continue;
-    EXPECT_TRUE(detectSymmetryPlanes(*cloud).empty()) << name;
-  }
-  EXPECT_TRUE(detectSymmetryPlanes(pcl::PolygonMesh()).empty());
-}
-
 TEST(DetectSymmetryPlanes, RefusesWrongParameters) {
   DetectionOptions options;
   options.min_confidence = -1.0;

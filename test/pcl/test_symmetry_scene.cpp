@@ -77,21 +77,6 @@ TEST(SymmetryScene, TakesTheTableOutAndFindsWhatStandsOnIt) {
   EXPECT_EQ(found, (std::set<int>{1, 2}));
 }
 
-TEST(SymmetryScene, DecidesThePlanesOfBoxesWithAllTheirPoints) {
-  SymmetryScene scene;
-  SceneOptions options;
-  options.frames = false;
-  scene.setOptions(options);
-  scene.setInputCloud(pictureOf(twoBoxes().scan));
-  const SceneAnalysis analysis = scene.compute();
-  ASSERT_EQ(analysis.objects.size(), 2u);
-  for (const SceneObject& object : analysis.objects) {
-    ASSERT_FALSE(object.planes.empty());
-    EXPECT_EQ(object.planes[0].kind, PlaneKind::Symmetry) << "left and right of a box";
-    expectPlanesAcrossAxes(object);
-  }
-}
-
 TEST(SymmetryScene, ObjectsStandOnTheTableWithTheirFeet) {
   const Cloud::ConstPtr cloud = pictureOf(twoBoxes().scan);
   const SceneAnalysis scene = analysed(cloud);
@@ -123,32 +108,6 @@ Cloud::Ptr withDepthErrors(const test::Scan& scan) {
     point.getVector3fMap() = (scan.viewpoint + (1.0 + 1.4e-3 * depth * deviate) * (x - scan.viewpoint)).cast<float>();
   }
   return cloud;
-}
-
-double meanDistance(const Cloud& a, const Cloud& b) {
-  double sum = 0.0, count = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (!pcl::isXYZFinite(a[i]) || !pcl::isXYZFinite(b[i])) continue;
-    sum += (a[i].getVector3fMap() - b[i].getVector3fMap()).norm();
-    count += 1.0;
-  }
-  return sum / count;
-}
-
-TEST(WithoutDepthErrors, BringsPointsBackToTheirSurfaces) {
-  const Cloud::ConstPtr truth = pictureOf(twoBoxes().scan), noisy = withDepthErrors(twoBoxes().scan);
-  const Cloud::ConstPtr filtered = withoutDepthErrors(noisy, SeenSpace(*noisy));
-  ASSERT_EQ(filtered->width, noisy->width);
-  ASSERT_EQ(filtered->height, noisy->height);
-  EXPECT_LT(meanDistance(*filtered, *truth), meanDistance(*noisy, *truth) / 2.5)
-      << "25 pixels leave a fifth, edges more";
-  std::size_t num_lost = 0, num_points = 0;
-  for (std::size_t i = 0; i < noisy->size(); ++i) {
-    num_points += pcl::isXYZFinite((*noisy)[i]) ? 1 : 0;
-    num_lost += pcl::isXYZFinite((*noisy)[i]) && !pcl::isXYZFinite((*filtered)[i]) ? 1 : 0;
-  }
-  EXPECT_LT(static_cast<double>(num_lost), 0.05 * static_cast<double>(num_points))
-      << "1.2 % of normal errors, and edges";
 }
 
 TEST(WithoutDepthErrors, LeavesExactAndUnorganizedFramesAsTheyAre) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
 #include <pcl/point_types.h>
-#include <pcl/search/kdtree.h>
 
 #include <algorithm>
 #include <limits>
@@ -79,17 +78,6 @@ TEST_F(SymmetrySegmentationTest, PointsThatWereNotDrawnFollowTheClosest) {
   EXPECT_EQ(segments_.size(), 4u);
   EXPECT_TRUE(std::all_of(segmentation_.getLabels().begin(), segmentation_.getLabels().end(),
                           [](int label) { return label >= 0; }));
-}
-
-/// Points drawn at random have no two neighbours at the same distance, so that every exact search finds the same.
-TEST_F(SymmetrySegmentationTest, ASearchOfPCLFindsTheSegmentsOfTheDefault) {
-  segmentation_.setInputCloud(sampleMesh(*mesh_, 2000));
-  segmentation_.segment(segments_);
-  const std::vector<int> labels = segmentation_.getLabels();
-  EXPECT_GT(segments_.size(), 1u);
-  segmentation_.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
-  segmentation_.segment(segments_);
-  EXPECT_EQ(segmentation_.getLabels(), labels);
 }
 
 TEST_F(SymmetrySegmentationTest, SplittingAsksTheSearchMethod) {

@@ -122,16 +122,6 @@ TEST(Viewpoint, RowsAndColumnsThatAreNoPictureAreNone) {
   EXPECT_FALSE(detail::seenByOrganizedCloud(Points::Constant(3, 200, NAN), 20, 10));
 }
 
-TEST(Viewpoint, AnUnorganizedScanTellsByItsSensorOrigin) {
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const Scan scan = randomScan(seed);
-    auto cloud = unorganized(scan);
-    EXPECT_NE(sourceOf(cloud), ViewpointSource::Stored) << seed << ": the origin is in the middle of the box";
-    setOrigin(*cloud, scan.viewpoint);
-    EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored) << seed;
-  }
-}
-
 TEST(Viewpoint, AnUnorganizedScanWithoutViewpointTellsByItsDensity) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Scan scan = test::scan(test::blockL(), randomScan(seed).viewpoint);
