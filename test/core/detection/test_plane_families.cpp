@@ -134,22 +134,6 @@ Shape cup(bool handle, int num_points, std::uint64_t seed) {
   return shape;
 }
 
-TEST(Families, ACylinderOfManySidesIsOneAndAPrismIsNone) {
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    const Eigen::Isometry3d pose = randomPose(seed);
-    const Detection twelve = detectPlanes(moved(prism(12, 10'000, Sampling::Random, seed), pose).cloud());
-    EXPECT_TRUE(twelve.axes.empty());
-    EXPECT_TRUE(twelve.centers.empty());
-    EXPECT_EQ(twelve.planes.size(), 13u);
-    const Detection many = detectPlanes(moved(prism(64, 10'000, Sampling::Random, seed), pose).cloud());
-    ASSERT_EQ(many.axes.size(), 1u);
-    EXPECT_TRUE(many.centers.empty());
-    EXPECT_GT(std::abs(many.axes[0].direction.dot(pose.linear().col(2))), std::cos(0.5 * kDegree));
-    ASSERT_EQ(many.planes.size(), 1u) << "the plane across the axis";
-    EXPECT_GT(std::abs(many.planes[0].normal().dot(pose.linear().col(2))), std::cos(0.5 * kDegree));
-  }
-}
-
 TEST(Families, AThinDiscHasOneAxis) {
   RandomStream random(1);
   Points disc(3, 4000);

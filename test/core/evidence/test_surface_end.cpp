@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/geometry/surface_normals.h"
 #include "shapes/shapes.h"

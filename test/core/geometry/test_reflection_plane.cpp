@@ -150,11 +150,6 @@ TEST(ReflectionPlane, RefusesWhatIsNoPlane) {
   EXPECT_THROW(ReflectionPlane(Eigen::Vector3d::UnitX(), kNaN), std::invalid_argument);
   EXPECT_THROW(ReflectionPlane(Eigen::Vector3d::UnitX(), kInfinity), std::invalid_argument);
   EXPECT_THROW(ReflectionPlane::fromCoefficients({0.0, 0.0, 0.0, 1.0}), std::invalid_argument);
-  try {
-    ReflectionPlane(Eigen::Vector3d::UnitX(), kInfinity);
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "offset = inf, must be finite");
-  }
 }
 
 }  // namespace

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <stdexcept>
-
 #include "shapes/posed_surfaces.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
@@ -30,17 +27,6 @@ TEST(PoseScorer, TheTruePoseIsBestAndStandsStill) {
     turned.linear() = T_model_scan.linear() * Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, 3).normalized());
     EXPECT_LT(scorer.score(turned, detail).merit(), score.merit() - 0.05) << angle;
   }
-}
-
-TEST(PoseScorer, StepsLeadToTheTruePose) {
-  const Shape shape = asymmetricBlob(4000, 1);
-  const PosedSurface model = surface(shape.cloud()), scan = surface(asymmetricBlob(4000, 2).cloud());
-  const PoseScorer scorer(scan, model);
-  Eigen::Isometry3d pose(Eigen::AngleAxisd(0.15, Eigen::Vector3d(3, 1, -2).normalized()));
-  pose.translation() = Eigen::Vector3d(0.05, -0.1, 0.1);
-  for (int i = 0; i < 30; ++i) pose = scorer.step(pose, {1000, 0.2});
-  EXPECT_LT(angleOf(pose), 0.02);
-  EXPECT_LT(pose.translation().norm(), 0.02);
 }
 
 TEST(PoseScorer, FreeSpaceSpeaksAgainstAPose) {

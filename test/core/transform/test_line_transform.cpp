@@ -96,20 +96,6 @@ TEST_P(RegularPolygon, HasOneLineForEachCorner) {
 
 INSTANTIATE_TEST_SUITE_P(TriangleToOctagon, RegularPolygon, testing::Values(3, 4, 5, 6, 8));
 
-TEST(LineTransform, RectangleHasTwoLinesAndACircleAllThroughItsCenter) {
-  const std::vector<LineMaximum> lines = linesOf(rectangle(1.6, 0.9));
-  ASSERT_GE(lines.size(), 2u);
-  EXPECT_GT(lines[1].value, 0.97);
-  if (lines.size() > 2) {
-    EXPECT_LT(lines[2].value, 0.8);
-  }
-  EXPECT_NEAR(lines[0].line.angleTo(lines[1].line), 0.5 * kPi, 0.2 * kDegree);
-
-  const GaussianEdt2D circle = edtOf(regularPolygon(2400));
-  for (int k = 0; k < 12; ++k) EXPECT_GT(lineSymmetry(circle, ReflectionLine(k * kPi / 12.0 + 0.1, 0.0)), 0.98);
-  EXPECT_LT(lineSymmetry(circle, ReflectionLine(0.4, 0.3)), 0.4);
-}
-
 TEST(LineTransform, LinesMoveTurnAndScaleWithTheContour) {
   const Eigen::Rotation2Df rotation(0.7f);
   const Eigen::Vector2f shift(40.0f, -7.0f);
