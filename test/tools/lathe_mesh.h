@@ -41,9 +41,13 @@ inline std::string sphereOFF() {
   return latheOFF(profile, 96);
 }
 
-inline std::string boxOFF() {
-  return "OFF\n8 6 12\n-1 -1.5 -2\n1 -1.5 -2\n1 1.5 -2\n-1 1.5 -2\n-1 -1.5 2\n1 -1.5 2\n1 1.5 2\n-1 1.5 2\n"
-         "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n";
+/// A box from -1 -y -z to 1 y z.
+inline std::string boxOFF(const std::string& y = "1.5", const std::string& z = "2") {
+  std::string text = "OFF\n8 6 12\n";
+  for (const std::string& at_z : {"-" + z, z})
+    text +=
+        "-1 -" + y + " " + at_z + "\n1 -" + y + " " + at_z + "\n1 " + y + " " + at_z + "\n-1 " + y + " " + at_z + "\n";
+  return text + "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n";
 }
 
 inline std::string tetrahedronOFF() {

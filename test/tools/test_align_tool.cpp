@@ -9,6 +9,7 @@
 #include "io/shape_input.h"
 #include "pcl_symmetry/completion.h"
 #include "scanner/virtual_scanner.h"
+#include "tools/lathe_mesh.h"
 #include "tools/tool_run.h"
 
 namespace {
@@ -27,10 +28,7 @@ protected:
                     "-0.8 0.8 0.2\n0.8 0.8 0.2\n0.8 1 0.2\n-0.8 1 0.2\n-0.8 0.8 2\n0.8 0.8 2\n0.8 1 2\n-0.8 1 2\n"
                     "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n"
                     "4 11 10 9 8\n4 12 13 14 15\n4 8 9 13 12\n4 10 11 15 14\n4 9 10 14 13\n4 11 8 12 15\n");
-  const std::string box_ =
-      folder_.write("box.off",
-                    "OFF\n8 6 12\n-1 -1.5 -2\n1 -1.5 -2\n1 1.5 -2\n-1 1.5 -2\n-1 -1.5 2\n1 -1.5 2\n1 1.5 2\n-1 1.5 2\n"
-                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+  const std::string box_ = folder_.write("box.off", boxOFF());
 
   nlohmann::json report() const { return nlohmann::json::parse(contentOf(folder_ / "r.json")); }
 

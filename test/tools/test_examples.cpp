@@ -1,12 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "tools/lathe_mesh.h"
 #include "tools/tool_run.h"
 
 namespace {
-
-const std::string kBox =
-    "OFF\n8 6 12\n-1 -1.4 -2\n1 -1.4 -2\n1 1.4 -2\n-1 1.4 -2\n-1 -1.4 2\n1 -1.4 2\n1 1.4 2\n-1 1.4 2\n"
-    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n";
 
 /// An example run on a scan of a box, or on a whole box.
 class Example : public ToolTest {
@@ -14,7 +11,7 @@ protected:
   Example() : ToolTest("env PATH=" EXAMPLES) {}
 
   void SetUp() override {
-    const std::string mesh = folder_.write("box.off", kBox);
+    const std::string mesh = folder_.write("box.off", boxOFF("1.4"));
     const std::string quiet = " -quiet >" + (folder_ / "ignored");
     ASSERT_EQ(std::system((SCAN_TOOL " " + mesh + " " + (folder_ / "scan.pcd") + quiet).c_str()), 0);
     ASSERT_EQ(std::system((PLANES_TOOL " " + mesh + " -support " + (folder_ / "box.pcd") + quiet).c_str()), 0);

@@ -118,17 +118,11 @@ TEST_F(FileVariants, PLYPropertiesOfAnyTypeAndOrder) {
 TEST_F(FileVariants, PLYThatIsWrongIsRefusedWithTheReason) {
   const std::string face =
       "element vertex 4\n" + kVertices + "element face 1\nproperty list uchar int vertex_indices\n";
-  EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + "3 0 1 4\n"))
-                .find("a corner of face 0 = 4, must be >= 0 and < 4"),
-            std::string::npos);
-  EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + "3 0 1 -1\n")).find("a corner of face 0 = -1"),
-            std::string::npos);
-  EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + "3 0 1 x\n"))
-                .find("vertex_indices of face 0 = x, must be a number"),
-            std::string::npos);
-  EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + "-3 0 1 2\n"))
-                .find("length of list vertex_indices of face 0"),
-            std::string::npos);
+  for (const auto& [wrong, said] : {std::pair("3 0 1 4\n", "a corner of face 0 = 4, must be >= 0 and < 4"),
+                                    std::pair("3 0 1 -1\n", "a corner of face 0 = -1"),
+                                    std::pair("3 0 1 x\n", "vertex_indices of face 0 = x, must be a number"),
+                                    std::pair("-3 0 1 2\n", "length of list vertex_indices of face 0")})
+    EXPECT_NE(complaint("a.ply", plyText("ascii", face, kSquare + wrong)).find(said), std::string::npos) << wrong;
 }
 
 std::string pcdText(const std::string& fields, const std::string& sizes, const std::string& types,

@@ -6,31 +6,22 @@
 #include <string>
 #include <vector>
 
-#include "tools/tool_run.h"
 #include "io/shape_input.h"
+#include "tools/lathe_mesh.h"
+#include "tools/tool_run.h"
 
 namespace {
 
 using namespace pcl_symmetry::apps;
-
-std::string boxOfLength(double length) {
-  std::ostringstream text;
-  text << "OFF\n8 6 12\n";
-  for (const double x : {-1.0, 1.0})
-    for (const double y : {-1.5, 1.5})
-      for (const double z : {-length, length}) text << x << ' ' << y << ' ' << z << '\n';
-  text << "4 0 1 3 2\n4 4 6 7 5\n4 0 4 5 1\n4 2 3 7 6\n4 0 2 6 4\n4 1 5 7 3\n";
-  return text.str();
-}
 
 /// A tool with a folder "in" of two boxes and a file that is no shape.
 class PlanesPipelines : public ToolTest {
 protected:
   PlanesPipelines() : ToolTest(toolPath("planes")) {
     boost::filesystem::create_directory(folder_ / "in");
-    folder_.write("in/a.off", boxOfLength(2));
+    folder_.write("in/a.off", boxOFF("1.5", "2"));
     folder_.write("in/b.off", "no shape");
-    folder_.write("in/c.off", boxOfLength(3));
+    folder_.write("in/c.off", boxOFF("1.5", "3"));
   }
 
   std::vector<nlohmann::json> lines(const std::string& text) const {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/shape_input.h"
+#include "tools/lathe_mesh.h"
 #include "tools/tool_run.h"
 
 namespace {
@@ -13,10 +14,7 @@ class ScanTool : public ToolTest {
 protected:
   ScanTool() : ToolTest(toolPath("scan")) {}
 
-  const std::string mesh_ =
-      folder_.write("box.off",
-                    "OFF\n8 6 12\n-1 -1 -2\n1 -1 -2\n1 1 -2\n-1 1 -2\n-1 -1 2\n1 -1 2\n1 1 2\n-1 1 2\n"
-                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+  const std::string mesh_ = folder_.write("box.off", boxOFF("1"));
 };
 
 TEST_F(ScanTool, WritesOneOrganizedScanWithItsViewpoint) {

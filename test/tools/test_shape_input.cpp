@@ -3,10 +3,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstring>
 
-#include "tools/temporary_folder.h"
 #include "io/shape_input.h"
+#include "tools/temporary_folder.h"
 
 namespace {
 
@@ -96,11 +97,6 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
            std::string("element vertex 1\n") + kPLYVertex + "element face 1\nproperty list uint int vertex_indices\n",
            raw + "\xff\xff\xff\xff" + raw),
        "a corner of face 0 = 16843009"},
-      {"index.ply",
-       ply("ascii",
-           std::string("element vertex 1\n") + kPLYVertex + "element face 1\nproperty list uchar int vertex_indices\n",
-           "1 2 3\n3 0 0 7\n"),
-       "must be >= 0 and < 1"},
       {"empty.off", "", "is empty"},
       {"garbage.off", "solid cube\n", "does not begin with OFF"},
       {"cut.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n", "x of vertex 3 is missing"},
@@ -111,9 +107,6 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"garbage.obj", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
       {"empty.obj", "", "is empty"},
       {"letters.obj", "v 0 0 0\nv 1 zero 0\n", "y of vertex 1 = zero, must be a number"},
-      {"short.xyz", "1 2 3\n4 5\n6 7 8\n", "line 2 has 2 columns, must have at least 3"},
-      {"letters.xyz", "1 2 3\n1 b 3\n", "line 2 has y = b, must be a number"},
-      {"comments.xyz", "# nothing\n", "has no points"},
       {"garbage.stl", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
       {"cut.stl", std::string(80, ' ') + std::string("\xff\xff\xff\x7f", 4) + raw, "cannot be read"},
       {"garbage.glb", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
@@ -256,17 +249,15 @@ TEST(LoadShape, RefusesGlTFThatPromisesTooMuch) {
     text.replace(text.find(from), from.size(), to + std::string(from.size() - to.size(), ' '));
     return complaintOnReading(folder.write("a.glb", text));
   };
-  EXPECT_NE(changed(R"("count":3)", R"("count":4)").find("accessors[0]"), std::string::npos);
-  EXPECT_NE(changed(R"({"asset":)", R"(x"asset":)").find("cannot be read as glb"), std::string::npos);
-  EXPECT_NE(changed(R"("bufferViews":[{"buffer":0,"byteOffset":0,)", R"("bufferViews":[{"buffer":0,"byteOffset":9,)")
-                .find("out of range"),
-            std::string::npos);
-  EXPECT_NE(changed(R"("translation":[0,0,5])", R"("children":[0])").find("recursive reference"), std::string::npos);
-  EXPECT_NE(changed(R"("mesh":0)", R"("mesh":7)").find("out of bounds"), std::string::npos);
-  EXPECT_NE(changed(R"("componentType":5126)", R"("componentType":5127)").find("Unsupported Component Type"),
-            std::string::npos);
-  EXPECT_NE(changed(R"({"bufferView":0,"componentType":5126,)", R"({"componentType":5126,)").find("accessors[0]"),
-            std::string::npos);
+  const std::vector<std::array<std::string, 3>> changes = {
+      {R"("count":3)", R"("count":4)", "accessors[0]"},
+      {R"({"asset":)", R"(x"asset":)", "cannot be read as glb"},
+      {R"("buffer":0,"byteOffset":0,)", R"("buffer":0,"byteOffset":9,)", "out of range"},
+      {R"("translation":[0,0,5])", R"("children":[0])", "recursive reference"},
+      {R"("mesh":0)", R"("mesh":7)", "out of bounds"},
+      {R"("componentType":5126)", R"("componentType":5127)", "Unsupported Component Type"},
+      {R"({"bufferView":0,"componentType":5126,)", R"({"componentType":5126,)", "accessors[0]"}};
+  for (const auto& [from, to, said] : changes) EXPECT_NE(changed(from, to).find(said), std::string::npos) << from;
   std::string quantized = whole;
   quantized.replace(quantized.find(R"("scene":0)"), 9, R"("e":"KHR_mesh_quantization")");
   EXPECT_NE(complaintOnReading(folder.write("a.glb", quantized)).find("is compressed by KHR_mesh_quantization"),

@@ -4,10 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "tools/temporary_folder.h"
 #include "bop/isaac_axes.h"
 #include "bop/models_info.h"
 #include "core/base/constants.h"
+#include "tools/temporary_folder.h"
 
 namespace {
 
@@ -70,20 +70,14 @@ TEST(ModelsInfo, RefusesWhatIsNoMotion) {
     }
     return "";
   };
-  EXPECT_NE(messageOf("[1]").find("bad.json: must be a JSON object"), std::string::npos);
-  EXPECT_NE(
-      messageOf(R"({"3": {"symmetries_discrete": [[1, 2]]}})").find("model 3: symmetries_discrete[0], must be 16"),
-      std::string::npos);
-  EXPECT_NE(messageOf(R"({"3": {"symmetries_discrete": [[2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]]}})").find("rigid motion"),
-            std::string::npos);
-  EXPECT_NE(
-      messageOf(R"({"3": {"symmetries_discrete": [[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]]}})").find("rigid motion"),
-      std::string::npos)
-      << "a reflection";
-  EXPECT_NE(messageOf(R"({"3": {"symmetries_continuous": [{"axis": [0,0,0]}]}})").find("must not be zero"),
-            std::string::npos);
-  EXPECT_NE(messageOf(R"({"3": {"symmetries_continuous": {"axis": [0,0,1]}}})").find("must be a list"),
-            std::string::npos);
+  const std::pair<const char*, const char*> wrong[] = {
+      {"[1]", "bad.json: must be a JSON object"},
+      {R"({"3": {"symmetries_discrete": [[1, 2]]}})", "model 3: symmetries_discrete[0], must be 16"},
+      {R"({"3": {"symmetries_discrete": [[2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]]}})", "rigid motion"},
+      {R"({"3": {"symmetries_discrete": [[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]]}})", "rigid motion"},  // a reflection
+      {R"({"3": {"symmetries_continuous": [{"axis": [0,0,0]}]}})", "must not be zero"},
+      {R"({"3": {"symmetries_continuous": {"axis": [0,0,1]}}})", "must be a list"}};
+  for (const auto& [text, said] : wrong) EXPECT_NE(messageOf(text).find(said), std::string::npos) << text;
 }
 
 /// Isaac composes a turn about z with one about y and one about x, the identity among each.

@@ -2,9 +2,10 @@
 
 #include <set>
 
-#include "tools/box_mesh.h"
-#include "tools/tool_run.h"
 #include "pictures/raster_image.h"
+#include "tools/box_mesh.h"
+#include "tools/lathe_mesh.h"
+#include "tools/tool_run.h"
 #include "viewer/viewer_model.h"
 #include "viewer/viewer_state.h"
 
@@ -110,10 +111,7 @@ class ViewerTool : public ToolTest {
 protected:
   ViewerTool() : ToolTest("env -u DISPLAY " + toolPath("viewer")) {}
 
-  const std::string mesh_ =
-      folder_.write("box.off",
-                    "OFF\n8 6 12\n-1 -1.4 -2\n1 -1.4 -2\n1 1.4 -2\n-1 1.4 -2\n-1 -1.4 2\n1 -1.4 2\n1 1.4 2\n-1 1.4 2\n"
-                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+  const std::string mesh_ = folder_.write("box.off", boxOFF("1.4"));
 };
 
 TEST_F(ViewerTool, MakesPicturesWithoutAScreen) {

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/tool_run.h"
 #include "pictures/raster_image.h"
+#include "tools/lathe_mesh.h"
+#include "tools/tool_run.h"
 
 namespace {
 
@@ -14,10 +15,7 @@ class ViewpointTool : public ToolTest {
 protected:
   ViewpointTool() : ToolTest(toolPath("viewpoint")) {}
 
-  const std::string mesh_ =
-      folder_.write("box.off",
-                    "OFF\n8 6 12\n-1 -1.4 -2\n1 -1.4 -2\n1 1.4 -2\n-1 1.4 -2\n-1 -1.4 2\n1 -1.4 2\n1 1.4 2\n-1 1.4 2\n"
-                    "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n");
+  const std::string mesh_ = folder_.write("box.off", boxOFF("1.4"));
 };
 
 TEST_F(ViewpointTool, LooksAtABoxFromACornerAndWorstAlongItsPlanes) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "tools/box_mesh.h"
 #include "scanner/virtual_scanner.h"
+#include "tools/box_mesh.h"
 
 namespace {
 
@@ -126,22 +126,6 @@ TEST_F(BoxScan, NoiseMovesPointsAlongTheirRays) {
   EXPECT_NEAR(std::sqrt(sq_sum / n), sigma, 4 * sigma / std::sqrt(2 * n));
   options.noise_stream = 1;
   EXPECT_FALSE(equalBytes(noisy, scanner_.scan({1, 1, 1}, options)));
-}
-
-TEST_F(BoxScan, RandomPoseMovesModelAndScannerTogether) {
-  VirtualScannerOptions options;
-  const VirtualScan still = scanner_.scan({1, 1, 1}, options);
-  options.random_pose = true;
-  options.seed = 5;
-  const VirtualScan moved = scanner_.scan({1, 1, 1}, options);
-  ASSERT_EQ(still.cloud->size(), moved.cloud->size());
-  EXPECT_TRUE(still.T_scan_model.isApprox(Eigen::Isometry3d::Identity()));
-  EXPECT_GT((moved.T_scan_model.linear() - Eigen::Matrix3d::Identity()).norm(), 0.1);
-  EXPECT_TRUE(moved.T_scan_sensor.isApprox(moved.T_scan_model * still.T_scan_sensor, 1e-9));
-  for (std::size_t i = 0; i < still.cloud->size(); ++i) {
-    if (!std::isfinite((*still.cloud)[i].x)) continue;
-    EXPECT_LT((moved.T_scan_model * positionOf((*still.cloud)[i]) - positionOf((*moved.cloud)[i])).norm(), 1e-5);
-  }
 }
 
 /// The mean of uniformly distributed rotation matrices is zero; each entry has variance 1/3.
