@@ -7,11 +7,11 @@
 #include <sstream>
 #include <thread>
 
-#include "tools/temporary_folder.h"
 #include "command_line/csv.h"
 #include "command_line/input_files.h"
 #include "command_line/run_on_files.h"
 #include "io/standard_streams.h"
+#include "tools/temporary_folder.h"
 
 namespace {
 
@@ -62,16 +62,6 @@ TEST_F(BatchTest, WritesALineForEachInputInTheirOrder) {
                                                  ",\"b,\",0.5\n" + batch.inputs[2] + ",c,7\n" + batch.inputs[2] +
                                                  ",\"c,\",0.5\n");
   }
-}
-
-TEST_F(BatchTest, GoesOnAfterAFailure) {
-  failing = "b";
-  testing::internal::CaptureStderr();
-  EXPECT_EQ(run(), 1);
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("b.xyz: is wrong"), std::string::npos);
-  ASSERT_EQ(lines().size(), 3u);
-  EXPECT_EQ(lines()[1]["error"], batch.inputs[1] + ": is wrong");
-  EXPECT_EQ(lines()[2]["letter"], "c");
 }
 
 TEST_F(BatchTest, ResumesWhereItWasInterrupted) {

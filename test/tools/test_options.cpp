@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cctype>
 #include <new>
 #include <stdexcept>
 
@@ -118,17 +117,6 @@ TEST(Options, CommonFlagsReachTheOptionsOfTheLibrary) {
   EXPECT_EQ(options.num_cells, 32);
   EXPECT_EQ(options.sigma, 0.5);
   EXPECT_EQ(values.common.mesh_points, 500);
-}
-
-TEST(Options, VersionIsPrintedAndEndsTheTool) {
-  for (const char* flag : {"-version", "--version"}) {
-    Values values;
-    testing::internal::CaptureStdout();
-    EXPECT_FALSE(parse(values, {flag}));
-    const std::string text = testing::internal::GetCapturedStdout();
-    EXPECT_EQ(text.rfind("tool ", 0), 0u) << text;
-    EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(text.at(5)))) << text;
-  }
 }
 
 TEST(FileErrors, NameTheFileAndNoFunction) {

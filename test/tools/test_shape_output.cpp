@@ -6,21 +6,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "tools/temporary_folder.h"
 #include "io/shape_input.h"
 #include "io/shape_output.h"
+#include "tools/temporary_folder.h"
 
 namespace {
 
 using namespace pcl_symmetry::apps;
-
-TEST(WriteAtomically, LeavesTheWholeFileAndNothingElse) {
-  const TemporaryFolder folder;
-  writeText(folder / "a.json", "{}\n");
-  writeText(folder / "a.json", "[1]\n");
-  EXPECT_EQ(contentOf(folder / "a.json"), "[1]\n");
-  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.json"});
-}
 
 TEST(MakeFolder, MakesWhatIsMissingAndRefusesAFile) {
   const TemporaryFolder folder;

@@ -153,17 +153,6 @@ TEST(GaussianEdt, ScalesWithThePoints) {
   }
 }
 
-TEST(GaussianEdt, MovesWithThePoints) {
-  // Multiples of 1/1024 up to 4 are exact floats, and stay so after adding 512.
-  Points points = asymmetricBlob(400, 6).cloud();
-  points = (points * 1024.0f).array().round() / 1024.0f;
-  const GaussianEdt edt(points, cells(20));
-  const Points far = points.colwise() + Eigen::Vector3f(512.0f, -256.0f, 128.0f);
-  const GaussianEdt other(far, cells(20));
-  EXPECT_NEAR((other.center() - edt.center() - Eigen::Vector3d(512.0, -256.0, 128.0)).norm(), 0.0, 1e-9);
-  for (std::size_t i = 0; i < edt.values().size(); ++i) ASSERT_NEAR(other.values()[i], edt.values()[i], 2e-3);
-}
-
 TEST(GaussianEdt, DenseCloudsAreThinned) {
   // More than 64 points to a cell of the surface are thinned to one in each slot of 1/4 cell, whose diagonal of
   // sqrt(3) / 4 bounds what a distance may grow. On average, a surface with 16 random points to a square cell has its
