@@ -10,10 +10,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "io/shape_output.h"
 #include "pictures/page_parts.h"
 #include "pictures/patch_geometry.h"
 #include "pictures/point_normals.h"
-#include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {
 
@@ -70,6 +70,8 @@ public:
                         {"mesh", triangles_.empty() ? "" : base64(triangles_)},
                         {"panels", nlohmann::json::array()},
                         {"support_colors", nlohmann::json::array()}};
+    if (text.picture.width > 0)
+      page["picture"] = {{"width", text.picture.width}, {"pixels", base64(text.picture.pixels)}};
     for (const PicturePanel& panel : scene_.panels) page["panels"].push_back(panelJson(panel));
     for (int i = 0; i < kBarColors; ++i) {
       const Eigen::Vector3i c = (255.0 * cividis(i / (kBarColors - 1.0))).array().round().cast<int>();

@@ -4,12 +4,14 @@
 #include <string>
 
 #include "pictures/picture.h"
+#include "pictures/raster_image.h"
 
 namespace pcl_symmetry::apps {
 
 struct PageText {
   std::string title;
-  std::string text;  ///< what the tool prints, shown below
+  std::string text;          ///< what the tool prints, shown below
+  RasterImage picture = {};  ///< of a camera, shown beside the scene; empty for none
 };
 
 /// Writes one file, with everything in it: the same scene, colours and legend as renderPicture(), a panel at a time. Of

@@ -140,6 +140,15 @@ function resize() {
 document.title = scene.title;
 document.getElementById('title').textContent = scene.title;
 document.getElementById('text').textContent = scene.text;
+if (scene.picture) {
+  const pixels = bytes(scene.picture.pixels), {width} = scene.picture, canvas = document.getElementById('picture');
+  const image = new ImageData(width, pixels.length / 3 / width);
+  for (let i = 0; i < pixels.length / 3; ++i) image.data.set([...pixels.subarray(3 * i, 3 * i + 3), 255], 4 * i);
+  canvas.width = width;
+  canvas.height = image.height;
+  canvas.getContext('2d').putImageData(image, 0, 0);
+  canvas.style.display = 'block';
+}
 document.getElementById('bar').style.background = 'linear-gradient(to right,' + scene.support_colors.join(',') + ')';
 scene.panels.forEach((panel, i) => {
   const button = document.createElement('button');

@@ -307,6 +307,18 @@ PictureScene selectableObjects(const InputShape& input, const SceneAnalysis& sce
   return picture;
 }
 
+RasterImage cameraPicture(const InputShape& input) {
+  const pcl::PCLPointCloud2& cloud = input.shape.cloud;
+  const auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(), [](const pcl::PCLPointField& candidate) {
+    return candidate.name == "rgb" || candidate.name == "rgba";
+  });
+  if (cloud.height < 2 || field == cloud.fields.end()) return {};
+  RasterImage picture(static_cast<int>(cloud.width), static_cast<int>(cloud.height));
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i)  // blue, green, red in the cloud
+    picture.pixels[i] = cloud.data[i / 3 * cloud.point_step + field->offset + 2 - i % 3];
+  return picture;
+}
+
 void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path) {
   std::vector<PictureScene> panels = {overview(input, scene)};
   for (std::size_t k = 0; k < scene.objects.size() && k < kMostPanels; ++k) panels.push_back(closeUp(input, scene, k));

@@ -7,6 +7,7 @@
 #include "io/input_shape.h"
 #include "pcl_symmetry/symmetry_scene.h"
 #include "pictures/picture.h"
+#include "pictures/raster_image.h"
 
 namespace pcl_symmetry::apps {
 
@@ -25,6 +26,9 @@ PictureScene overview(const InputShape& input, const SceneAnalysis& scene);
 
 /// The same, and the first objects one by one, each with its planes and axes and what it was decided at.
 PictureScene selectableObjects(const InputShape& input, const SceneAnalysis& scene);
+
+/// The colors of an organized cloud, pixel by pixel; empty where it has none.
+RasterImage cameraPicture(const InputShape& input);
 
 /// The overview, and each object with what its symmetry adds.
 void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path);

@@ -26,9 +26,11 @@ class SceneTool : public ToolTest {
 protected:
   SceneTool() : ToolTest(toolPath("scene")) {
     const test::Scan& scan = table_.scan;
-    pcl::PointCloud<pcl::PointXYZ> cloud(scan.width, scan.height);
-    for (std::size_t i = 0; i < cloud.size(); ++i)
+    pcl::PointCloud<pcl::PointXYZRGB> cloud(scan.width, scan.height);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
       cloud[i].getVector3fMap() = scan.pixels.col(static_cast<Eigen::Index>(i));
+      cloud[i].r = 200;
+    }
     cloud.is_dense = false;
     pcl::io::savePCDFileBinary(scene_, cloud);
   }
@@ -67,6 +69,7 @@ TEST_F(SceneTool, WritesWhatItFinds) {
   const std::string page = contentOf(folder_ / "page.html");
   EXPECT_NE(page.find("1 supporting plane, 2 objects"), std::string::npos);
   EXPECT_NE(page.find("</html>"), std::string::npos);
+  EXPECT_NE(page.find("\"picture\":{\"pixels\":\"yAAA"), std::string::npos) << "the colors of the camera";
   EXPECT_NE(page.find("2: "), std::string::npos) << "objects one by one";
   EXPECT_NE(page.find("decided at 1.0 % of the diameter"), std::string::npos);
 }
