@@ -8,13 +8,14 @@
 
 namespace pcl_symmetry::apps {
 
-inline const std::vector<std::string> kMethodNames{"sampled", "exact", "voting"};
+inline const std::vector<std::string> kMethodNames{"sampled", "exact", "rotational", "voting"};
 
 /// \param name one of kMethodNames.
 inline TransformMethod methodNamed(const std::string& name) {
-  return name == "exact"    ? TransformMethod::Convolution
-         : name == "voting" ? TransformMethod::Voting
-                            : TransformMethod::Sampled;
+  return name == "exact"        ? TransformMethod::Convolution
+         : name == "rotational" ? TransformMethod::Rotational
+         : name == "voting"     ? TransformMethod::Voting
+                                : TransformMethod::Sampled;
 }
 
 }  // namespace pcl_symmetry::apps

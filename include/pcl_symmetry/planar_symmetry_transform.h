@@ -34,7 +34,7 @@ public:
   /// Uses at most 200 000 points, see setMaxPoints().
   PlanarSymmetryTransform() : ScanAnalysis<PointT>("PlanarSymmetryTransform", 200'000) {}
 
-  /// \param method sampled (default), convolution or voting; all estimate the same normalized quantity.
+  /// \param method sampled (default), convolution, rotational or voting; all estimate the same normalized quantity.
   void setMethod(TransformMethod method) { transform_.method = method; }
   TransformMethod getMethod() const { return transform_.method; }  ///< see setMethod()
 
@@ -84,12 +84,17 @@ public:
   void setNearDistance(double cells) {
     detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.near_distance = cells; });
   }
-  void setRandomSeed(std::uint64_t seed) { transform_.sampled.seed = transform_.voting.seed = seed; }  ///< of all draws
+  /// \param share of the planes that the rotational estimator refines, in [0, 1]; 1 (default) = all, no multiresolution.
+  void setRefinedShare(double share) {
+    detail::changeOptions(transform_.rotational,
+                          [&](RotationalTransformOptions& changed) { changed.refined_share = share; });
+  }
+  void setRandomSeed(std::uint64_t seed) { transform_.setSeed(seed); }  ///< of all draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);
-    edt_options_.num_threads = transform_.sampled.num_threads = transform_.convolution.num_threads =
-        transform_.voting.num_threads = num_threads;
+    edt_options_.num_threads = num_threads;
+    transform_.setNumThreads(num_threads);
   }
 
   /// Analyses points spread over a mesh by area in place of a cloud.

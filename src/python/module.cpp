@@ -92,15 +92,16 @@ Options optionsWith(std::uint64_t seed, int threads) {
 /// \return the enumerator whose name, in their order, is \p value.
 /// \throws std::invalid_argument for another name.
 template <typename Enum>
-Enum named(const char* parameter, const std::string& value, const std::array<std::string, 3>& names) {
+Enum named(const char* parameter, const std::string& value, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == value) return static_cast<Enum>(i);
-  throw std::invalid_argument(parameter + (" = " + value) + ", must be " + names[0] + ", " + names[1] + " or " +
-                              names[2]);
+  std::string known = names[0];
+  for (std::size_t i = 1; i < names.size(); ++i) known += (i + 1 < names.size() ? ", " : " or ") + names[i];
+  throw std::invalid_argument(parameter + (" = " + value) + ", must be " + known);
 }
 
 TransformMethod methodNamed(const std::string& method) {
-  return named<TransformMethod>("method", method, {"sampled", "convolution", "voting"});
+  return named<TransformMethod>("method", method, {"sampled", "convolution", "rotational", "voting"});
 }
 
 /// \param faces None for a cloud.
@@ -303,8 +304,8 @@ SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, co
   const InputPoints input("points", points, 0, seed);
   PlanarTransformOptions options;
   options.method = methodNamed(method);
-  options.sampled.seed = options.voting.seed = seed;
-  options.sampled.num_threads = options.convolution.num_threads = options.voting.num_threads = threads;
+  options.setSeed(seed);
+  options.setNumThreads(threads);
   const py::gil_scoped_release release;
   GaussianEdtOptions edt_options;
   edt_options.center = center;
@@ -471,7 +472,7 @@ void addShapeFunctions(py::module_& module) {
              py::kw_only(), py::arg("method") = "sampled", py::arg("center") = Eigen::Vector3d(0.0, 0.0, 0.0),
              py::arg("radius") = 0.0, py::arg("sigma") = 0.0, py::arg("seed") = 1, py::arg("threads") = 0,
              "The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.\n"
-             "method: sampled, convolution or voting.\n"
+             "method: sampled, convolution, rotational or voting.\n"
              "center, radius: of the ball whose planes are measured; radius 0: the bounding ball of the points.\n"
              "sigma: width of the Gaussian; 0: two cells of a grid of 64. All in input units. Returns Map.");
 }

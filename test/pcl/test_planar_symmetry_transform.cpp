@@ -14,7 +14,8 @@ using test::Sampling;
 
 TEST(PlanarSymmetryTransform, FindsThePlanesOfABoxWithEveryMethod) {
   const auto box = test::box(3000, Sampling::Random, 1);
-  for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {
+  for (const auto method :
+       {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Rotational, TransformMethod::Voting}) {
     PlanarSymmetryTransform<pcl::PointXYZ> transform;
     transform.setInputCloud(test::toCloud(box));
     transform.setMethod(method);

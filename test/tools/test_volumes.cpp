@@ -79,7 +79,8 @@ protected:
 
 TEST_F(MapsOfVolumes, AreOfPlanesAxesAndCentersAndSeenAtAScale) {
   const std::string path = folder_.write("a.mha", metaImage(bytesOf(body())));
-  for (const std::string flags : {"-method exact", "-method voting", "-of axes -fold 2", "-of centers", "-scale 0.4"}) {
+  for (const std::string flags :
+       {"-method exact", "-method rotational", "-method voting", "-of axes -fold 2", "-of centers", "-scale 0.4"}) {
     ASSERT_EQ(run(path + " -quiet -grid 16 -json " + (folder_ / "a.json") + " " + flags), 0) << error_;
     const nlohmann::json json = nlohmann::json::parse(contentOf(folder_ / "a.json"));
     // No center lies at the border, where the values of the map are read.

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/core/visibility.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/symmetry_map.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -71,6 +71,34 @@ struct ConvolutionTransformOptions {
 SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                  const ConvolutionTransformOptions& options = {});
 
+/// Options of rotationalTransform().
+struct RotationalTransformOptions {
+  double spacing = 0.9;  ///< of the resampled points, in sigmas, in (0, 1]
+  /// Multiresolution, in [0, 1]: points and lines are first taken three cells apart, and the planes with this share of
+  /// the greatest D are computed anew from points and lines one cell apart; 1 = all planes are.
+  double refined_share = 1.0;
+  int num_threads = 0;  ///< >= 0; 0 = one per core; the map does not depend on it
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
+/// The exact transform by convolution over plane rotations (Section 4.2, Figure 4b): the planes through each of O(n)
+/// points are computed at once. A plane through a point contains a line across the axis that the point lies on; about
+/// each such line f is resampled in circles, whose correlations with their reversals add up in the frequency domain
+/// (Kazhdan et al. 2003).
+///
+/// The points lie on the three axes of the grid, a cell apart, so that each plane meets an axis in a point at less than
+/// 55 degrees from its normal; bins are interpolated between points, lines and angles by cubics. PRST differs from the
+/// full sum by 0.1 % root mean square at 64 cells a side, with multiresolution by up to 1 %. 64^3 planes take 45 s of
+/// processor time, with multiresolution of a tenth 14 s: convolutionTransform() computes the same in 0.1 s.
+/// \param edt the function f.
+/// \param grid the planes, in the frame of the EDT.
+/// \return D at the bin centers.
+/// \throws std::invalid_argument for bad options.
+SymmetryMap rotationalTransform(const GaussianEdt& edt, const PlaneGrid& grid,
+                                const RotationalTransformOptions& options = {});
+
 /// Options of votingTransform().
 struct VotingTransformOptions {
   std::int64_t num_pairs = 2'000'000;  ///< pairs of points drawn, >= 1; the paper's figure for 1 % at 64^3
@@ -98,11 +126,18 @@ SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const
 
 /// The estimator, and the options of each.
 struct PlanarTransformOptions {
-  TransformMethod method = TransformMethod::Sampled;  ///< which of the three below is used
+  TransformMethod method = TransformMethod::Sampled;  ///< which of the four below is used
   SampledTransformOptions sampled;                    ///< of TransformMethod::Sampled
   ConvolutionTransformOptions convolution;            ///< of TransformMethod::Convolution
+  RotationalTransformOptions rotational;              ///< of TransformMethod::Rotational
   VotingTransformOptions voting;                      ///< of TransformMethod::Voting
 
+  /// Of all estimators.
+  void setSeed(std::uint64_t seed) { sampled.seed = voting.seed = seed; }
+  /// Of all estimators. \param n >= 0; 0 = one per core.
+  void setNumThreads(int n) {
+    sampled.num_threads = convolution.num_threads = rotational.num_threads = voting.num_threads = n;
+  }
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

@@ -14,7 +14,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Estimators of the transform. All give the same normalized quantity.
 enum class TransformMethod {
   Sampled,      ///< draws one point of each pair and looks up the other; the default and the fastest
-  Convolution,  ///< exact correlation along each normal (Section 4.2)
+  Convolution,  ///< exact correlation along each normal (Section 4.2, Figure 4a)
+  Rotational,   ///< exact correlation of the planes through each of many points (Section 4.2, Figure 4b)
   Voting        ///< Monte Carlo voting of point pairs (Section 4.3); averages over bins instead of values at centers
 };
 

@@ -80,8 +80,8 @@ SymmetryMap publishedMap(const PointsRef& points, const GaussianEdt& edt, Transf
   PlanarTransformOptions options;
   options.method = method;
   options.voting.near_distance = 0.0;
-  options.sampled.seed = options.voting.seed = seed;
-  options.sampled.num_threads = options.convolution.num_threads = options.voting.num_threads = num_threads;
+  options.setSeed(seed);
+  options.setNumThreads(num_threads);
   const PlaneGrid grid(kNumBins, kNumBins, kNumBins, edt.center(), edt.radius());
   return planarTransform(edt, grid, centerOfMass(points), options);
 }

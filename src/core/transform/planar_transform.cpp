@@ -11,6 +11,8 @@ SymmetryMap mapWithoutSight(const GaussianEdt& edt, const PlaneGrid& grid, const
   switch (options.method) {
     case TransformMethod::Convolution:
       return convolutionTransform(edt, grid, options.convolution);
+    case TransformMethod::Rotational:
+      return rotationalTransform(edt, grid, options.rotational);
     case TransformMethod::Voting:
       return votingTransform(edt, grid, options.voting);
     case TransformMethod::Sampled:
@@ -32,6 +34,7 @@ bool simdSupported(Simd simd) {
 void PlanarTransformOptions::validate() const {
   sampled.validate();
   convolution.validate();
+  rotational.validate();
   voting.validate();
 }
 

@@ -38,6 +38,10 @@ struct TransformRules {
   double last_line_step = 0.002;  ///< bins, 0.003 degrees at 128 bins
   int max_line_moves = 8;         ///< with one step size
 
+  // Planes through points
+  double pivot_step = 1.0;         ///< cells between points, and between planes at the far end of the shape
+  double coarse_pivot_step = 3.0;  ///< the same of planes that multiresolution does not refine; PRST is right to 0.7 %
+
   // Votes
   std::size_t num_vote_blocks = 8;  ///< partial maps, added up in their order
   double least_sine = 1e-6;         ///< bounds the weight of pairs along z: one in 10^12 is closer to the pole

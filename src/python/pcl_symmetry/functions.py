@@ -180,7 +180,7 @@ def planes(
     max_points: larger clouds are thinned to so many. threads: 0 = one per core.
     evidence: also what the decisions are taken from; takes about as long again.
     as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision; method: of the map,
-        sampled, convolution or voting.
+        sampled, convolution, rotational or voting.
     volume: (I, J, K) in place of points, such as a CT or MR image, first index along the first axis (as nibabel has it;
         arrays of SimpleITK are transposed). spacing, origin, direction: of its voxels, input units and frame; direction
         is (3, 3) with the axes of the grid in columns. levels: (low, high) intensities that count; None: chosen.
@@ -424,7 +424,7 @@ def transform(
 ) -> Map:
     """The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.
 
-    method: sampled, convolution or voting.
+    method: sampled, convolution, rotational or voting.
     center, radius: of the ball whose planes are measured, input frame and units; radius 0: the bounding ball of the points.
     sigma: width of the Gaussian, input units; 0: two cells of a grid of 64.
     """

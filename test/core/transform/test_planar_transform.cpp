@@ -1,4 +1,4 @@
-/// The three estimators against the definition: a slow full sum over all cells with exact distances.
+/// The estimators against the definition: a slow full sum over all cells with exact distances.
 #include "pcl_symmetry/core/planar_transform.h"
 
 #include <gtest/gtest.h>
@@ -158,6 +158,21 @@ TEST(ConvolutionTransform, IsTheFullSumToAFifthOfAPerCent) {
   }
 }
 
+TEST(RotationalTransform, IsTheFullSumToAFifthOfAPerCent) {
+  for (const Scene& scene : scenes()) EXPECT_LE(scene.rmsError(rotationalTransform(scene.edt, scene.grid)), 0.002);
+}
+
+TEST(RotationalTransform, MultiresolutionRefinesTheGreatestValues) {
+  const Scene& scene = scenes()[1];
+  const SymmetryMap full = rotationalTransform(scene.edt, scene.grid);
+  RotationalTransformOptions options;
+  options.refined_share = 0.1;
+  const SymmetryMap map = rotationalTransform(scene.edt, scene.grid, options);
+  EXPECT_LE(scene.rmsError(map), 0.01);
+  EXPECT_EQ(map[full.strongest()], full[full.strongest()]);
+  EXPECT_NE(map.values, full.values);
+}
+
 TEST(ConvolutionTransform, ManyBundlesAreAddedUpInTurn) {
   // With 160 cells and half the spacing a direction has a thousand bundles; the sums of 200 fit in 32 bits.
   ConvolutionTransformOptions options;
@@ -258,10 +273,13 @@ TEST(Transforms, SameBytesForAnyNumberOfThreads) {
     SampledTransformOptions sampled;
     ConvolutionTransformOptions convolution;
     VotingTransformOptions voting;
+    RotationalTransformOptions rotational;
+    rotational.refined_share = 0.01;
     voting.num_pairs = 50'001;
-    sampled.num_threads = convolution.num_threads = voting.num_threads = num_threads;
-    return std::array<std::vector<float>, 3>{sampledTransform(scene.edt, scene.grid, sampled).values,
+    sampled.num_threads = convolution.num_threads = rotational.num_threads = voting.num_threads = num_threads;
+    return std::array<std::vector<float>, 4>{sampledTransform(scene.edt, scene.grid, sampled).values,
                                              convolutionTransform(scene.edt, scene.grid, convolution).values,
+                                             rotationalTransform(scene.edt, scene.grid, rotational).values,
                                              votingTransform(scene.edt, scene.grid, voting).values};
   };
   const auto one = all(1);
@@ -309,6 +327,8 @@ TEST(Transforms, RefuseBadOptions) {
   EXPECT_THROW(convolutionTransform(scene.edt, scene.grid, {0.0}), std::invalid_argument);
   EXPECT_THROW(convolutionTransform(scene.edt, scene.grid, {1.5}), std::invalid_argument);
   EXPECT_THROW(convolutionTransform(scene.edt, scene.grid, {0.9, -1}), std::invalid_argument);
+  EXPECT_THROW(rotationalTransform(scene.edt, scene.grid, {0.0}), std::invalid_argument);
+  EXPECT_THROW(rotationalTransform(scene.edt, scene.grid, {0.9, 1.1}), std::invalid_argument);
   EXPECT_THROW(votingTransform(scene.edt, scene.grid, {0}), std::invalid_argument);
   EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, -1.0}), std::invalid_argument);
   EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, 4.0, 0.0}), std::invalid_argument);
