@@ -1,6 +1,7 @@
 #include "pcl_symmetry/core/axial_transform.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -9,8 +10,6 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
-#include "core/base/simd.h"
-#include "core/transform/axial_turns.h"
 #include "core/transform/free_space.h"
 #include "core/transform/moved_lines.h"
 #include "core/transform/transform_rules.h"
@@ -21,7 +20,7 @@ namespace {
 
 constexpr std::size_t directions_per_block = 4;
 
-/// Sums of the table's functions over the turned samples, for all axes of one direction.
+/// Sums of the table's functions over the rotated samples, for all axes of one direction.
 class AxesOfDirection {
 public:
   AxesOfDirection(const GaussianEdt& edt, const AxisGrid& grid, const LookupTable& table, LineKernel accumulate)
@@ -34,9 +33,9 @@ public:
   /// Calls visit(v, u_begin, u_end, totals) with one sum per u for each row of axes.
   template <typename Visit>
   void sum(const Eigen::Matrix3d& frame, double angle, const Eigen::Matrix3Xf& samples, const Visit& visit) {
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, frame.col(2)).toRotationMatrix();
-    const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - turn;
-    moved_.noalias() = turn.cast<float>() * samples;
+    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, frame.col(2)).toRotationMatrix();
+    const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - rotation;
+    moved_.noalias() = rotation.cast<float>() * samples;
     const Eigen::Vector3d step = rest * frame.col(0) * (grid_.offsetStep() / cell_);
     for (int v = 0; v < grid_.numOffset(); ++v) {
       const auto [begin, end] = rowInBall(v);
@@ -67,16 +66,24 @@ private:
   std::vector<std::vector<double>> totals_;
 };
 
-}  // namespace
+/// A rotation about an axis, and what it counts in D_n of each fold. Rotations by an angle and by its negative
+/// correlate equally; what they move into free space differs.
+struct AxialRotation {
+  double angle;                 ///< radians, in (0, 2 pi)
+  std::vector<double> weights;  ///< for each fold; over all rotations they sum to 1
+};
 
-std::vector<AxialTurn> turnsOf(const std::vector<int>& folds, int num_turns, bool both_ways) {
-  std::map<std::pair<int, int>, std::size_t> places;  // by reduced fraction of a full turn
-  std::vector<AxialTurn> turns;
+/// The rotations that the D of all folds are made of, each once.
+/// \param folds,num_turns as in AxialTransformOptions.
+/// \param both_ways also rotations by more than pi.
+std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, int num_turns, bool both_ways) {
+  std::map<std::pair<int, int>, std::size_t> index_of;  // by reduced fraction of a full rotation
+  std::vector<AxialRotation> rotations;
   const auto add = [&](int part, int whole, std::size_t fold, double weight) {
     const int divisor = std::gcd(part, whole);
-    const auto [place, is_new] = places.try_emplace({part / divisor, whole / divisor}, turns.size());
-    if (is_new) turns.push_back({2.0 * kPi * part / whole, std::vector<double>(folds.size(), 0.0)});
-    turns[place->second].weights[fold] += weight;
+    const auto [position, is_new] = index_of.try_emplace({part / divisor, whole / divisor}, rotations.size());
+    if (is_new) rotations.push_back({2.0 * kPi * part / whole, std::vector<double>(folds.size(), 0.0)});
+    rotations[position->second].weights[fold] += weight;
   };
   const auto addPair = [&](int part, int whole, std::size_t fold, double weight) {
     const bool alone = 2 * part == whole;
@@ -86,11 +93,14 @@ std::vector<AxialTurn> turnsOf(const std::vector<int>& folds, int num_turns, boo
   for (std::size_t i = 0; i < folds.size(); ++i) {
     const int n = folds[i];
     for (int k = 1; 2 * k <= n; ++k) addPair(k, n, i, 1.0 / (n - 1));
-    // The middles of equal parts of a half turn: the mean over all angles but for harmonics of 2 num_turns and more.
+    // The middles of equal parts of a half rotation: the mean over all angles but for harmonics of 2 num_turns and
+    // more.
     for (int k = 0; n == 0 && k < num_turns; ++k) addPair(2 * k + 1, 4 * num_turns, i, 0.5 / num_turns);
   }
-  return turns;
+  return rotations;
 }
+
+}  // namespace
 
 void AxialTransformOptions::validate() const {
   check(!folds.empty(), "number of folds", folds.size(), ">= 1");
@@ -124,44 +134,18 @@ int bestFold(const std::vector<int>& folds, const std::vector<double>& values) {
 
 namespace {
 
-/// sums[k] += weight * totals[k], rounded.
-PCL_SYMMETRY_MULTIVERSION
-void addWeighted(const double* totals, double weight, int begin, int end, float* sums) {
-#pragma GCC ivdep
-  for (int k = begin; k < end; ++k) sums[k] += static_cast<float>(weight * totals[k]);
-}
-
-/// Adds what one turn says about all axes of a direction to D, and to F where the table has free space.
-void addTurn(AxesOfDirection& axes, const AxisGrid& grid, std::size_t direction, const AxialTurn& turn, double scale,
-             const Eigen::Matrix3Xf& samples, std::vector<std::vector<std::vector<float>>>& sums) {
-  axes.sum(grid.frame(direction), turn.angle, samples, [&](int v, int begin, int end, const auto& totals) {
+/// Adds what one rotation says about all axes of a direction to D, and to F where the table has free space.
+void addRotation(AxesOfDirection& axes, const AxisGrid& grid, std::size_t direction, const AxialRotation& rotation,
+                 double scale, const Eigen::Matrix3Xf& samples, std::vector<std::vector<std::vector<float>>>& sums) {
+  axes.sum(grid.frame(direction), rotation.angle, samples, [&](int v, int begin, int end, const auto& totals) {
     const std::size_t row = static_cast<std::size_t>(v) * grid.numOffset();
     for (std::size_t g = 0; g < sums.size(); ++g)
-      for (std::size_t i = 0; i < turn.weights.size(); ++i) {
-        if (turn.weights[i] == 0.0) continue;
-        const double weight = scale * turn.weights[i];
-        addWeighted(totals[g].data(), weight, begin, end, sums[g][i].data() + row);
+      for (std::size_t i = 0; i < rotation.weights.size(); ++i) {
+        if (rotation.weights[i] == 0.0) continue;
+        const double weight = scale * rotation.weights[i];
+        for (int k = begin; k < end; ++k) sums[g][i][row + k] += static_cast<float>(weight * totals[g][k]);
       }
   });
-}
-
-/// Writes D of axes, and the greatest of any fold.
-void writeValues(const float* d, std::size_t size, float* values, float* greatest) {
-  for (std::size_t k = 0; k < size; ++k) {
-    values[k] = d[k];
-    greatest[k] = std::max(greatest[k], d[k]);
-  }
-}
-
-/// The same for scans.
-PCL_SYMMETRY_MULTIVERSION
-void writeSeen(const float* d, const float* f, std::size_t size, float* values, float* greatest) {
-#pragma GCC ivdep
-  for (std::size_t k = 0; k < size; ++k) {
-    const auto value = static_cast<float>(seenSymmetry(d[k], f[k]));
-    values[k] = value;
-    greatest[k] = greatest[k] < value ? value : greatest[k];
-  }
 }
 
 }  // namespace
@@ -171,7 +155,7 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
   options.validate();
   const LookupTable table = tableOf(edt, visibility, options.num_threads);
   const Eigen::Matrix3Xf samples = centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
-  const std::vector<AxialTurn> turns = turnsOf(options.folds, options.num_turns, visibility != nullptr);
+  const std::vector<AxialRotation> rotations = rotationsOf(options.folds, options.num_turns, visibility != nullptr);
   const LineKernel accumulate = lineKernel(options.simd, table.numFunctions());
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const std::size_t per_direction = static_cast<std::size_t>(grid.numOffset()) * grid.numOffset();
@@ -182,19 +166,152 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
     const std::vector<std::vector<float>> nothing(options.folds.size(), std::vector<float>(per_direction, 0.0f));
     for (std::size_t direction = begin; direction < end; ++direction) {
       std::vector<std::vector<std::vector<float>>> sums(table.numFunctions(), nothing);
-      for (const AxialTurn& turn : turns) addTurn(axes, grid, direction, turn, scale, samples, sums);
+      for (const AxialRotation& rotation : rotations)
+        addRotation(axes, grid, direction, rotation, scale, samples, sums);
       for (std::size_t i = 0; i < options.folds.size(); ++i) {
         float* const values = map.values[i].data() + direction * per_direction;
         float* const greatest = map.greatest.data() + direction * per_direction;
-        if (visibility)
-          writeSeen(sums[0][i].data(), sums[1][i].data(), per_direction, values, greatest);
-        else
-          writeValues(sums[0][i].data(), per_direction, values, greatest);
+        for (std::size_t k = 0; k < per_direction; ++k) {
+          const float d = sums[0][i][k];
+          values[k] = visibility ? static_cast<float>(seenSymmetry(d, sums[1][i][k])) : d;
+          greatest[k] = std::max(greatest[k], values[k]);
+        }
       }
     }
   };
   parallelRanges(grid.numDirections(), directions_per_block, options.num_threads, run);
   return map;
+}
+
+namespace {
+
+bool isSameAxis(const Line3d& a, const Line3d& b, const Eigen::Vector3d& center, double angle, double distance) {
+  const double cosine = std::abs(a.direction().dot(b.direction()));
+  return cosine > std::cos(angle) && (a.projection(center) - b.projection(center)).norm() < distance;
+}
+
+/// D of axes between the bins, by the same estimate as at the bins.
+class AxisClimb {
+public:
+  AxisClimb(const GaussianEdt& edt, const AxisMap& map, const AxialTransformOptions& options)
+      : edt_(edt),
+        map_(map),
+        rotations_(rotationsOf(map.folds, options.num_turns, false)),
+        samples_(
+            centeredSamples(edt, kTransform.more_samples * options.num_samples, options.seed, options.num_threads)) {}
+
+  std::vector<double> valuesAt(const Line3d& axis) const {
+    std::vector<double> values(map_.folds.size(), 0.0);
+    for (const AxialRotation& rotation : rotations_) {
+      const double d = symmetryAt(axis, rotation.angle);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] += rotation.weights[i] * d;
+    }
+    return values;
+  }
+
+  /// The axis moved to where D of its best fold is greatest, in steps of half a bin that are halved.
+  AxisMaximum climbed(Line3d axis) const {
+    const int fold = bestFold(map_.folds, valuesAt(axis));
+    const std::size_t position = std::find(map_.folds.begin(), map_.folds.end(), fold) - map_.folds.begin();
+    double angle = 0.25 * kPi / map_.grid.numTheta(), offset = 0.5 * map_.grid.offsetStep();
+    double best = valueAt(axis, position);
+    for (int halving = 0; halving < kTransform.halvings; angle *= 0.5, offset *= 0.5, ++halving)
+      for (bool moved = true; moved;) {
+        moved = false;
+        for (int way = 0; way < 8; ++way) {
+          const Line3d next = stepped(axis, way, way % 2 ? -1.0 : 1.0, angle, offset);
+          const double value = valueAt(next, position);
+          if (value <= best) continue;
+          axis = next;
+          best = value;
+          moved = true;
+        }
+      }
+    AxisMaximum maximum{axis, fold, 0.0, valuesAt(axis)};
+    maximum.fold = bestFold(map_.folds, maximum.values);
+    maximum.value = *std::max_element(maximum.values.begin(), maximum.values.end());
+    return maximum;
+  }
+
+private:
+  double symmetryAt(const Line3d& axis, double angle) const {
+    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, axis.direction()).toRotationMatrix();
+    const Eigen::Vector3d foot = toCells(edt_, axis.origin());
+    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1));
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < samples_.cols(); ++i)
+      sum += edt_.atCell(rotation * (samples_.col(i).cast<double>() - foot) + foot + middle);
+    return edt_.sum() / edt_.sqNorm() * sum / static_cast<double>(samples_.cols());
+  }
+
+  double valueAt(const Line3d& axis, std::size_t fold) const {
+    double value = 0.0;
+    for (const AxialRotation& rotation : rotations_)
+      if (rotation.weights[fold] > 0.0) value += rotation.weights[fold] * symmetryAt(axis, rotation.angle);
+    return value;
+  }
+
+  Line3d stepped(const Line3d& axis, int way, double sign, double angle, double offset) const {
+    const Eigen::Vector3d u = axis.direction().unitOrthogonal(), v = axis.direction().cross(u);
+    const Eigen::Vector3d& along = way / 2 % 2 ? v : u;
+    const Eigen::Vector3d foot = axis.projection(map_.grid.center());
+    if (way >= 4) return {foot + sign * offset * along, axis.direction()};
+    return {foot, (axis.direction() + sign * std::tan(angle) * along).normalized()};
+  }
+
+  const GaussianEdt& edt_;
+  const AxisMap& map_;
+  std::vector<AxialRotation> rotations_;
+  Eigen::Matrix3Xf samples_;
+};
+
+/// Bins with great values, none near a stronger one.
+std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double least) {
+  std::vector<std::size_t> bins;
+  for (std::size_t i = 0; i < map.greatest.size(); ++i)
+    if (map.greatest[i] >= least) bins.push_back(i);
+  const std::size_t kept = std::min(bins.size(), kTransform.most_axis_bins);
+  std::partial_sort(bins.begin(), bins.begin() + kept, bins.end(), [&](std::size_t a, std::size_t b) {
+    return std::make_pair(-map.greatest[a], a) < std::make_pair(-map.greatest[b], b);
+  });
+  bins.resize(kept);
+  std::vector<Line3d> starts;
+  for (const std::size_t bin : bins) {
+    if (starts.size() == count) break;
+    const Line3d axis = map.grid.axis(map.grid.bin(bin));
+    if (std::none_of(starts.begin(), starts.end(), [&](const Line3d& other) {
+          return isSameAxis(axis, other, map.grid.center(), kTransform.same_start, kTransform.same_offset * map.sigma);
+        }))
+      starts.push_back(axis);
+  }
+  return starts;
+}
+
+}  // namespace
+
+std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, int count, double min_value,
+                                    const AxialTransformOptions& options) {
+  options.validate();
+  check(count >= 1, "count", count, ">= 1");
+  check(min_value >= 0.0 && min_value <= 1.0, "min_value", min_value, "in [0, 1]");
+  if (map.empty()) return {};
+  const std::vector<Line3d> starts = startsOf(map, static_cast<std::size_t>(count) * kTransform.starts_per_maximum,
+                                              kTransform.least_of_bin * min_value);
+  const AxisClimb climb(edt, map, options);
+  std::vector<AxisMaximum> climbed(starts.size());
+  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { climbed[i] = climb.climbed(starts[i]); });
+  std::stable_sort(climbed.begin(), climbed.end(),
+                   [](const AxisMaximum& a, const AxisMaximum& b) { return a.value > b.value; });
+  std::vector<AxisMaximum> maxima;
+  for (const AxisMaximum& maximum : climbed) {
+    if (maximum.value < min_value || static_cast<int>(maxima.size()) == count) break;
+    if (std::none_of(maxima.begin(), maxima.end(), [&](const AxisMaximum& other) {
+          return isSameAxis(maximum.axis, other.axis, map.grid.center(), kTransform.same_maximum,
+                            kTransform.same_offset * map.sigma);
+        }))
+      maxima.push_back(maximum);
+  }
+  return maxima;
 }
 
 }  // namespace pcl_symmetry

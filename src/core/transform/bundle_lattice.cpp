@@ -14,6 +14,7 @@ namespace {
 
 constexpr float far_points = 1e6f;    // farther than all of a line
 constexpr int at_once = 16;           // bundles that are cut together: floats in an AVX-512 register
+constexpr float slab_slack = 0.01f;   // cells; more than fixed-point steps and floats are rounded by
 constexpr float least_slope = 1e-5f;  // along 512 cells a slab is left by less than its slack
 
 bool isNearlyWhole(double cells) {
@@ -28,7 +29,7 @@ void cutAtSlabs(const float* entry, const float* exit, const float* of_x, const 
   std::memcpy(&middle, x, sizeof middle);
   low = entry[0] - middle * of_x[0];
   high = exit[0] - middle * of_x[0];
-  for (int k = 1; k < kMostSlabs; ++k) {
+  for (int k = 1; k < kNumSlabs; ++k) {
     const Lanes moved = middle * of_x[k];
     const Lanes entered = entry[k] - moved, left = exit[k] - moved;
     low = low < entered ? entered : low;
@@ -39,6 +40,31 @@ void cutAtSlabs(const float* entry, const float* exit, const float* of_x, const 
 }
 
 }  // namespace
+
+SlabsOfCells::SlabsOfCells(const GaussianEdt& edt) {
+  // The directions from a cell to its neighbors, one of each pair.
+  for (int code = 14; code < 27; ++code)
+    axes.row(code - 14) << static_cast<float>(code % 3 - 1), static_cast<float>(code / 3 % 3 - 1),
+        static_cast<float>(code / 9 - 1);
+  constexpr float far = 1e6f;  // farther than every cell
+  low.setConstant(far);
+  high.setConstant(-far);
+  const int n = edt.numCells();
+  for (int row = 0; row < n * n; ++row) {
+    const GaussianEdt::Range filled = edt.filledRanges()[static_cast<std::size_t>(row)];
+    if (filled.begin == filled.end) continue;
+    for (const int x : {filled.begin, filled.end - 1}) {
+      const Eigen::Matrix<float, kNumSlabs, 1> along =
+          axes * Eigen::Vector3f(static_cast<float>(x), static_cast<float>(row % n), static_cast<float>(row / n));
+      low = low.cwiseMin(along);
+      high = high.cwiseMax(along);
+    }
+  }
+  // A look-up takes the whole cell.
+  const Eigen::Matrix<float, kNumSlabs, 1> of_cell = 0.5f * axes.cwiseAbs().rowwise().sum().array() + slab_slack;
+  low -= of_cell;
+  high += of_cell;
+}
 
 BundleLattice::BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas) : slabs(edt) {
   middle = 0.5 * (edt.numCells() - 1);
@@ -72,7 +98,7 @@ BundlesOfDirection::BundlesOfDirection(const BundleLattice& lattice, const Eigen
 
 void BundlesOfDirection::setSlabs() {
   const Eigen::Vector3f n = n_.cast<float>(), v = v_.cast<float>();
-  for (int k = 0; k < kMostSlabs; ++k) {
+  for (int k = 0; k < kNumSlabs; ++k) {
     const auto all = lattice_.slabs.axes.row(k);
     const Eigen::Vector3f w(all[axis_], all[(axis_ + 1) % 3], all[(axis_ + 2) % 3]);
     const float slope = std::copysign(std::max(std::abs(w.dot(n)), least_slope), w.dot(n));
@@ -95,8 +121,8 @@ int BundlesOfDirection::numRows() const {
 
 /// Widens [first, last] to where bundles with their middles at x meet all slabs, in points of a line.
 void BundlesOfDirection::cutRow(const Row& row, const float* x, float* first, float* last) const {
-  float entry[kMostSlabs], exit[kMostSlabs], low[at_once], high[at_once];
-  for (int k = 0; k < kMostSlabs; ++k) {
+  float entry[kNumSlabs], exit[kNumSlabs], low[at_once], high[at_once];
+  for (int k = 0; k < kNumSlabs; ++k) {
     entry[k] = entry_[k] - static_cast<float>(row.b) * of_b_[k];
     exit[k] = exit_[k] - static_cast<float>(row.b) * of_b_[k];
   }

@@ -1,14 +1,35 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
-#include "core/transform/bundle_kernels.h"
-#include "core/transform/filled_slabs.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/plane_grid.h"
 
 namespace pcl_symmetry {
+
+constexpr int kRowLanes = 8;    ///< lines of a bundle through cells of the same row, which are looked up by one load
+constexpr int kBundleRows = 2;  ///< rows whose lanes make a bundle
+constexpr int kBundleLanes = kBundleRows * kRowLanes;
+constexpr int kNumSlabs = 13;  ///< pairs of the 26 neighbors of a cell
+
+/// Parallel lines of equally spaced points, through kRowLanes cells of each of some rows: point l of the first one of
+/// row r is start[r] + l * step, in fixed-point cells, for l in [first, last). What lies beyond the cube is 0.
+struct Bundle {
+  std::int32_t start[kBundleRows][3];
+  std::int32_t step[3];
+  int first, last;
+};
+
+/// Slabs around the cells in which f is not 0, along the directions to the neighbors of a cell: low <= axes . p <= high
+/// for all p in one of them, in cells from the center of cell (0, 0, 0). Most shapes fill a small part of their ball.
+struct SlabsOfCells {
+  explicit SlabsOfCells(const GaussianEdt& edt);
+
+  Eigen::Matrix<float, kNumSlabs, 3> axes;
+  Eigen::Matrix<float, kNumSlabs, 1> low, high;
+};
 
 /// The lattice that the EDT is resampled on, and the bins of r, common to all directions. Lengths are in cells;
 /// positions are relative to the middle of the EDT's cube, beyond whose inscribed ball f is taken as 0.
@@ -48,7 +69,7 @@ public:
   double between() const { return between_; }  ///< rows
   /// \return height of a line above the one before in its row, in cells.
   double ahead() const { return lattice_.step * n_.x(); }
-  /// \return volume that each point stands for, in cells.
+  /// \return volume that each point represents, in cells.
   double volume() const { return lattice_.along * between_ * lattice_.step * across_; }
   int numRows() const;  ///< on each side of the middle
 
@@ -74,7 +95,7 @@ private:
   double t0_;           ///< height of the first points of all bundles
   std::int32_t step_[3];
   /// A bundle meets slab k for tau between entry - moved and exit - moved, with moved = b of_b + x of_x.
-  float entry_[kMostSlabs], exit_[kMostSlabs], of_b_[kMostSlabs], of_x_[kMostSlabs];
+  float entry_[kNumSlabs], exit_[kNumSlabs], of_b_[kNumSlabs], of_x_[kNumSlabs];
 };
 
 }  // namespace pcl_symmetry

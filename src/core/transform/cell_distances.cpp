@@ -4,237 +4,154 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <numeric>
 
+#include "core/base/parallel.h"
 #include "core/base/simd.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr int cube_side = 8;  // cells of a block, a multiple of a part
-constexpr int part_side = 4;  // cells; a slice of a part fills an AVX-512 register
-constexpr int bin_side = 4;   // cells of a bin of points
+constexpr int part_side =
+    4;  // cells of a part of the cube, and of a bin of points; its slices fill an AVX-512 register
 constexpr int cells_in_slice = part_side * part_side;
-constexpr int cells_in_part = cells_in_slice * part_side;
 
-constexpr float slack_of_distance = 1e-3f;  // cells; more than distances are rounded by
-constexpr float slack_share = 1e-5f;        // the same of squared distances
-
-struct Coordinates {
-  const float *x, *y, *z;
-};
-
-/// Squared distances of points from a place.
-/// \param index_bits ones where indices of the points have bits.
-/// \return the least of (bits of the squared distance, but for index_bits, and the index of the point).
+/// Squared distances of points from a position.
+/// \return bits of the least, which are in the order of the values.
 PCL_SYMMETRY_MULTIVERSION
-std::int32_t sqDistancesFrom(const float* from, const Coordinates& points, int size, std::int32_t index_bits,
+std::int32_t sqDistancesFrom(const float* from, const float* x, const float* y, const float* z, int size,
                              float* sq_distances) {
   const float cx = from[0], cy = from[1], cz = from[2];
-  const float *const x = points.x, *const y = points.y, *const z = points.z;
-  std::int32_t least = INT32_MAX;
+  std::int32_t least = std::numeric_limits<std::int32_t>::max();
   for (int i = 0; i < size; ++i) {
     const float dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
-    const float sq_distance = dx * dx + dy * dy + dz * dz;
-    sq_distances[i] = sq_distance;
+    sq_distances[i] = dx * dx + dy * dy + dz * dz;
     std::int32_t bits;
-    std::memcpy(&bits, &sq_distance, sizeof bits);
-    least = std::min(least, (bits & ~index_bits) | i);
+    std::memcpy(&bits, sq_distances + i, sizeof bits);
+    least = std::min(least, bits);
   }
   return least;
 }
 
-/// Which points may be nearer than point q to a place of a cube.
-/// \param half half the side of the cube.
-/// \param sq_distances from the center of the cube.
-/// \param[out] marks 1: may be.
-PCL_SYMMETRY_MULTIVERSION
-void markNearer(int q, float half, const Coordinates& points, const float* sq_distances, int size,
-                std::int32_t* marks) {
-  const float *const x = points.x, *const y = points.y, *const z = points.z;
-  const float qx = x[q], qy = y[q], qz = z[q], most = sq_distances[q] * (1.0f + slack_share) + slack_of_distance;
-  for (int i = 0; i < size; ++i) {
-    // |p - u|^2 - |q - u|^2 is linear in u: least in a corner of the cube.
-    const float gain = 2.0f * half * (std::abs(x[i] - qx) + std::abs(y[i] - qy) + std::abs(z[i] - qz));
-    marks[i] = sq_distances[i] * (1.0f - slack_share) - gain <= most ? 1 : 0;
-  }
-}
-
-/// Values of the cells of a slice of a part.
-typedef float SliceOfPart __attribute__((vector_size(cells_in_slice * sizeof(float))));
-
-/// Squared distances of the cells of a part from the nearest of some points.
+/// Lowers squared distances of the cells of a part to those from the nearest of some points.
 /// \param first the center of the first cell.
-/// \param chosen the points.
-/// \param[in,out] nearest cells_in_part values, x slowest, y fastest.
+/// \param chosen indices of the points.
+/// \param[in,out] nearest part_side slices of cells_in_slice values, x slowest, y fastest.
 PCL_SYMMETRY_MULTIVERSION
-void lower(const float* first, const Coordinates& points, const std::int32_t* chosen, int size, float* nearest) {
-  SliceOfPart y, z, low[part_side];
+void lower(const float* first, const float* px, const float* py, const float* pz, const int* chosen, int size,
+           float* nearest) {
+  typedef float Slice __attribute__((vector_size(cells_in_slice * sizeof(float))));
+  Slice y, z, low[part_side];
   for (int l = 0; l < cells_in_slice; ++l) {
     y[l] = first[1] + static_cast<float>(l % part_side);
     z[l] = first[2] + static_cast<float>(l / part_side);
   }
   std::memcpy(low, nearest, sizeof low);
-  const float x0 = first[0], x1 = x0 + 1.0f, x2 = x0 + 2.0f, x3 = x0 + 3.0f;
   for (int i = 0; i < size; ++i) {
-    const float px = points.x[chosen[i]], py = points.y[chosen[i]], pz = points.z[chosen[i]];
-    const SliceOfPart dy = y - py, dz = z - pz, sq_across = dz * dz + dy * dy;
-    const auto lowered = [&](SliceOfPart & slice, float dx) __attribute__((always_inline)) {
-      const SliceOfPart sq_distance = sq_across + dx * dx;
-      slice = sq_distance < slice ? sq_distance : slice;
-    };
-    lowered(low[0], x0 - px);
-    lowered(low[1], x1 - px);
-    lowered(low[2], x2 - px);
-    lowered(low[3], x3 - px);
+    const Slice dy = y - py[chosen[i]], dz = z - pz[chosen[i]], sq_across = dz * dz + dy * dy;
+    for (int k = 0; k < part_side; ++k) {
+      const float dx = first[0] + static_cast<float>(k) - px[chosen[i]];
+      const Slice sq_distance = sq_across + dx * dx;
+      low[k] = sq_distance < low[k] ? sq_distance : low[k];
+    }
   }
   std::memcpy(nearest, low, sizeof low);
 }
 
-}  // namespace
-
-/// Points, and which of them may be nearest to a cell of a cube.
-struct CellDistances::Candidates {
-  std::vector<float> x, y, z, sq_distances;
-  std::vector<std::int32_t> marks, chosen;
-  int size = 0, num_chosen = 0;
-
-  Coordinates coordinates() const { return {x.data(), y.data(), z.data()}; }
-
-  void makeRoom(int most) {
-    if (static_cast<int>(x.size()) >= most) return;
-    for (auto* values : {&x, &y, &z, &sq_distances}) values->resize(static_cast<std::size_t>(2 * most));
-    for (auto* values : {&marks, &chosen}) values->resize(static_cast<std::size_t>(2 * most));
-  }
-
-  /// Chooses those that may be nearest to a place of a cube.
-  /// \param center,half of the cube, and half its side.
-  /// \param sq_most squared distance from the center beyond which none is chosen.
-  void choose(const float* center, float half, float sq_most) {
-    num_chosen = 0;
-    std::int32_t index_bits = 1;
-    while (index_bits < size) index_bits = 2 * index_bits + 1;
-    const std::int32_t least = sqDistancesFrom(center, coordinates(), size, index_bits, sq_distances.data());
-    const std::int32_t bits = least & ~index_bits;
-    float sq_least;
-    std::memcpy(&sq_least, &bits, sizeof bits);
-    if (size == 0 || sq_least > sq_most) return;
-    markNearer(least & index_bits, half, coordinates(), sq_distances.data(), size, marks.data());
-    const std::int32_t* const mark = marks.data();
-    std::int32_t* const to = chosen.data();
-    int count = 0;
-    for (int i = 0; i < size; ++i) {
-      to[count] = i;
-      count += mark[i];
+/// Points in bins of part_side cells, bin by bin, x fastest. Those beyond the cube are in the bins at its sides.
+struct BinnedPoints {
+  BinnedPoints(const Points& points, int cells)
+      : num_cells(cells),
+        num_bins((cells + part_side - 1) / part_side),
+        begin(static_cast<std::size_t>(num_bins) * num_bins * num_bins + 1, 0) {
+    std::vector<std::size_t> bins;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const auto p = points.col(i);
+      bins.push_back((static_cast<std::size_t>(bin(p.z())) * num_bins + bin(p.y())) * num_bins + bin(p.x()));
+      ++begin[bins.back() + 1];
     }
-    num_chosen = count;
-  }
-
-  /// Takes the points that others have chosen.
-  void take(const Candidates& other) {
-    makeRoom(other.num_chosen);
-    size = other.num_chosen;
-    for (int k = 0; k < size; ++k) {
-      x[k] = other.x[other.chosen[k]];
-      y[k] = other.y[other.chosen[k]];
-      z[k] = other.z[other.chosen[k]];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<int> next(begin);
+    for (auto* coordinates : {&x, &y, &z}) coordinates->resize(bins.size());
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      const int position = next[bins[i]]++;
+      x[position] = points(0, static_cast<Eigen::Index>(i));
+      y[position] = points(1, static_cast<Eigen::Index>(i));
+      z[position] = points(2, static_cast<Eigen::Index>(i));
     }
   }
+
+  int bin(float coordinate) const {
+    return static_cast<int>(std::clamp(coordinate, 0.0f, static_cast<float>(num_cells - 1))) / part_side;
+  }
+
+  /// Calls visit(from, to) for runs of the points that are in bins within reach of a part.
+  template <typename Visit>
+  void visitNear(const float* first, float reach, const Visit& visit) const {
+    const auto low = [&](int axis) { return bin(first[axis] - reach); };
+    const auto high = [&](int axis) { return bin(first[axis] + static_cast<float>(part_side - 1) + reach); };
+    for (int bin_z = low(2); bin_z <= high(2); ++bin_z)
+      for (int bin_y = low(1); bin_y <= high(1); ++bin_y) {
+        const int* const row = begin.data() + (static_cast<std::ptrdiff_t>(bin_z) * num_bins + bin_y) * num_bins;
+        if (row[low(0)] < row[high(0) + 1]) visit(row[low(0)], row[high(0) + 1]);
+      }
+  }
+
+  int num_cells, num_bins;
+  std::vector<int> begin;  ///< first point of each bin
+  std::vector<float> x, y, z;
 };
 
-CellDistances::CellDistances(const Points& points, int num_cells, float reach)
-    : num_cells_(num_cells),
-      num_blocks_((num_cells + cube_side - 1) / cube_side),
-      num_bins_((num_cells + bin_side - 1) / bin_side),
-      sq_reach_(reach * reach),
-      reach_(reach),
-      begin_(static_cast<std::size_t>(num_bins_) * num_bins_ * num_bins_ + 1, 0) {
-  const auto size = static_cast<std::size_t>(points.cols());
-  std::vector<int> bins(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    const auto p = points.col(static_cast<Eigen::Index>(i));
-    bins[i] = (bin(p.z()) * num_bins_ + bin(p.y())) * num_bins_ + bin(p.x());
-    ++begin_[static_cast<std::size_t>(bins[i]) + 1];
-  }
-  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  std::vector<int> next(begin_);
-  for (auto* coordinates : {&x_, &y_, &z_}) coordinates->resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    const auto place = static_cast<std::size_t>(next[static_cast<std::size_t>(bins[i])]++);
-    const auto p = points.col(static_cast<Eigen::Index>(i));
-    x_[place] = p.x();
-    y_[place] = p.y();
-    z_[place] = p.z();
-  }
-}
+}  // namespace
 
-/// The bin of a coordinate in cells; that at the side for what lies beyond.
-int CellDistances::bin(float coordinate) const {
-  return static_cast<int>(std::clamp(coordinate, 0.0f, static_cast<float>(num_cells_ - 1))) / bin_side;
-}
-
-/// The points of the bins within reach of a block.
-void CellDistances::gather(const Block& block, Candidates& found) const {
-  struct Range {
-    int low, high;
-  };
-  const auto within = [&](int first) {
-    return Range{bin(static_cast<float>(first) - reach_), bin(static_cast<float>(first + cube_side - 1) + reach_)};
-  };
-  const Range x = within(block.x), y = within(block.y), z = within(block.z);
-  found.size = 0;
-  for (int bin_z = z.low; bin_z <= z.high; ++bin_z) {
-    for (int bin_y = y.low; bin_y <= y.high; ++bin_y) {
-      const int* const row = begin_.data() + (static_cast<std::ptrdiff_t>(bin_z) * num_bins_ + bin_y) * num_bins_;
-      const int begin = row[x.low], count = row[x.high + 1] - begin;
-      if (count == 0) continue;
-      found.makeRoom(found.size + count);
-      std::copy_n(x_.begin() + begin, count, found.x.begin() + found.size);
-      std::copy_n(y_.begin() + begin, count, found.y.begin() + found.size);
-      std::copy_n(z_.begin() + begin, count, found.z.begin() + found.size);
-      found.size += count;
-    }
-  }
-}
-
-void CellDistances::fill(int row, float* sq_distances) const {
-  Candidates found, near;
-  for (int x = 0; x < num_cells_; x += cube_side)
-    fillBlock({x, row % num_blocks_ * cube_side, row / num_blocks_ * cube_side}, found, near, sq_distances);
-}
-
-void CellDistances::fillBlock(const Block& block, Candidates& found, Candidates& near, float* sq_distances) const {
-  const auto choose = [&](const Block& cube, int side, Candidates& from) {
-    const float half = 0.5f * static_cast<float>(side - 1), most = reach_ + std::sqrt(3.0f) * half + slack_of_distance;
-    const float center[] = {static_cast<float>(cube.x) + half, static_cast<float>(cube.y) + half,
-                            static_cast<float>(cube.z) + half};
-    from.choose(center, half, most * most);
-  };
-  gather(block, found);
-  choose(block, cube_side, found);
-  near.take(found);
-  for (int z = block.z; z < std::min(block.z + cube_side, num_cells_); z += part_side)
-    for (int y = block.y; y < std::min(block.y + cube_side, num_cells_); y += part_side)
-      for (int x = block.x; x < std::min(block.x + cube_side, num_cells_); x += part_side) {
-        choose({x, y, z}, part_side, near);
-        fillPart({x, y, z}, near, sq_distances);
+/// Each part of the cube is compared with the points that may be nearest to one of its cells.
+std::vector<float> sqCellDistances(const Points& points, int num_cells, float reach, int num_threads) {
+  const int n = num_cells;
+  const BinnedPoints binned(points, n);
+  std::vector<float> result(static_cast<std::size_t>(n) * n * n);
+  const auto num_parts = static_cast<std::size_t>(binned.num_bins);
+  parallelBlocks(num_parts * num_parts, num_threads, [&](std::size_t row) {
+    std::vector<float> sq_distances;
+    std::vector<int> near, chosen;
+    for (int first_x = 0; first_x < n; first_x += part_side) {
+      const int first_y = static_cast<int>(row % num_parts) * part_side,
+                first_z = static_cast<int>(row / num_parts) * part_side;
+      const float first[] = {static_cast<float>(first_x), static_cast<float>(first_y), static_cast<float>(first_z)};
+      constexpr float half = 0.5f * (part_side - 1), half_diagonal = 1.7320508f * half, slack = 1e-3f;
+      const float center[] = {first[0] + half, first[1] + half, first[2] + half};
+      std::int32_t bits = std::numeric_limits<std::int32_t>::max();
+      near.clear();
+      binned.visitNear(first, reach, [&](int from, int to) {
+        const std::size_t before = near.size();
+        for (int i = from; i < to; ++i) near.push_back(i);
+        if (sq_distances.size() < near.size()) sq_distances.resize(2 * near.size());
+        bits = std::min(bits, sqDistancesFrom(center, &binned.x[from], &binned.y[from], &binned.z[from], to - from,
+                                              &sq_distances[before]));
+      });
+      // The point nearest to a cell is not farther from the center than the one nearest to the center and a diagonal.
+      float sq_least;
+      std::memcpy(&sq_least, &bits, sizeof bits);
+      const float most =
+          near.empty() ? 0.0f : std::min(std::sqrt(sq_least) + half_diagonal, reach) + half_diagonal + slack;
+      chosen.resize(near.size());
+      int num_chosen = 0;
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        chosen[num_chosen] = near[i];
+        num_chosen += sq_distances[i] <= most * most ? 1 : 0;
       }
-}
-
-void CellDistances::fillPart(const Block& part, const Candidates& near, float* sq_distances) const {
-  float nearest[cells_in_part];
-  std::fill_n(nearest, cells_in_part, sq_reach_);
-  const float first[] = {static_cast<float>(part.x), static_cast<float>(part.y), static_cast<float>(part.z)};
-  if (near.num_chosen > 0) lower(first, near.coordinates(), near.chosen.data(), near.num_chosen, nearest);
-  const int width = std::min(part_side, num_cells_ - part.x), height = std::min(part_side, num_cells_ - part.y),
-            depth = std::min(part_side, num_cells_ - part.z);
-  for (int z = 0; z < depth; ++z)
-    for (int y = 0; y < height; ++y) {
-      float* const row =
-          sq_distances + (static_cast<std::size_t>(part.z + z) * num_cells_ + part.y + y) * num_cells_ + part.x;
-      for (int x = 0; x < width; ++x) row[x] = nearest[x * cells_in_slice + z * part_side + y];
+      float nearest[part_side * cells_in_slice];
+      std::fill(std::begin(nearest), std::end(nearest), reach * reach);
+      lower(first, binned.x.data(), binned.y.data(), binned.z.data(), chosen.data(), num_chosen, nearest);
+      for (int z = first_z; z < std::min(first_z + part_side, n); ++z)
+        for (int y = first_y; y < std::min(first_y + part_side, n); ++y)
+          for (int x = first_x; x < std::min(first_x + part_side, n); ++x)
+            result[(static_cast<std::size_t>(z) * n + y) * n + x] =
+                nearest[(x - first_x) * cells_in_slice + (z - first_z) * part_side + y - first_y];
     }
+  });
+  return result;
 }
 
 }  // namespace pcl_symmetry

@@ -1,11 +1,13 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/simd.h"
 #include "core/transform/bundle_lattice.h"
-#include "core/transform/lane_sums.h"
 #include "core/transform/lookup_table.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
@@ -14,6 +16,7 @@ namespace pcl_symmetry {
 namespace {
 
 constexpr std::size_t convolved_per_block = 16;  // directions
+
 // Steps of the R2 sequence, which fills the unit square evenly: 1 / g and 1 / g^2 with the plastic number
 // g = 1.3247..., the root of g^3 = g + 1.
 constexpr double kPhaseSteps[2] = {0.7548776662466927, 0.5698402909980532};
@@ -23,6 +26,210 @@ double phase(double turns) {
   return turns - std::floor(turns) - 0.5;
 }
 
+/// The cells of an EDT as bytes in rows along each of the three axes, for points that are many cells of a row: of every
+/// step-th cell of a row, kRowLanes lie side by side, whichever is the first. Values are multiplied by
+/// LookupTable::kOne; cells beyond a ball and beyond the cube are 0.
+class RowTable {
+public:
+  /// \param f num_cells^3 values in [0, 255 / LookupTable::kOne], x fastest.
+  /// \param clip cells whose centers are farther from the middle of the cube are 0, in cells.
+  /// \param step between the cells of a row that lie side by side, >= 1.
+  /// \param num_threads 0 = one per core.
+  RowTable(const std::vector<float>& f, int num_cells, double clip, int step, int num_threads);
+
+  /// Rows along one axis. Cell (x, y, z) has x along it, y along the next axis and z along the one after that,
+  /// cyclically. Its byte is bytes[z * of_z + y * of_y + of_x[x]]; x may lie in
+  /// [-kRowLanes * step, num_cells), y and z in [0, num_cells).
+  struct Rows {
+    const std::uint8_t* bytes;
+    const std::int32_t* of_x;
+    int of_y, of_z;
+    int least_x;  ///< that x may have
+    int last;     ///< cell of a row
+  };
+  Rows along(int axis) const {
+    const int before = kRowLanes * step_;
+    return {
+        bytes_.data() + axis * size_, of_x_.data() + before, stride_, num_cells_ * stride_, -before, num_cells_ - 1};
+  }
+
+private:
+  int num_cells_, step_;
+  int stride_;        // bytes of a row: cells of one phase between kRowLanes cells of nothing
+  std::size_t size_;  // bytes of one axis
+  std::vector<std::int32_t> of_x_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+RowTable::RowTable(const std::vector<float>& f, int num_cells, double clip, int step, int num_threads)
+    : num_cells_(num_cells), step_(step) {
+  const int n = num_cells;
+  stride_ = (n + step - 1) / step + kRowLanes;  // the lanes before a row are those after the one before
+  const std::size_t of_phase = static_cast<std::size_t>(n) * n * stride_;
+  size_ = of_phase * step;
+  for (int x = -kRowLanes * step; x < n; ++x) {
+    const int shifted = x + kRowLanes * step;
+    of_x_.push_back(static_cast<std::int32_t>((shifted % step) * of_phase) + shifted / step);
+  }
+  bytes_.assign(3 * size_ + 2 * kRowLanes, 0);
+  const double middle = 0.5 * (n - 1);
+  parallelBlocks(static_cast<std::size_t>(n), num_threads, [&](std::size_t slice) {
+    const int c = static_cast<int>(slice);
+    for (int b = 0; b < n; ++b) {
+      const double sq_left = clip * clip - (b - middle) * (b - middle) - (c - middle) * (c - middle);
+      if (sq_left < 0.0) continue;
+      const int first = static_cast<int>(std::ceil(middle - std::sqrt(sq_left)));
+      const int last = static_cast<int>(std::floor(middle + std::sqrt(sq_left)));
+      const float* row = f.data() + (slice * n + b) * n;
+      for (int a = first; a <= last; ++a) {
+        const float scaled = row[a] * static_cast<float>(LookupTable::kOne) + 0.5f;
+        const auto byte = static_cast<std::uint8_t>(static_cast<int>(std::min(scaled, 255.0f)));
+        const auto put = [&](int axis, int x, int y, int z) {
+          const Rows rows = along(axis);
+          bytes_[axis * size_ + static_cast<std::size_t>(z * rows.of_z + y * rows.of_y + rows.of_x[x])] = byte;
+        };
+        put(0, a, b, c);
+        put(1, b, c, a);
+        put(2, c, a, b);
+      }
+    }
+  });
+}
+
+/// Looks the points of a bundle up, each in the cell that contains it.
+/// \param[out] values of each point kBundleLanes of them.
+PCL_SYMMETRY_MULTIVERSION
+void lookUp(const Bundle& bundle, const RowTable::Rows& rows, std::int32_t* __restrict offsets,
+            float* __restrict values) {
+  const auto [starts, step, first, last] = bundle;
+  const std::int32_t* __restrict const of_x = rows.of_x;
+  const int of_y = rows.of_y, of_z = rows.of_z, least_x = rows.least_x, last_cell = rows.last;
+  for (int r = 0; r < kBundleRows; ++r) {
+    for (int l = first; l < last; ++l) {
+      const auto cell = [&](int axis, int least) {
+        const int at = (starts[r][axis] + l * step[axis]) >> LookupTable::kFractionBits;
+        return at < least ? least : at > last_cell ? last_cell : at;
+      };
+      offsets[l] = cell(2, 0) * of_z + cell(1, 0) * of_y + of_x[cell(0, least_x)];
+    }
+    for (int l = first; l < last; ++l)
+      for (int j = 0; j < kRowLanes; ++j)
+        values[l * kBundleLanes + r * kRowLanes + j] = static_cast<float>(rows.bytes[offsets[l] + j]);
+  }
+}
+
+/// sums[s * kBundleLanes + j] += sum over a + b = s of v[a] v[b] of lane j, for points in [first, last).
+PCL_SYMMETRY_MULTIVERSION
+void correlate(const float* values, int first, int last, std::int32_t* sums) {
+  typedef float Lanes __attribute__((vector_size(kBundleLanes * sizeof(float))));
+  for (int s = 2 * first; s < 2 * last - 1; ++s) {
+    // Products of different points count twice. The sums are integers that a float holds without rounding.
+    Lanes total{}, a, b;
+    for (int low = std::max(first, s - last + 1); 2 * low < s; ++low) {
+      std::memcpy(&a, values + low * kBundleLanes, sizeof a);
+      std::memcpy(&b, values + (s - low) * kBundleLanes, sizeof b);
+      total += a * b;
+    }
+    total += total;
+    if (s % 2 == 0) {
+      std::memcpy(&a, values + s / 2 * kBundleLanes, sizeof a);
+      total += a * a;
+    }
+    for (int j = 0; j < kBundleLanes; ++j) sums[s * kBundleLanes + j] += static_cast<std::int32_t>(total[j]);
+  }
+}
+
+// Of the quintic spline: roots within the unit circle of z^4 + 26 z^3 + 66 z^2 + 26 z + 1.
+constexpr double kPoles[2] = {-0.4305753470999738, -0.0430962882032647};
+constexpr int reach_of_spline = 12;  // values on each side that a coefficient depends on: pole^13 = 2e-5 is left out
+constexpr int num_taps = 6;          // coefficients that a value of quintic splines depends on
+
+/// Weights of the coefficients -2 to 3 in the value at t in [0, 1].
+std::array<float, num_taps> weightsAt(double t) {
+  const auto spline = [](double x) {
+    if (x <= 1.0) return 11.0 / 20.0 - x * x * (1.0 / 2.0 - x * x * (1.0 / 4.0 - x / 12.0));
+    if (x <= 2.0) return 17.0 / 40.0 + x * (5.0 / 8.0 - x * (7.0 / 4.0 - x * (5.0 / 4.0 - x * (3.0 / 8.0 - x / 24.0))));
+    return std::pow(3.0 - x, 5) / 120.0;
+  };
+  std::array<float, num_taps> weights;
+  for (int k = 0; k < num_taps; ++k) weights[k] = static_cast<float>(spline(std::abs(t - (k - 2))));
+  return weights;
+}
+
+/// \return weights of values at distances up to reach_of_spline in a coefficient.
+std::array<float, reach_of_spline + 1> weightsOfValues() {
+  std::array<float, reach_of_spline + 1> weights{};
+  for (const double z : kPoles) {
+    const double slope = (2.0 * z + 26.0 - 26.0 / (z * z) - 2.0 / (z * z * z)) / 120.0;
+    for (int k = 0; k <= reach_of_spline; ++k) weights[k] += static_cast<float>(std::pow(z, k) / (z * slope));
+  }
+  return weights;
+}
+
+PCL_SYMMETRY_MULTIVERSION
+void addLane(const float* values, int size, const float* weights, float* sums) {
+  const float w0 = weights[0], w1 = weights[1], w2 = weights[2], w3 = weights[3], w4 = weights[4], w5 = weights[5];
+  for (int s = 0; s < size; ++s) {
+    const float* const here = values + s;
+    sums[s] += ((w0 * here[-2] + w1 * here[-1]) + (w2 * here[0] + w3 * here[1])) + (w4 * here[2] + w5 * here[3]);
+  }
+}
+
+/// Sums of the lanes of bundles at equally spaced positions, which differ from lane to lane of a row by a fraction of
+/// the distance, and what they add up to at common positions, by quintic splines (Unser, Splines: a perfect fit, 1999).
+class LaneSums {
+public:
+  /// \param size positions of each lane.
+  /// \param most_ahead distances that the first and the last lane of a row are from its middle, at most.
+  LaneSums(int size, double most_ahead)
+      : size_(size),
+        margin_(static_cast<int>(std::ceil(most_ahead)) + num_taps),
+        sums_(static_cast<std::size_t>(size) * kBundleLanes),
+        lane_(size + 2 * margin_),
+        coefficients_(size + 2 * reach_of_spline) {}
+
+  /// \return number s * kBundleLanes + j is the sum of lane j at position s.
+  std::int32_t* data() { return sums_.data(); }
+
+  /// Adds the sums to the values at common positions, and sets them to 0.
+  /// \param ahead distances that each lane of a row is ahead of the one before; the middle of a row is at the common
+  /// positions.
+  void bringTogether(double ahead) {
+    for (int j = 0; j < kRowLanes; ++j) {
+      const double of_lane = (j - 0.5 * (kRowLanes - 1)) * ahead;
+      const int shift = static_cast<int>(std::ceil(of_lane));
+      for (int s = 0; s < size_; ++s) {
+        lane_[margin_ + s] = 0.0f;
+        for (int r = j; r < kBundleLanes; r += kRowLanes)
+          lane_[margin_ + s] += static_cast<float>(sums_[s * kBundleLanes + r]);
+      }
+      addLane(lane_.data() + margin_ - shift, size_, weightsAt(shift - of_lane).data(),
+              coefficients_.data() + reach_of_spline);
+    }
+    std::fill(sums_.begin(), sums_.end(), 0);
+  }
+
+  /// \return the value at common position s, 0 outside of [0, size).
+  float at(std::int64_t s) const {
+    static const std::array<float, reach_of_spline + 1> kWeights = weightsOfValues();
+    if (s < 0 || s >= size_) return 0.0f;
+    const float* const here = coefficients_.data() + reach_of_spline + s;
+    float value = kWeights[0] * here[0];
+    for (int k = 1; k <= reach_of_spline; ++k) value += kWeights[k] * (here[-k] + here[k]);
+    return value;
+  }
+
+  /// Sets the values to 0.
+  void clear() { std::fill(coefficients_.begin(), coefficients_.end(), 0.0f); }
+
+private:
+  int size_;
+  int margin_;  // zeros on both sides of lane_
+  std::vector<std::int32_t> sums_;
+  std::vector<float> lane_;
+  std::vector<float> coefficients_;  // of the spline through the values, with reach_of_spline zeros on both sides
+};
+
 /// D for all planes of one direction: the volume is resampled along the normal, and each line is correlated with its
 /// reversal (Section 4.2).
 ///
@@ -30,11 +237,11 @@ double phase(double turns) {
 /// at different heights along the normal: the sums of each lane are brought to the bins of r in the end.
 class DirectionConvolution {
 public:
-  DirectionConvolution(const BundleLattice& lattice, const RowTable& table, const BundleKernels& kernels)
+  DirectionConvolution(const BundleLattice& lattice, const RowTable& table)
       : lattice_(lattice),
         table_(table),
-        kernels_(kernels),
-        values_(lattice.num_along),
+        offsets_(lattice.num_along),
+        values_(static_cast<std::size_t>(lattice.num_along) * kBundleLanes),
         sums_(2 * lattice.num_along, 2.0 * lattice.most_ahead / lattice.along) {
     // The sums of these fit in 32 bits
     most_bundles_ = static_cast<int>(std::max<std::int64_t>(
@@ -72,18 +279,26 @@ private:
       some_.clear();
       bundles.addBundles(rows_of_bundle, some_);
       for (const Bundle& bundle : some_) {
-        kernels_.look_up(bundle, rows, values_);
-        kernels_.correlate(values_, sums_.data());
+        lookUp(bundle, rows, offsets_.data(), values_.data());
+        int first = bundle.first, last = bundle.last;
+        while (first < last && isZero(first)) ++first;
+        while (first < last && isZero(last - 1)) --last;
+        correlate(values_.data(), first, last, sums_.data());
         if (++num_added % most_bundles_ == 0) sums_.bringTogether(ahead);
       }
     }
     sums_.bringTogether(ahead);
   }
 
+  bool isZero(int point) const {
+    const float* const lanes = values_.data() + point * kBundleLanes;
+    return std::all_of(lanes, lanes + kBundleLanes, [](float value) { return value == 0.0f; });
+  }
+
   const BundleLattice& lattice_;
   const RowTable& table_;
-  BundleKernels kernels_;
-  BundleValues values_;
+  std::vector<std::int32_t> offsets_;  // of the points of a row of a bundle
+  std::vector<float> values_;          // of the points of a bundle, lane by lane
   LaneSums sums_;
   std::vector<Bundle> some_;
   int most_bundles_;
@@ -94,7 +309,6 @@ private:
 void ConvolutionTransformOptions::validate() const {
   check(spacing > 0.0 && spacing <= 1.0, "spacing", spacing, "in (0, 1]");
   checkNumThreads(num_threads);
-  check(simdSupported(simd), "simd", static_cast<int>(simd), "one that this processor supports");
 }
 
 SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
@@ -112,12 +326,13 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
   map.sigma = edt.sigma();
   map.center_of_mass = grid.center();
   map.values.resize(grid.size());
-  const auto run = [&](std::size_t begin, std::size_t end) {
-    DirectionConvolution convolution(lattice, table, bundleKernels(options.simd));
-    for (std::size_t direction = begin; direction < end; ++direction)
-      convolution.run(grid.normal(direction), direction, norm, num_radius, map.values.data() + direction * num_radius);
-  };
-  parallelRanges(grid.numDirections(), convolved_per_block, options.num_threads, run);
+  parallelRanges(grid.numDirections(), convolved_per_block, options.num_threads,
+                 [&](std::size_t begin, std::size_t end) {
+                   DirectionConvolution convolution(lattice, table);
+                   for (std::size_t direction = begin; direction < end; ++direction)
+                     convolution.run(grid.normal(direction), direction, norm, num_radius,
+                                     map.values.data() + direction * num_radius);
+                 });
   return map;
 }
 

@@ -102,10 +102,7 @@ void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
   Points cells = normalizePoints(points, origin_, cell_size_);
   if (static_cast<std::size_t>(cells.cols()) > kTransform.dense_per_cell * slice_size) cells = thin(cells, n);
   const float reach = static_cast<float>(kReachInSigmas * sigma_ / cell_size_), sq_reach = reach * reach;
-  const CellDistances distances(cells, n, reach);
-  values_.resize(slice_size * n);
-  parallelBlocks(distances.numRows(), num_threads,
-                 [&](std::size_t row) { distances.fill(static_cast<int>(row), values_.data()); });
+  values_ = sqCellDistances(cells, n, reach, num_threads);
   // Section 4.1: f = exp(-dist^2 / sigma^2).
   const double scale = -1.0 / std::pow(sigma_ / cell_size_, 2);
   parallelRanges(values_.size(), slice_size, num_threads, [&](std::size_t begin, std::size_t end) {

@@ -4,13 +4,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 #include <vector>
 
 #include "core/base/median.h"
-#include "core/base/simd.h"
 
 namespace pcl_symmetry {
 
@@ -24,28 +21,6 @@ constexpr double kReachInSigmas = 2.6;
 // Greatest width for sparse points, of the radius: a surface of a dozen points has no gaps, and the shape is no ball.
 constexpr double kMostSpacing = 0.25;
 
-/// \param coordinates of size points, an axis after the other: two or three.
-/// \return squared distance of a point from the nearest one at another place; the greatest float if there is none.
-PCL_SYMMETRY_MULTIVERSION
-inline float sqNearestOther(const float* coordinates, int num_axes, Eigen::Index size, Eigen::Index point) {
-  const float *const x = coordinates, *const y = x + size, *const z = num_axes == 3 ? y + size : y;
-  const float px = x[point], py = y[point], pz = num_axes == 3 ? z[point] : 0.0f, of_z = num_axes == 3 ? 1.0f : 0.0f;
-  // The bits of floats >= 0 are in the order of their values; less 1, those of 0 come last.
-  std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const float dx = x[i] - px, dy = y[i] - py, dz = of_z * (z[i] - pz);
-    const float sq_distance = dx * dx + (dy * dy + dz * dz);
-    std::uint32_t bits;
-    std::memcpy(&bits, &sq_distance, sizeof bits);
-    least = std::min(least, bits - 1u);
-  }
-  if (least == std::numeric_limits<std::uint32_t>::max()) return std::numeric_limits<float>::max();
-  ++least;
-  float sq_nearest;
-  std::memcpy(&sq_nearest, &least, sizeof least);
-  return sq_nearest;
-}
-
 /// Typical distance between neighboring samples: twice the median distance to the nearest other point, over a fixed
 /// number of probes. For random samples this is 0.94 / sqrt(density) on a surface, and the median gap on a curve.
 /// \param points 2 x N or 3 x N, finite.
@@ -55,10 +30,13 @@ double sampleSpacing(const PointMatrix& points) {
   // A standard error of 13 % for random samples of a surface; 18 % for half as many, 9 % for twice as many
   constexpr Eigen::Index kNumProbes = 32;
   const Eigen::Index size = points.cols(), num_probes = std::min(kNumProbes, size);
-  const Eigen::Matrix<float, Eigen::Dynamic, PointMatrix::RowsAtCompileTime> axes = points.transpose();
   std::vector<double> nearest;
   for (Eigen::Index k = 0; k < num_probes; ++k) {
-    const float sq_nearest = sqNearestOther(axes.data(), PointMatrix::RowsAtCompileTime, size, k * size / num_probes);
+    float sq_nearest = std::numeric_limits<float>::max();
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const float sq_distance = (points.col(i) - points.col(k * size / num_probes)).squaredNorm();
+      if (sq_distance > 0.0f) sq_nearest = std::min(sq_nearest, sq_distance);
+    }
     if (sq_nearest < std::numeric_limits<float>::max()) nearest.push_back(std::sqrt(static_cast<double>(sq_nearest)));
   }
   return nearest.empty() ? 0.0 : 2.0 * median(std::move(nearest));

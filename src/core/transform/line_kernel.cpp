@@ -2,68 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "core/base/simd.h"
-#include "core/base/x86_intrinsics.h"
 #include "core/transform/lookup_table.h"
+
+#if defined(__x86_64__)
+#pragma GCC diagnostic push
+#if !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wuninitialized"  // from GCC 12's own AVX-512 header
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <immintrin.h>
+#pragma GCC diagnostic pop
+#endif
 
 namespace pcl_symmetry {
 
-namespace {
-
-/// Numbers that are worked out side by side.
-typedef float FloatLanes __attribute__((vector_size(4 * kLineLanes)));
-
-/// Cuts lines off where they leave slabs, which are given as setUpLines() has them.
-/// \param along_of places of the samples along the normal.
-/// \param[in,out] first,behind ends of the lines along it.
-[[gnu::always_inline]] inline void cutAtSlabs(const SlabsOfSamples& slabs, const float* normal, const float* along_of,
-                                              int size, float* first, float* behind) {
-  float halves[kMostSlabs];
-  const float *entries[kMostSlabs], *exits[kMostSlabs];
-  int num_slabs = 0;
-  for (int s = 0; s < slabs.count; ++s) {
-    const float* const axis = slabs.axes + 3 * s;
-    const float slope = normal[0] * axis[0] + normal[1] * axis[1] + normal[2] * axis[2];
-    constexpr float least_slope = 1e-3f;  // a line along a slab leaves it farther away than the ball
-    if (std::abs(slope) < least_slope) continue;
-    const float *const low = slabs.low + slabs.stride * s, *const high = slabs.high + slabs.stride * s;
-    halves[num_slabs] = 0.5f / slope;
-    entries[num_slabs] = slope > 0.0f ? low : high;
-    exits[num_slabs++] = slope > 0.0f ? high : low;
-  }
-  // All slabs of some lines at a time, whose ends stay in registers.
-  int cut = 0;
-  for (; cut + kLineLanes <= size; cut += kLineLanes) {
-    FloatLanes along, begin, end;
-    std::memcpy(&along, along_of + cut, sizeof along);
-    std::memcpy(&begin, first + cut, sizeof begin);
-    std::memcpy(&end, behind + cut, sizeof end);
-    for (int s = 0; s < num_slabs; ++s) {
-      FloatLanes entry, exit;
-      std::memcpy(&entry, entries[s] + cut, sizeof entry);
-      std::memcpy(&exit, exits[s] + cut, sizeof exit);
-      entry = along + halves[s] * entry;
-      exit = along + halves[s] * exit;
-      begin = begin < entry ? entry : begin;
-      end = exit < end ? exit : end;
-    }
-    std::memcpy(first + cut, &begin, sizeof begin);
-    std::memcpy(behind + cut, &end, sizeof end);
-  }
-  for (; cut < size; ++cut)
-    for (int s = 0; s < num_slabs; ++s) {
-      first[cut] = std::max(first[cut], along_of[cut] + halves[s] * entries[s][cut]);
-      behind[cut] = std::min(behind[cut], along_of[cut] + halves[s] * exits[s][cut]);
-    }
-}
-
-}  // namespace
-
 PCL_SYMMETRY_MULTIVERSION
-void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube,
-                const SlabsOfSamples& slabs, Lines& lines) {
+void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines) {
   const float nx = planes.normal[0], ny = planes.normal[1], nz = planes.normal[2];
   const float offset = planes.offset, inverse_step = 1.0f / planes.step, last = static_cast<float>(planes.count);
   const float middle = cube.middle, sq_clip = cube.sq_clip, to_table = cube.to_table;
@@ -72,8 +28,6 @@ void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, c
   std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
   const float *const px = points.x, *const py = points.y, *const pz = points.z;
   const int size = lines.size;
-  // Places along the normal, from that of the sample; the image of a sample in the plane at r is at 2 (r - along).
-  float along_of[kMostLines], first[kMostLines], behind[kMostLines];
 #pragma GCC ivdep
   for (int i = 0; i < size; ++i) {
     const float x = px[i] - middle, y = py[i] - middle, z = pz[i] - middle;
@@ -85,19 +39,12 @@ void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, c
     // The reflected point lies at 2 r - along on the line through x: inside the ball while |2 r - along| <= chord.
     const float sq_chord = sq_clip - (x * x + y * y + z * z - along * along);
     const float chord = std::sqrt(std::max(0.0f, sq_chord));
-    along_of[i] = along;
-    first[i] = 0.5f * (along - chord);
-    behind[i] = sq_chord > 0.0f ? 0.5f * (along + chord) : first[i] - 2.0f * planes.step;
-  }
-  cutAtSlabs(slabs, planes.normal, along_of, size, first, behind);
-#pragma GCC ivdep
-  for (int i = 0; i < size; ++i) {
-    const float begin = std::ceil((first[i] - offset) * inverse_step);
-    const float end = std::floor((behind[i] - offset) * inverse_step) + 1.0f;
+    const float begin = std::ceil((0.5f * (along - chord) - offset) * inverse_step);
+    const float end = std::floor((0.5f * (along + chord) - offset) * inverse_step) + 1.0f;
     const auto k = static_cast<std::int32_t>(std::min(std::max(begin, 0.0f), last));
     const auto k_behind = static_cast<std::int32_t>(std::min(std::max(end, 0.0f), last));
     k_begin[i] = k;
-    k_end[i] = k_behind > k ? k_behind : 0;
+    k_end[i] = (sq_chord > 0.0f) & (k_behind > k) ? k_behind : 0;
   }
 }
 

@@ -48,23 +48,10 @@ struct SampleCoordinates {
   const float *x, *y, *z;
 };
 
-/// Slabs around what is not 0, at most: pairs of the 26 neighbors of a cell.
-constexpr int kMostSlabs = 13;
-
-/// Slabs that hold all that is not 0 in a table, as samples see them: low <= axis . (x - sample) <= high for each.
-struct SlabsOfSamples {
-  const float* axes;        ///< three numbers of each slab
-  const float *low, *high;  ///< one of each sample, slab by slab, cells
-  std::ptrdiff_t stride;    ///< from one slab to the next
-  int count;                ///< of slabs
-};
-
 /// Fills the lines that the images of points run along when the points are reflected in parallel planes.
 /// \param points lines.size of them, in cells from the first cell center.
-/// \param slabs beyond which lines end, as nothing is added there.
 /// \param[out] lines size is given; all but step and count are filled.
-void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube,
-                const SlabsOfSamples& slabs, Lines& lines);
+void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines);
 
 /// sums[g][k] += sum over lines of function g of the table at point k. The sums are integers, so that every kernel
 /// gives the same bytes.

@@ -5,6 +5,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/transform/direction_rows.h"
 
 namespace pcl_symmetry {
 
@@ -52,6 +53,37 @@ std::optional<LineGrid::Bin> LineGrid::step(const Bin& bin, int dt, int dk) cons
 
 std::size_t LineMap::strongest() const {
   return values.empty() ? 0 : std::max_element(values.begin(), values.end()) - values.begin();
+}
+
+ReflectionLine::ReflectionLine(double theta, double offset)
+    : theta_(theta), offset_(offset), normal_(std::cos(theta), std::sin(theta)) {
+  check(std::isfinite(theta), "theta", theta, "finite");
+  check(std::isfinite(offset), "offset", offset, "finite");
+}
+
+ReflectionLine ReflectionLine::canonical() const {
+  const double half_turns = std::floor(theta_ / kPi);
+  const double theta = theta_ - half_turns * kPi;
+  const double offset = std::fmod(half_turns, 2.0) == 0.0 ? offset_ : -offset_;
+  // Just below zero, theta + pi rounds to pi.
+  return theta < kPi ? ReflectionLine(theta, offset) : ReflectionLine(0.0, -offset);
+}
+
+double ReflectionLine::angleTo(const ReflectionLine& other) const {
+  const double cross = normal_.x() * other.normal_.y() - normal_.y() * other.normal_.x();
+  return std::atan2(std::abs(cross), std::abs(normal_.dot(other.normal_)));
+}
+
+std::vector<float> pointSymmetry(const LineMap& map, const Points2D& points, int num_threads) {
+  if (map.empty()) return std::vector<float>(points.cols(), 0.0f);
+  const LineGrid& grid = map.grid;
+  std::vector<Eigen::Vector3f> normals;
+  for (int t = 0; t < grid.numTheta(); ++t)
+    normals.push_back(Eigen::Vector3d(std::cos(grid.theta(t)), std::sin(grid.theta(t)), 0.0).cast<float>());
+  const DirectionRows rows(map.values, normals, grid.numRadius(), grid.radius());
+  Points embedded = Points::Zero(3, points.cols());
+  embedded.topRows<2>() = (points.cast<double>().colwise() - grid.center()).cast<float>();
+  return rows.greatestThrough(embedded, num_threads);
 }
 
 }  // namespace pcl_symmetry

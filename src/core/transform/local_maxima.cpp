@@ -35,23 +35,6 @@ void markHighBins(const float* row, const float* const* beside, int size, std::u
   for (int k = 0; k + 1 < size; ++k) marks[k] &= static_cast<std::uint8_t>(row[k + 1] <= row[k]);
 }
 
-/// Whether a bin is below one of those a step away in theta, phi and r that lie on its side of the seams of theta: a
-/// quick test that most bins fail which pass markHighBins().
-bool isBelowNeighbor(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
-  const PlaneGrid& grid = map.grid;
-  const float value = map[grid.index(bin)];
-  const int num_phi = grid.numPhi(), first_k = std::max(0, bin.radius - 1);
-  const int last_k = std::min(grid.numRadius() - 1, bin.radius + 1);
-  for (int t = std::max(0, bin.theta - 1); t <= std::min(grid.numTheta() - 1, bin.theta + 1); ++t) {
-    for (int dp = -1; dp <= 1; ++dp) {
-      const float* const row = &map.values[grid.index({t, (bin.phi + dp + num_phi) % num_phi, 0})];
-      for (int k = first_k; k <= last_k; ++k)
-        if (row[k] > value) return true;
-    }
-  }
-  return false;
-}
-
 /// Sum of the second differences. Planes beyond the ends of r have D = 0.
 double laplacian(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
   const auto value = [&](int dt, int dp, int dk) {
@@ -95,7 +78,7 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
         if (!marks[k]) continue;
         const PlaneGrid::Bin bin{t, p, k};
         const double share = 1.0 - std::abs(grid.offset(k) - center_offset) / grid.radius();
-        if (values[k] < strength * share || isBelowNeighbor(map, bin)) continue;
+        if (values[k] < strength * share) continue;
         if (!isLocalMaximum(map, grid.index(bin)) || -laplacian(map, bin) < curvature) continue;
         rows[row].push_back({bin, grid.plane(bin), values[k]});
       }

@@ -6,7 +6,6 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/transform/edt_samples.h"
-#include "core/transform/filled_slabs.h"
 #include "core/transform/free_space.h"
 #include "core/transform/line_kernel.h"
 #include "core/transform/lookup_table.h"
@@ -48,11 +47,8 @@ struct GridInCells {
 /// Sums of the table's functions over reflected samples, for all planes of one direction.
 class DirectionSums {
 public:
-  /// \param slabs null = lines end at the ball alone.
-  DirectionSums(const CoordinateRows& points, const FilledSlabs* slabs, const LookupTable& table, LineKernel accumulate,
-                int num_radius)
+  DirectionSums(const CoordinateRows& points, const LookupTable& table, LineKernel accumulate, int num_radius)
       : points_(points),
-        slabs_(slabs),
         table_(table),
         accumulate_(accumulate),
         chunk_sums_(table.numFunctions(), std::vector<std::int32_t>(num_radius + 2 * kLineLanes)),
@@ -74,8 +70,7 @@ public:
     const int num_samples = static_cast<int>(points_.cols());
     for (int first = 0; first < num_samples; first += kMostLines) {
       lines_.size = std::min(kMostLines, num_samples - first);
-      const SlabsOfSamples slabs = slabs_ ? slabs_->from(first) : SlabsOfSamples{};
-      setUpLines({&points_(0, first), &points_(1, first), &points_(2, first)}, planes, cube, slabs, lines_);
+      setUpLines({&points_(0, first), &points_(1, first), &points_(2, first)}, planes, cube, lines_);
       for (auto& sums : chunk_sums_) std::fill(sums.begin(), sums.end(), 0);
       accumulate_(lines_, table_.data(), table_.bits(), sums_of_.data());
       for (std::size_t g = 0; g < totals_.size(); ++g)
@@ -86,7 +81,6 @@ public:
 
 private:
   const CoordinateRows& points_;
-  const FilledSlabs* slabs_;
   const LookupTable& table_;
   LineKernel accumulate_;
   std::vector<std::vector<std::int32_t>> chunk_sums_;
@@ -97,20 +91,17 @@ private:
 };
 
 /// D(gamma) = (S / |f|^2) mean g(gamma x_i) at every bin, for each function g of the table.
-/// \param of_f_alone the table holds f and nothing else.
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
-                                            const SampledTransformOptions& options, const LookupTable& table,
-                                            bool of_f_alone) {
+                                            const SampledTransformOptions& options, const LookupTable& table) {
   options.validate();
   const CoordinateRows points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
   const LineKernel accumulate = lineKernel(options.simd, table.numFunctions());
-  const FilledSlabs slabs(edt, points);
   const GridInCells bins(edt, grid, table);
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const int num_radius = grid.numRadius();
   std::vector<std::vector<float>> means(table.numFunctions(), std::vector<float>(grid.size()));
   const auto run = [&](std::size_t begin, std::size_t end) {
-    DirectionSums sums(points, of_f_alone ? &slabs : nullptr, table, accumulate, num_radius);
+    DirectionSums sums(points, table, accumulate, num_radius);
     for (std::size_t direction = begin; direction < end; ++direction) {
       const auto& totals = sums.over(bins.planes(direction), bins.cube);
       for (std::size_t g = 0; g < means.size(); ++g)
@@ -141,7 +132,7 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
   std::vector<const float*> functions{edt.interpolation().data()};
   if (!free_space.empty()) functions.push_back(checkedFreeSpace(edt, free_space));
   const LookupTable table(functions, edt.numCells(), options.num_threads);
-  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, table, free_space.empty());
+  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, table);
   SymmetryMap map;
   map.grid = grid;
   map.values = std::move(means[0]);
@@ -155,7 +146,7 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
 std::vector<float> freeOverlap(const GaussianEdt& edt, const PlaneGrid& grid, const std::vector<float>& free_space,
                                const SampledTransformOptions& options) {
   const LookupTable table({checkedFreeSpace(edt, free_space)}, edt.numCells(), options.num_threads);
-  return std::move(sampleMeans(edt, grid, options, table, false)[0]);
+  return std::move(sampleMeans(edt, grid, options, table)[0]);
 }
 
 void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap) {

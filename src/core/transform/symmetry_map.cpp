@@ -2,33 +2,12 @@
 
 #include <algorithm>
 
-#include "core/base/simd.h"
 #include "core/transform/direction_rows.h"
 
 namespace pcl_symmetry {
 
-namespace {
-
-/// \return the greatest of some values, all of them numbers.
-PCL_SYMMETRY_MULTIVERSION
-float greatestOf(const float* values, std::size_t size) {
-  constexpr std::size_t num_lanes = 32;  // two AVX-512 registers, which do not wait for each other
-  float lanes[num_lanes];
-  for (float& lane : lanes) lane = values[0];
-  std::size_t i = 0;
-  for (; i + num_lanes <= size; i += num_lanes)
-    for (std::size_t k = 0; k < num_lanes; ++k) lanes[k] = lanes[k] < values[i + k] ? values[i + k] : lanes[k];
-  float greatest = lanes[0];
-  for (const float lane : lanes) greatest = std::max(greatest, lane);
-  for (; i < size; ++i) greatest = std::max(greatest, values[i]);
-  return greatest;
-}
-
-}  // namespace
-
 std::size_t SymmetryMap::strongest() const {
-  if (values.empty()) return 0;
-  return std::find(values.begin(), values.end(), greatestOf(values.data(), values.size())) - values.begin();
+  return std::max_element(values.begin(), values.end()) - values.begin();
 }
 
 std::vector<float> pointSymmetry(const SymmetryMap& map, const PointsRef& points, int num_threads) {
