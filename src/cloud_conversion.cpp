@@ -9,9 +9,9 @@
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/base/even_draw.h"
 #include "core/base/parallel.h"
 #include "core/geometry/answerable_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/scan/depth_filter.h"
 #include "core/scan/sensor_noise.h"
 #include "core/scan/single_view.h"

@@ -5,7 +5,6 @@
 
 #include "io/file_text.h"
 #include "io/json_values.h"
-#include "core/rotation/rotation_cover.h"
 
 namespace pcl_symmetry::apps {
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/base/even_draw.h"
+#include "core/geometry/point_samples.h"
 #include "core/scan/viewpoint_inference.h"
 
 namespace py = pybind11;

@@ -9,31 +9,22 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Sums over points that give their mean and covariance, in one line of the cache.
-class Moments {
-public:
+/// Sums over points that give their mean and covariance.
+struct Moments {
+  float count = 0.0f;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+
   void add(const Eigen::Vector3f& p) {
-    sums_[0] += 1.0f;
-    sums_.segment<3>(1) += p;
-    sums_.segment<3>(4) += p.x() * p;
-    sums_.segment<2>(7) += p.y() * p.tail<2>();
-    sums_[9] += p.z() * p.z();
+    count += 1.0f;
+    sum += p;
+    squares += p * p.transpose();
   }
-  void operator+=(const Moments& other) { sums_ += other.sums_; }
-
-  float count() const { return sums_[0]; }
-
-  /// Sums of the products of offsets from the mean.
-  Eigen::Matrix3f covariance() const {
-    Eigen::Matrix3f squares;
-    squares << sums_[4], sums_[5], sums_[6], sums_[5], sums_[7], sums_[8], sums_[6], sums_[8], sums_[9];
-    const Eigen::Vector3f sum = sums_.segment<3>(1);
-    return squares - sum * sum.transpose() / count();
+  void operator+=(const Moments& other) {
+    count += other.count;
+    sum += other.sum;
+    squares += other.squares;
   }
-
-private:
-  // Number; sums of x, y, z, of xx, xy, xz, of yy, yz, and of zz; padding.
-  Eigen::Matrix<float, 16, 1> sums_ = Eigen::Matrix<float, 16, 1>::Zero();
 };
 
 /// Moments of the points in each occupied cell. Occupied cells have slots, in the order of their first points.
@@ -93,9 +84,9 @@ CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, 
     const auto column = static_cast<Eigen::Index>(c);
     result.normals.col(column).setUnit(2);
     const Moments near = cells.around(c);
-    if (near.count() < kGeometry.fewest_cell_points) continue;
+    if (near.count < kGeometry.fewest_cell_points) continue;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-    solver.computeDirect(near.covariance());
+    solver.computeDirect(near.squares - near.sum * near.sum.transpose() / near.count);
     const Eigen::Vector3f values = solver.eigenvalues();
     if (!(values[2] > 0.0f) || !solver.eigenvectors().allFinite()) continue;
     result.normals.col(column) = solver.eigenvectors().col(0).normalized();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "pcl_symmetry/core/point_set.h"
@@ -19,5 +20,10 @@ std::vector<Eigen::Vector3i> finiteTriangles(const PointsRef& vertices, const st
 /// \throws std::invalid_argument for an index out of range, or a total area of zero.
 Points sampleTriangles(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles, int num_points,
                        std::uint64_t seed = 1);
+
+/// The borders of a mesh: edges that have one triangle, by the positions of their ends, because files repeat vertices.
+/// \param triangles indices of finite vertices.
+/// \return indices of vertices.
+std::vector<std::pair<int, int>> openEdges(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles);
 
 }  // namespace pcl_symmetry

@@ -11,7 +11,6 @@
 #include "core/base/median.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/mesh_sampling.h"
-#include "core/geometry/open_edges.h"
 #include "core/geometry/triangle_tree.h"
 
 namespace pcl_symmetry {

@@ -86,16 +86,7 @@ SurfaceDiscs::Nearest SurfaceDiscs::nearest(const Eigen::Vector3f& x) const {
   float least = reach_ * reach_;
   const Range range = discsNear(x);
   for (const int* disc = range.begin; disc != range.end; ++disc) {
-    const Disc& d = discs_[*disc];
-    const Eigen::Vector3f difference = x - d.center;
-    const float across = d.normal.dot(difference), sq_across = across * across;
-    if (sq_across > least) continue;
-    const float sq_along = difference.squaredNorm() - sq_across;
-    float sq_distance = sq_across;
-    if (sq_along > d.radius * d.radius) {
-      const float beside = std::sqrt(sq_along) - d.radius;
-      sq_distance += beside * beside;
-    }
+    const float sq_distance = sqDistance(*disc, x, 1.0f);
     if (!(sq_distance <= least)) continue;
     least = sq_distance;
     result.disc = *disc;

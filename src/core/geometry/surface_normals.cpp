@@ -1,20 +1,18 @@
 #include "core/geometry/surface_normals.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
-#include "core/geometry/curve_order.h"
 #include "core/geometry/geometry_rules.h"
-#include "core/geometry/point_samples.h"
-#include "core/geometry/tangent_planes.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t places_of_block = 512;
+constexpr std::size_t points_per_block = 512;
 
 /// Number of points to search for: the neighbors and the point itself, as far as there are any.
 int numToSearch(Eigen::Index size, int num_neighbors) {
@@ -37,6 +35,32 @@ float spacingOf(double sq_radius, int count) {
   return static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
 }
 
+/// The plane through the neighbors of a position.
+struct TangentPlane {
+  Eigen::Vector3f normal;      ///< unit; along z where the neighbors show no plane
+  Eigen::Vector3f offset_sum;  ///< sum of the neighbors' offsets from the position
+  float roughness;             ///< root mean square distance of the neighbors from the plane
+};
+
+/// \param neighbors \p count indices of points.
+TangentPlane tangentPlane(const Points& points, const Eigen::Vector3f& position, const int* neighbors, int count) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
+  for (int k = 0; k < count; ++k) {
+    const Eigen::Vector3f offset = points.col(neighbors[k]) - position;
+    sum += offset;
+    covariance += offset * offset.transpose();
+  }
+  covariance -= sum * sum.transpose() / static_cast<float>(count);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(covariance);
+  Eigen::Vector3f normal = solver.eigenvectors().col(0);
+  const bool is_usable = std::abs(normal.squaredNorm() - 1.0f) < 0.1f;  // false where one is no number
+  const float sq_residual = is_usable ? normal.dot(covariance * normal) : covariance.trace();
+  if (!is_usable) normal = Eigen::Vector3f::UnitZ();
+  return {normal, sum, std::sqrt(std::max(0.0f, sq_residual) / static_cast<float>(std::max(1, count - 3)))};
+}
+
 }  // namespace
 
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbors, int num_threads,
@@ -50,30 +74,21 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
     neighbors->indices.resize(size * static_cast<std::size_t>(count));
     neighbors->sq_reach.resize(size);
   }
-  const std::vector<int> order = curveOrder(points);  // a search finds the neighbors of near points together
-  parallelRanges(size, places_of_block, num_threads, [&](std::size_t begin, std::size_t end) {
-    const Points queries = pointsAt(points, std::vector<int>(order.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                             order.begin() + static_cast<std::ptrdiff_t>(end)));
+  parallelRanges(size, points_per_block, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> indices;
     std::vector<float> sq_distances;
-    search.search(queries, count, indices, sq_distances);
-    TangentPlanes planes;
-    for (std::size_t k = 0; k < end - begin; ++k) {
-      const auto i = static_cast<std::size_t>(order[begin + k]);
-      const int* nearest = indices.data() + k * static_cast<std::size_t>(count);
+    search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      const int* const nearest = indices.data() + (i - begin) * static_cast<std::size_t>(count);
       if (neighbors) std::copy_n(nearest, count, &neighbors->indices[i * static_cast<std::size_t>(count)]);
-      const std::size_t position = k % TangentPlanes::most;
-      if (position == 0)
-        planes.fit(points, queries.middleCols(k, std::min<std::size_t>(TangentPlanes::most, end - begin - k)), nearest,
-                   count);
+      const TangentPlane plane = tangentPlane(points, points.col(column), nearest, count);
       geometry.nearest[i] = witnessesOf(static_cast<int>(i), nearest, count);
-      geometry.normals.col(i) << planes.normal[0][position], planes.normal[1][position], planes.normal[2][position];
-      geometry.roughness[i] = planes.roughness[position];
-      const Eigen::Vector3f offset_sum(planes.offset_sum[0][position], planes.offset_sum[1][position],
-                                       planes.offset_sum[2][position]);
-      const double sq_radius = sq_distances[(k + 1) * count - 1];
+      geometry.normals.col(column) = plane.normal;
+      geometry.roughness[i] = plane.roughness;
+      const double sq_radius = sq_distances[(i - begin + 1) * static_cast<std::size_t>(count) - 1];
       if (neighbors) neighbors->sq_reach[i] = static_cast<float>(sq_radius);
-      const double offset = offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
+      const double offset = plane.offset_sum.norm() / static_cast<float>(std::max(1, count - 1));
       geometry.at_border[i] = offset > kGeometry.border_offset * std::sqrt(sq_radius) ? 1 : 0;
       geometry.spacing[i] = spacingOf(sq_radius, count);
     }
@@ -88,15 +103,11 @@ GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch&
   std::vector<float> sq_distances;
   search.search(positions, count, indices, sq_distances);
   GeometryAtPlaces geometry{Points(3, positions.cols()), {}, {}};
-  TangentPlanes planes;
-  for (Eigen::Index begin = 0; begin < positions.cols(); begin += TangentPlanes::most) {
-    const auto size = std::min<Eigen::Index>(TangentPlanes::most, positions.cols() - begin);
-    planes.fit(points, positions.middleCols(begin, size), indices.data() + begin * count, count);
-    for (Eigen::Index k = 0; k < size; ++k) {
-      geometry.normals.col(begin + k) << planes.normal[0][k], planes.normal[1][k], planes.normal[2][k];
-      geometry.roughness.push_back(planes.roughness[k]);
-      geometry.spacing.push_back(spacingOf(sq_distances[static_cast<std::size_t>((begin + k + 1) * count - 1)], count));
-    }
+  for (Eigen::Index k = 0; k < positions.cols(); ++k) {
+    const TangentPlane plane = tangentPlane(points, positions.col(k), indices.data() + k * count, count);
+    geometry.normals.col(k) = plane.normal;
+    geometry.roughness.push_back(plane.roughness);
+    geometry.spacing.push_back(spacingOf(sq_distances[static_cast<std::size_t>((k + 1) * count - 1)], count));
   }
   return geometry;
 }

@@ -10,7 +10,6 @@
 #include "core/base/parallel.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/mesh_sampling.h"
-#include "core/geometry/open_edges.h"
 #include "core/geometry/reflected_points.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangle_tree.h"

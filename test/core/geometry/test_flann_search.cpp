@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/geometry/curve_order.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -51,27 +50,6 @@ Points queriesFor(const Points& points) {
     queries.col(i) = points.col(i / 4) + off * move;
   }
   return queries;
-}
-
-TEST(FlannSearch, FindsTheNeighborsOfManyQueriesAsOfEachAlone) {
-  for (const auto& [name, points] : pointSets()) {
-    const FlannSearch search(points);
-    // Scattered queries, and points along a curve, whose neighbors are found by groups.
-    for (const Points& queries : {queriesFor(points), Points(points(Eigen::all, curveOrder(points)))}) {
-      for (const int count : {1, 5, 9, 17, 24, 30}) {
-        if (count > points.cols()) continue;
-        std::vector<int> indices, alone;
-        std::vector<float> sq_distances, sq_alone;
-        search.search(queries, count, indices, sq_distances);
-        for (Eigen::Index i = 0; i < queries.cols(); ++i) {
-          search.search(queries.col(i), count, alone, sq_alone);
-          const auto first = i * count;
-          ASSERT_TRUE(std::equal(alone.begin(), alone.end(), indices.begin() + first)) << name << ", " << count;
-          ASSERT_TRUE(std::equal(sq_alone.begin(), sq_alone.end(), sq_distances.begin() + first)) << name;
-        }
-      }
-    }
-  }
 }
 
 TEST(FlannSearch, GivesTheSameAnswersWithLists) {
