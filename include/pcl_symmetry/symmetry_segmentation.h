@@ -20,13 +20,6 @@ namespace detail {
 /// \throws std::invalid_argument where the mesh refers to vertices that it does not have.
 bool hasArea(const pcl::PolygonMesh& mesh);
 
-/// \param points 3 x N.
-/// \param search over these points.
-/// \param num_threads 0 = one per core.
-/// \return for each point the num_neighbors closest others, or all where there are fewer, nearest first.
-std::vector<std::vector<int>> nearestOthers(const Points& points, const ClosestPointSearch& search, int num_neighbors,
-                                            int num_threads);
-
 }  // namespace detail
 
 /// Cuts a cloud or a mesh into parts by its symmetries (Section 5.3 of the paper).
@@ -166,7 +159,7 @@ void SymmetrySegmentation<PointT>::segmentCloud() {
   options.make_search = detail::searchOf<PointT>(search_, "SymmetrySegmentation", options_.num_threads);
   const MakeSearch make_search = options.make_search ? options.make_search : makeFlannSearch;
   const std::vector<std::vector<int>> neighbors =
-      detail::nearestOthers(points, *make_search(points), num_neighbors_, options_.num_threads);
+      nearestOthers(points, *make_search(points), num_neighbors_, options_.num_threads);
   segmentation_ = segmentSurface(cloudGraph(points, neighbors), options);
 
   labels_.assign(input_->size(), -1);

@@ -13,6 +13,7 @@
 
 #include "core/detection/plane_decision.h"
 #include "core/detection/turn_confidence.h"
+#include "core/segmentation/merge_fit.h"
 #include "core/segmentation/region_merging.h"
 #include "python/input_points.h"
 
@@ -121,7 +122,7 @@ public:
   const std::vector<int>& patches() const { return evidence_.patches.of_element; }
 
   py::array merges(const std::optional<std::vector<double>>& given) const {
-    MergeWeights weights = fittedWeights(MergingEvidence::All);
+    MergeWeights weights = kMergeFit[static_cast<std::size_t>(MergingEvidence::All)];
     if (given && given->size() != weights.size())
       throw std::invalid_argument("weights = " + std::to_string(given->size()) + " numbers, must be " +
                                   std::to_string(weights.size()));
@@ -130,7 +131,7 @@ public:
     {
       const py::gil_scoped_release release;
       Regions regions(evidence_);
-      for (const Merge& merge : mergeRegions(regions, weights).merges) {
+      for (const Merge& merge : mergeRegions(regions, weights)) {
         MergeRow row{merge.into, merge.from, merge.log_odds, regions.area(merge.into), regions.area(merge.from), {}};
         copyTo(row.cues, regions.cues(merge.into, merge.from));
         rows.push_back(row);

@@ -258,17 +258,9 @@ std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions
   const py::gil_scoped_release release;
   const PointsRef used = input.points();
   if (used.cols() <= kNumNeighbors) throw std::invalid_argument("points: too few to have parts, must be more than 12");
-  const ClosestPointSearch::Ptr search = makeFlannSearch(used);
-  std::vector<int> found, labels(input.numRows(), -1);
-  std::vector<float> sq_distances;
-  search->search(used, kNumNeighbors + 1, found, sq_distances);
-  std::vector<std::vector<int>> neighbors(used.cols());
-  for (std::size_t i = 0; i < neighbors.size(); ++i)
-    for (int k = 0; k <= kNumNeighbors; ++k) {
-      const int j = found[i * (kNumNeighbors + 1) + k];
-      if (j != static_cast<int>(i) && neighbors[i].size() < kNumNeighbors) neighbors[i].push_back(j);
-    }
+  const auto neighbors = nearestOthers(used, *makeFlannSearch(used), kNumNeighbors, options.num_threads);
   const Segmentation parts = segmentSurface(cloudGraph(used, neighbors), options);
+  std::vector<int> labels(input.numRows(), -1);
   if (input.rows().empty()) return parts.labels;
   for (std::size_t i = 0; i < input.rows().size(); ++i) labels[input.rows()[i]] = parts.labels[i];
   return labels;

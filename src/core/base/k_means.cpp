@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/base/check.h"
 #include "core/base/random.h"
 
 namespace pcl_symmetry {
@@ -61,25 +60,16 @@ void moveCenters(const Eigen::MatrixXf& features, const std::vector<float>& weig
 
 }  // namespace
 
-void KMeansOptions::validate() const {
-  check(num_clusters >= 1, "num_clusters", num_clusters, ">= 1");
-  check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
-  check(num_tries >= 1, "num_tries", num_tries, ">= 1");
-}
-
-Clusters kMeans(const Eigen::MatrixXf& features, const std::vector<float>& weights, const KMeansOptions& options) {
-  options.validate();
-  check(features.cols() >= 1, "number of features", features.cols(), ">= 1");
-  check(weights.size() == static_cast<std::size_t>(features.cols()), "number of weights", weights.size(),
-        "the number of features");
-  check(std::any_of(weights.begin(), weights.end(), [](float w) { return w > 0.0f; }), "sum of the weights", 0, "> 0");
+Clusters kMeans(const Eigen::MatrixXf& features, const std::vector<float>& weights, int num_clusters,
+                std::uint64_t seed) {
+  constexpr int num_tries = 4, max_iterations = 100;
   Clusters best;
-  for (int attempt = 0; attempt < options.num_tries; ++attempt) {
-    RandomStream random(options.seed, attempt);
+  for (int attempt = 0; attempt < num_tries; ++attempt) {
+    RandomStream random(seed, attempt);
     Clusters clusters;
     clusters.labels.assign(features.cols(), -1);
-    clusters.centers = spreadCenters(features, weights, options.num_clusters, random);
-    for (int i = 0; i < options.max_iterations && assign(features, weights, clusters); ++i)
+    clusters.centers = spreadCenters(features, weights, num_clusters, random);
+    for (int i = 0; i < max_iterations && assign(features, weights, clusters); ++i)
       moveCenters(features, weights, clusters);
     if (attempt == 0 || clusters.sq_error < best.sq_error) best = std::move(clusters);
   }

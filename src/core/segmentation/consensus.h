@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/segmentation/merged_division.h"
+#include "core/segmentation/region_merging.h"
 #include "pcl_symmetry/core/surface_graph.h"
 
 namespace pcl_symmetry {

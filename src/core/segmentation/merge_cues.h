@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "pcl_symmetry/core/surface_segmentation.h"
-
 namespace pcl_symmetry {
 
 /// What speaks for or against two neighboring regions being one part.
@@ -28,12 +26,5 @@ using Cues = std::array<double, kNumCues>;
 
 /// Log odds per unit of each cue, in the order of Cue.
 using MergeWeights = std::array<double, kNumCues>;
-
-/// \return the weights that were fitted for a kind of evidence.
-const MergeWeights& fittedWeights(MergingEvidence evidence);
-
-/// Log odds that two regions are one part: a weighted sum of the cues.
-/// \return > 0 if they are more likely one part than two.
-double logOddsOfOnePart(const Cues& cues, const MergeWeights& weights);
 
 }  // namespace pcl_symmetry

@@ -6,7 +6,6 @@
 
 #include "core/base/check.h"
 #include "core/segmentation/graph_completion.h"
-#include "core/segmentation/surface_extent.h"
 #include "pcl_symmetry/core/surface_graph.h"
 
 namespace pcl_symmetry {

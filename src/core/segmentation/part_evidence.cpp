@@ -1,11 +1,19 @@
 #include "core/segmentation/part_evidence.h"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <utility>
+#include <vector>
 
+#include "core/base/constants.h"
+#include "core/base/median.h"
 #include "core/base/random.h"
 #include "core/geometry/reflected_points.h"
-#include "core/segmentation/body_evidence.h"
+#include "core/geometry/triangle_tree.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/surface_patches.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -13,6 +21,121 @@
 namespace pcl_symmetry {
 
 namespace {
+
+/// What rays through the body behind a surface tell about its K patches.
+struct BodyEvidence {
+  std::vector<double> thickness;  ///< K, as PartEvidence
+  Eigen::MatrixXf sight;          ///< K x K, as PartEvidence
+};
+
+struct SurfacePoint {
+  Eigen::Vector3f position, normal;
+  float reach;  ///< input units; rays from here begin at this distance
+};
+
+/// Points spread over each patch by area, one in each of equal shares. The points of a cloud stand for themselves.
+std::vector<std::vector<SurfacePoint>> samplePatches(const SurfaceGraph& graph, const Patches& patches, float radius,
+                                                     std::uint64_t seed) {
+  RandomStream random(seed);
+  const double whole = graph.area();
+  std::vector<double> step(patches.areas.size()), next(step.size()), so_far(step.size(), 0.0);
+  for (std::size_t p = 0; p < step.size(); ++p) {
+    step[p] = patches.areas[p] * whole / kSegmentation.samples_of_patch;
+    next[p] = random.uniform() * step[p];
+  }
+  std::vector<std::vector<SurfacePoint>> samples(step.size());
+  for (std::size_t t = 0; t < graph.triangles.size(); ++t) {
+    const int element = graph.element_of_triangle[t], p = patches.of_element[element];
+    const auto corner = [&](int k) -> Eigen::Vector3f { return graph.corners.col(graph.triangles[t][k]); };
+    const Eigen::Vector3f u = corner(1) - corner(0), v = corner(2) - corner(0);
+    so_far[p] += graph.is_cloud ? graph.areas[element] : 0.5 * u.cross(v).norm();
+    for (; step[p] > 0.0 && next[p] < so_far[p]; next[p] += step[p]) {
+      SurfacePoint sample{graph.centers.col(element), graph.normals.col(element), kSegmentation.least_reach * radius};
+      if (graph.is_cloud) {
+        sample.reach = std::max(kSegmentation.cloud_reach * std::sqrt(graph.areas[element]), sample.reach);
+      } else {
+        const auto root = static_cast<float>(std::sqrt(random.uniform())), share = static_cast<float>(random.uniform());
+        sample.position = corner(0) + root * ((1.0f - share) * u + share * v);
+      }
+      samples[p].push_back(sample);
+    }
+  }
+  return samples;
+}
+
+/// Directions in a cone about the inward normal, one in each of kSegmentation.rays_of_sample sectors.
+std::vector<Eigen::Vector3f> inwardDirections(const Eigen::Vector3f& normal, RandomStream& random) {
+  const Eigen::Vector3f u = normal.unitOrthogonal(), v = normal.cross(u);
+  std::vector<Eigen::Vector3f> directions;
+  for (int k = 0; k < kSegmentation.rays_of_sample; ++k) {
+    const double around = 2.0 * kPi * (k + random.uniform()) / kSegmentation.rays_of_sample;
+    const double tilt = std::tan(kSegmentation.cone_angle) * std::sqrt(random.uniform());
+    const Eigen::Vector3f aside =
+        static_cast<float>(tilt * std::cos(around)) * u + static_cast<float>(tilt * std::sin(around)) * v;
+    directions.push_back((aside - normal).normalized());
+  }
+  return directions;
+}
+
+/// Median length of the rays from the samples of a patch, input units; 0 if none met another side.
+float depthBehind(const std::vector<SurfacePoint>& samples, const TriangleTree& tree, RandomStream& random) {
+  std::vector<float> distances;
+  for (const SurfacePoint& sample : samples) {
+    for (const Eigen::Vector3f& inward : inwardDirections(sample.normal, random)) {
+      const RayHit hit = tree.closest(sample.position, inward, sample.reach);
+      if (hit.triangle >= 0) distances.push_back(hit.distance);
+    }
+  }
+  return distances.empty() ? 0.0f : static_cast<float>(median(std::move(distances)));
+}
+
+/// The position half-way through the body behind the sample that is closest to the center of its patch.
+Eigen::Vector3f innerPlace(const std::vector<SurfacePoint>& samples, const Eigen::Vector3f& center, float depth,
+                           const TriangleTree& tree) {
+  const SurfacePoint& middle = *std::min_element(samples.begin(), samples.end(), [&](const auto& a, const auto& b) {
+    return (a.position - center).squaredNorm() < (b.position - center).squaredNorm();
+  });
+  depth = std::min(depth, tree.closest(middle.position, -middle.normal, middle.reach).distance);
+  return middle.position - 0.5f * depth * middle.normal;
+}
+
+Eigen::MatrixXf linesOfSight(const Points& positions, const TriangleTree& tree) {
+  const Eigen::Index size = positions.cols();
+  Eigen::MatrixXf sight = Eigen::MatrixXf::Identity(size, size);
+  for (Eigen::Index from = 0; from < size; ++from)
+    for (Eigen::Index to = 0; to < from; ++to)
+      sight(to, from) = tree.blocks(positions.col(from), positions.col(to)) ? 0.0f : 1.0f;
+  sight.triangularView<Eigen::StrictlyLower>() = sight.transpose();
+  return sight;
+}
+
+/// Sends rays through the body behind each patch.
+/// \param tree of the triangles of the graph.
+/// \param seed of rays and samples.
+BodyEvidence bodyEvidence(const SurfaceGraph& graph, const TriangleTree& tree, const Patches& patches,
+                          std::uint64_t seed) {
+  const auto radius = static_cast<float>(boundingBall(graph.centers).radius);
+  const auto samples = samplePatches(graph, patches, radius, seed);
+  BodyEvidence evidence;
+  evidence.thickness.assign(samples.size(), 0.0);
+  Points inner = patches.centers;
+  for (std::size_t p = 0; p < samples.size(); ++p) {
+    if (samples[p].empty()) continue;
+    RandomStream random(seed, p);
+    const float depth = depthBehind(samples[p], tree, random);
+    const auto column = static_cast<Eigen::Index>(p);
+    evidence.thickness[p] = depth / radius;
+    inner.col(column) = innerPlace(samples[p], patches.centers.col(column), depth, tree);
+  }
+  evidence.sight = linesOfSight(inner, tree);
+  return evidence;
+}
+
+/// The evidence of a surface without an inside: thickness 0, and a patch sees itself alone.
+BodyEvidence noBodyEvidence(int num_patches) {
+  return {std::vector<double>(static_cast<std::size_t>(num_patches), 0.0),
+          Eigen::MatrixXf::Identity(num_patches, num_patches)};
+}
 
 SymmetryFeatures featuresOfWhole(const SurfaceGraph& graph, const SegmentationOptions& options) {
   std::vector<int> all(static_cast<std::size_t>(graph.size()));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/geometry/triangle_tree.h"
-#include "core/segmentation/patches.h"
+#include "core/segmentation/surface_patches.h"
 #include "core/segmentation/symmetry_features.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 
@@ -15,8 +15,11 @@ namespace pcl_symmetry {
 struct PartEvidence {
   Patches patches;
   std::vector<PatchBorder> borders;
-  std::vector<double> thickness;  ///< K, as BodyEvidence
-  Eigen::MatrixXf sight;          ///< K x K, as BodyEvidence
+  /// K, median length of rays from the patch to the other side of the body (shape diameter, Shapira et al. 2008), in
+  /// radii of the surface; 0 if no ray met another side.
+  std::vector<double> thickness;
+  /// K x K, symmetric: 1 if no surface lies between the positions half-way through the body behind two patches, else 0.
+  Eigen::MatrixXf sight;
   std::vector<PartPlane> planes;  ///< of the whole surface, strongest first
   Eigen::MatrixXf support;        ///< planes x K, in [0, 1]: means over the elements of a patch, by area
   /// For each plane with share >= kMappedShare: the patch at the reflection of the center of each patch.

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/segmentation/border_smoothing.h"
 #include "core/segmentation/consensus.h"
-#include "core/segmentation/fragments.h"
+#include "core/segmentation/merge_fit.h"
 #include "core/segmentation/mirrored_labels.h"
 #include "core/segmentation/part_evidence.h"
+#include "core/segmentation/segment_borders.h"
 #include "core/segmentation/segment_tree.h"
 
 namespace pcl_symmetry {
@@ -64,7 +64,7 @@ Segmentation segmentsOf(const SurfaceGraph& graph, const PartEvidence& evidence,
       segment_of_region[p] = segment;
     }
   }
-  result.tree = segmentTree(regions.ofPatches(), segment_of_region, mergeRegions(regions, weights).merges);
+  result.tree = segmentTree(regions.ofPatches(), segment_of_region, mergeRegions(regions, weights));
   result.tree[0].planes = evidence.planes;
   result = numberedByArea(graph, std::move(result));
   result.images = segmentImages(evidence, result.labels, result.num_segments);
@@ -79,7 +79,7 @@ Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptio
   };
   const WholeEvidence whole(graph, options);
   tell(0.3);
-  const MergeWeights& weights = fittedWeights(options.merging.evidence);
+  const MergeWeights& weights = kMergeFit[static_cast<std::size_t>(options.merging.evidence)];
   const auto num_divisions = static_cast<std::size_t>(options.merging.num_divisions);
   std::vector<MergedDivision> divisions(num_divisions);
   std::optional<PartEvidence> first;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
+#include "core/segmentation/part_evidence.h"
 #include "core/segmentation/regions.h"
 
 namespace pcl_symmetry {
@@ -12,18 +14,27 @@ struct Merge {
   double log_odds;  ///< that the two are one part, when they were merged
 };
 
-/// Merges of neighboring regions, those with the highest log odds first, until no two regions are neighbors.
-struct MergeSequence {
-  std::vector<Merge> merges;
-  std::size_t num_likely = 0;  ///< Number of merges with positive log odds, before the first one without.
-};
-
-/// Merges regions, the pair that is most likely one part first. Log odds are updated after each merge.
+/// Merges neighboring regions, the pair that is most likely one part first, until no two regions are neighbors. Log
+/// odds are updated after each merge.
 /// \param regions by value: the merges are made on a copy.
-MergeSequence mergeRegions(Regions regions, const MergeWeights& weights);
+std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights);
 
 /// Makes the first merges of a sequence.
 /// \param num_merges at most their number.
 Regions merged(Regions regions, const std::vector<Merge>& merges, std::size_t num_merges);
+
+/// What the merges of one division into patches say about pairs of elements.
+struct MergedDivision {
+  std::vector<int> cell;        ///< of each element, from 0: regions that are surely one part
+  Eigen::MatrixXf probability;  ///< cells x cells: that two of them are one part, in [0, 1]
+};
+
+/// Merges the patches of a division. Two cells are one part with the least probability among the merges that join them.
+/// \param num_parts 0, or the number of regions that are left: those joined later are surely not one part.
+MergedDivision mergedDivision(const PartEvidence& evidence, const MergeWeights& weights, int num_parts);
+
+/// The same surface, looked at in a mirror.
+/// \param reflected the element at the reflection of each element.
+MergedDivision reflectedDivision(const MergedDivision& division, const std::vector<int>& reflected);
 
 }  // namespace pcl_symmetry

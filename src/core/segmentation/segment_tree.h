@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/segmentation/patches.h"
 #include "core/segmentation/region_merging.h"
+#include "core/segmentation/surface_patches.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 
 namespace pcl_symmetry {

@@ -21,4 +21,32 @@ std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float c
 /// \param patch one per element; -1 for none. One element has a patch.
 std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch);
 
+/// K small patches of a surface.
+struct Patches {
+  std::vector<int> of_element;  ///< the patch of each element, in [0, K)
+  std::vector<double> areas;    ///< K, shares of the surface
+  Points centers;               ///< 3 x K, means weighted by area, input frame
+  Points normals;               ///< 3 x K, means weighted by area, unit
+
+  /// \return K.
+  int size() const { return static_cast<int>(areas.size()); }
+};
+
+/// Two neighboring patches and their common border.
+struct PatchBorder {
+  int from, to;
+  double length;          ///< input units
+  double edge_concavity;  ///< mean concavity of the edges, weighted by length, radians
+  /// (n_from - n_to) . d in [-2, 2], with the unit vector d from the center of the one to the center of the other;
+  /// > 0 if the normals point towards each other.
+  double patch_concavity;
+};
+
+/// Measures patches.
+/// \param of_element the patch of each element, from 0.
+Patches measuredPatches(const SurfaceGraph& graph, std::vector<int> of_element);
+
+/// \return the borders between neighboring patches, ordered by patches.
+std::vector<PatchBorder> patchBorders(const SurfaceGraph& graph, const Patches& patches);
+
 }  // namespace pcl_symmetry

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "core/segmentation/fragments.h"
+#include "core/segmentation/segment_borders.h"
 #include "core/segmentation/mirrored_labels.h"
 #include "pcl_symmetry/core/surface_graph.h"
 

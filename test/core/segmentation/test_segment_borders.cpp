@@ -1,4 +1,4 @@
-#include "core/segmentation/border_cut.h"
+#include "core/segmentation/segment_borders.h"
 
 #include <gtest/gtest.h>
 

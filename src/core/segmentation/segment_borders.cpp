@@ -1,0 +1,262 @@
+#include "core/segmentation/segment_borders.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <queue>
+#include <set>
+#include <utility>
+
+#include "core/segmentation/graph_cut.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// Distance of each element from the border between the sides, along the surface; infinite beyond the band.
+std::vector<float> distanceFromBorder(const SurfaceGraph& graph, const std::vector<int>& side, float band) {
+  std::vector<float> distance(side.size(), std::numeric_limits<float>::infinity());
+  using Entry = std::pair<float, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  const auto reach = [&](int element, float d) {
+    if (d > band || d >= distance[element]) return;
+    distance[element] = d;
+    queue.emplace(d, element);
+  };
+  for (const SurfaceGraph::Edge& edge : graph.edges) {
+    if (side[edge.from] < 0 || side[edge.to] < 0 || side[edge.from] == side[edge.to]) continue;
+    reach(edge.from, 0.0f);
+    reach(edge.to, 0.0f);
+  }
+  while (!queue.empty()) {
+    const auto [d, element] = queue.top();
+    queue.pop();
+    if (d > distance[element]) continue;
+    graph.visitNeighbors(element, [&, from = element, so_far = d](int to, const SurfaceGraph::Edge&) {
+      if (side[to] >= 0) reach(to, so_far + (graph.centers.col(to) - graph.centers.col(from)).norm());
+    });
+  }
+  return distance;
+}
+
+/// Elements that may change sides: the open ones and those in the band, without the farthest element of each side.
+std::vector<int> movableElements(const std::vector<int>& side, const std::vector<float>& distance,
+                                 const std::vector<int>& open) {
+  const int size = static_cast<int>(side.size());
+  std::vector<char> is_open(side.size(), 0);
+  for (const int element : open) is_open[element] = 1;
+  std::array<int, 2> farthest{-1, -1};
+  for (int i = 0; i < size; ++i) {
+    if (side[i] < 0 || is_open[i]) continue;
+    int& far = farthest[side[i]];
+    if (far < 0 || distance[i] > distance[far]) far = i;
+  }
+  std::vector<int> movable;
+  for (int i = 0; i < size; ++i)
+    if (side[i] >= 0 && i != farthest[side[i]] && (is_open[i] || !std::isinf(distance[i]))) movable.push_back(i);
+  return movable;
+}
+
+/// The network of the cut: movable elements are nodes, side 0 is the source and side 1 the sink.
+GraphCut networkOf(const SurfaceGraph& graph, const std::vector<int>& side, const std::vector<int>& movable,
+                   double concavity_weight) {
+  std::vector<int> node(side.size(), -1);
+  for (std::size_t i = 0; i < movable.size(); ++i) node[movable[i]] = static_cast<int>(i);
+  GraphCut cut;
+  cut.to_source.assign(movable.size(), 0.0);
+  cut.to_sink.assign(movable.size(), 0.0);
+  for (const SurfaceGraph::Edge& edge : graph.edges) {
+    const int from = node[edge.from], to = node[edge.to];
+    if (side[edge.from] < 0 || side[edge.to] < 0 || (from < 0 && to < 0)) continue;
+    const double capacity = edge.length * std::exp(-concavity_weight * std::max(0.0f, edge.concavity));
+    if (from >= 0 && to >= 0) {
+      cut.edges.push_back({from, to, capacity});
+    } else {
+      const int fixed = from >= 0 ? edge.to : edge.from;
+      (side[fixed] == 0 ? cut.to_source : cut.to_sink)[std::max(from, to)] += capacity;
+    }
+  }
+  return cut;
+}
+
+}  // namespace
+
+std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, const std::vector<int>& open,
+                           const BorderCutOptions& options) {
+  const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(options.band));
+  const std::vector<int> movable = movableElements(side, distance, open);
+  const std::vector<bool> with_first = networkOf(graph, side, movable, options.concavity_weight).solve();
+  for (std::size_t i = 0; i < movable.size(); ++i) side[movable[i]] = with_first[i] ? 0 : 1;
+  return side;
+}
+
+namespace {
+
+/// Connected pieces of equal label.
+struct Pieces {
+  std::vector<int> of_element;
+  std::vector<double> areas;                    ///< input units squared
+  std::vector<int> labels;                      ///< of each piece
+  std::vector<char> is_largest;                 ///< whether no piece of the same label is larger
+  std::vector<std::map<int, double>> contacts;  ///< length of the border with each other label, input units
+};
+
+Pieces piecesOf(const SurfaceGraph& graph, const std::vector<int>& labels) {
+  Pieces pieces;
+  pieces.of_element = connectedPieces(graph, labels);
+  const std::vector<int>& of = pieces.of_element;
+  const auto num_pieces = 1 + static_cast<std::size_t>(*std::max_element(of.begin(), of.end()));
+  pieces.areas.assign(num_pieces, 0.0);
+  pieces.labels.assign(num_pieces, 0);
+  for (int i = 0; i < graph.size(); ++i) {
+    pieces.areas[of[i]] += graph.areas[i];
+    pieces.labels[of[i]] = labels[i];
+  }
+  std::map<int, std::size_t> largest;
+  for (std::size_t p = 0; p < num_pieces; ++p) {
+    const auto [entry, is_new] = largest.emplace(pieces.labels[p], p);
+    if (!is_new && pieces.areas[p] > pieces.areas[entry->second]) entry->second = p;
+  }
+  pieces.is_largest.assign(num_pieces, 0);
+  for (const auto& [label, piece] : largest) pieces.is_largest[piece] = 1;
+  pieces.contacts.resize(num_pieces);
+  for (const SurfaceGraph::Edge& edge : graph.edges) {
+    const int a = of[edge.from], b = of[edge.to];
+    if (a == b) continue;
+    pieces.contacts[a][pieces.labels[b]] += edge.length;
+    pieces.contacts[b][pieces.labels[a]] += edge.length;
+  }
+  return pieces;
+}
+
+}  // namespace
+
+std::vector<int> smoothBorders(const SurfaceGraph& graph, std::vector<int> labels, const BorderCutOptions& options) {
+  std::set<std::pair<int, int>> pairs;
+  for (const SurfaceGraph::Edge& edge : graph.edges) {
+    const auto pair = std::minmax(labels[edge.from], labels[edge.to]);
+    if (pair.first != pair.second) pairs.insert(pair);
+  }
+  for (const auto& [a, b] : pairs) {
+    std::vector<int> side;
+    for (const int label : labels) side.push_back(label == a ? 0 : label == b ? 1 : -1);
+    side = cutBorder(graph, std::move(side), {}, options);
+    for (std::size_t i = 0; i < side.size(); ++i)
+      if (side[i] >= 0) labels[i] = side[i] == 0 ? a : b;
+  }
+  return labels;
+}
+
+std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double least_area) {
+  const Pieces pieces = piecesOf(graph, labels);
+  std::vector<int> moved = pieces.labels;
+  for (std::size_t p = 0; p < moved.size(); ++p) {
+    const std::map<int, double>& contacts = pieces.contacts[p];
+    if (pieces.is_largest[p] || pieces.areas[p] >= least_area || contacts.empty()) continue;
+    moved[p] = std::max_element(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
+                 return a.second < b.second;
+               })->first;
+  }
+  std::vector<int> result(labels.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = moved[pieces.of_element[i]];
+  return result;
+}
+
+namespace {
+
+/// Segments with their areas and the lengths of their common borders, input units.
+class SmallSegments {
+public:
+  SmallSegments(const SurfaceGraph& graph, std::vector<int> labels) : graph_(graph), labels_(std::move(labels)) {
+    for (int i = 0; i < graph.size(); ++i) areas_[labels_[i]] += graph.areas[i];
+    for (const SurfaceGraph::Edge& edge : graph.edges) {
+      const int a = labels_[edge.from], b = labels_[edge.to];
+      if (a == b) continue;
+      contacts_[a][b] += edge.length;
+      contacts_[b][a] += edge.length;
+    }
+  }
+
+  int size() const { return static_cast<int>(areas_.size()); }
+  double area(int segment) const { return areas_.at(segment); }
+
+  int smallest() const {
+    return std::min_element(areas_.begin(), areas_.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+  }
+
+  /// The segment that a small one belongs to.
+  int hostOf(int segment) const {
+    const auto found = contacts_.find(segment);
+    if (found == contacts_.end() || found->second.empty()) return closestTo(segment);
+    return std::max_element(found->second.begin(), found->second.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+  }
+
+  void join(int host, int segment) {
+    areas_[host] += areas_[segment];
+    areas_.erase(segment);
+    std::replace(labels_.begin(), labels_.end(), segment, host);
+    for (const auto& [other, length] : contacts_[segment]) {
+      contacts_[other].erase(segment);
+      if (other == host) continue;
+      contacts_[other][host] += length;
+      contacts_[host][other] += length;
+    }
+    contacts_.erase(segment);
+  }
+
+  std::vector<int> labels() const {
+    std::map<int, int> number;
+    for (const auto& [segment, area] : areas_) number.emplace(segment, static_cast<int>(number.size()));
+    std::vector<int> labels;
+    for (const int label : labels_) labels.push_back(number.at(label));
+    return labels;
+  }
+
+private:
+  /// The segment with the element that is closest to the mean of a segment.
+  int closestTo(int segment) const {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    int count = 0;
+    for (int i = 0; i < graph_.size(); ++i) {
+      if (labels_[i] != segment) continue;
+      mean += graph_.centers.col(i).cast<double>();
+      ++count;
+    }
+    const Eigen::Vector3f middle = (mean / count).cast<float>();
+    int closest = segment;
+    float least = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < graph_.size(); ++i) {
+      const float sq_distance = (graph_.centers.col(i) - middle).squaredNorm();
+      if (labels_[i] == segment || sq_distance >= least) continue;
+      closest = labels_[i];
+      least = sq_distance;
+    }
+    return closest;
+  }
+
+  const SurfaceGraph& graph_;
+  std::vector<int> labels_;
+  std::map<int, double> areas_;                    ///< by segment
+  std::map<int, std::map<int, double>> contacts_;  ///< by both segments
+};
+
+}  // namespace
+
+std::vector<int> joinSmallSegments(const SurfaceGraph& graph, std::vector<int> labels, double least_area,
+                                   int most_segments) {
+  SmallSegments segments(graph, std::move(labels));
+  while (segments.size() > 1) {
+    const int smallest = segments.smallest();
+    if (segments.area(smallest) >= least_area && segments.size() <= most_segments) break;
+    segments.join(segments.hostOf(smallest), smallest);
+  }
+  return segments.labels();
+}
+
+}  // namespace pcl_symmetry

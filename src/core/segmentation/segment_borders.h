@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "pcl_symmetry/core/surface_graph.h"
+
+namespace pcl_symmetry {
+
+/// Where the border between two sides may run and what it costs.
+struct BorderCutOptions {
+  /// Elements within this distance of the old border, along the surface, may change sides; input units, >= 0.
+  double band = 0.0;
+  /// The cost of an edge is length * exp(-concavity_weight * max(0, concavity)), concavity in radians; >= 0. With 0 the
+  /// length alone counts, as in the paper.
+  double concavity_weight = 0.0;
+};
+
+/// Moves the border between two sides of a surface to the minimum cut (Section 5.3: "a weighted min-cut along the edges
+/// of the mesh").
+/// \param graph N elements.
+/// \param side N values: 0 or 1; -1 for an element of neither side, which stays.
+/// \param open elements that may change sides at any distance from the border.
+/// \param options band and costs. If a whole side lies within the band, its farthest element stays.
+/// \return N sides.
+std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, const std::vector<int>& open,
+                           const BorderCutOptions& options);
+
+/// Moves the border of each pair of neighboring labels to a minimum cut, so that it follows the surface instead of the
+/// patches.
+/// \param labels one per element, >= 0.
+/// \return new labels.
+std::vector<int> smoothBorders(const SurfaceGraph& graph, std::vector<int> labels, const BorderCutOptions& options);
+
+/// Gives small pieces that are cut off from the rest of their label to the neighboring label with the longest border.
+/// \param labels one per element, >= 0. The largest piece of each label stays.
+/// \param least_area of a piece that stays, input units squared.
+/// \return new labels.
+std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double least_area);
+
+/// Joins segments that are too small to be parts with the neighbor that they share most border with, or with the
+/// closest segment if they have no neighbor; the smallest segment first.
+/// \param labels one per element, from 0.
+/// \param least_area of a segment that stays, input units squared.
+/// \param most_segments that may stay, >= 1.
+/// \return new labels, from 0 without gaps.
+std::vector<int> joinSmallSegments(const SurfaceGraph& graph, std::vector<int> labels, double least_area,
+                                   int most_segments);
+
+}  // namespace pcl_symmetry
