@@ -127,7 +127,6 @@ private:
       return static_cast<float>((*depths)[static_cast<std::size_t>(v) * width + u] / unit);
     }
     double depthBehind(const Eigen::Vector3d& x) const;
-    void markFree(const Eigen::Matrix3Xd& points, std::vector<char>& is_free) const;
   };
 
   Visibility() = default;

@@ -10,7 +10,6 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/base/simd.h"
 #include "core/geometry/viewing_frame.h"
 #include "core/scan/picture_frame.h"
 #include "core/scan/range_image.h"
@@ -64,61 +63,6 @@ std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector
   RangeImage image = sceneRangeImage(seen, max_pixels);
   return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
                     std::move(image.depths), Visibility::kNoRay);
-}
-
-/// A picture, as plain numbers.
-struct PixelFrame {
-  double projection[12];  ///< column by column
-  int width, height;
-  double unit;
-  float outside;
-  const float* depths;
-};
-
-/// Homogeneous pixels of some points, and whether they lie before what the picture shows there.
-struct Images {
-  static constexpr int most = 64;
-  double x[most], y[most], z[most];
-  int is_free[most];
-};
-
-/// The steps of Visibility::Picture::depthBehind() but for the sides.
-/// \param points three coordinates each.
-PCL_SYMMETRY_MULTIVERSION
-void findImages(const double* points, int size, const PixelFrame& frame, Images& images) {
-  const double* const p = frame.projection;
-  const double a0 = p[0], a1 = p[1], a2 = p[2], b0 = p[3], b1 = p[4], b2 = p[5], c0 = p[6], c1 = p[7], c2 = p[8],
-               d0 = p[9], d1 = p[10], d2 = p[11];
-  const double unit = frame.unit, end_u = frame.width, end_v = frame.height;
-  const int width = frame.width;
-  const float outside = frame.outside;
-  const float* const depths = frame.depths;
-  double *const image_x = images.x, *const image_y = images.y, *const image_z = images.z;
-  int* const is_free = images.is_free;
-#pragma GCC ivdep
-  for (int i = 0; i < size; ++i) {
-    const double x = points[3 * i], y = points[3 * i + 1], z = points[3 * i + 2];
-    const double ix = a0 * x + b0 * y + c0 * z + d0, iy = a1 * x + b1 * y + c1 * z + d1,
-                 iz = a2 * x + b2 * y + c2 * z + d2;
-    const double u = ix / iz + 0.5, v = iy / iz + 0.5;
-    const bool inside = (u >= 0.0) & (v >= 0.0) & (u < end_u) & (v < end_v);
-    const int pixel = static_cast<int>(inside ? v : 0.0) * width + static_cast<int>(inside ? u : 0.0);
-    const auto depth = static_cast<float>(static_cast<double>(depths[pixel]) / unit);
-    const double behind = iz - static_cast<double>(inside ? depth : outside);
-    image_x[i] = ix;
-    image_y[i] = iy;
-    image_z[i] = iz;
-    is_free[i] = ((iz > 0.0) & (behind < 0.0)) ? 1 : 0;
-  }
-}
-
-/// No ray passed beyond a side.
-PCL_SYMMETRY_MULTIVERSION
-void leaveOutBeyond(const double* side, int size, Images& images) {
-  const double s0 = side[0], s1 = side[1], s2 = side[2];
-#pragma GCC ivdep
-  for (int i = 0; i < size; ++i)
-    images.is_free[i] = s0 * images.x[i] + s1 * images.y[i] + s2 * images.z[i] > 0.0 ? 0 : images.is_free[i];
 }
 
 }  // namespace
@@ -214,25 +158,9 @@ double Visibility::depthBehind(const Eigen::Vector3d& x) const {
   return behind;
 }
 
-void Visibility::Picture::markFree(const Eigen::Matrix3Xd& points, std::vector<char>& is_free) const {
-  PixelFrame frame{{}, width, height, unit, outside, depths->data()};
-  std::copy_n(projection.data(), projection.size(), frame.projection);
-  Images images;
-  for (Eigen::Index begin = 0; begin < points.cols(); begin += Images::most) {
-    const auto size = static_cast<int>(std::min<Eigen::Index>(Images::most, points.cols() - begin));
-    findImages(points.data() + 3 * begin, size, frame, images);
-    for (const Eigen::Vector3d& side : sides) leaveOutBeyond(side.data(), size, images);
-    for (int i = 0; i < size; ++i) is_free[static_cast<std::size_t>(begin + i)] |= static_cast<char>(images.is_free[i]);
-  }
-}
-
 std::vector<char> Visibility::areFree(const Eigen::Matrix3Xd& points) const {
-  std::vector<char> is_free(static_cast<std::size_t>(points.cols()), 0);
-  for (const Picture& picture : pictures_) picture.markFree(points, is_free);
-  for (const Eigen::Vector4d& support : supports_)
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-      if (support.head<3>().dot(Eigen::Vector3d(points.col(i))) + support[3] < 0.0)
-        is_free[static_cast<std::size_t>(i)] = 1;
+  std::vector<char> is_free;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) is_free.push_back(depthBehind(points.col(i)) < 0.0);
   return is_free;
 }
 
