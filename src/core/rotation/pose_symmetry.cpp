@@ -1,14 +1,17 @@
 /// Poses of a symmetric object: which of those that look the same. With a pose T and a symmetry S of the object, T S
 /// looks like T. All symmetries fix the center, so only rotations differ between poses that look the same.
+
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/rotation/circle_minimax.h"
 #include "core/rotation/rotation_cover.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
@@ -120,6 +123,34 @@ double greatestSqOffset(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     greatest = std::max(greatest, (A * points.col(i).cast<double>() + b).squaredNorm());
   return greatest;
+}
+
+/// mean + cosine cos(phi) + sine sin(phi): the squared distance of a point from one that rotates about an axis.
+struct CircleWave {
+  double mean, cosine, sine;
+};
+
+/// The angle at which the greatest of some waves is least: minima of samples, each refined.
+/// \return radians.
+double circleMinimax(const std::vector<CircleWave>& waves) {
+  const auto greatest = [&](double phi) {
+    const double c = std::cos(phi), s = std::sin(phi);
+    double most = -std::numeric_limits<double>::infinity();
+    for (const CircleWave& wave : waves) most = std::max(most, wave.mean + wave.cosine * c + wave.sine * s);
+    return most;
+  };
+  constexpr int num_samples = 720;
+  constexpr double step = 2.0 * kPi / num_samples;
+  std::vector<double> samples;
+  for (int k = 0; k < num_samples; ++k) samples.push_back(greatest(k * step));
+  std::pair<double, double> best{0.0, samples[0]};
+  for (int k = 0; k < num_samples; ++k) {
+    if (samples[k] > samples[(k + 1) % num_samples] || samples[k] > samples[(k + num_samples - 1) % num_samples])
+      continue;
+    const auto minimum = boost::math::tools::brent_find_minima(greatest, (k - 1) * step, (k + 1) * step, 48);
+    if (minimum.second < best.second) best = minimum;
+  }
+  return best.first;
 }
 
 /// The rotation about an axis that brings points closest to where a motion takes them.
