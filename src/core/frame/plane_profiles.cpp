@@ -4,7 +4,6 @@
 #include <array>
 
 #include "core/base/simd.h"
-#include "core/base/x86_intrinsics.h"
 #include "core/transform/edt_samples.h"
 #include "core/transform/free_space.h"
 #include "pcl_symmetry/core/visibility.h"
@@ -16,14 +15,15 @@ PlaneProfiles::PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& f
     : size_(static_cast<std::uint32_t>(edt.numCells())),
       middle_(0.5f * static_cast<float>(edt.numCells() - 1)),
       scanned_(!free_space.empty()),
-      outside_{0, static_cast<std::uint8_t>(scanned_ ? 255 : 0)},
+      outside_(scanned_ ? 255u << 8 : 0u),
       cells_(edt.values().size()),
       samples_(drawPoints(edt, num_samples, seed, num_threads).array() - middle_) {
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    cells_[i].surface = static_cast<std::uint8_t>(255.0f * edt.values()[i] + 0.5f);
-    cells_[i].free = free_space.empty() ? 0 : static_cast<std::uint8_t>(255.0f * free_space[i] + 0.5f);
+    const auto surface = static_cast<std::uint32_t>(255.0f * edt.values()[i] + 0.5f);
+    const auto free = free_space.empty() ? 0 : static_cast<std::uint32_t>(255.0f * free_space[i] + 0.5f);
+    cells_[i] = free << 8 | surface;
   }
-  cells_.insert(cells_.end(), 2, outside_);  // two are read at once
+  cells_.push_back(outside_);
 }
 
 /// The images of all samples on their way through the grid.
@@ -31,11 +31,11 @@ class PlaneProfiles::Walk {
 public:
   explicit Walk(std::size_t size) : x_(size), y_(size), z_(size), cells_(size) {}
 
-  /// \param place in cells from the corner of the grid.
-  void start(std::size_t sample, const Eigen::Vector3f& place) {
-    x_[sample] = place.x();
-    y_[sample] = place.y();
-    z_[sample] = place.z();
+  /// \param position in cells from the corner of the grid.
+  void start(std::size_t sample, const Eigen::Vector3f& position) {
+    x_[sample] = position.x();
+    y_[sample] = position.y();
+    z_[sample] = position.z();
   }
 
   /// \return the cell of each image, size^3 outside the grid; afterwards each is moved.
@@ -45,7 +45,7 @@ public:
   }
 
 private:
-  static void step(const std::array<float*, 3>& places, std::size_t count, const std::array<float, 3>& move,
+  static void step(const std::array<float*, 3>& positions, std::size_t count, const std::array<float, 3>& move,
                    std::uint32_t size, std::uint32_t* cells);
 
   std::vector<float> x_, y_, z_;
@@ -53,9 +53,9 @@ private:
 };
 
 PCL_SYMMETRY_MULTIVERSION
-void PlaneProfiles::Walk::step(const std::array<float*, 3>& places, std::size_t count, const std::array<float, 3>& move,
-                               std::uint32_t size, std::uint32_t* cells) {
-  float *const x = places[0], *const y = places[1], *const z = places[2];
+void PlaneProfiles::Walk::step(const std::array<float*, 3>& positions, std::size_t count,
+                               const std::array<float, 3>& move, std::uint32_t size, std::uint32_t* cells) {
+  float *const x = positions[0], *const y = positions[1], *const z = positions[2];
   const float dx = move[0], dy = move[1], dz = move[2];
   const std::uint32_t outside = size * size * size;
 #pragma GCC ivdep
@@ -71,64 +71,27 @@ void PlaneProfiles::Walk::step(const std::array<float*, 3>& places, std::size_t 
   }
 }
 
-/// Sums over the images of the samples: of the surface, and of free space, 255 for one.
-struct PlaneProfiles::Sums {
+/// Sums over the images of the samples.
+/// \param images cells of the images.
+/// \param completed the same in the reflection that completes a scan; null: there is none.
+PCL_SYMMETRY_MULTIVERSION
+PlaneProfiles::Sums PlaneProfiles::sumsOf(const std::uint32_t* __restrict cells, const std::uint32_t* __restrict images,
+                                          const std::uint32_t* __restrict completed, int count) {
   int surface = 0, free = 0;
-};
-
-#if defined(__x86_64__)
-
-/// sumsAt() for 16 samples at a time.
-__attribute__((target("avx512f"))) PlaneProfiles::Sums PlaneProfiles::sumsAvx512(const std::uint32_t* images,
-                                                                                 const std::uint32_t* completed) const {
-  constexpr int lanes = 16;  // numbers of 32 bits in a register
-  static_assert(sizeof(Cell) == 2);
-  const __m512i byte = _mm512_set1_epi32(255);
-  __m512i surface = _mm512_setzero_si512(), free = surface;
-  const auto size = static_cast<int>(samples_.cols());
-  for (int s = 0; s < size; s += lanes) {
-    const auto there = static_cast<__mmask16>((1u << std::min(lanes, size - s)) - 1u);
-    const auto at = [&](const std::uint32_t* places) __attribute__((target("avx512f"), always_inline)) {
-      const __m512i place = _mm512_maskz_loadu_epi32(there, places + s);
-      return _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), there, place, cells_.data(), sizeof(Cell));
-    };
-    const auto freeOf = [&](__m512i cell) __attribute__((target("avx512f"), always_inline)) {
-      return _mm512_and_epi32(_mm512_srli_epi32(cell, 8), byte);
-    };
-    const __m512i a = at(images);
-    __m512i f = _mm512_and_epi32(a, byte), seen = freeOf(a);
-    if (completed) {
-      const __m512i b = at(completed);
-      f = _mm512_max_epi32(f, _mm512_and_epi32(b, byte));
-      seen = _mm512_min_epi32(_mm512_max_epi32(seen, freeOf(b)), _mm512_sub_epi32(byte, f));
+  if (!completed) {
+    for (int s = 0; s < count; ++s) {
+      surface += surfaceOf(cells[images[s]]);
+      free += freeOf(cells[images[s]]);
     }
-    surface = _mm512_mask_add_epi32(surface, there, surface, f);
-    free = _mm512_mask_add_epi32(free, there, free, seen);
+    return {surface, free};
   }
-  return {_mm512_reduce_add_epi32(surface), _mm512_reduce_add_epi32(free)};
-}
-
-#endif
-
-PlaneProfiles::Sums PlaneProfiles::sumsAt(const std::uint32_t* images, const std::uint32_t* completed) const {
-#if defined(__x86_64__)
-  static const bool has_avx512 = __builtin_cpu_supports("avx512f");
-  if (has_avx512) return sumsAvx512(images, completed);
-#endif
-  Sums sums;
-  for (Eigen::Index s = 0; s < samples_.cols(); ++s) {
-    const Cell a = cells_[images[s]];
-    if (!completed) {
-      sums.surface += a.surface;
-      sums.free += a.free;
-      continue;
-    }
-    const Cell b = cells_[completed[s]];
-    const int f = std::max(a.surface, b.surface);
-    sums.surface += f;
-    sums.free += std::min<int>(std::max(a.free, b.free), 255 - f);
+  for (int s = 0; s < count; ++s) {
+    const std::uint32_t a = cells[images[s]], b = cells[completed[s]];
+    const int there = std::max(surfaceOf(a), surfaceOf(b));
+    surface += there;
+    free += std::min(std::max(freeOf(a), freeOf(b)), 255 - there);
   }
-  return sums;
+  return {surface, free};
 }
 
 /// The image of a sample moves by twice the step of the offset along the normal: each profile is a walk through the
@@ -144,13 +107,13 @@ std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float fi
     const float shift = 2.0f * (first - normal.dot(x));
     images.start(s, (x + shift * normal).array() + to_index);
     const Eigen::Vector3f here = x.array() + to_index;
-    int surface = at(here[0], here[1], here[2]).surface;
+    int surface = surfaceOf(at(here[0], here[1], here[2]));
     if (completed_across) {
       const Eigen::Vector3f y =
           x - 2.0f * (completed_across->normal.dot(x) - completed_across->offset) * completed_across->normal;
       completed.start(s, (y + shift * normal).array() + to_index);
       const Eigen::Vector3f there = y.array() + to_index;
-      surface = std::max<int>(surface, at(there[0], there[1], there[2]).surface);
+      surface = std::max(surface, surfaceOf(at(there[0], there[1], there[2])));
     }
     own += surface;
   }
@@ -160,7 +123,8 @@ std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float fi
   const Eigen::Vector3f move = 2.0f * step * normal;
   for (int k = 0; k < count; ++k) {
     const std::uint32_t* const at_images = images.cellsThenMove(move, size_);
-    const Sums sums = sumsAt(at_images, completed_across ? completed.cellsThenMove(move, size_) : nullptr);
+    const std::uint32_t* const at_completed = completed_across ? completed.cellsThenMove(move, size_) : nullptr;
+    const Sums sums = sumsOf(cells_.data(), at_images, at_completed, static_cast<int>(num_samples));
     result[k] =
         static_cast<float>(scanned_ ? seenSymmetry(scale * sums.surface, scale * sums.free) : scale * sums.surface);
   }

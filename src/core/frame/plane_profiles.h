@@ -46,18 +46,18 @@ public:
   float score(const CellPlane& plane) const { return scores(plane.normal, plane.offset, 0.0f, 1)[0]; }
 
 private:
-  struct Cell {
-    std::uint8_t surface, free;  // 255 times f and free space
-  };
   class Walk;
-  struct Sums;
+  /// Over the images of the samples, 255 for one.
+  struct Sums {
+    int surface, free;
+  };
 
-  /// \param images cells of the images of the samples.
-  /// \param completed the same in the reflection that completes a scan; null: there is none.
-  Sums sumsAt(const std::uint32_t* images, const std::uint32_t* completed) const;
-  Sums sumsAvx512(const std::uint32_t* images, const std::uint32_t* completed) const;
+  static Sums sumsOf(const std::uint32_t* cells, const std::uint32_t* images, const std::uint32_t* completed,
+                     int count);
+  static int surfaceOf(std::uint32_t cell) { return static_cast<int>(cell & 255u); }
+  static int freeOf(std::uint32_t cell) { return static_cast<int>(cell >> 8); }
 
-  Cell at(float x, float y, float z) const {
+  std::uint32_t at(float x, float y, float z) const {
     const auto i = static_cast<std::uint32_t>(static_cast<int>(x));
     const auto j = static_cast<std::uint32_t>(static_cast<int>(y));
     const auto k = static_cast<std::uint32_t>(static_cast<int>(z));
@@ -67,8 +67,9 @@ private:
   std::uint32_t size_;
   float middle_;
   bool scanned_;
-  Cell outside_;
-  std::vector<Cell> cells_;   // and one for all that lies outside, twice
+  std::uint32_t outside_;
+  std::vector<std::uint32_t>
+      cells_;                 // 255 times f, and from bit 8 on 255 times free space; one for all outside at last
   Eigen::Matrix3Xf samples_;  // cells from the middle
 };
 

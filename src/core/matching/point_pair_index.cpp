@@ -63,16 +63,15 @@ PointPairIndex::PointPairIndex(const std::vector<SurfacePoints>& shapes, int num
 
 PointPairIndex::Block PointPairIndex::blockOf(int first_shape, int end_shape) const {
   std::vector<std::uint32_t> keys, pairs;
-  PairRow row;
   for (int k = first_shape; k < end_shape; ++k) {
     const double radius = radii_[static_cast<std::size_t>(k)];
     if (!(radius > 0.0)) continue;
     const int begin = begins_[static_cast<std::size_t>(k)], size = begins_[static_cast<std::size_t>(k) + 1] - begin;
     const PairedSurface surface(points_.middleCols(begin, size), normals_.middleCols(begin, size), radius);
     for (int i = 0; i < size; ++i) {
-      surface.fillRow(i, row);
+      const PairRow row = surface.row(i);
       const auto point = static_cast<std::uint32_t>(begin + i - begins_[static_cast<std::size_t>(first_shape)]);
-      for (std::size_t j = 0; j < static_cast<std::size_t>(size); ++j) {
+      for (int j = 0; j < size; ++j) {
         if (!(row.distance[j] > matching_rules.min_pair_distance)) continue;
         keys.push_back(static_cast<std::uint32_t>(keyOf(std::max(row.distance_step[j], first_distance_),
                                                         row.angle_step[j], row.other_step[j], row.between_step[j])));

@@ -34,9 +34,9 @@ PointPair pairOf(const Eigen::Matrix3d& frame, const Eigen::Vector3d& first, con
 
 /// Pairs of one point with all points of its surface.
 struct PairRow {
-  std::vector<float> distance;                                           ///< radii
-  std::vector<int> distance_step, angle_step, other_step, between_step;  ///< valid where distance > 0
-  std::vector<int> rotation;                                             ///< 1/256
+  Eigen::ArrayXf distance;                                             ///< radii
+  Eigen::ArrayXi distance_step, angle_step, other_step, between_step;  ///< valid where distance > 0
+  Eigen::ArrayXi rotation;                                             ///< 1/256
 };
 
 /// What pairOf() finds for all pairs of points of a surface, many at once.
@@ -47,17 +47,12 @@ public:
   PairedSurface(const PointsRef& points, const PointsRef& normals, double radius);
 
   /// Pairs of point \p i, the first of each pair.
-  void fillRow(int i, PairRow& row) const;
+  PairRow row(int i) const;
 
 private:
-  /// Coordinates, one after the other.
-  struct Columns {
-    std::vector<float> x, y, z;
-  };
-
-  Columns points_, normals_;
-  int first_step_;                   // of distances, below the shortest one
-  std::vector<float> sq_distances_;  // where each further step begins
+  Eigen::ArrayX3f points_, normals_;  // one a row
+  int first_step_;                    // of distances, below the shortest one
+  std::vector<float> sq_distances_;   // where each further step begins
 };
 
 }  // namespace pcl_symmetry
