@@ -15,19 +15,20 @@ namespace {
 
 using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
-// Points of the scan that ICP uses. chosen: half is less exact, twice takes twice the time.
-constexpr int kRefinedPoints = 1000;
-// Points of each cloud in the last comparison. chosen: half ranks close poses by chance, twice takes twice the time.
-constexpr int kJudgedPoints = 3000;
-// Accuracies, and radii at least: distance in which ICP looks for its first pairs. chosen: half finds too few pairs
-// from coarse poses, twice pairs different parts.
-constexpr double kReach = 4.0, kLeastReach = 0.08;
-// Radii, least width of the last comparison; otherwise it is the accuracy. chosen: half takes sampling for differences,
-// twice does not tell close poses apart.
-constexpr double kLeastFinalWidth = 0.015;
-// Merit behind the best pose at which poses are not refined. chosen: half drops poses that refinement would bring to
-// the front, twice takes more time.
-constexpr double kHopeless = 0.2;
+struct RefinementRules {
+  int refined_points = 1000;   ///< of the scan, that ICP uses
+  int judged_points = 3000;    ///< of each cloud in the last comparison
+  double reach = 4.0;          ///< accuracies, in which ICP looks for its first pairs
+  double least_reach = 0.08;   ///< radii
+  double least_width = 0.015;  ///< radii, of the Gaussian of the last comparison; otherwise it is the accuracy
+  double hopeless = 0.2;       ///< merit behind the best pose at which poses are not refined
+  /// Pairs that fix a motion of six unknowns; with fewer, PCL's ICP says so on stderr.
+  std::size_t least_pairs = 6;
+  /// Radii, width within which points of one surface lie on each other: at least, and where noise asks for more, at
+  /// most. On whole objects of PSB, a right pose has 0.41 of its points there with 400 points, a wrong one 0.29.
+  double contact = 0.02, most_contact = 0.03;
+};
+constexpr RefinementRules kRefinement;
 
 /// \param points indices of those that are taken.
 NormalCloud::Ptr cloudOf(const PosedSurface& surface, const std::vector<int>& points) {
@@ -42,15 +43,9 @@ NormalCloud::Ptr cloudOf(const PosedSurface& surface, const std::vector<int>& po
 
 /// Points that are spread over the scan.
 NormalCloud::Ptr fewPoints(const PosedSurface& scan) {
-  const auto size = std::min<std::size_t>(scan.order.size(), kRefinedPoints);
+  const auto size = std::min<std::size_t>(scan.order.size(), kRefinement.refined_points);
   return cloudOf(scan, {scan.order.begin(), scan.order.begin() + static_cast<std::ptrdiff_t>(size)});
 }
-
-// Pairs that fix a motion; with fewer, PCL's ICP says so on stderr. derived: a motion has six unknowns.
-constexpr std::size_t kLeastPairs = 6;
-// Radii, width within which points of one surface lie on each other: at least, and where noise asks for more, at most.
-// measured: on whole objects of PSB, a right pose has 0.41 of its points there with 400 points, a wrong one 0.29.
-constexpr double kContact = 0.02, kMostContact = 0.03;
 
 /// Pairs of closest points, all at once and by the search that the model has. PCL's own asks FLANN point by point: of a
 /// frame of eight objects that are recognized it took 0.6 s of 3.7, with the same pairs, this takes 0.1 s.
@@ -61,16 +56,17 @@ public:
 
   void determineCorrespondences(pcl::Correspondences& pairs, double max_distance) override {
     const NormalCloud& scan = *getInputSource();
-    Points places(3, static_cast<Eigen::Index>(scan.size()));
-    for (std::size_t i = 0; i < scan.size(); ++i) places.col(static_cast<Eigen::Index>(i)) = scan[i].getVector3fMap();
+    Points positions(3, static_cast<Eigen::Index>(scan.size()));
+    for (std::size_t i = 0; i < scan.size(); ++i)
+      positions.col(static_cast<Eigen::Index>(i)) = scan[i].getVector3fMap();
     pairs.clear();
     closest_.resize(scan.size(), -1);
     std::vector<float> sq_distances;
-    if (places.allFinite())  // else a step that no points fixed, whose result is dropped
-      model_->searchWithin(places, static_cast<float>(max_distance * max_distance), closest_, sq_distances);
+    if (positions.allFinite())  // else a step that no points fixed, whose result is dropped
+      model_->searchWithin(positions, static_cast<float>(max_distance * max_distance), closest_, sq_distances);
     for (std::size_t i = 0; i < sq_distances.size(); ++i)
       if (closest_[i] >= 0) pairs.emplace_back(static_cast<int>(i), closest_[i], sq_distances[i]);
-    for (std::size_t i = 0; pairs.size() < std::min(kLeastPairs, scan.size()); ++i)
+    for (std::size_t i = 0; pairs.size() < std::min(kRefinement.least_pairs, scan.size()); ++i)
       pairs.emplace_back(static_cast<int>(i), std::max(0, closest_[i]), 0.0f);
   }
 
@@ -117,7 +113,8 @@ RefinementTarget::RefinementTarget(const PosedSurface& model) {
 }
 
 double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence) {
-  return max_correspondence.value_or(std::max(kLeastReach, kReach * std::max(scan.accuracy, model.accuracy)));
+  return max_correspondence.value_or(
+      std::max(kRefinement.least_reach, kRefinement.reach * std::max(scan.accuracy, model.accuracy)));
 }
 
 Eigen::Isometry3d SearchFrames::toSearch(const Eigen::Isometry3d& T_target_source) const {
@@ -133,10 +130,12 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
 }
 
 double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
-  const double width = std::max(kContact, std::min(kMostContact, std::max(scan.noise, model.noise)));
-  const double share = PoseScorer(scan, model).score(T_model_scan, {kJudgedPoints, width, true, true}).support;
-  // derived: three standard errors of a share, at most half over the root of the number of points.
-  const auto size = std::min<double>(kJudgedPoints, static_cast<double>(scan.points.cols()));
+  const double width =
+      std::max(kRefinement.contact, std::min(kRefinement.most_contact, std::max(scan.noise, model.noise)));
+  const double share =
+      PoseScorer(scan, model).score(T_model_scan, {kRefinement.judged_points, width, true, true}).support;
+  // Three standard errors of a share, at most half over the root of the number of points.
+  const auto size = std::min<double>(kRefinement.judged_points, static_cast<double>(scan.points.cols()));
   return std::max(0.0, share - 1.5 / std::sqrt(size));
 }
 
@@ -145,15 +144,15 @@ std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface
   const double accuracy = std::max(scan.accuracy, model.accuracy);
   PoseRefinement icp(scan, model, target, refinementReach(scan, model, options.max_correspondence), options);
   const PoseScorer scorer(scan, model);
-  const PoseScorer::Detail detail{kJudgedPoints, std::max(kLeastFinalWidth, accuracy), true};
+  const PoseScorer::Detail detail{kRefinement.judged_points, std::max(kRefinement.least_width, accuracy), true};
   const auto judged = [&](const Eigen::Isometry3d& pose, int num_points) {
     return RankedPose{pose, scorer.score(pose, detail), num_points};
   };
   std::vector<RankedPose> refined;
   for (const RankedPose& pose : poses) {
-    if (pose.score.merit() < poses.front().score.merit() - kHopeless) break;
+    if (pose.score.merit() < poses.front().score.merit() - kRefinement.hopeless) break;
     const RankedPose before = judged(pose.T_model_scan, pose.num_points);
-    const RankedPose after = judged(icp.refined(pose.T_model_scan), kRefinedPoints);
+    const RankedPose after = judged(icp.refined(pose.T_model_scan), kRefinement.refined_points);
     refined.push_back(after.score.merit() > before.score.merit() ? after : before);
   }
   const std::size_t size = refined.size();

@@ -6,8 +6,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The least number of points that fix a pose. derived: three points fix a rotation.
-constexpr Eigen::Index kLeastPoints = 3;
+constexpr Eigen::Index kLeastPoints = 3;  // that fix a rotation
 
 BoundingBall ballOf(const std::string& name, const Points& points) {
   const BoundingBall ball = boundingBall(points);

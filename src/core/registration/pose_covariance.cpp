@@ -1,5 +1,6 @@
 #include "core/registration/pose_covariance.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -72,9 +73,9 @@ Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x) {
 MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& model,
                                 const Eigen::Isometry3d& T_model_scan, int num_points, double reach) {
   // The variance of an angle that is uniform in (-pi, pi), and a translation by the radius of the model.
-  const double sq_turn = kPi * kPi / 3.0, sq_way = 1.0;
+  const double sq_angle = kPi * kPi / 3.0, sq_way = 1.0;
   MotionCovariance information = MotionCovariance::Zero();
-  information.diagonal().head<3>().setConstant(1.0 / sq_turn);
+  information.diagonal().head<3>().setConstant(1.0 / sq_angle);
   information.diagonal().tail<3>().setConstant(1.0 / sq_way);
   Residuals residuals = residualsAt(scan, model, T_model_scan, num_points, reach);
   if (residuals.count > 6) {
@@ -83,6 +84,28 @@ MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& mo
                    std::max(kRegistration.least_deviation * kRegistration.least_deviation, variance);
   }
   return information.inverse();
+}
+
+Eigen::Isometry3d MotionEquations::motion() const {
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  const WeightedProducts::Matrix planes = of_planes_.sums(), points = of_points_.sums();
+  const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), turned = points.block<3, 3>(0, 3);
+  Eigen::Matrix<double, 6, 6> hessian = planes.topLeftCorner<6, 6>();
+  hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
+  hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, 6));
+  hessian.bottomRightCorner<3, 3>().diagonal().array() += points(6, 6);
+  Vector6d gradient = planes.block<6, 1>(0, 6);
+  gradient.head<3>() +=
+      Eigen::Vector3d(turned(1, 2) - turned(2, 1), turned(2, 0) - turned(0, 2), turned(0, 1) - turned(1, 0));
+  gradient.tail<3>() += points.block<3, 1>(3, 6);
+  hessian.diagonal().array() += kRegistration.inertia + kRegistration.relative_inertia * hessian.diagonal().maxCoeff();
+  const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
+  Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+  if (!motion.allFinite()) return moved;
+  const double angle = motion.head<3>().norm();
+  if (angle > 0.0) moved.linear() = Eigen::AngleAxisd(angle, motion.head<3>() / angle).toRotationMatrix();
+  moved.translation() = unit_ * motion.tail<3>();
+  return moved;
 }
 
 }  // namespace pcl_symmetry

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/registration/motion_equations.h"
+#include "core/registration/pose_covariance.h"
 #include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {

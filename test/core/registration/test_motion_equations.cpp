@@ -1,5 +1,5 @@
 /// The motion that pairs of points, and of points and planes, ask for.
-#include "core/registration/motion_equations.h"
+#include "core/registration/pose_covariance.h"
 
 #include <gtest/gtest.h>
 
