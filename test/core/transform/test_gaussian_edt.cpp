@@ -5,7 +5,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/transform/edt_correlation.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "shapes/shapes.h"
 
@@ -233,30 +232,6 @@ TEST(GaussianEdt, RefusesBadOptions) {
   refused([](auto& o) { o.radius = std::numeric_limits<double>::infinity(); });
   refused([](auto& o) { o.center.x() = std::nan(""); });
   refused([](auto& o) { o.num_threads = -1; });
-}
-
-TEST(GaussianEdt, ProductsOfARowAreThoseOfItsCells) {
-  const GaussianEdt edt(asymmetricBlob(500, 2).cloud(), cells(33));
-  RandomStream random(4);
-  const int n = edt.numCells();
-  int num_filled = 0;
-  for (int row = 0; row < n * n; ++row) {
-    const GaussianEdt::Range filled = edt.filledRanges()[static_cast<std::size_t>(row)];
-    const float* const f = edt.values().data() + static_cast<std::ptrdiff_t>(row) * n;
-    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * n);
-    const Eigen::Vector3d step(symmetric(random), symmetric(random), symmetric(random));
-    const ImageOfRow image{middle - 0.5 * n * step, step};
-    std::array<double, num_product_sums> sums, expected;
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = expected[k] = random.uniform();
-    for (int x = filled.begin; x < filled.end; ++x) {
-      const double product = f[x] * edt.atCell(image.first + x * image.step);
-      expected[static_cast<std::size_t>(x - filled.begin) % sums.size()] += product;
-      num_filled += product > 0.0 ? 1 : 0;
-    }
-    rowProducts()(edt, f, image, filled, sums.data());
-    EXPECT_EQ(sums, expected);
-  }
-  EXPECT_GT(num_filled, 100);
 }
 
 }  // namespace
