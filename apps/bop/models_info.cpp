@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/rotation/rotation_cover.h"
 #include "io/file_text.h"
 #include "io/json_values.h"
 
