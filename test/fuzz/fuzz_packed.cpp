@@ -11,8 +11,7 @@ namespace {
 using namespace pcl_symmetry;
 
 /// What may stand in a row of the database, once its checksum and its compression hold.
-template <typename Unpack>
-void readPart(const std::string& bytes, const Unpack& unpack) {
+void readPart(const std::string& bytes, void (*unpack)(const std::string&)) {
   for (const bool is_compressed : {false, true}) {
     try {
       unpack(is_compressed ? detail::compressed(bytes, detail::Effort::Low) : bytes);
@@ -30,27 +29,14 @@ void compareCodes(const std::string& part) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  void (*const parts[])(const std::string&) = {[](const std::string& part) { detail::unpackedCloud(part); },
+                                               [](const std::string& part) { detail::unpackedSignatures(part); },
+                                               [](const std::string& part) { detail::unpackedViews(part); },
+                                               [](const std::string& part) { detail::CompactForm::unpacked(part); },
+                                               [](const std::string& part) { detail::CompactForms::unpacked(part); },
+                                               compareCodes};
   fuzz::ByteSource source(data, size);
   const int kind = source.below(6);
-  const std::string bytes = source.rest();
-  switch (kind) {
-    case 0:
-      readPart(bytes, [](const std::string& part) { detail::unpackedCloud(part); });
-      break;
-    case 1:
-      readPart(bytes, [](const std::string& part) { detail::unpackedSignatures(part); });
-      break;
-    case 2:
-      readPart(bytes, [](const std::string& part) { detail::unpackedViews(part); });
-      break;
-    case 3:
-      readPart(bytes, [](const std::string& part) { detail::CompactForm::unpacked(part); });
-      break;
-    case 4:
-      readPart(bytes, [](const std::string& part) { detail::CompactForms::unpacked(part); });
-      break;
-    default:
-      readPart(bytes, compareCodes);
-  }
+  readPart(source.rest(), parts[kind]);
   return 0;
 }

@@ -2,23 +2,17 @@
 #include <filesystem>
 #include <iostream>
 
+#include "pcl/clouds.h"
 #include "pcl_symmetry/symmetry_database.h"
-#include "shapes/shapes.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 
 pcl::PointCloud<pcl::PointXYZ> boxCloud(int seed) {
-  RandomStream random(static_cast<std::uint64_t>(seed));
-  pcl::PointCloud<pcl::PointXYZ> cloud;
-  for (int i = 0; i < 120; ++i) {
-    Eigen::Vector3d p(test::symmetric(random), test::symmetric(random), test::symmetric(random));
-    p[i % 3] = i % 2 ? 1.0 : -1.0;
-    p.y() *= seed;
-    cloud.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
-  }
-  return cloud;
+  test::Shape shape = test::box(120, test::Sampling::Random, static_cast<std::uint64_t>(seed));
+  shape.points.row(1) *= seed;
+  return *test::toCloud(shape);
 }
 
 }  // namespace

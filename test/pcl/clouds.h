@@ -1,4 +1,4 @@
-/// The synthetic shapes as PCL clouds.
+/// The synthetic shapes and scans as PCL clouds.
 #pragma once
 
 #include <pcl/point_cloud.h>
@@ -9,16 +9,31 @@
 #include <utility>
 #include <vector>
 
-#include "shapes/shapes.h"
+#include "shapes/scans.h"
 
 namespace pcl_symmetry::test {
 
 template <typename PointT = pcl::PointXYZ>
-typename pcl::PointCloud<PointT>::Ptr toCloud(const Shape& shape) {
+typename pcl::PointCloud<PointT>::Ptr toCloud(const Points& points) {
   auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>();
-  cloud->resize(shape.points.cols());
-  for (Eigen::Index i = 0; i < shape.points.cols(); ++i)
-    (*cloud)[i].getVector3fMap() = shape.points.col(i).cast<float>();
+  cloud->resize(points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) (*cloud)[i].getVector3fMap() = points.col(i);
+  return cloud;
+}
+
+template <typename PointT = pcl::PointXYZ>
+typename pcl::PointCloud<PointT>::Ptr toCloud(const Shape& shape) {
+  return toCloud<PointT>(shape.cloud());
+}
+
+/// \return the organized cloud of a scan.
+template <typename PointT = pcl::PointXYZ>
+typename pcl::PointCloud<PointT>::Ptr pictureOf(const Scan& scan,
+                                                const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
+  const auto cloud = toCloud<PointT>((pose * scan.pixels.cast<double>()).cast<float>().eval());
+  cloud->width = scan.width;
+  cloud->height = scan.height;
+  cloud->is_dense = false;
   return cloud;
 }
 

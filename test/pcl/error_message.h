@@ -3,19 +3,13 @@
 
 #include <pcl/exceptions.h>
 
-#include <string>
+#include "shapes/complaint.h"
 
 namespace pcl_symmetry::test {
 
-/// The message of the pcl::BadArgumentException that \p body throws.
 template <typename Body>
 std::string messageOf(const Body& body) {
-  try {
-    body();
-  } catch (const pcl::BadArgumentException& error) {
-    return error.what();
-  }
-  return "no exception";
+  return complaintOf<pcl::BadArgumentException>(body);
 }
 
 }  // namespace pcl_symmetry::test

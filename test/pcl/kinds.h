@@ -74,13 +74,8 @@ inline RecognitionOptions optionsForRandomPoints() {
   return options;
 }
 
-inline const Eigen::Isometry3d kHere = Eigen::Isometry3d::Identity();
-
 inline Eigen::Isometry3d elsewhere() {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(2.1, Eigen::Vector3d(0.3, -1.0, 0.8).normalized()).toRotationMatrix();
-  pose.translation() << 4.0, -2.0, 1.0;
-  return pose;
+  return Eigen::Translation3d(4.0, -2.0, 1.0) * Eigen::AngleAxisd(2.1, Eigen::Vector3d(0.3, -1.0, 0.8).normalized());
 }
 
 }  // namespace pcl_symmetry::test

@@ -3,28 +3,34 @@
 
 #include <pcl/PolygonMesh.h>
 #include <pcl/conversions.h>
-#include <pcl/point_types.h>
 
-#include <array>
+#include <vector>
+
+#include "pcl/clouds.h"
 
 namespace pcl_symmetry::test {
 
-/// A box of 2 x 1.4 x 0.8 about the origin, of six quads.
-inline pcl::PolygonMesh boxMesh() {
-  pcl::PointCloud<pcl::PointXYZ> corners;
-  for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1 ? 1.0f : -1.0f, i & 2 ? 0.7f : -0.7f, i & 4 ? 0.4f : -0.4f);
+/// \param polygons lists of the numbers of vertices.
+template <typename Polygons>
+pcl::PolygonMesh toMesh(const Points& vertices, const Polygons& polygons) {
   pcl::PolygonMesh mesh;
-  pcl::toPCLPointCloud2(corners, mesh.cloud);
-  for (const auto& quad : {std::array<pcl::index_t, 4>{0, 2, 3, 1},
-                           {4, 5, 7, 6},
-                           {0, 1, 5, 4},
-                           {2, 6, 7, 3},
-                           {0, 4, 6, 2},
-                           {1, 3, 7, 5}}) {
+  pcl::toPCLPointCloud2(*toCloud(vertices), mesh.cloud);
+  for (const auto& polygon : polygons) {
     mesh.polygons.emplace_back();
-    mesh.polygons.back().vertices.assign(quad.begin(), quad.end());
+    mesh.polygons.back().vertices.assign(polygon.begin(), polygon.end());
   }
   return mesh;
+}
+
+/// A box of six quads, the simplest mesh whose scans are known exactly.
+inline pcl::PolygonMesh boxMesh(const Eigen::Vector3f& half = {1.0f, 0.7f, 0.4f},
+                                const Eigen::Vector3f& center = Eigen::Vector3f::Zero()) {
+  Points corners(3, 8);
+  for (int i = 0; i < 8; ++i)
+    corners.col(i) =
+        center + half.cwiseProduct(Eigen::Vector3f(i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f));
+  return toMesh(corners, std::vector<pcl::Indices>{
+                             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});
 }
 
 }  // namespace pcl_symmetry::test

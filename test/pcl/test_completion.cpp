@@ -14,14 +14,11 @@ using namespace test;
 
 TEST(CompleteBySymmetry, AddsReflectedPointsAndSaysWhichTheyAre) {
   const Scan scan = test::scan(blockChair(), {6.0, -3.0, 3.0});
-  const auto cloud = toCloud<pcl::PointNormal>(Shape{scan.pixels.cast<double>(), {}});
+  const auto cloud = pictureOf<pcl::PointNormal>(scan);
   for (pcl::PointNormal& point : *cloud) {
     point.getNormalVector3fMap() = Eigen::Vector3f(0.6f, -0.8f, 0.0f);
     point.curvature = 0.25f;
   }
-  cloud->width = scan.width;
-  cloud->height = scan.height;
-  cloud->is_dense = false;
   const ReflectionPlane middle(Eigen::Vector3d::UnitX(), 0.0);
   const CompletedCloud<pcl::PointNormal> completed = completeBySymmetry(*cloud, middle);
   ASSERT_GT(completed.added.size(), 100u);

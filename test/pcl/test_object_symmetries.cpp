@@ -1,10 +1,10 @@
 #include "pcl_symmetry/object_symmetries.h"
 
 #include <gtest/gtest.h>
-#include <pcl/conversions.h>
 
 #include "pcl/clouds.h"
 #include "pcl/error_message.h"
+#include "pcl/pcl_meshes.h"
 #include "shapes/turning_shapes.h"
 
 namespace pcl_symmetry {
@@ -14,19 +14,6 @@ void expectSame(const ObjectSymmetries& a, const ObjectSymmetries& b) {
   EXPECT_EQ(a.name(), b.name());
   ASSERT_EQ(a.discrete.size(), b.discrete.size());
   for (std::size_t i = 0; i < a.discrete.size(); ++i) EXPECT_EQ(a.discrete[i].matrix(), b.discrete[i].matrix());
-}
-
-pcl::PolygonMesh toMesh(const test::TurningShape& shape) {
-  pcl::PointCloud<pcl::PointXYZ> vertices;
-  for (const Eigen::Vector3d& v : shape.vertices)
-    vertices.emplace_back(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
-  pcl::PolygonMesh mesh;
-  pcl::toPCLPointCloud2(vertices, mesh.cloud);
-  for (const Eigen::Vector3i& triangle : shape.triangles) {
-    mesh.polygons.emplace_back();
-    mesh.polygons.back().vertices.assign(triangle.data(), triangle.data() + 3);
-  }
-  return mesh;
 }
 
 TEST(DetectObjectSymmetries, OfACloudAreThoseOfItsFinitePoints) {
@@ -42,7 +29,7 @@ TEST(DetectObjectSymmetries, OfAMeshDoNotDependOnItsVertices) {
   test::TurningShape shape = test::propellerShape(3, true);
   // A corner of the first blade where all vertices but it are left alone.
   shape.vertices.insert(shape.vertices.end(), 5000, shape.vertices.front());
-  const ObjectSymmetries found = detectObjectSymmetries(toMesh(shape));
+  const ObjectSymmetries found = detectObjectSymmetries(test::toMesh(shape.corners().cast<float>(), shape.triangles));
   EXPECT_EQ(found.name(), "C3");
   EXPECT_EQ(found.discrete.size(), 2u);
 }

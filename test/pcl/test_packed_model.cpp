@@ -6,6 +6,7 @@
 
 #include "core/matching/shape_signature.h"
 #include "pcl/kinds.h"
+#include "shapes/complaint.h"
 
 namespace pcl_symmetry {
 
@@ -60,13 +61,8 @@ TEST(PackedModel, SizesThatTheBytesCannotHoldAreRefused) {
   detail::PackedBytes gigabyte;
   gigabyte.put(std::uint32_t{1u << 30});
   gigabyte.append("....");
-  const auto messageOf = [](const std::string& bytes, auto unpack) -> std::string {
-    try {
-      unpack(bytes);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+  const auto messageOf = [](const std::string& bytes, auto unpack) {
+    return test::complaintOf<std::invalid_argument>([&] { unpack(bytes); });
   };
   EXPECT_EQ(messageOf(gigabyte.bytes(), detail::decompressed), "has fewer bytes than it says");
   const std::string zeros(1 << 20, '\0');

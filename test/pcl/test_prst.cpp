@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/random.h"
+#include "pcl/clouds.h"
 #include "pcl/error_message.h"
 #include "pcl_symmetry/prst.h"
 
@@ -17,17 +17,9 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 Cloud::Ptr boxCloud(const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity(), double unit = 1.0) {
-  auto cloud = pcl::make_shared<Cloud>();
-  RandomStream random(5);
-  for (int i = 0; i < 6000; ++i) {
-    Eigen::Vector3d x;
-    for (int k = 0; k < 3; ++k) x[k] = (1.0 - 0.3 * k) * (2.0 * random.uniform() - 1.0);
-    const int axis = i % 3;
-    x[axis] = (1.0 - 0.3 * axis) * (random.uniform() < 0.5 ? -1.0 : 1.0);
-    cloud->push_back({});
-    cloud->back().getVector3fMap() = (pose * (unit * x)).cast<float>();
-  }
-  return cloud;
+  test::Shape box = test::box(6000, test::Sampling::Random, 5);
+  box.points *= unit;
+  return test::toCloud(test::moved(box, pose));
 }
 
 pcl::PointCloud<PRSTSignature32768> describe(const Cloud::ConstPtr& cloud, bool use_input_axes) {
@@ -46,9 +38,7 @@ float norm(const PRSTSignature32768& a) {
 }  // namespace
 
 TEST(PRSTEstimation, DescribesInTheCanonicalFrame) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
-  pose.translation() << 3.0, -1.0, 2.0;
+  const Eigen::Isometry3d pose = test::randomPose(3);
   const auto a = describe(boxCloud(), false), b = describe(boxCloud(pose, 0.01), false);
   EXPECT_LT(descriptorDistance(a[0], b[0]), 0.15f * norm(a[0]));
   const auto raw_a = describe(boxCloud(), true), raw_b = describe(boxCloud(pose, 0.01), true);
@@ -98,12 +88,8 @@ TEST(PRSTEstimation, HonoursIndicesAndWorksThroughTheBaseClass) {
 }
 
 TEST(PRSTEstimation, WorksWithPointTypesThatAreNotPrecompiled) {
-  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointWithRange>>();
   const Cloud::Ptr box = boxCloud();
-  for (const pcl::PointXYZ& point : *box) {
-    cloud->push_back({});
-    cloud->back().getVector3fMap() = point.getVector3fMap();
-  }
+  const auto cloud = test::toCloud<pcl::PointWithRange>(Points(box->getMatrixXfMap(3, 4, 0)));
   PRSTEstimation<pcl::PointWithRange> estimation;
   estimation.setUseInputAxes(true);
   estimation.setInputCloud(cloud);

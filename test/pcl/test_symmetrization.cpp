@@ -8,6 +8,7 @@
 
 #include "pcl/clouds.h"
 #include "pcl/error_message.h"
+#include "pcl/pcl_meshes.h"
 
 namespace {
 

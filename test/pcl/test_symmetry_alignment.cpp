@@ -1,7 +1,6 @@
 #include "pcl_symmetry/symmetry_alignment.h"
 
 #include <gtest/gtest.h>
-#include <pcl/common/point_tests.h>
 
 #include "pcl/clouds.h"
 #include "pcl/counting_search.h"
@@ -19,15 +18,6 @@ SymmetryFrame frameOf(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud) {
   return alignment.compute();
 }
 
-pcl::PointCloud<pcl::PointXYZ>::Ptr organizedCloud(const test::Scan& scan) {
-  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(scan.width, scan.height);
-  for (std::size_t i = 0; i < cloud->size(); ++i)
-    (*cloud)[i].getVector3fMap() = scan.pixels.col(static_cast<Eigen::Index>(i));
-  cloud->is_dense = false;
-  cloud->sensor_origin_.head<3>() = scan.viewpoint.cast<float>();
-  return cloud;
-}
-
 TEST(SymmetryAlignment, IsSymmetryFrameOfTheFinitePoints) {
   const auto shape = test::moved(test::box(3000, Sampling::Random, 1), test::randomPose(3));
   const SymmetryFrame expected = symmetryFrame(shape.cloud());
@@ -37,7 +27,7 @@ TEST(SymmetryAlignment, IsSymmetryFrameOfTheFinitePoints) {
 }
 
 TEST(SymmetryAlignment, AsksTheSearchMethodForTheTurnsOfAScan) {
-  const auto cloud = organizedCloud(test::scan(test::blockBox(), {3.5, 4.2, 2.9}));
+  const auto cloud = test::pictureOf(test::scan(test::blockBox(), {3.5, 4.2, 2.9}));
   const auto search = pcl::make_shared<test::CountingKdTree>();
   SymmetryAlignment<pcl::PointXYZ> alignment;
   alignment.setInputCloud(cloud);
@@ -48,7 +38,7 @@ TEST(SymmetryAlignment, AsksTheSearchMethodForTheTurnsOfAScan) {
 
 TEST(SymmetryAlignment, SeesTheViewpointOfAScan) {
   const test::Scan scan = test::scan(test::blockBox(), {3.5, 4.2, 2.9});
-  const auto cloud = organizedCloud(scan);
+  const auto cloud = test::pictureOf(scan);
   SymmetryAlignment<pcl::PointXYZ> alignment;
   alignment.setInputCloud(cloud);
   const SymmetryFrame frame = alignment.compute();
@@ -61,10 +51,7 @@ TEST(SymmetryAlignment, SeesTheViewpointOfAScan) {
   alignment.compute();
   EXPECT_FALSE(alignment.usedViewpoint());
 
-  const auto loose = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  for (const pcl::PointXYZ& point : *cloud)
-    if (pcl::isXYZFinite(point)) loose->push_back(point);
-  alignment.setInputCloud(loose);
+  alignment.setInputCloud(test::toCloud(scan.cloud()));
   alignment.setViewpoint(scan.viewpoint);
   EXPECT_LT(alignment.compute().center.norm(), 0.1);
   EXPECT_TRUE(alignment.usedViewpoint());

@@ -13,6 +13,8 @@
 #include "pcl/kinds.h"
 #include "recognition/model_store.h"
 #include "recognition/sqlite_connection.h"
+#include "shapes/complaint.h"
+#include "shapes/temporary_folder.h"
 
 namespace pcl_symmetry {
 
@@ -21,22 +23,25 @@ namespace {
 namespace fs = std::filesystem;
 using namespace test;
 
+Cloud modelOf(const Kind& kind) {
+  return rodOnBox(kind.half, kind.rod, Eigen::Isometry3d::Identity(), 1);
+}
+
+/// \return what a scanner sees of it elsewhere.
+Cloud viewOf(const Kind& kind) {
+  return seenFrom(rodOnBox(kind.half, kind.rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+}
+
 class SymmetryDatabaseTest : public testing::Test {
 protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   static void fill(SymmetryDatabase& database) {
-    for (const Kind& kind : kKinds) database.add(kind.name, rodOnBox(kind.half, kind.rod, kHere, 1));
+    for (const Kind& kind : kKinds) database.add(kind.name, modelOf(kind));
   }
 
   /// A beam and a cube, seen from two sides: for what happens to the file.
   void fillQuickly() const {
     SymmetryDatabase database(file_, quick());
-    for (const Kind& kind : {kKinds[0], kKinds[2]}) database.add(kind.name, rodOnBox(kind.half, kind.rod, kHere, 1));
+    for (const Kind& kind : {kKinds[0], kKinds[2]}) database.add(kind.name, modelOf(kind));
   }
   static DatabaseOptions quick() {
     DatabaseOptions options;
@@ -51,28 +56,16 @@ protected:
   }
   /// \return a file with a model of each kind.
   std::string filled(const DatabaseOptions& options) const {
-    const std::string file = folder_ + "/few.db";
+    const std::string file = folder_ / "few.db";
     SymmetryDatabase database(file, options);
     fill(database);
     return file;
   }
-  static Cloud cube() { return rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 1); }
+  static Cloud cube() { return modelOf(kKinds[0]); }
 
-  const std::string folder_ =
-      testing::TempDir() + "symmetry_database_" + testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::string file_ = folder_ + "/models.db";
+  const TemporaryFolder folder_;
+  const std::string file_ = folder_ / "models.db";
 };
-
-/// The message of the pcl::IOException that \p body throws.
-template <typename Body>
-std::string ioMessageOf(const Body& body) {
-  try {
-    body();
-  } catch (const pcl::IOException& error) {
-    return error.what();
-  }
-  return "no exception";
-}
 
 TEST_F(SymmetryDatabaseTest, FindsShapesOfAnySizeInAnyPose) {
   SymmetryDatabase database(":memory:");
@@ -102,7 +95,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesAViewWithItsPose) {
   SymmetryDatabase database(":memory:");
   fill(database);
   for (const Kind& kind : kKinds) {
-    const Cloud view = seenFrom(rodOnBox(kind.half, kind.rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+    const Cloud view = viewOf(kind);
     const auto found = database.recognize(view, optionsForRandomPoints());
     ASSERT_FALSE(found.empty()) << kind.name;
     EXPECT_EQ(found[0].name, kind.name);
@@ -119,7 +112,7 @@ TEST_F(SymmetryDatabaseTest, PreparedOnesRecognizeTheSame) {
   prepared.prepare();  // nothing is there yet
   fill(prepared);
   prepared.prepare();
-  const Cloud view = seenFrom(rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const Cloud view = viewOf(kKinds[0]);
   const auto expected = database.recognize(view, optionsForRandomPoints());
   const auto found = prepared.recognize(view, optionsForRandomPoints());
   ASSERT_FALSE(expected.empty());
@@ -184,7 +177,7 @@ TEST_F(SymmetryDatabaseTest, AModelThatIsStoredTwiceIsAsCertainAsOnce) {
   const Recognition once = database.recognize(view, optionsForRandomPoints());
   ASSERT_EQ(once.size(), 1u);
   EXPECT_EQ(once[0].name, "cube");
-  database.add("cube again", rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 9));
+  database.add("cube again", rodOnBox(kKinds[0].half, kKinds[0].rod, Eigen::Isometry3d::Identity(), 9));
   const Recognition twice = database.recognize(view, optionsForRandomPoints());
   ASSERT_EQ(twice.size(), 2u);
   for (const RecognizedModel& model : twice) {
@@ -202,7 +195,7 @@ TEST_F(SymmetryDatabaseTest, ModelsOfAnotherSizeHaveNoPairsInCommon) {
     for (auto& point : scaled) point.getVector3fMap() *= static_cast<float>(scale);
     database.add("cube" + std::to_string(scale), scaled);
   }
-  const Cloud view = seenFrom(rodOnBox(kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const Cloud view = viewOf(kKinds[0]);
   const Recognition found = database.recognize(view, optionsForRandomPoints());
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].name, "cube");
@@ -231,7 +224,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
   RecognitionOptions recognition = optionsForRandomPoints();
   recognition.num_candidates = 2;
   recognition.num_refined = 1;
-  const Cloud view = seenFrom(rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const Cloud view = viewOf(kKinds[1]);
   const auto nameIn = [&](const SymmetryDatabase& database) {
     const Recognition found = database.recognize(view, recognition);
     return found.empty() ? "" : found[0].name;
@@ -242,7 +235,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
   EXPECT_EQ(made.substr(0, 5), "plate") << "its codes are made";
   database.save();
   EXPECT_EQ(nameIn(database), made) << "its codes are stored";
-  database.add("another", rodOnBox(kKinds[0].half, kKinds[0].rod, kHere, 1));
+  database.add("another", cube());
   EXPECT_EQ(nameIn(SymmetryDatabase(file_, options)), made) << "codes of a new model are stored with it";
   EXPECT_TRUE(SymmetryDatabase::check(file_).empty());
 }
@@ -258,7 +251,7 @@ TEST_F(SymmetryDatabaseTest, TriesMoreModelsWhereNoneOfTheFirstIsAccepted) {
     addCopies(source, models[0], models[0], 280, target);  // so many that pairs of points are not searched
   }
   const SymmetryDatabase database(file_, options);
-  const Cloud view = seenFrom(rodOnBox(kKinds[1].half, kKinds[1].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
+  const Cloud view = viewOf(kKinds[1]);
   RecognitionOptions recognition = optionsForRandomPoints();
   recognition.num_candidates = 2;
   recognition.max_candidates = 2;
@@ -276,9 +269,9 @@ TEST_F(SymmetryDatabaseTest, ChangesAreStoredAtOnce) {
   EXPECT_EQ(reader.size(), 2u);
   database.save();
   database.remove("cube");
-  const Cloud rod = rodOnBox({0.1, 0.1, 2.0}, 0.5, kHere, 3);
+  const Cloud rod = rodOnBox({0.1, 0.1, 2.0}, 0.5, Eigen::Isometry3d::Identity(), 3);
   database.add("rod", rod, {"shop/rod.ply", "17", {"long", "thin things"}});
-  database.add("beam", rodOnBox(kKinds[2].half, 1.0, kHere, 3));
+  database.add("beam", rodOnBox(kKinds[2].half, 1.0, Eigen::Isometry3d::Identity(), 3));
   EXPECT_TRUE(reader.contains("cube")) << "it keeps its state";
   EXPECT_EQ(reader.cloud("cube").size(), 5000u);
   SymmetryDatabase other(file_, quick());
@@ -328,7 +321,7 @@ TEST_F(SymmetryDatabaseTest, BuildsReportFailuresAndGoOnWhereTheyStopped) {
                       },
                       [&] {
                         ++num_loaded;
-                        return rodOnBox(kind.half, kind.rod, kHere, 1);
+                        return modelOf(kind);
                       }});
   inputs.push_back({"cube", {}, [] { return ball(); }});
   inputs.push_back({"broken", {}, []() -> Cloud { throw std::runtime_error("cannot be read today"); }});
@@ -354,41 +347,35 @@ TEST_F(SymmetryDatabaseTest, BuildsReportFailuresAndGoOnWhereTheyStopped) {
 
 TEST_F(SymmetryDatabaseTest, MergesOtherDatabasesWholeOrNotAtAll) {
   fillQuickly();
-  const Cloud rod = rodOnBox(kKinds[3].half, kKinds[3].rod, kHere, 1);
-  const std::string damaged = folder_ + "/damaged.db", same = folder_ + "/same.db";
+  const std::string damaged = folder_ / "damaged.db", same = folder_ / "same.db", merged = folder_ / "merged.db";
   {
     SymmetryDatabase part(damaged, quick());
     part.add("first", cube());
-    part.add("second", rod);
+    part.add("second", modelOf(kKinds[3]));
     SymmetryDatabase(same, quick()).add("post", cube());
   }
   detail::SQLiteConnection(damaged, detail::SQLiteAccess::Change, 1.0)
       .run("UPDATE views SET data = zeroblob(100) WHERE model = 2");
-  SymmetryDatabase database(folder_ + "/merged.db", quick());
-  EXPECT_EQ(ioMessageOf([&] {
-              database.merge({file_, damaged});
-            }),
-            damaged + ": the views of model 'second' are damaged");
-  EXPECT_FALSE(fs::exists(folder_ + "/merged.db")) << "no file is left of a merge that failed";
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 3) << "nor another one";
+  SymmetryDatabase database(merged, quick());
+  const auto complaint = [&](const std::vector<std::string>& files) {
+    return test::complaintOf<pcl::IOException>([&] { database.merge(files); });
+  };
+  EXPECT_EQ(complaint({file_, damaged}), damaged + ": the views of model 'second' are damaged");
+  EXPECT_FALSE(fs::exists(merged)) << "no file is left of a merge that failed";
+  EXPECT_EQ(folder_.names().size(), 3u) << "nor another one";
   EXPECT_EQ(database.merge({file_}, [](double) { return false; }), 0u);
   EXPECT_EQ(database.size(), 0u);
-  database.add("post", rod);
-  EXPECT_EQ(ioMessageOf([&] {
-              database.merge({file_, damaged});
-            }),
-            damaged + ": the views of model 'second' are damaged");
-  EXPECT_EQ(ioMessageOf([&] {
-              database.merge({file_, same});
-            }),
-            same + ": model 'post' is also in " + folder_ + "/merged.db, names must differ");
-  EXPECT_EQ(ioMessageOf([&] { database.merge({folder_ + "/merged.db"}); }),
-            folder_ + "/merged.db: is the database that others are merged into");
+  database.add("post", modelOf(kKinds[3]));
+  EXPECT_EQ(complaint({file_, damaged}), damaged + ": the views of model 'second' are damaged");
+  EXPECT_EQ(complaint({file_, same}), same + ": model 'post' is also in " + merged + ", names must differ");
+  EXPECT_EQ(complaint({merged}), merged + ": is the database that others are merged into");
+  EXPECT_EQ(complaint({folder_ / "x"}), (folder_ / "x") + ": there is no such file");
   EXPECT_EQ(database.names(), std::vector<std::string>{"post"}) << "all or nothing";
   EXPECT_EQ(database.merge({file_}), 2u);
   EXPECT_EQ(database.match(cube(), 5).size(), 3u);
-  EXPECT_TRUE(SymmetryDatabase::check(folder_ + "/merged.db").empty());
-  EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase{folder_}; }), folder_ + ": is a folder, must be a file");
+  EXPECT_TRUE(SymmetryDatabase::check(merged).empty());
+  EXPECT_EQ(test::complaintOf<pcl::IOException>([&] { SymmetryDatabase{folder_ / "."}; }),
+            (folder_ / ".") + ": is a folder, must be a file");
 }
 
 TEST_F(SymmetryDatabaseTest, TakesAllPointTypes) {
@@ -468,8 +455,8 @@ TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
   options.min_confidence = 1.5;
   EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "min_confidence = 1.5, must be in [0, 1]");
   EXPECT_EQ(test::messageOf([&] { database.match(cube(), -1); }), "num_nearest = -1, must be >= 0");
-  EXPECT_EQ(ioMessageOf([&] { SymmetryDatabase::check(file_); }), file_ + ": there is no such file");
-  EXPECT_EQ(ioMessageOf([&] { database.merge({folder_ + "/x"}); }), folder_ + "/x: there is no such file");
+  EXPECT_EQ(test::complaintOf<pcl::IOException>([&] { SymmetryDatabase::check(file_); }),
+            file_ + ": there is no such file");
 }
 
 }  // namespace

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/constants.h"
+#include "core/base/random.h"
+#include "core/registration/pose_covariance.h"
 #include "pcl/clouds.h"
 #include "pcl/error_message.h"
 #include "shapes/scans.h"
@@ -20,11 +23,6 @@ using namespace pcl_symmetry::test;
 
 template <typename PointT = pcl::PointXYZ>
 using CloudPtr = typename pcl::PointCloud<PointT>::Ptr;
-
-template <typename PointT = pcl::PointXYZ>
-CloudPtr<PointT> toCloud(const Points& points) {
-  return test::toCloud<PointT>(Shape{points.cast<double>(), {}});
-}
 
 /// A scan of the chair, which has no rotation of its own, moved by \p pose; it says where the scanner stood.
 template <typename PointT = pcl::PointXYZ>
@@ -50,6 +48,9 @@ protected:
     pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   }
   void TearDown() override { pcl::console::setVerbosityLevel(level_); }
+
+  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration_;
+  pcl::PointCloud<pcl::PointXYZ> aligned_;
 
 private:
   pcl::console::VERBOSITY_LEVEL level_;
@@ -92,22 +93,20 @@ TEST_F(SymmetryRegistrationTest, StandsWhereAnyRegistrationOfPCLStands) {
 }
 
 TEST_F(SymmetryRegistrationTest, MeasuresTheFitOfPointsThatAreThere) {
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
   const auto scan = chairScan(randomPose(3)), with_gaps = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*scan);
   const float none = std::numeric_limits<float>::quiet_NaN();
   for (int i = 0; i < 100; ++i) with_gaps->push_back(pcl::PointXYZ(none, none, none));
   with_gaps->is_dense = false;
-  registration.setInputTarget(chairModel());
-  pcl::PointCloud<pcl::PointXYZ> aligned;
-  registration.setInputSource(scan);
-  registration.align(aligned);
-  const double expected = registration.getFitnessScore();
+  registration_.setInputTarget(chairModel());
+  registration_.setInputSource(scan);
+  registration_.align(aligned_);
+  const double expected = registration_.getFitnessScore();
   EXPECT_LT(expected, 0.03 * 0.03);
-  EXPECT_LT(registration.getFitnessScore(0.5 * expected), 0.5 * expected);
-  registration.setInputSource(with_gaps);
-  registration.align(aligned);
-  ASSERT_TRUE(registration.hasConverged());
-  pcl::Registration<pcl::PointXYZ, pcl::PointXYZ>& as_any = registration;
+  EXPECT_LT(registration_.getFitnessScore(0.5 * expected), 0.5 * expected);
+  registration_.setInputSource(with_gaps);
+  registration_.align(aligned_);
+  ASSERT_TRUE(registration_.hasConverged());
+  pcl::Registration<pcl::PointXYZ, pcl::PointXYZ>& as_any = registration_;
   EXPECT_NEAR(as_any.getFitnessScore(), expected, 0.05 * expected);
 }
 
@@ -138,20 +137,18 @@ TEST_F(SymmetryRegistrationTest, TakesTheGuessAndIndices) {
   for (int i = 0; i < 1000; ++i) scan->push_back(pcl::PointXYZ(9.0f + 0.01f * i, 1.0f, 2.0f));
   auto indices = pcl::make_shared<pcl::Indices>();
   for (std::size_t i = 0; i < size; ++i) indices->push_back(static_cast<pcl::index_t>(i));
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
   PoseSearchOptions options;
   options.num_rotations = 0;
-  registration.setSearchOptions(options);
-  registration.setUseFrames(false);
-  registration.setInputSource(scan);
-  registration.setIndices(indices);
-  registration.setInputTarget(chairModel());
-  pcl::PointCloud<pcl::PointXYZ> aligned;
+  registration_.setSearchOptions(options);
+  registration_.setUseFrames(false);
+  registration_.setInputSource(scan);
+  registration_.setIndices(indices);
+  registration_.setInputTarget(chairModel());
   Eigen::Isometry3d guess(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()));
-  registration.align(aligned, (guess * pose.inverse()).matrix().cast<float>());
-  ASSERT_TRUE(registration.hasConverged()) << "the guess alone leads there";
-  EXPECT_LT(angleOf(registration.getFinalTransformation() * pose.matrix().cast<float>()), 2.0 * kDegree);
-  EXPECT_EQ(aligned.size(), size);
+  registration_.align(aligned_, (guess * pose.inverse()).matrix().cast<float>());
+  ASSERT_TRUE(registration_.hasConverged()) << "the guess alone leads there";
+  EXPECT_LT(angleOf(registration_.getFinalTransformation() * pose.matrix().cast<float>()), 2.0 * kDegree);
+  EXPECT_EQ(aligned_.size(), size);
 }
 
 /// The motion from one frame of a track to the next, about the middle of the chair.
@@ -162,60 +159,54 @@ Eigen::Isometry3d motion(double angle, double distance) {
 
 TEST_F(SymmetryRegistrationTest, TracksAroundTheGuess) {
   const Eigen::Isometry3d pose = randomPose(7);
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  registration.setInputSource(chairScan(pose));
+  registration_.setInputSource(chairScan(pose));
   const auto model = chairModel();
-  registration.setInputTarget(model);
+  registration_.setInputTarget(model);
   const double diagonal =
       (model->getMatrixXfMap(3, 4, 0).rowwise().maxCoeff() - model->getMatrixXfMap(3, 4, 0).rowwise().minCoeff())
           .norm();
   const auto align = [&](const Eigen::Isometry3d& off) {
-    pcl::PointCloud<pcl::PointXYZ> aligned;
-    registration.align(aligned, (off * pose.inverse()).matrix().cast<float>());
+    registration_.align(aligned_, (off * pose.inverse()).matrix().cast<float>());
   };
-  registration.setSearchAround(25.0 * kDegree, 0.4 * diagonal);
+  registration_.setSearchAround(25.0 * kDegree, 0.4 * diagonal);
   align(motion(15.0 * kDegree, 0.1 * diagonal));
-  ASSERT_TRUE(registration.hasConverged()) << registration.getReason();
-  EXPECT_LT(angleOf(registration.getFinalTransformation() * pose.matrix().cast<float>()), 2.0 * kDegree);
-  for (const auto& [stage, time] : registration.getTiming()) EXPECT_NE(stage, "frames");
+  ASSERT_TRUE(registration_.hasConverged()) << registration_.getReason();
+  EXPECT_LT(angleOf(registration_.getFinalTransformation() * pose.matrix().cast<float>()), 2.0 * kDegree);
+  for (const auto& [stage, time] : registration_.getTiming()) EXPECT_NE(stage, "frames");
 
-  registration.setSearchAround(5.0 * kDegree, 0.4 * diagonal);
+  registration_.setSearchAround(5.0 * kDegree, 0.4 * diagonal);
   align(motion(60.0 * kDegree, 0.0));
-  EXPECT_FALSE(registration.hasConverged()) << "the true pose is farther away";
-  EXPECT_EQ(registration.getReason().rfind("nothing fits around the guess", 0), 0u) << registration.getReason();
-  registration.setSearchEverywhere();
+  EXPECT_FALSE(registration_.hasConverged()) << "the true pose is farther away";
+  EXPECT_EQ(registration_.getReason().rfind("nothing fits around the guess", 0), 0u) << registration_.getReason();
+  registration_.setSearchEverywhere();
   align(motion(60.0 * kDegree, 0.0));
-  EXPECT_TRUE(registration.hasConverged());
+  EXPECT_TRUE(registration_.hasConverged());
 }
 
 /// Of a box with three half turns only the pose next to the last frame is right for a track.
 TEST_F(SymmetryRegistrationTest, TracksDoNotFlip) {
   const auto box = test::toCloud(test::box(4000, Sampling::Random, 1));
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  registration.setInputSource(box);
-  registration.setInputTarget(box);
-  registration.setSearchAround(40.0 * kDegree, 10.0);
+  registration_.setInputSource(box);
+  registration_.setInputTarget(box);
+  registration_.setSearchAround(40.0 * kDegree, 10.0);
   for (int k = 0; k < 3; ++k) {
     const Eigen::Isometry3d half_turn(Eigen::AngleAxisd(kPi, Eigen::Vector3d::Unit(k)));
     const Eigen::Isometry3d guess = Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 3).normalized()) * half_turn;
-    pcl::PointCloud<pcl::PointXYZ> aligned;
-    registration.align(aligned, guess.matrix().cast<float>());
-    ASSERT_TRUE(registration.hasConverged()) << registration.getReason();
-    EXPECT_LT(angleOf(registration.getFinalTransformation() * half_turn.matrix().cast<float>()), 3.0 * kDegree);
+    registration_.align(aligned_, guess.matrix().cast<float>());
+    ASSERT_TRUE(registration_.hasConverged()) << registration_.getReason();
+    EXPECT_LT(angleOf(registration_.getFinalTransformation() * half_turn.matrix().cast<float>()), 3.0 * kDegree);
   }
 }
 
 TEST_F(SymmetryRegistrationTest, ListsThePosesThatSymmetryMakesEqual) {
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  registration.setInputSource(test::toCloud(test::box(4000, Sampling::Random, 1)));
-  registration.setInputTarget(test::toCloud(test::box(4000, Sampling::Random, 2)));
-  pcl::PointCloud<pcl::PointXYZ> aligned;
-  registration.align(aligned);
-  ASSERT_TRUE(registration.hasConverged());
-  const std::vector<RegisteredPose>& poses = registration.getPoses();
+  registration_.setInputSource(test::toCloud(test::box(4000, Sampling::Random, 1)));
+  registration_.setInputTarget(test::toCloud(test::box(4000, Sampling::Random, 2)));
+  registration_.align(aligned_);
+  ASSERT_TRUE(registration_.hasConverged());
+  const std::vector<RegisteredPose>& poses = registration_.getPoses();
   ASSERT_EQ(poses.size(), 4u) << "the identity and three half turns";
-  EXPECT_TRUE(poses[0].T_target_source.matrix().cast<float>().isApprox(registration.getFinalTransformation()));
-  EXPECT_EQ(poses[0].score.merit(), registration.getScore().merit());
+  EXPECT_TRUE(poses[0].T_target_source.matrix().cast<float>().isApprox(registration_.getFinalTransformation()));
+  EXPECT_EQ(poses[0].score.merit(), registration_.getScore().merit());
   std::set<int> turns;
   for (const RegisteredPose& pose : poses) {
     const Eigen::Vector3d signs = pose.T_target_source.linear().diagonal();
@@ -227,40 +218,36 @@ TEST_F(SymmetryRegistrationTest, ListsThePosesThatSymmetryMakesEqual) {
 }
 
 TEST_F(SymmetryRegistrationTest, SaysWhereNothingFits) {
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  pcl::PointCloud<pcl::PointXYZ> aligned;
   const auto fails = [&](const CloudPtr<>& source, const CloudPtr<>& target) {
-    registration.setInputSource(source);
-    registration.setInputTarget(target);
-    registration.align(aligned);
-    EXPECT_FALSE(registration.hasConverged());
-    EXPECT_EQ(registration.getFinalTransformation(), Eigen::Matrix4f::Identity());
-    ASSERT_EQ(aligned.size(), source->size());
-    EXPECT_EQ(aligned[0].x, (*source)[0].x) << "the source as it was";
-    EXPECT_NE(registration.getReason(), "");
+    registration_.setInputSource(source);
+    registration_.setInputTarget(target);
+    registration_.align(aligned_);
+    EXPECT_FALSE(registration_.hasConverged());
+    EXPECT_EQ(registration_.getFinalTransformation(), Eigen::Matrix4f::Identity());
+    ASSERT_EQ(aligned_.size(), source->size());
+    EXPECT_EQ(aligned_[0].x, (*source)[0].x) << "the source as it was";
+    EXPECT_NE(registration_.getReason(), "");
   };
   const auto chair = chairScan(randomPose(1)), model = chairModel();
   fails(chair, test::toCloud(sphere(4000, 1)));
-  EXPECT_LT(registration.getScore().merit(), 0.4);
-  EXPECT_EQ(registration.getReason().rfind("nothing fits", 0), 0u);
+  EXPECT_LT(registration_.getScore().merit(), 0.4);
+  EXPECT_EQ(registration_.getReason().rfind("nothing fits", 0), 0u);
   fails(toCloud(Points::Ones(3, 5)), model);
   fails(chair, toCloud(Points::Ones(3, 1)));
-  EXPECT_EQ(registration.getReason().rfind("target: ", 0), 0u);
+  EXPECT_EQ(registration_.getReason().rfind("target: ", 0), 0u);
   fails(toCloud(Points::Random(3, 19)), model);
-  EXPECT_EQ(registration.getReason().rfind("source: ", 0), 0u);
-  EXPECT_EQ(registration.getScore().support, 0.0) << "that of the last pair is gone";
+  EXPECT_EQ(registration_.getReason().rfind("source: ", 0), 0u);
+  EXPECT_EQ(registration_.getScore().support, 0.0) << "that of the last pair is gone";
 }
 
 /// So few points fit any object at the distance that they are apart.
 TEST_F(SymmetryRegistrationTest, TooFewPointsDoNotConvergeOnAnotherObject) {
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  pcl::PointCloud<pcl::PointXYZ> aligned;
   testing::internal::CaptureStderr();
   const auto converges = [&](const Shape& source, const Shape& target) {
-    registration.setInputSource(test::toCloud(moved(source, randomPose(4))));
-    registration.setInputTarget(test::toCloud(target));
-    registration.align(aligned);
-    return registration.hasConverged();
+    registration_.setInputSource(test::toCloud(moved(source, randomPose(4))));
+    registration_.setInputTarget(test::toCloud(target));
+    registration_.align(aligned_);
+    return registration_.hasConverged();
   };
   const auto chair = [](int size) { return Shape{surfaceOf(blockChair(), size).cast<double>(), {}}; };
   for (const int size : {20, 100, 200, 400}) {
@@ -275,47 +262,43 @@ TEST_F(SymmetryRegistrationTest, PreparesTheTargetOnce) {
   const auto model = chairModel();
   const Eigen::Isometry3d pose = randomPose(7);
   const auto scan = chairScan(pose);
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  registration.setSearchAround(25.0 * kDegree, 0.5);
-  registration.setInputTarget(model);
-  registration.setInputSource(scan);
-  pcl::PointCloud<pcl::PointXYZ> aligned;
+  registration_.setSearchAround(25.0 * kDegree, 0.5);
+  registration_.setInputTarget(model);
+  registration_.setInputSource(scan);
   const auto align = [&] {
-    registration.align(aligned, (motion(0.1, 0.05) * pose.inverse()).matrix().cast<float>());
-    return Eigen::Matrix4f(registration.getFinalTransformation());
+    registration_.align(aligned_, (motion(0.1, 0.05) * pose.inverse()).matrix().cast<float>());
+    return Eigen::Matrix4f(registration_.getFinalTransformation());
   };
   const Eigen::Matrix4f first = align();
-  ASSERT_TRUE(registration.hasConverged());
+  ASSERT_TRUE(registration_.hasConverged());
   // What becomes of the points after the first align() does not count until the target is set again.
   const pcl::PointCloud<pcl::PointXYZ> before = *model;
   for (pcl::PointXYZ& point : *model) point.getVector3fMap().setConstant(1.0f);
   EXPECT_EQ(align(), first);
-  EXPECT_TRUE(registration.hasConverged());
-  registration.setInputTarget(model);
+  EXPECT_TRUE(registration_.hasConverged());
+  registration_.setInputTarget(model);
   align();
-  EXPECT_FALSE(registration.hasConverged());
-  EXPECT_EQ(registration.getReason().rfind("target: ", 0), 0u) << registration.getReason();
+  EXPECT_FALSE(registration_.hasConverged());
+  EXPECT_EQ(registration_.getReason().rfind("target: ", 0), 0u) << registration_.getReason();
   *model = before;
-  registration.setInputTarget(model);
+  registration_.setInputTarget(model);
   EXPECT_EQ(align(), first);
   // What the target is prepared with counts at once.
   for (pcl::PointXYZ& point : *model) point.getVector3fMap().setConstant(1.0f);
-  registration.setRandomSeed(2);
+  registration_.setRandomSeed(2);
   align();
-  EXPECT_FALSE(registration.hasConverged());
+  EXPECT_FALSE(registration_.hasConverged());
 }
 
 TEST_F(SymmetryRegistrationTest, GivesACovarianceWhereItConverges) {
   const Eigen::Isometry3d pose = randomPose(7);
   const auto scan = chairScan(pose), model = chairModel();
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  pcl::PointCloud<pcl::PointXYZ> aligned;
   const auto deviations = [&](const CloudPtr<>& source, const CloudPtr<>& target) {
-    registration.setInputSource(source);
-    registration.setInputTarget(target);
-    registration.align(aligned);
-    EXPECT_TRUE(registration.hasConverged());
-    const Eigen::Matrix<double, 6, 6> covariance = registration.getCovariance().value();
+    registration_.setInputSource(source);
+    registration_.setInputTarget(target);
+    registration_.align(aligned_);
+    EXPECT_TRUE(registration_.hasConverged());
+    const Eigen::Matrix<double, 6, 6> covariance = registration_.getCovariance().value();
     EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(covariance).info(), Eigen::Success) << "positive definite";
     return covariance.diagonal().cwiseSqrt().eval();
   };
@@ -325,11 +308,11 @@ TEST_F(SymmetryRegistrationTest, GivesACovarianceWhereItConverges) {
     EXPECT_LT(found.maxCoeff(), 0.03) << swapped;
     EXPECT_GT(found.minCoeff(), 1e-6) << swapped;
   }
-  registration.setInputTarget(test::toCloud(sphere(4000, 1)));
-  registration.align(aligned);
-  EXPECT_FALSE(registration.hasConverged());
-  EXPECT_FALSE(registration.getCovariance());
-  EXPECT_FALSE(registration.getPoses().empty());
+  registration_.setInputTarget(test::toCloud(sphere(4000, 1)));
+  registration_.align(aligned_);
+  EXPECT_FALSE(registration_.hasConverged());
+  EXPECT_FALSE(registration_.getCovariance());
+  EXPECT_FALSE(registration_.getPoses().empty());
   // Nothing fixes how a sphere is turned.
   const auto open = deviations(test::toCloud(sphere(4000, 1)), test::toCloud(sphere(4000, 2)));
   EXPECT_GT(open.head<3>().minCoeff(), 0.5);
@@ -339,18 +322,16 @@ TEST_F(SymmetryRegistrationTest, GivesACovarianceWhereItConverges) {
 TEST_F(SymmetryRegistrationTest, DoesNotDependOnThreadsAndUnits) {
   const Eigen::Isometry3d pose = randomPose(7);
   const auto scan = chairScan(pose), model = chairModel();
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
   const auto transform = [&] {
-    registration.setInputSource(scan);
-    registration.setInputTarget(model);
-    pcl::PointCloud<pcl::PointXYZ> aligned;
-    registration.align(aligned);
-    EXPECT_TRUE(registration.hasConverged());
-    return Eigen::Matrix4f(registration.getFinalTransformation());
+    registration_.setInputSource(scan);
+    registration_.setInputTarget(model);
+    registration_.align(aligned_);
+    EXPECT_TRUE(registration_.hasConverged());
+    return Eigen::Matrix4f(registration_.getFinalTransformation());
   };
-  registration.setNumberOfThreads(1);
+  registration_.setNumberOfThreads(1);
   const Eigen::Matrix4f expected = transform();
-  registration.setNumberOfThreads(4);
+  registration_.setNumberOfThreads(4);
   EXPECT_EQ(transform(), expected);
   constexpr float kMillimetres = 1000.0f;
   for (const auto& cloud : {scan, model}) {
@@ -363,20 +344,90 @@ TEST_F(SymmetryRegistrationTest, DoesNotDependOnThreadsAndUnits) {
 }
 
 TEST_F(SymmetryRegistrationTest, RefusesWrongParameters) {
-  SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-  EXPECT_EQ(messageOf([&] { registration.setMinMerit(1.5); }), "min_merit = 1.5, must be in [-1, 1]");
-  EXPECT_EQ(messageOf([&] { registration.setMaxPoints(2); }), "max_points = 2, must be >= 3");
-  EXPECT_EQ(messageOf([&] { registration.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
-  EXPECT_EQ(messageOf([&] { registration.setSearchAround(0.0, 1.0); }), "around.angle = 0, must be in (0, pi]");
-  EXPECT_EQ(messageOf([&] { registration.setSearchAround(0.1, -1.0); }), "around.distance = -1, must be >= 0");
+  EXPECT_EQ(messageOf([&] { registration_.setMinMerit(1.5); }), "min_merit = 1.5, must be in [-1, 1]");
+  EXPECT_EQ(messageOf([&] { registration_.setMaxPoints(2); }), "max_points = 2, must be >= 3");
+  EXPECT_EQ(messageOf([&] { registration_.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
+  EXPECT_EQ(messageOf([&] { registration_.setSearchAround(0.0, 1.0); }), "around.angle = 0, must be in (0, pi]");
+  EXPECT_EQ(messageOf([&] { registration_.setSearchAround(0.1, -1.0); }), "around.distance = -1, must be >= 0");
   PoseSearchOptions options;
   options.max_poses = 0;
-  EXPECT_THROW(registration.setSearchOptions(options), pcl::BadArgumentException);
-  registration.setInputSource(chairModel());
-  registration.setInputTarget(chairModel());
-  registration.setSourceViewpoint({Viewpoint::Mode::Given, Eigen::Vector3d::Zero()});
-  pcl::PointCloud<pcl::PointXYZ> aligned;
-  EXPECT_THROW(registration.align(aligned), pcl::BadArgumentException) << "among the points";
+  EXPECT_THROW(registration_.setSearchOptions(options), pcl::BadArgumentException);
+  registration_.setInputSource(chairModel());
+  registration_.setInputTarget(chairModel());
+  registration_.setSourceViewpoint({Viewpoint::Mode::Given, Eigen::Vector3d::Zero()});
+  EXPECT_THROW(registration_.align(aligned_), pcl::BadArgumentException) << "among the points";
+}
+
+/// Points on the faces of a box of 4 x 3 x 2, and on a block on its top that leaves it no symmetry.
+Points blockOnBox(std::uint64_t seed) {
+  RandomStream random(seed);
+  Points points(3, 3000);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const bool block = i % 4 == 0;
+    const Eigen::Vector3d low = block ? Eigen::Vector3d(0.6, 0.3, 1.0) : Eigen::Vector3d(-2.0, -1.5, -1.0);
+    const Eigen::Vector3d high = block ? Eigen::Vector3d(1.6, 1.2, 1.8) : Eigen::Vector3d(2.0, 1.5, 1.0);
+    Eigen::Vector3d x;
+    for (int k = 0; k < 3; ++k) x[k] = low[k] + random.uniform() * (high[k] - low[k]);
+    const auto face = random.below(6);
+    x[face / 2] = face % 2 ? high[face / 2] : low[face / 2];
+    points.col(i) = x.cast<float>();
+  }
+  return points;
+}
+
+/// Errors of poses as small motions (w, t) of the target's frame, and the covariances that were said of them.
+struct PoseErrors {
+  MotionCovariance scatter = MotionCovariance::Zero(), said = MotionCovariance::Zero();
+  double mean_sq_distance = 0.0;  ///< Mahalanobis
+};
+
+/// Registers noisy samplings of one surface, each with its own noise. The target is far from the origin.
+PoseErrors errorsUnderNoise(double noise, int num_trials) {
+  const Eigen::Isometry3d T_target_source =
+      Eigen::Translation3d(9.0, -4.0, 6.0) * Eigen::AngleAxisd(1.2, Eigen::Vector3d(1.0, 2.0, -0.5).normalized());
+  PoseErrors errors;
+  CloudRegistrationOptions options;
+  options.around = PoseNeighborhood{20.0 * kDegree, 1.0};
+  for (int i = 0; i < num_trials; ++i) {
+    RandomStream random(100 + i);
+    Points source = blockOnBox(10 + i), target = (T_target_source * blockOnBox(500 + i).cast<double>()).cast<float>();
+    for (Points* points : {&source, &target})
+      for (Eigen::Index k = 0; k < points->size(); ++k)
+        points->data()[k] += static_cast<float>(noise * gaussian(random));
+    const CloudRegistration found =
+        registerClouds(source, std::nullopt, target, std::nullopt, T_target_source, options);
+    const Eigen::Isometry3d error = T_target_source * found.T_target_source.inverse();
+    const Eigen::AngleAxisd turn(error.linear());
+    Motion6d motion;
+    motion << turn.angle() * turn.axis(), error.translation();
+    errors.scatter += motion * motion.transpose() / num_trials;
+    errors.said += *found.covariance / num_trials;
+    errors.mean_sq_distance += motion.dot(found.covariance->ldlt().solve(motion)) / num_trials;
+  }
+  return errors;
+}
+
+/// 30 trials know a standard deviation to 13 %.
+TEST(RegisterClouds, SaysHowUncertainThePoseIs) {
+  const PoseErrors errors = errorsUnderNoise(0.02, 30);
+  for (int k = 0; k < 6; ++k) {
+    const double ratio = std::sqrt(errors.said(k, k) / errors.scatter(k, k));
+    EXPECT_GT(ratio, 0.7) << k;
+    EXPECT_LT(ratio, 1.4) << k;
+  }
+  // Of a chi-squared variable with six degrees of freedom the mean is 6.
+  EXPECT_GT(errors.mean_sq_distance, 6.0 / 2.0);
+  EXPECT_LT(errors.mean_sq_distance, 6.0 * 2.0);
+}
+
+TEST(RegisterClouds, RefusesPointsWithoutExtentAndBadOptions) {
+  const Points points = blockOnBox(1);
+  const auto start = Eigen::Isometry3d::Identity();
+  EXPECT_THROW(registerClouds(Points::Zero(3, 50), std::nullopt, points, std::nullopt, start), std::invalid_argument);
+  EXPECT_THROW(registerClouds(points, std::nullopt, points.leftCols(1), std::nullopt, start), std::invalid_argument);
+  CloudRegistrationOptions options;
+  options.max_iterations = 0;
+  EXPECT_THROW(registerClouds(points, std::nullopt, points, std::nullopt, start, options), std::invalid_argument);
 }
 
 }  // namespace

@@ -12,32 +12,29 @@
 #include <set>
 
 #include "core/geometry/viewing_frame.h"
+#include "pcl/clouds.h"
 #include "pcl/error_message.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "shapes/found_planes.h"
 #include "shapes/table.h"
 
 namespace pcl_symmetry {
 namespace {
 
 using Cloud = SymmetryScene::Cloud;
-
-Cloud::Ptr pictureOf(const test::Scan& scan) {
-  auto cloud = pcl::make_shared<Cloud>(scan.width, scan.height);
-  for (std::size_t i = 0; i < cloud->size(); ++i)
-    (*cloud)[i].getVector3fMap() = scan.pixels.col(static_cast<Eigen::Index>(i));
-  cloud->is_dense = false;
-  return cloud;
-}
+using test::pictureOf;
 
 /// Fewer points than by default, to save time.
-SceneAnalysis analysed(const Cloud::ConstPtr& cloud, bool frames = false) {
+SceneAnalysis analysed(const Cloud::ConstPtr& cloud, bool frames = false,
+                       const Eigen::Vector4d& ground = Eigen::Vector4d::Zero()) {
   SymmetryScene scene;
   SceneOptions options;
   options.max_points = 1000;
   options.frames = frames;
   scene.setOptions(options);
   scene.setInputCloud(cloud);
+  if (!ground.isZero()) scene.setGround(ground);
   return scene.compute();
 }
 
@@ -59,8 +56,7 @@ const test::Table& twoBoxes() {
 TEST(SymmetryScene, TakesTheTableOutAndFindsWhatStandsOnIt) {
   const SceneAnalysis scene = analysed(pictureOf(twoBoxes().scan), true);
   ASSERT_EQ(scene.supports.size(), 1u);
-  EXPECT_LT((scene.supports[0].coefficients - Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)).norm(), 0.02)
-      << "toward the viewer";
+  EXPECT_LT((scene.supports[0].coefficients - Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)).norm(), 0.02) << "toward the viewer";
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(scene.seen->source(), ViewpointSource::Rays);
   std::set<int> found;
@@ -225,28 +221,24 @@ TEST(SymmetryScene, AnyNumberOfThreadsGivesTheSameObjects) {
     scene.setOptions(options);
     scene.setInputCloud(picture);
     scene.setDatabase(database);
-    return scene.compute();
+    return scene.compute().objects;
   };
-  const SceneAnalysis one = with(1);
-  ASSERT_EQ(one.objects.size(), 2u);
-  EXPECT_FALSE(one.objects[0].models.empty());
+  const std::vector<SceneObject> one = with(1);
+  ASSERT_EQ(one.size(), 2u);
+  EXPECT_FALSE(one[0].models.empty());
   for (const int num_threads : {2, 3}) {  // with 3, one object after the other
-    const SceneAnalysis many = with(num_threads);
-    ASSERT_EQ(many.objects.size(), one.objects.size());
-    for (std::size_t k = 0; k < one.objects.size(); ++k) {
-      const SceneObject &a = one.objects[k], &b = many.objects[k];
-      EXPECT_EQ(a.indices, b.indices);
-      EXPECT_EQ(a.added.size(), b.added.size());
-      ASSERT_EQ(a.planes.size(), b.planes.size());
-      for (std::size_t i = 0; i < a.planes.size(); ++i) {
-        EXPECT_EQ(a.planes[i].coefficients(), b.planes[i].coefficients());
-        EXPECT_EQ(a.planes[i].confidence, b.planes[i].confidence);
-      }
-      ASSERT_EQ(a.models.size(), b.models.size());
-      for (std::size_t i = 0; i < a.models.size(); ++i) {
-        EXPECT_EQ(a.models[i].name, b.models[i].name);
-        EXPECT_EQ(a.models[i].T_model_scan.matrix(), b.models[i].T_model_scan.matrix());
-        EXPECT_EQ(a.models[i].confidence, b.models[i].confidence);
+    const std::vector<SceneObject> many = with(num_threads);
+    ASSERT_EQ(many.size(), one.size());
+    for (std::size_t k = 0; k < one.size(); ++k) {
+      EXPECT_EQ(one[k].indices, many[k].indices);
+      EXPECT_EQ(one[k].added.size(), many[k].added.size());
+      test::expectSamePlanes(one[k].planes, many[k].planes);
+      ASSERT_EQ(one[k].models.size(), many[k].models.size());
+      for (std::size_t i = 0; i < one[k].models.size(); ++i) {
+        const RecognizedModel &a = one[k].models[i], &b = many[k].models[i];
+        EXPECT_EQ(a.name, b.name);
+        EXPECT_EQ(a.T_model_scan.matrix(), b.T_model_scan.matrix());
+        EXPECT_EQ(a.confidence, b.confidence);
       }
     }
   }
@@ -274,7 +266,8 @@ Body block(const Eigen::Vector3d& center, const Eigen::Vector3d& half, double tu
 Body uprightCylinder(const Eigen::Vector2d& axis, double radius, double low, double high) {
   return [=](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
     const Eigen::Vector2d from = origin.head<2>() - axis, along = direction.head<2>();
-    const double a = along.squaredNorm(), b = from.dot(along), root = b * b - a * (from.squaredNorm() - radius * radius);
+    const double a = along.squaredNorm(), b = from.dot(along),
+                 root = b * b - a * (from.squaredNorm() - radius * radius);
     const double wall = root >= 0.0 ? (-b - std::sqrt(root)) / a : std::numeric_limits<double>::infinity();
     const double z = origin.z() + wall * direction.z();
     if (wall > 0.0 && z >= low && z <= high) return wall;
@@ -386,18 +379,11 @@ TEST(SymmetryScene, TheInsideOfABowlIsOne) {
 }
 
 TEST(SymmetryScene, KnowsTheGroundThatIsGiven) {
-  SymmetryScene scene;
-  SceneOptions options;
-  options.max_points = 1000;
-  options.frames = false;
-  scene.setOptions(options);
-  scene.setInputCloud(pictureOf(twoBoxes().scan));
-  scene.setGround({0.0, 0.0, -2.0, 0.0});
-  const SceneAnalysis found = scene.compute();
+  const SceneAnalysis found = analysed(pictureOf(twoBoxes().scan), false, {0.0, 0.0, -2.0, 0.0});
   ASSERT_EQ(found.supports.size(), 1u);
   EXPECT_EQ(found.supports[0].coefficients, Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)) << "toward the viewer";
   EXPECT_EQ(found.objects.size(), 2u);
-  EXPECT_EQ(test::messageOf([&] { scene.setGround(Eigen::Vector4d(0.0, 0.0, 0.0, 1.0)); }),
+  EXPECT_EQ(test::messageOf([&] { SymmetryScene().setGround(Eigen::Vector4d(0.0, 0.0, 0.0, 1.0)); }),
             "ground: must be four finite numbers A,B,C,D, not all of A, B, C zero");
 }
 

@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <pcl/conversions.h>
-#include <pcl/point_types.h>
 
 #include <algorithm>
 #include <limits>
@@ -11,29 +9,18 @@
 #include "pcl/clouds.h"
 #include "pcl/counting_search.h"
 #include "pcl/error_message.h"
+#include "pcl/pcl_meshes.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "shapes/meshes.h"
 
 namespace pcl_symmetry {
 namespace {
 
-pcl::PolygonMesh::Ptr asPCL(const test::Mesh& mesh) {
-  pcl::PointCloud<pcl::PointXYZ> vertices;
-  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i)
-    vertices.emplace_back(mesh.vertices(0, i), mesh.vertices(1, i), mesh.vertices(2, i));
-  auto pcl_mesh = pcl::make_shared<pcl::PolygonMesh>();
-  pcl::toPCLPointCloud2(vertices, pcl_mesh->cloud);
-  for (const auto& polygon : mesh.polygons) {
-    pcl_mesh->polygons.emplace_back();
-    pcl_mesh->polygons.back().vertices.assign(polygon.begin(), polygon.end());
-  }
-  return pcl_mesh;
-}
-
 class SymmetrySegmentationTest : public testing::Test {
 protected:
   const test::Mesh dumbbell_ = test::dumbbell();
-  const pcl::PolygonMesh::Ptr mesh_ = asPCL(dumbbell_);
+  const pcl::PolygonMesh::Ptr mesh_ =
+      pcl::make_shared<pcl::PolygonMesh>(test::toMesh(dumbbell_.vertices, dumbbell_.polygons));
   SymmetrySegmentation<pcl::PointXYZ> segmentation_;
   std::vector<pcl::PointIndices> segments_;
 };

@@ -12,15 +12,19 @@
 #include "pcl/error_message.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
+#include "shapes/found_planes.h"
 #include "shapes/scans.h"
 #include "shapes/table.h"
 
 namespace pcl_symmetry {
 namespace {
 
+using test::isAmong;
 using test::messageOf;
+using test::pictureOf;
 using test::Sampling;
 using test::Scan;
+using test::toCloud;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 /// A box seen from a random side that shows three faces (one alone fits many cameras), with a random roll.
@@ -30,21 +34,6 @@ Scan randomScan(std::uint64_t seed) {
   for (int axis = 0; axis < 3; ++axis)
     from[axis] = (random.uniform() < 0.5 ? -1.0 : 1.0) * (1.6 + 2.0 * random.uniform());
   return test::scan(test::blockBox(), from, 6.0 * random.uniform());
-}
-
-Cloud::Ptr organized(const Scan& scan, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
-  auto cloud = pcl::make_shared<Cloud>(scan.width, scan.height);
-  for (std::size_t i = 0; i < cloud->size(); ++i)
-    (*cloud)[i].getVector3fMap() = (pose * scan.pixels.col(static_cast<Eigen::Index>(i)).cast<double>()).cast<float>();
-  cloud->is_dense = false;
-  return cloud;
-}
-
-Cloud::Ptr unorganized(const Scan& scan) {
-  auto cloud = pcl::make_shared<Cloud>();
-  const Points points = scan.cloud();
-  for (Eigen::Index i = 0; i < points.cols(); ++i) cloud->emplace_back(points(0, i), points(1, i), points(2, i));
-  return cloud;
 }
 
 void setOrigin(Cloud& cloud, const Eigen::Vector3d& origin) {
@@ -61,24 +50,17 @@ ViewpointSource sourceOf(const Cloud::ConstPtr& cloud) {
       .source();
 }
 
-bool contains(const std::vector<SymmetryPlane>& planes, const ReflectionPlane& plane, const Eigen::Vector3d& about) {
-  return std::any_of(planes.begin(), planes.end(), [&](const SymmetryPlane& found) {
-    const auto error = test::planeError(found, plane, about);
-    return error.angle < 2.0 * test::kDegree && error.offset < 0.05;
-  });
-}
-
 TEST(Viewpoint, AnOrganizedCloudTellsByItsOwnRays) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const Scan scan = randomScan(seed);
-    EXPECT_TRUE(recognised(organized(scan, scan.T_camera_object))) << seed << ": in the frame of the camera";
+    EXPECT_TRUE(recognised(pictureOf(scan, scan.T_camera_object))) << seed << ": in the frame of the camera";
     const Eigen::Isometry3d away = test::randomPose(seed, 0.2) * scan.T_camera_object;
     EXPECT_TRUE(
         detail::seenByOrganizedCloud((away * scan.pixels.cast<double>()).cast<float>(), scan.width, scan.height))
         << seed << ": from the rays alone";
     // Here sensor_origin_ = 0 lies in the middle of the box.
-    EXPECT_TRUE(recognised(organized(scan))) << seed << ": in the frame of the object";
-    EXPECT_TRUE(recognised(organized(scan, test::randomPose(seed)))) << seed << ": in any other";
+    EXPECT_TRUE(recognised(pictureOf(scan))) << seed << ": in the frame of the object";
+    EXPECT_TRUE(recognised(pictureOf(scan, test::randomPose(seed)))) << seed << ": in any other";
   }
 }
 
@@ -109,13 +91,13 @@ TEST(Viewpoint, TheRaysOfAnOrganizedCloudAreThoseOfItsCamera) {
 }
 
 TEST(Viewpoint, RowsAndColumnsThatAreNoPictureAreNone) {
-  auto whole = test::toCloud(test::box(4000, Sampling::Random, 1));
+  auto whole = toCloud(test::box(4000, Sampling::Random, 1));
   whole->width = 80;
   whole->height = 50;
   EXPECT_FALSE(recognised(whole));
   // The pixels of a scan in a wrong order.
   const Scan scan = randomScan(1);
-  auto shuffled = organized(scan);
+  auto shuffled = pictureOf(scan);
   RandomStream random(3);
   for (std::size_t i = shuffled->size() - 1; i > 0; --i) std::swap((*shuffled)[i], (*shuffled)[random.below(i + 1)]);
   EXPECT_NE(sourceOf(shuffled), ViewpointSource::Rays);
@@ -125,7 +107,7 @@ TEST(Viewpoint, RowsAndColumnsThatAreNoPictureAreNone) {
 TEST(Viewpoint, AnUnorganizedScanWithoutViewpointTellsByItsDensity) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Scan scan = test::scan(test::blockL(), randomScan(seed).viewpoint);
-    auto cloud = unorganized(scan);
+    auto cloud = toCloud(scan.cloud());
     EXPECT_EQ(sourceOf(cloud), ViewpointSource::Inferred) << seed;
     pcl::transformPointCloud(*cloud, *cloud, scan.T_camera_object.cast<float>().matrix());
     setOrigin(*cloud, Eigen::Vector3d::Zero());
@@ -136,9 +118,8 @@ TEST(Viewpoint, AnUnorganizedScanWithoutViewpointTellsByItsDensity) {
 TEST(Viewpoint, ADefaultOriginIsNotBelievedByItself) {
   // An open shell that is seen once from the origin. Its even density is not that of a scan.
   const Points whole = test::sphere(20'000, 1).cloud();
-  const Points shell = test::facing(whole, whole, {0.0, 0.0, 5.0}).colwise() - Eigen::Vector3f(0.0f, 0.0f, 5.0f);
-  auto cloud = pcl::make_shared<Cloud>();
-  for (Eigen::Index i = 0; i < shell.cols(); ++i) cloud->emplace_back(shell(0, i), shell(1, i), shell(2, i));
+  const Points shell = test::facing(whole, {0.0, 0.0, 5.0}).colwise() - Eigen::Vector3f(0.0f, 0.0f, 5.0f);
+  const auto cloud = toCloud(shell);
   EXPECT_EQ(sourceOf(cloud), ViewpointSource::None);
   // Who turns the sensor has set its pose.
   cloud->sensor_orientation_ = Eigen::Quaternionf(0.0f, 1.0f, 0.0f, 0.0f);
@@ -153,11 +134,11 @@ TEST(SymmetryMaximaRefinement, UsesTheRaysOfAnOrganizedCloud) {
   for (const Eigen::Isometry3d& pose :
        {Eigen::Isometry3d(Eigen::Isometry3d::Identity()), scan.T_camera_object, test::randomPose(9)}) {
     SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-    refinement.setInputCloud(organized(scan, pose));
+    refinement.setInputCloud(pictureOf(scan, pose));
     const auto planes = refinement.compute();
     EXPECT_TRUE(refinement.usedViewpoint());
     for (const ReflectionPlane& plane : scan.planes)
-      EXPECT_TRUE(contains(planes, plane.transformed(pose), pose.translation()));
+      EXPECT_TRUE(isAmong(planes, plane.transformed(pose), 2.0 * test::kDegree, 0.05, pose.translation()));
     for (const SymmetryPlane& plane : planes) {
       EXPECT_TRUE(plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible);
       EXPECT_LE(plane.seen, 1.0);
@@ -176,7 +157,7 @@ TEST(SymmetryMaximaRefinement, UsesTheRaysOfAnOrganizedCloud) {
 TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
   const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-  refinement.setInputCloud(unorganized(scan));
+  refinement.setInputCloud(toCloud(scan.cloud()));
   EXPECT_EQ(refinement.getViewpointSource(), ViewpointSource::None) << "before the analysis";
   refinement.compute();
   EXPECT_NE(refinement.getViewpointSource(), ViewpointSource::Given);
@@ -194,7 +175,8 @@ TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
   ASSERT_TRUE(refinement.getUsedViewpoint());
   EXPECT_LT((*refinement.getUsedViewpoint() - scan.viewpoint).norm(), 1e-9);
   for (const ReflectionPlane& plane : scan.planes)
-    EXPECT_TRUE(contains(planes, plane, Eigen::Vector3d::Zero())) << plane.normal().transpose();
+    EXPECT_TRUE(isAmong(planes, plane, 2.0 * test::kDegree, 0.05, Eigen::Vector3d::Zero()))
+        << plane.normal().transpose();
   // A viewpoint among the points is none.
   refinement.setViewpoint(Eigen::Vector3d::Zero());
   EXPECT_NE(messageOf([&] { refinement.compute(); }).find("viewpoint"), std::string::npos);
@@ -218,7 +200,7 @@ int numTakenForFree(const SeenSpace& seen, const test::Table& table) {
 
 TEST(SeenSpace, IndicesNameAPartOfWhatTheScannerSaw) {
   const test::Table table;
-  auto whole = unorganized(table.scan);
+  auto whole = toCloud(table.scan.cloud());
   setOrigin(*whole, table.scan.viewpoint);
   // The pixels of the box, counted among those that met something.
   auto indices = pcl::make_shared<pcl::Indices>();
@@ -251,10 +233,10 @@ TEST(SeenSpace, IndicesNameAPartOfWhatTheScannerSaw) {
 
 TEST(SeenSpace, AScannerAtTheOriginOfItsSceneIsBelieved) {
   const test::Table table;
-  auto cloud = unorganized(table.scan);
+  auto cloud = toCloud(table.scan.cloud());
   pcl::transformPointCloud(*cloud, *cloud, table.scan.T_camera_object.cast<float>().matrix());
   EXPECT_EQ(SeenSpace(*cloud).source(), ViewpointSource::Stored);
-  EXPECT_EQ(SeenSpace(*organized(table.scan)).source(), ViewpointSource::Rays);
+  EXPECT_EQ(SeenSpace(*pictureOf(table.scan)).source(), ViewpointSource::Rays);
   EXPECT_EQ(SeenSpace(*cloud, {Viewpoint::Mode::None, {}}).visibility(), nullptr);
   EXPECT_EQ(SeenSpace(*cloud, {Viewpoint::Mode::Given, {0.0, 0.0, -0.1}}).source(), ViewpointSource::Given);
   EXPECT_EQ(SeenSpace(Cloud()).visibility(), nullptr);
@@ -263,12 +245,12 @@ TEST(SeenSpace, AScannerAtTheOriginOfItsSceneIsBelieved) {
 }
 
 TEST(SeenSpace, AWholeObjectIsNoScene) {
-  EXPECT_EQ(SeenSpace(*test::toCloud(test::box(4000, Sampling::Random, 1))).visibility(), nullptr);
+  EXPECT_EQ(SeenSpace(*toCloud(test::box(4000, Sampling::Random, 1))).visibility(), nullptr);
 }
 
 TEST(SeenSpace, ScannersTellMoreTogether) {
   const test::Table table;
-  const auto one = organized(table.scan), two = organized(test::scan(table.blocks, {-0.3, 1.7, 0.9}, 0.0, 320, 240));
+  const auto one = pictureOf(table.scan), two = pictureOf(test::scan(table.blocks, {-0.3, 1.7, 0.9}, 0.0, 320, 240));
   const SeenSpace both = SeenSpace::together({SeenSpace(*one), SeenSpace(), SeenSpace(*two)});
   ASSERT_TRUE(both.visibility());
   EXPECT_EQ(both.visibility()->numPictures(), 2u);

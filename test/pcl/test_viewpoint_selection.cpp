@@ -66,13 +66,7 @@ TEST(ViewpointSelection, CameraLooksAtTheObjectAndStandsUpright) {
 
 TEST(ViewpointSelection, ShowsWhatIsHiddenLeast) {
   // An open cup on z: rim up. Of the two views at equal S the one into it is taken, and the sides are seen from above.
-  const Shape solid = cylinder(20'000, 4);
-  Shape cup{Eigen::Matrix3Xd(3, 0), {}};
-  for (Eigen::Index i = 0; i < solid.points.cols(); ++i) {
-    if (solid.points(2, i) > 0.999) continue;
-    cup.points.conservativeResize(3, cup.points.cols() + 1);
-    cup.points.rightCols<1>() = solid.points.col(i);
-  }
+  const Points cup = pointsWhere(cylinder(20'000, 4).cloud(), [](const Eigen::Vector3f& x) { return x.z() <= 0.999f; });
   ViewpointSelection selection;
   selection.setPlanes({plane(Eigen::Vector3d::UnitX(), 1.0), plane(Eigen::Vector3d::UnitZ(), 1.0)});
   selection.setInputCloud(toCloud(cup));

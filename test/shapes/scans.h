@@ -84,12 +84,7 @@ struct Scan {
 
   /// The points that were measured.
   Points cloud() const {
-    Points points(3, pixels.cols());
-    Eigen::Index size = 0;
-    for (Eigen::Index i = 0; i < pixels.cols(); ++i)
-      if (pixels.col(i).allFinite()) points.col(size++) = pixels.col(i);
-    points.conservativeResize(3, size);
-    return points;
+    return pointsWhere(pixels, [](const Eigen::Vector3f& x) { return x.allFinite(); });
   }
 
   /// What the camera saw, from its own projection.
@@ -132,15 +127,9 @@ inline Scan scan(const BlockObject& object, const Eigen::Vector3d& viewpoint, do
   return result;
 }
 
-/// The part of a convex surface that faces a viewpoint.
-/// \param normals outward, of the points.
-inline Points facing(const Points& points, const Points& normals, const Eigen::Vector3d& viewpoint) {
-  Points seen(3, points.cols());
-  Eigen::Index size = 0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (normals.col(i).dot(viewpoint.cast<float>() - points.col(i)) > 0.0f) seen.col(size++) = points.col(i);
-  seen.conservativeResize(3, size);
-  return seen;
+/// The part of the unit sphere that faces a viewpoint.
+inline Points facing(const Points& sphere, const Eigen::Vector3d& viewpoint) {
+  return pointsWhere(sphere, [&](const Eigen::Vector3f& x) { return x.dot(viewpoint.cast<float>() - x) > 0.0f; });
 }
 
 }  // namespace pcl_symmetry::test

@@ -219,6 +219,22 @@ inline Shape asymmetricBlob(int num_points, std::uint64_t seed) {
   return shape;
 }
 
+/// The points for which \p keep holds, in their order.
+template <typename Keep>
+Points pointsWhere(const Points& points, const Keep& keep) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (keep(Eigen::Vector3f(points.col(i)))) kept.push_back(i);
+  return points(Eigen::all, kept);
+}
+
+/// Calls \p expectSame with what \p make gives for several threads and for one.
+template <typename Make, typename ExpectSame>
+void compareThreads(const Make& make, const ExpectSame& expectSame) {
+  const auto one = make(1);
+  for (const int num_threads : {2, 8}) expectSame(make(num_threads), one);
+}
+
 /// The diagonal of the bounding box, the unit in which offsets are judged.
 inline double diagonal(const Points& points) {
   return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();

@@ -21,6 +21,9 @@ struct TurningShape {
   std::vector<Eigen::Vector3d> vertices = {};
   std::vector<Eigen::Vector3i> triangles = {};
 
+  Eigen::Map<const Eigen::Matrix3Xd> corners() const {
+    return {vertices[0].data(), 3, static_cast<Eigen::Index>(vertices.size())};
+  }
   void addFace(const std::vector<Eigen::Vector3d>& corners) {
     const int first = static_cast<int>(vertices.size());
     vertices.insert(vertices.end(), corners.begin(), corners.end());
@@ -51,10 +54,7 @@ struct TurningShape {
 
   /// \param noise standard deviation of each coordinate.
   Shape sampled(int num_points, std::uint64_t seed, double noise = 0.0) const {
-    Points corners(3, static_cast<Eigen::Index>(vertices.size()));
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      corners.col(static_cast<Eigen::Index>(i)) = vertices[i].cast<float>();
-    Shape shape{sampleTriangles(corners, triangles, num_points, seed).cast<double>(), {}};
+    Shape shape{sampleTriangles(corners().cast<float>(), triangles, num_points, seed).cast<double>(), {}};
     RandomStream random(seed, 5);
     for (Eigen::Index i = 0; i < shape.points.size(); ++i) shape.points(i) += noise * gaussian(random);
     return shape;

@@ -48,19 +48,6 @@ TEST(Parallel, RangesAreFixedPiecesWhateverTheThreads) {
   }
 }
 
-TEST(Parallel, ExceptionsReachTheCaller) {
-  for (const int num_threads : {1, 2, 8}) {
-    try {
-      parallelBlocks(100, num_threads, [](std::size_t b) {
-        if (b == 37) throw std::invalid_argument("block 37");
-      });
-      FAIL() << num_threads << " threads";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_STREQ(error.what(), "block 37");
-    }
-  }
-}
-
 TEST(Parallel, BlocksMayHaveBlocks) {
   for (const int num_threads : {1, 2, 8}) {
     std::vector<std::atomic<int>> sums(5);
@@ -93,11 +80,6 @@ TEST(Parallel, ExceptionsOfBlocksInBlocksReachTheCaller) {
                  std::invalid_argument);
     EXPECT_EQ(num_caught, 4) << num_threads << " threads";
   }
-}
-
-TEST(Parallel, ResolvesTheNumberOfThreads) {
-  EXPECT_GE(resolveNumThreads(0), 1);
-  EXPECT_EQ(resolveNumThreads(3), 3);
 }
 
 TEST(RandomStream, UniformIsUniform) {

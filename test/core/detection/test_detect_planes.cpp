@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
 
-#include "shapes/shapes.h"
+#include "shapes/found_planes.h"
 
+namespace pcl_symmetry {
 namespace {
 
-using namespace pcl_symmetry;
-using namespace pcl_symmetry::test;
+using namespace test;
 
 /// How the planes that were found compare with those that are there.
 struct Comparison {
@@ -38,13 +41,18 @@ Comparison compare(const Detection& detection, const Shape& shape) {
   return comparison;
 }
 
-struct NamedShape {
-  std::string name;
-  Shape shape;
-};
+/// Expects the planes of a shape and no other.
+void expectPlanes(const Detection& detection, const Shape& shape, double worst_angle, double worst_offset) {
+  const Comparison comparison = compare(detection, shape);
+  EXPECT_EQ(detection.planes.size(), shape.planes.size());
+  EXPECT_EQ(comparison.num_matched, shape.planes.size());
+  EXPECT_LT(comparison.worst_angle, worst_angle);
+  EXPECT_LT(comparison.worst_offset, worst_offset);
+}
 
-std::vector<NamedShape> symmetricShapes(int num_points, Sampling sampling) {
-  std::vector<NamedShape> shapes = {{"box", box(num_points, sampling, 1)}, {"cube", cube(num_points, sampling, 2)}};
+std::vector<std::pair<std::string, Shape>> symmetricShapes(int num_points, Sampling sampling) {
+  std::vector<std::pair<std::string, Shape>> shapes = {{"box", box(num_points, sampling, 1)},
+                                                       {"cube", cube(num_points, sampling, 2)}};
   for (const int n : {3, 4, 5, 6, 8, 12})
     shapes.push_back({"prism of " + std::to_string(n), prism(n, num_points, sampling, 10 + n)});
   return shapes;
@@ -90,11 +98,8 @@ TEST(DetectPlanes, MirroredSamplesGiveExactlyThePlanes) {
       const Shape posed = moved(shape, randomPose(pose));
       const Points cloud = posed.cloud();
       const Detection detection = detectPlanes(cloud);
-      const Comparison comparison = compare(detection, posed);
-      EXPECT_EQ(detection.planes.size(), posed.planes.size()) << name << ", pose " << pose;
-      EXPECT_EQ(comparison.num_matched, posed.planes.size()) << name << ", pose " << pose;
-      EXPECT_LT(comparison.worst_angle, 0.001 * kDegree) << name << ", pose " << pose;
-      EXPECT_LT(comparison.worst_offset, 1e-5) << name << ", pose " << pose;
+      SCOPED_TRACE(name + ", pose " + std::to_string(pose));
+      expectPlanes(detection, posed, 0.001 * kDegree, 1e-5);
       expectConsistent(detection, cloud);
     }
   }
@@ -111,12 +116,8 @@ TEST(DetectPlanes, RandomSamplesGiveThePlanesToTheirNoise) {
   for (const auto& [name, shape] : symmetricShapes(10'000, Sampling::Random)) {
     for (std::uint64_t pose = 1; pose <= 2; ++pose) {
       const Shape posed = moved(shape, randomPose(pose));
-      const Detection detection = detectPlanes(posed.cloud());
-      const Comparison comparison = compare(detection, posed);
-      EXPECT_EQ(detection.planes.size(), posed.planes.size()) << name << ", pose " << pose;
-      EXPECT_EQ(comparison.num_matched, posed.planes.size()) << name << ", pose " << pose;
-      EXPECT_LT(comparison.worst_angle, 5.0 * 8.7e-5) << name << ", pose " << pose;
-      EXPECT_LT(comparison.worst_offset, 2e-5) << name << ", pose " << pose;
+      SCOPED_TRACE(name + ", pose " + std::to_string(pose));
+      expectPlanes(detectPlanes(posed.cloud()), posed, 5.0 * 8.7e-5, 2e-5);
     }
   }
 }
@@ -187,11 +188,8 @@ TEST(DetectPlanes, ScalesWithThePoints) {
     const Shape expected = scaled(shape, scale);
     const Points cloud = expected.cloud();
     const Detection detection = detectPlanes(cloud);
-    const Comparison comparison = compare(detection, expected);
-    EXPECT_EQ(detection.planes.size(), 3u) << scale;
-    EXPECT_EQ(comparison.num_matched, 3u) << scale;
-    EXPECT_LT(comparison.worst_angle, 0.001 * kDegree) << scale;
-    EXPECT_LT(comparison.worst_offset, 1e-5) << scale;
+    SCOPED_TRACE(scale);
+    expectPlanes(detection, expected, 0.001 * kDegree, 1e-5);
     for (const SymmetryPlane& plane : detection.planes) EXPECT_LT(plane.residual, 1e-4 * diagonal(cloud)) << scale;
   }
 }
@@ -206,13 +204,18 @@ TEST(DetectPlanes, SurvivesAFarOrigin) {
   EXPECT_LT(comparison.worst_offset * diagonal(shape.cloud()), 1.0 / 16.0);
 }
 
+Shape withNoise(Shape shape, double of_diagonal, std::uint64_t seed) {
+  const double size = diagonal(shape.cloud());
+  RandomStream random(seed, 11);
+  for (Eigen::Index i = 0; i < shape.points.size(); ++i)
+    shape.points.data()[i] += of_diagonal * size * gaussian(random);
+  return shape;
+}
+
 TEST(DetectPlanes, SmallNoiseMovesAPlaneALittle) {
   const Shape shape = moved(box(10'000, Sampling::Mirrored, 10), randomPose(10));
-  const double size = diagonal(shape.cloud());
   for (const double noise : {1e-5, 1e-4, 1e-3, 5e-3}) {
-    Shape noisy = shape;
-    RandomStream random(11);
-    for (Eigen::Index i = 0; i < noisy.points.size(); ++i) noisy.points.data()[i] += noise * size * gaussian(random);
+    const Shape noisy = withNoise(shape, noise, 11);
     const Comparison comparison = compare(detectPlanes(noisy.cloud()), noisy);
     EXPECT_EQ(comparison.num_matched, 3u) << noise;
     // Averaged over 10^4 points the noise moves a plane by noise / 100; wrong pairs and edges make it worse. Ten times
@@ -222,28 +225,17 @@ TEST(DetectPlanes, SmallNoiseMovesAPlaneALittle) {
   }
 }
 
-Shape withNoise(Shape shape, double of_diagonal, std::uint64_t seed) {
-  const double size = diagonal(shape.cloud());
-  RandomStream random(seed, 11);
-  for (Eigen::Index i = 0; i < shape.points.size(); ++i)
-    shape.points.data()[i] += of_diagonal * size * gaussian(random);
-  return shape;
-}
-
 TEST(DetectPlanes, NoiseBeyondTheSpacingLeavesTheSymmetries) {
   // 2 % of the diagonal is 0.052; 10^4 points on the box lie 0.034 apart, so that they resolve no surface.
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Shape shape = moved(withNoise(box(10'000, Sampling::Random, seed), 0.02, seed), randomPose(30 + seed));
     const Detection detection = detectPlanes(shape.cloud());
-    const Comparison comparison = compare(detection, shape);
-    EXPECT_EQ(detection.planes.size(), 3u) << seed;
-    EXPECT_EQ(comparison.num_matched, 3u) << seed;
+    SCOPED_TRACE(seed);
     // 0.30 degrees and 4.9e-4 of the diagonal were measured.
-    EXPECT_LT(comparison.worst_angle, 1.5 * kDegree) << seed;
-    EXPECT_LT(comparison.worst_offset, 0.002) << seed;
+    expectPlanes(detection, shape, 1.5 * kDegree, 0.002);
     // The noise is twice the tolerance: not every plane can be decided.
-    ASSERT_FALSE(detection.planes.empty()) << seed;
-    EXPECT_EQ(detection.planes.front().kind, PlaneKind::Symmetry) << seed;
+    ASSERT_FALSE(detection.planes.empty());
+    EXPECT_EQ(detection.planes.front().kind, PlaneKind::Symmetry);
   }
 }
 
@@ -264,11 +256,7 @@ TEST(DetectPlanes, OnePointRepeatedChangesNothing) {
   Points cloud(3, once.cols() + 3000);
   cloud << once, once.col(17).replicate(1, 3000);
   const Detection detection = detectPlanes(cloud);
-  EXPECT_EQ(detection.planes.size(), 3u);
-  const Comparison comparison = compare(detection, shape);
-  EXPECT_EQ(comparison.num_matched, 3u);
-  EXPECT_LT(comparison.worst_angle, 0.001 * kDegree);
-  EXPECT_LT(comparison.worst_offset, 1e-5);
+  expectPlanes(detection, shape, 0.001 * kDegree, 1e-5);
   for (const SymmetryPlane& plane : detection.planes) {
     ASSERT_EQ(plane.point_support.size(), static_cast<std::size_t>(cloud.cols()));
     for (std::size_t i = 4000; i < plane.point_support.size(); ++i)
@@ -283,21 +271,11 @@ TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {
     options.num_threads = num_threads;
     return detectPlanes(cloud, options);
   };
-  const Detection one = detect(1);
-  EXPECT_EQ(one.planes.size(), 6u);
-  for (const int num_threads : {2, 8}) {
-    const Detection many = detect(num_threads);
+  compareThreads(detect, [](const Detection& many, const Detection& one) {
+    EXPECT_EQ(one.planes.size(), 6u);
     EXPECT_EQ(many.map.values, one.map.values);
-    ASSERT_EQ(many.planes.size(), one.planes.size());
-    for (std::size_t i = 0; i < one.planes.size(); ++i) {
-      EXPECT_EQ(many.planes[i].coefficients(), one.planes[i].coefficients());
-      EXPECT_EQ(many.planes[i].score, one.planes[i].score);
-      EXPECT_EQ(many.planes[i].support, one.planes[i].support);
-      EXPECT_EQ(many.planes[i].point_support, one.planes[i].point_support);
-      EXPECT_EQ(many.planes[i].residual, one.planes[i].residual);
-      EXPECT_EQ(many.planes[i].iterations, one.planes[i].iterations);
-    }
-  }
+    expectSamePlanes(many.planes, one.planes);
+  });
 }
 
 TEST(DetectPlanes, NeedsNoPrincipalAxes) {
@@ -323,11 +301,7 @@ TEST(DetectPlanes, AFlatRectangleHasThree) {
   const Points cloud = flat.cloud();
   const Detection detection = detectPlanes(cloud);
   expectConsistent(detection, cloud);
-  const Comparison comparison = compare(detection, flat);
-  EXPECT_EQ(detection.planes.size(), 3u);
-  EXPECT_EQ(comparison.num_matched, 3u);
-  EXPECT_LT(comparison.worst_angle, 0.001 * kDegree);
-  EXPECT_LT(comparison.worst_offset, 1e-5);
+  expectPlanes(detection, flat, 0.001 * kDegree, 1e-5);
   ASSERT_TRUE(detection.flat) << "its own plane is named";
   double farthest = 0.0;
   for (Eigen::Index i = 0; i < cloud.cols(); ++i)
@@ -341,4 +315,72 @@ TEST(DetectPlanes, ADiscIsNamedFlatAndABoxIsNot) {
   EXPECT_FALSE(detectPlanes(moved(box(3000, Sampling::Random, 23), randomPose(23)).cloud()).flat);
 }
 
+/// Fewer candidates and samples than by default: the same steps in a third of the time.
+DetectionOptions sweepOptions() {
+  DetectionOptions options;
+  options.expert.num_phi = 64;
+  options.expert.max_candidates = 16;
+  options.expert.num_refine_samples = 3000;
+  return options;
+}
+
+/// Everything at once, drawn from a seed.
+struct Change {
+  Eigen::Isometry3d pose;
+  double scale;
+  std::vector<Eigen::Index> order;  ///< of the points that are left, some of them several times
+
+  Change(std::uint64_t seed, Eigen::Index num_points) : pose(randomPose(seed)) {
+    RandomStream random(seed, 5);
+    scale = std::pow(10.0, 12.0 * random.uniform() - 6.0);
+    const double share = 0.6 + 0.4 * random.uniform(), copies = 0.3 * random.uniform();
+    for (Eigen::Index i = 0; i < num_points; ++i) {
+      if (random.uniform() > share) continue;
+      order.push_back(i);
+      if (random.uniform() < copies) order.push_back(i);
+    }
+    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+  }
+
+  Shape of(const Shape& shape) const {
+    Shape result = scaled(moved(shape, pose), scale);
+    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(order.size()));
+    for (std::size_t i = 0; i < order.size(); ++i)
+      points.col(static_cast<Eigen::Index>(i)) = result.points.col(order[i]);
+    result.points = points;
+    return result;
+  }
+};
+
+TEST(Invariance, PlanesStayWhateverIsDoneToThePoints) {
+  const std::vector<std::pair<std::string, Shape>> shapes = {{"box", box(5000, Sampling::Random, 1)},
+                                                             {"prism of 5", prism(5, 5000, Sampling::Random, 2)},
+                                                             {"prism of 3", prism(3, 5000, Sampling::Random, 3)}};
+  for (const auto& [name, shape] : shapes) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      const Change change(seed, shape.points.cols());
+      const Shape changed = change.of(shape);
+      const Points cloud = changed.cloud();
+      const Detection detection = detectPlanes(cloud, sweepOptions());
+      SCOPED_TRACE(name + ", seed " + std::to_string(seed) + ", scale " + std::to_string(change.scale));
+      EXPECT_EQ(std::count_if(detection.planes.begin(), detection.planes.end(),
+                              [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; }),
+                static_cast<std::ptrdiff_t>(shape.planes.size()));
+      EXPECT_EQ(numFound(changed, detection.planes, kDegree, 0.01 * diagonal(cloud)),
+                static_cast<int>(shape.planes.size()));
+    }
+  }
+}
+
+TEST(Invariance, NothingMakesAnAsymmetricShapeSymmetric) {
+  const Shape shapes[] = {scaleneTetrahedron(5000, 4), asymmetricBlob(5000, 5)};
+  for (const Shape& shape : shapes)
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      const Detection detection = detectPlanes(Change(seed, shape.points.cols()).of(shape).cloud(), sweepOptions());
+      for (const SymmetryPlane& plane : detection.planes)
+        EXPECT_NE(plane.kind, PlaneKind::Symmetry) << "seed " << seed << ": " << plane.normal().transpose();
+    }
+}
+
 }  // namespace
+}  // namespace pcl_symmetry

@@ -1,4 +1,5 @@
-/// What detection takes: data that hold no answer, values and options that are refused, many clouds in one call.
+/// What detection takes: data that hold no answer, values and options that are refused, large clouds, and many in one
+/// call.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/detection/cloud_subset.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
-#include "shapes/shapes.h"
+#include "shapes/found_planes.h"
 
 namespace {
 
@@ -44,11 +46,6 @@ TEST(DetectionInput, AGivenSearchIsAskedForEveryKindOfCloud) {
   }
 }
 
-/// Distance of the sum of four uniform numbers from its mean, with a standard deviation of 1.
-double noise(RandomStream& random) {
-  return std::sqrt(3.0) * (random.uniform() + random.uniform() + random.uniform() + random.uniform() - 2.0);
-}
-
 TEST(DetectPlanes, BentWiresHaveNoSymmetryByWhatIsMissing) {
   // All of a wire is an open border, and each viewpoint sees it once: neither excuses what has no counterpart.
   int num_called = 0;
@@ -58,7 +55,7 @@ TEST(DetectPlanes, BentWiresHaveNoSymmetryByWhatIsMissing) {
     Points wire(3, 60 + 20 * static_cast<int>(seed));
     for (Eigen::Index i = 0; i < wire.cols(); ++i) {
       const double t = random.uniform(), angle = 7.0 * t, radius = 0.2 + opening * t * t;
-      const Eigen::Vector3d off(noise(random), noise(random), noise(random));
+      const Eigen::Vector3d off(gaussian(random), gaussian(random), gaussian(random));
       wire.col(i) =
           (Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), climb * t) + width * off).cast<float>();
     }
@@ -77,7 +74,7 @@ TEST(DetectPlanes, OfANoisyLineNothingIsASymmetryButItsAxis) {
     RandomStream random(seed);
     Points line(3, 60 + 25 * static_cast<int>(seed));
     for (Eigen::Index i = 0; i < line.cols(); ++i)
-      line.col(i) = Eigen::Vector3d(random.uniform(), 0.009 * noise(random), 0.009 * noise(random)).cast<float>();
+      line.col(i) = Eigen::Vector3d(random.uniform(), 0.009 * gaussian(random), 0.009 * gaussian(random)).cast<float>();
     const Detection detection = detectPlanes(line);
     for (const SymmetryPlane& plane : detection.planes) EXPECT_NE(plane.kind, PlaneKind::Symmetry) << seed;
     for (const SymmetryAxis& axis : detection.axes) EXPECT_GT(std::abs(axis.direction.x()), 0.998) << seed;
@@ -116,14 +113,8 @@ TEST(DetectPlanesOfMany, FindsTheSameBytesAsOneCloudAtATime) {
     detectPlanesOfMany(kNum, cloud, keep, options);
     EXPECT_EQ(num_calls, std::vector<int>(kNum, 1));
     for (std::size_t i = 0; i < kNum; ++i) {
-      const std::vector<SymmetryPlane> expected = detectPlanes(cloud(i)).planes;
-      ASSERT_EQ(planes[i].size(), expected.size());
       EXPECT_GE(planes[i].size(), 1u);
-      for (std::size_t k = 0; k < expected.size(); ++k) {
-        EXPECT_EQ(planes[i][k].normal(), expected[k].normal());
-        EXPECT_EQ(planes[i][k].offset(), expected[k].offset());
-        EXPECT_EQ(planes[i][k].confidence, expected[k].confidence);
-      }
+      expectSamePlanes(planes[i], detectPlanes(cloud(i)).planes);
     }
   }
 }
@@ -167,6 +158,56 @@ TEST(DetectionOptions, RefusesBadOnes) {
   refused([](auto& o) { o.max_possible = 0; });
   refused([](auto& o) { o.max_planes = 0; });
   refused([](auto& o) { o.num_threads = -1; });
+}
+
+TEST(CloudSubset, TakesAsManyPointsAsTheToleranceNeeds) {
+  const Points points = box(90'000, Sampling::Random, 1).cloud();
+  DetectionOptions options;
+  EXPECT_EQ(subsetOf(points, options)->kept.size(), 20'000u);
+  options.tolerance = 0.005;  // half of the spacing: four times as many
+  EXPECT_EQ(subsetOf(points, options)->kept.size(), 80'000u);
+  options.tolerance = 0.002;
+  EXPECT_FALSE(subsetOf(points, options));
+  EXPECT_FALSE(subsetOf(points.leftCols(20'000), DetectionOptions()));
+}
+
+TEST(CloudSubset, LeavesCloudsOfFewDistinctPoints) {
+  const Points few = box(10'000, Sampling::Random, 1).cloud();
+  Points copies(3, 5 * few.cols());
+  for (int k = 0; k < 5; ++k) copies.middleCols(k * few.cols(), few.cols()) = few;
+  EXPECT_FALSE(subsetOf(copies, DetectionOptions()));
+}
+
+TEST(CloudSubset, NamesAPointNearEach) {
+  const Points points = moved(prism(5, 60'000, Sampling::Random, 2), randomPose(3)).cloud();
+  const CloudSubset subset = *subsetOf(points, DetectionOptions());
+  const std::vector<int> near = subset.nearTo(points, 1);
+  const double size = diagonal(points);
+  double worst = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const double distance = (points.col(static_cast<Eigen::Index>(i)) - subset.points.col(near[i])).norm();
+    worst = std::max(worst, distance);
+    sum += distance;
+  }
+  // Points of the subset are 1 % of the size apart, and the search takes over at an edge of a cell.
+  EXPECT_LT(worst, size / 64.0 * 1.01);
+  EXPECT_LT(sum / static_cast<double>(near.size()), 0.007 * size);
+  EXPECT_EQ(near, subset.nearTo(points, 2));
+}
+
+TEST(CloudSubset, PlanesAndSupportAreOfTheWholeCloud) {
+  const Shape shape = moved(box(60'000, Sampling::Random, 4), randomPose(5));
+  const Points points = shape.cloud();
+  const Detection detection = detectPlanes(points);
+  ASSERT_EQ(detection.planes.size(), 3u);
+  EXPECT_EQ(numFound(shape, detection.planes, 0.1 * kDegree, 1e-3 * diagonal(points)), 3);
+  for (const SymmetryPlane& plane : detection.planes) {
+    EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
+    ASSERT_EQ(plane.point_support.size(), 60'000u);
+    double sum = 0.0;
+    for (const float support : plane.point_support) sum += support;
+    EXPECT_GT(sum / 60'000.0, 0.97);
+  }
 }
 
 }  // namespace

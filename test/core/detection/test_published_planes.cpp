@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/constants.h"
-#include "shapes/shapes.h"
+#include "shapes/found_planes.h"
 
 namespace {
 
@@ -22,13 +22,9 @@ TEST(PublishedPlanes, FindTheThreePlanesOfABox) {
   options.discard_unstable = false;
   options.num_points = 2000;
   const auto planes = publishedPlanes(points, edt, publishedMap(points, edt), options);
-  for (int k = 0; k < 3; ++k) {
-    double nearest = 90.0;
-    for (const SymmetryPlane& plane : planes)
-      if (std::abs(plane.signedDistance(pose.translation())) < 0.02)
-        nearest = std::min(nearest, plane.angleTo(ReflectionPlane(pose.linear().col(k), 0.0)) / kDegree);
-    EXPECT_LT(nearest, 1.0);
-  }
+  const test::Shape box = test::moved(test::box(1, test::Sampling::Random, 4), pose);
+  for (const ReflectionPlane& plane : box.planes)
+    EXPECT_TRUE(test::isAmong(planes, plane, kDegree, 0.02, pose.translation()));
 }
 
 TEST(PublishedPlanes, StayInTheirCellsAndAreNotJudged) {
@@ -52,21 +48,14 @@ TEST(PublishedPlanes, StayInTheirCellsAndAreNotJudged) {
 TEST(PublishedPlanes, AreTheSameForAnyNumberOfThreads) {
   const Points points = boxCloud();
   const GaussianEdt edt(points);
-  PublishedOptions options;
-  options.num_threads = 1;
-  options.num_points = 200;
   const SymmetryMap map = publishedMap(points, edt, TransformMethod::Voting);
-  const auto expected = publishedPlanes(points, edt, map, options);
-  options.num_threads = 8;
-  const auto found = publishedPlanes(points, edt, map, options);
-  ASSERT_EQ(found.size(), expected.size());
-  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].coefficients(), expected[i].coefficients());
-}
-
-TEST(PublishedOptions, NamesFieldValueAndRule) {
-  PublishedOptions options;
-  options.num_points = 3;
-  EXPECT_THROW(options.validate(), std::invalid_argument);
+  const auto planes = [&](int num_threads) {
+    PublishedOptions options;
+    options.num_threads = num_threads;
+    options.num_points = 200;
+    return publishedPlanes(points, edt, map, options);
+  };
+  test::compareThreads(planes, test::expectSamePlanes);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shapes/complaint.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
 
@@ -252,12 +253,7 @@ TEST(SymmetryFrame, OfDegeneratePointsIsFiniteOrRefused) {
 TEST(FrameOptions, NamesFieldValueAndRule) {
   FrameOptions options;
   options.tie = -0.5;
-  try {
-    options.validate();
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "tie = -0.5, must be >= 0");
-  }
+  EXPECT_EQ(test::complaintOf<std::invalid_argument>([&] { options.validate(); }), "tie = -0.5, must be >= 0");
 }
 
 }  // namespace

@@ -1,13 +1,18 @@
+/// Directions, and rotations that look along them.
 #include "core/geometry/directions.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/geometry/axis_rotations.h"
+#include "core/geometry/viewing_frame.h"
 
-using namespace pcl_symmetry;
+namespace pcl_symmetry {
+namespace {
 
 TEST(GoldenFraction, IsTheFractionalPartOfMultiples) {
   EXPECT_EQ(goldenFraction(0), 0.0);
@@ -48,3 +53,26 @@ TEST(EvenDirections, LieAboutTheOriginAndApartFromEachOther) {
     EXPECT_LT(sum.norm() / count, 0.05);
   }
 }
+
+TEST(AxisRotations, AreTheDifferentRotationsOfTheAxes) {
+  const auto& rotations = axisRotations();
+  EXPECT_EQ(rotations[0], Eigen::Matrix3i::Identity());
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    const Eigen::Matrix3d matrix = rotations[i].cast<double>();
+    EXPECT_TRUE(matrix.isUnitary());
+    EXPECT_NEAR(matrix.determinant(), 1.0, 1e-12);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(rotations[i], rotations[j]);
+  }
+}
+
+TEST(ViewingFrame, IsARotationThatLooksForward) {
+  for (const Eigen::Vector3d& forward : evenDirections(50)) {
+    const Eigen::Matrix3d R = viewingFrame(forward);
+    EXPECT_TRUE((R * R.transpose()).isIdentity(1e-14));
+    EXPECT_NEAR(R.determinant(), 1.0, 1e-14);
+    EXPECT_TRUE((R * forward).isApprox(Eigen::Vector3d::UnitZ(), 1e-14));
+  }
+}
+
+}  // namespace
+}  // namespace pcl_symmetry

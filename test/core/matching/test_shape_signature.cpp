@@ -1,18 +1,41 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
+#include "core/base/random.h"
 #include "core/geometry/axis_rotations.h"
 #include "core/matching/shape_signature.h"
-#include "shapes/knobbed_box.h"
+#include "core/matching/signature_projection.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
-
 namespace {
 
-using test::knobbedBox;
+/// Points drawn at random on the surface of a box from -half to half; every tenth one in a knob, so that nothing is
+/// symmetric.
+Points knobbedBox(const Eigen::Vector3d& half, const Eigen::Vector3d& knob, int num_points, std::uint64_t seed) {
+  RandomStream random(seed);
+  Points points(3, num_points);
+  const Eigen::Vector3d areas(half.y() * half.z(), half.z() * half.x(), half.x() * half.y());
+  for (int i = 0; i < num_points; ++i) {
+    Eigen::Vector3d x;
+    if (i % 10 == 0) {
+      for (int k = 0; k < 3; ++k) x[k] = knob[k] + 0.1 * (random.uniform() - 0.5);
+    } else {
+      double share = random.uniform() * areas.sum();
+      int axis = 0;
+      while (axis < 2 && share >= areas[axis]) share -= areas[axis++];
+      for (int k = 0; k < 3; ++k) x[k] = half[k] * (2.0 * random.uniform() - 1.0);
+      x[axis] = random.uniform() < 0.5 ? -half[axis] : half[axis];
+    }
+    points.col(i) = x.cast<float>();
+  }
+  return points;
+}
 
 double distance(const std::vector<float>& a, const std::vector<float>& b) {
   double sq = 0.0;
@@ -21,8 +44,6 @@ double distance(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 const Eigen::Matrix3d kOwnAxes = Eigen::Matrix3d::Identity();
-
-}  // namespace
 
 TEST(ShapeSignature, HasUnitNormWhateverUnitAndPlace) {
   const Points box = knobbedBox({1.0, 0.7, 0.4}, {1.0, 0.5, 0.3}, 20'000, 1);
@@ -82,4 +103,58 @@ TEST(SignatureFrames, KeepTheFirstAxisAndSpreadTheOthers) {
   EXPECT_NEAR(frames[0].determinant(), 1.0, 1e-9);
 }
 
+/// Signatures of different boxes in their own axes.
+Eigen::MatrixXf boxSignatures(int count) {
+  Eigen::MatrixXf signatures(kSignatureSize, count);
+  for (int i = 0; i < count; ++i) {
+    RandomStream random(100 + static_cast<std::uint64_t>(i));
+    const Eigen::Vector3d half(0.3 + random.uniform(), 0.3 + random.uniform(), 0.3 + random.uniform());
+    const Eigen::Vector3d knob = half.cwiseProduct(Eigen::Vector3d(1.0, random.uniform(), random.uniform()));
+    const auto signature =
+        shapeSignature(knobbedBox(half, knob, 3000, 7 + static_cast<std::uint64_t>(i)), Eigen::Matrix3d::Identity());
+    signatures.col(i) = Eigen::Map<const Eigen::VectorXf>(signature.data(), kSignatureSize);
+  }
+  return signatures;
+}
+
+TEST(SignatureProjection, RotatesAsSignaturesDo) {
+  const Eigen::MatrixXf signatures = boxSignatures(6);
+  // All there is to know of 6 shapes: then the space of the components is closed.
+  ProjectionOptions options;
+  options.num_dimensions = 6 * kNumAxisRotations;
+  const SignatureProjection projection = SignatureProjection::fit(signatures, options);
+  Eigen::VectorXf rotated(kSignatureSize);
+  const Eigen::VectorXf compact = projection.project(signatures.col(3));
+  EXPECT_NEAR(compact.norm(), 1.0, 1e-5);
+  const Eigen::MatrixXf rotations = projection.rotations(compact);
+  for (int r = 0; r < kNumAxisRotations; ++r) {
+    rotateSignature(signatures.col(3).data(), r, rotated.data());
+    EXPECT_LT((projection.project(rotated) - rotations.col(r)).norm(), 0.05) << "rotation " << r;
+  }
+}
+
+TEST(SignatureProjection, IsTheSameWithAnyNumberOfThreadsAndAfterStorage) {
+  const Eigen::MatrixXf signatures = boxSignatures(4);
+  ProjectionOptions options;
+  options.num_dimensions = 32;
+  options.num_threads = 1;
+  const SignatureProjection one = SignatureProjection::fit(signatures, options);
+  options.num_threads = 3;
+  const SignatureProjection many = SignatureProjection::fit(signatures, options);
+  EXPECT_EQ(one.toValues(), many.toValues());
+  const SignatureProjection stored = SignatureProjection::fromValues(one.toValues());
+  EXPECT_EQ(stored.numDimensions(), 32);
+  EXPECT_EQ(stored.project(signatures), one.project(signatures));
+  std::vector<float> cut = one.toValues();
+  cut.pop_back();
+  EXPECT_THROW(SignatureProjection::fromValues(cut), std::invalid_argument);
+}
+
+TEST(SignatureProjection, RefusesWhatItCannotUse) {
+  EXPECT_THROW(SignatureProjection::fit(Eigen::MatrixXf(kSignatureSize, 0)), std::invalid_argument);
+  EXPECT_THROW(SignatureProjection::fit(Eigen::MatrixXf::Ones(5, 5)), std::invalid_argument);
+  EXPECT_THROW(SignatureProjection::fit(Eigen::MatrixXf::Zero(kSignatureSize, 3)), std::invalid_argument);
+}
+
+}  // namespace
 }  // namespace pcl_symmetry

@@ -1,18 +1,38 @@
-/// The search finds a pose from nowhere.
+/// The search finds a pose from nowhere; where it starts, how it scores and improves.
 #include "pcl_symmetry/core/pose_search.h"
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "core/registration/frame_hypotheses.h"
+#include "core/registration/pose_covariance.h"
+#include "core/registration/pose_scoring.h"
+#include "core/registration/pose_starts.h"
+#include "core/registration/posed_surface.h"
 #include "core/registration/ranked_poses.h"
-#include "shapes/posed_surfaces.h"
+#include "pcl_symmetry/core/visibility.h"
+#include "shapes/scans.h"
 #include "shapes/shapes.h"
 
+namespace pcl_symmetry {
 namespace {
 
-using namespace pcl_symmetry;
-using namespace pcl_symmetry::test;
+using namespace test;
+
+/// \return radians.
+double angleOf(const Eigen::Isometry3d& motion) {
+  return Eigen::AngleAxisd(motion.linear()).angle();
+}
+
+PosedSurface surface(const Points& points, std::optional<Visibility> seen = {}) {
+  return {points, std::move(seen), 1, 0};
+}
 
 TEST(PoseScore, MeritIsSupportMinusHalfTheConflict) {
   PoseScore score;
@@ -54,4 +74,172 @@ TEST(PoseSearchOptions, RefusesOptionsOutOfRange) {
   refused([](PoseSearchOptions& o) { o.num_threads = -1; });
 }
 
+TEST(UniformRotations, CoverAllRotations) {
+  constexpr int kNumRotations = 1000;
+  const std::vector<Eigen::Matrix3d> rotations = uniformRotations(kNumRotations);
+  ASSERT_EQ(rotations.size(), static_cast<std::size_t>(kNumRotations));
+  for (const Eigen::Matrix3d& rotation : rotations) {
+    EXPECT_NEAR(rotation.determinant(), 1.0, 1e-9);
+    EXPECT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+  }
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Matrix3d wanted = randomPose(i).linear();
+    double least = kPi;
+    for (const Eigen::Matrix3d& rotation : rotations)
+      least = std::min(least, Eigen::AngleAxisd(rotation.transpose() * wanted).angle());
+    EXPECT_LT(least, 20.0 * kDegree) << "balls of 14 degrees about 1000 rotations would fill the space once";
+  }
+}
+
+TEST(PoseStarts, OfWholesPutCenterOfMassOnCenterOfMass) {
+  const Shape shape = asymmetricBlob(1000, 1);
+  const PosedSurface model(shape.cloud(), std::nullopt, 1, 1);
+  const PosedSurface scan(moved(shape, randomPose(3)).cloud(), std::nullopt, 1, 1);
+  const Eigen::Matrix3d rotation = randomPose(5).linear();
+  const Eigen::Isometry3d start = PoseStarts(scan, model).pose(rotation);
+  EXPECT_EQ(start.linear(), rotation);
+  EXPECT_LT((start * centerOfMass(scan.points) - centerOfMass(model.points)).norm(), 1e-6);
+}
+
+/// With the right rotation the outline of a scan stands where the object is, though its center of mass does not.
+TEST(PoseStarts, OfScansPutOutlineOnOutline) {
+  const BlockObject object = blockBox();
+  const PosedSurface model(surfaceOf(object, 4000), std::nullopt, 1, 1);
+  for (const Eigen::Vector3d& viewpoint : {Eigen::Vector3d(0.0, -6.0, 0.0), Eigen::Vector3d(4.0, 3.0, -3.0)}) {
+    const Scan scanned = test::scan(object, viewpoint);
+    const PosedSurface scan(scanned.cloud(), scanned.visibility(), 1, 1);
+    const Eigen::Isometry3d start = PoseStarts(scan, model).pose(Eigen::Matrix3d::Identity());
+    EXPECT_LT(start.translation().norm(), 0.15) << viewpoint.transpose();
+    EXPECT_GT((centerOfMass(model.points) - centerOfMass(scan.points)).norm(), 0.3) << viewpoint.transpose();
+  }
+}
+
+/// A frame in some pose, with no equally good ones.
+SymmetryFrame frameAt(const Eigen::Isometry3d& T_canonical_input, int revolution_axis = -1) {
+  SymmetryFrame frame;
+  frame.T_canonical_input = T_canonical_input;
+  frame.center = T_canonical_input.inverse().translation();
+  frame.axes = T_canonical_input.linear().transpose();
+  frame.revolution_axis = revolution_axis;
+  frame.equivalent = {T_canonical_input};
+  frame.num_maxima = 1;
+  return frame;
+}
+
+TEST(FrameHypotheses, AreAllWaysToLayAxesOnAxes) {
+  const SymmetryFrame a = frameAt(randomPose(1)), b = frameAt(randomPose(2));
+  const std::vector<Eigen::Isometry3d> hypotheses = frameHypotheses(a, b);
+  ASSERT_EQ(hypotheses.size(), 24u);
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    EXPECT_LT((hypotheses[i] * a.center - b.center).norm(), 1e-9) << "center on center";
+    const Eigen::Matrix3d cosines = b.axes.transpose() * hypotheses[i].linear() * a.axes;
+    EXPECT_LT((cosines.cwiseAbs().colwise().maxCoeff().array() - 1.0).abs().maxCoeff(), 1e-9) << "axes on axes";
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GT(angleOf(hypotheses[i] * hypotheses[j].inverse()), 10.0 * kDegree) << "each once";
+  }
+}
+
+/// 24 ways times 8 turns, of which the 4 by quarter turns are among the 24 already.
+TEST(FrameHypotheses, TurnAboutAnAxisOfRevolution) {
+  const SymmetryFrame b = frameAt(randomPose(2));
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(frameHypotheses(frameAt(randomPose(1), axis), b).size(), 48u) << axis;
+  EXPECT_EQ(frameHypotheses(frameAt(randomPose(1), 3), b).size(), 24u) << "a sphere fits in any of them";
+}
+
+TEST(FrameHypotheses, StartFromEveryFrameThatIsAMaximum) {
+  SymmetryFrame a = frameAt(randomPose(1));
+  const Eigen::Isometry3d turned = Eigen::AngleAxisd(30.0 * kDegree, Eigen::Vector3d::UnitZ()) * a.T_canonical_input;
+  a.equivalent.push_back(turned);
+  const SymmetryFrame b = frameAt(Eigen::Isometry3d::Identity());
+  EXPECT_EQ(frameHypotheses(a, b).size(), 24u) << "a frame between the maxima";
+  a.num_maxima = 2;
+  const std::vector<Eigen::Isometry3d> hypotheses = frameHypotheses(a, b);
+  EXPECT_EQ(hypotheses.size(), 48u);
+  EXPECT_TRUE(std::any_of(hypotheses.begin(), hypotheses.end(),
+                          [&](const Eigen::Isometry3d& pose) { return pose.isApprox(turned, 1e-9); }));
+}
+
+TEST(FrameHypotheses, HoldTheMotionBetweenTwoPosesOfAShape) {
+  const Shape shape = box(4000, Sampling::Mirrored, 1);
+  const Eigen::Isometry3d T_b_a = randomPose(9);
+  const SymmetryFrame a = symmetryFrame(shape.cloud()), b = symmetryFrame(moved(shape, T_b_a).cloud());
+  const std::vector<Eigen::Isometry3d> hypotheses = frameHypotheses(a, b);
+  EXPECT_GE(hypotheses.size(), 24u);
+  double least = kPi;
+  for (const Eigen::Isometry3d& hypothesis : hypotheses) least = std::min(least, angleOf(T_b_a.inverse() * hypothesis));
+  EXPECT_LT(least, 3.0 * kDegree);
+}
+
+enum class Pairs { Points, Planes, Both };
+
+/// \return the motion that brings \p num_pairs random points to where \p true_motion has them, lengths times \p scale.
+Eigen::Isometry3d solved(const Eigen::Isometry3d& true_motion, int num_pairs, Pairs pairs, double scale = 1.0) {
+  MotionEquations equations(scale);
+  for (int i = 0; i < num_pairs; ++i) {
+    const Eigen::Isometry3d random = randomPose(static_cast<std::uint64_t>(i) + 1, 1.0);
+    const Eigen::Vector3d x = random.translation(), y = true_motion * x;
+    const double weight = 0.5 + 0.5 * std::abs(random.linear()(0, 0));
+    if (pairs != Pairs::Planes) equations.addPoint(scale * x, scale * y, weight);
+    if (pairs != Pairs::Points) equations.addPlane(scale * x, scale * y, random.linear().col(1), weight);
+  }
+  Eigen::Isometry3d motion = equations.motion();
+  motion.translation() /= scale;
+  return motion;
+}
+
+Eigen::Isometry3d smallMotion() {
+  return Eigen::Translation3d(2e-4, -5e-4, 3e-4) *
+         Eigen::AngleAxisd(1e-3, Eigen::Vector3d(1.0, -2.0, 0.5).normalized());
+}
+
+TEST(MotionEquations, FindTheMotionOfAnyNumberOfPairs) {
+  const Eigen::Isometry3d motion = smallMotion();
+  for (const Pairs pairs : {Pairs::Points, Pairs::Planes, Pairs::Both})
+    for (const int num_pairs : {9, 127, 128, 129, 1000})
+      EXPECT_LT((solved(motion, num_pairs, pairs).matrix() - motion.matrix()).norm(), 1e-5)
+          << num_pairs << " pairs of kind " << static_cast<int>(pairs);
+}
+
+TEST(MotionEquations, DoNotDependOnTheUnitOfLength) {
+  const Eigen::Isometry3d motion = smallMotion();
+  for (const double scale : {1e-4, 1e4})
+    EXPECT_LT((solved(motion, 50, Pairs::Both, scale).matrix() - solved(motion, 50, Pairs::Both).matrix()).norm(), 1e-9)
+        << scale;
+}
+
+TEST(MotionEquations, WithoutPairsNothingMoves) {
+  EXPECT_TRUE(MotionEquations(1.0).motion().matrix().isIdentity());
+}
+
+TEST(PoseScorer, TheTruePoseIsBestAndStandsStill) {
+  const Shape shape = asymmetricBlob(4000, 1);
+  const Eigen::Isometry3d T_model_scan = randomPose(4, 0.5);
+  const PosedSurface model = surface(shape.cloud()), scan = surface(moved(shape, T_model_scan.inverse()).cloud());
+  const PoseScorer scorer(scan, model);
+  const PoseScorer::Detail detail{1000, 0.1, true};
+  const PoseScore score = scorer.score(T_model_scan, detail);
+  EXPECT_GT(score.support, 0.95);
+  EXPECT_EQ(score.conflict, 0.0) << "nobody looked";
+  EXPECT_LT(angleOf(scorer.step(T_model_scan, detail) * T_model_scan.inverse()), 0.01);
+  for (const double angle : {0.2, 0.5}) {
+    Eigen::Isometry3d turned = T_model_scan;
+    turned.linear() = T_model_scan.linear() * Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, 3).normalized());
+    EXPECT_LT(scorer.score(turned, detail).merit(), score.merit() - 0.05) << angle;
+  }
+}
+
+TEST(PoseScorer, FreeSpaceSpeaksAgainstAPose) {
+  const BlockObject object = blockChair();
+  const Scan scan = test::scan(object, {3.0, -6.0, 4.0});
+  const PosedSurface seen = surface(scan.cloud(), scan.visibility()), unseen = surface(scan.cloud());
+  // The chair upside down: what is then above the seat was seen to be empty.
+  const Eigen::Isometry3d over(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()));
+  const PosedSurface model = surface(surfaceOf(object, 4000));
+  const PoseScorer::Detail detail{1000, 0.1, true};
+  EXPECT_EQ(PoseScorer(unseen, model).score(over, detail).conflict, 0.0);
+  EXPECT_GT(PoseScorer(seen, model).score(over, detail).conflict, 0.1);
+  EXPECT_LT(PoseScorer(seen, model).score(Eigen::Isometry3d::Identity(), detail).conflict, 0.02);
+}
+
 }  // namespace
+}  // namespace pcl_symmetry

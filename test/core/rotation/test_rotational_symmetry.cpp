@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "shapes/complaint.h"
 #include "shapes/turning_shapes.h"
 
 namespace {
@@ -307,18 +308,13 @@ TEST(ObjectSymmetries, StandExtremeUnits) {
 }
 
 TEST(ObjectSymmetries, OptionsNameFieldValueAndRule) {
-  const auto message = [](const auto& change) -> std::string {
+  const auto message = [](const auto& change) {
     ObjectSymmetryOptions options;
     change(options);
-    try {
-      options.validate();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return complaintOf<std::invalid_argument>([&] { options.validate(); });
   };
   using Options = ObjectSymmetryOptions;
-  EXPECT_EQ(message([](Options&) {}), "");
+  EXPECT_NO_THROW(Options().validate());
   EXPECT_EQ(message([](Options& o) { o.max_feature = 2.0; }), "max_feature = 2, must be in [0, 1]");
   EXPECT_EQ(message([](Options& o) { o.tolerance = 0.0; }), "tolerance = 0, must be in (0, 0.1]");
   EXPECT_EQ(message([](Options& o) { o.absolute_tolerance = -1.0; }), "absolute_tolerance = -1, must be >= 0");

@@ -22,7 +22,7 @@ Points spherePoints(int num_points = 20'000) {
 
 /// The half of the unit sphere that faces the viewpoint; its normals are the points.
 Points sphereScan(const Eigen::Vector3d& viewpoint = kViewpoint) {
-  return facing(spherePoints(), spherePoints(), viewpoint);
+  return facing(spherePoints(), viewpoint);
 }
 
 /// Where rays of the viewpoint meet the sphere, no farther than 0.6 from the middle of its picture.
@@ -75,7 +75,7 @@ TEST(Visibility, ASurfaceHasNoHoles) {
   const Eigen::Vector3d forward = -kViewpoint.normalized(), u = forward.unitOrthogonal(), v = forward.cross(u);
   for (const int num_points : {2000, 20'000, 100'000}) {
     const Points points = spherePoints(num_points);
-    const auto seen = Visibility::fromPoints(facing(points, points, kViewpoint), kViewpoint);
+    const auto seen = Visibility::fromPoints(facing(points, kViewpoint), kViewpoint);
     ASSERT_TRUE(seen);
     int num_rays = 0, num_through = 0;
     for (double a = -0.8; a <= 0.8; a += 0.02) {

@@ -9,6 +9,7 @@
 
 #include "core/base/constants.h"
 #include "core/transform/free_space.h"
+#include "shapes/complaint.h"
 #include "shapes/scans.h"
 #include "shapes/turning_shapes.h"
 
@@ -136,14 +137,7 @@ TEST(AxialTransform, DoesNotDependOnThreadsAndInstructions) {
 
 TEST(AxialTransform, RefusesBadOptions) {
   AxialTransformOptions options;
-  const auto message = [&] {
-    try {
-      options.validate();
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto message = [&] { return complaintOf<std::invalid_argument>([&] { options.validate(); }); };
   options.folds = {2, 1};
   EXPECT_EQ(message(), "fold = 1, must be 0 or in [2, 60]");
   options.folds = {2, 2};

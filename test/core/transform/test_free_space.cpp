@@ -11,17 +11,8 @@ using namespace pcl_symmetry::test;
 
 const Eigen::Vector3d kViewpoint(0.5, -1.0, -5.0);
 
-Points spherePoints(int num_points = 20'000) {
-  return sphere(num_points, 1).cloud();
-}
-
-/// The half of the unit sphere that faces the viewpoint; its normals are the points.
-Points sphereScan(const Eigen::Vector3d& viewpoint = kViewpoint) {
-  return facing(spherePoints(), spherePoints(), viewpoint);
-}
-
 TEST(FreeSpace, IsFreeInFrontAndBesideAndNothingBehind) {
-  const Points points = sphereScan();
+  const Points points = facing(sphere(20'000, 1).cloud(), kViewpoint);
   const auto seen = Visibility::fromPoints(points, kViewpoint);
   ASSERT_TRUE(seen);
   const GaussianEdt edt(points);

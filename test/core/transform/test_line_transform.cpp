@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
 
 #include "shapes/contours.h"
+#include "shapes/shapes.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -147,6 +151,78 @@ TEST(PointSymmetry2D, TheCenterOfACircleIsTheDarkestPoint) {
   // Its two lines lie half a bin from the directions of the map.
   EXPECT_GT(of_rectangle[0], 0.85f);
   EXPECT_LT(of_rectangle[1], 0.6f);
+}
+
+TEST(LineGrid, FindsTheBinOfEveryBinCenterAndItsOtherForm) {
+  const LineGrid grid(12, 10, {0.3, -0.2}, 1.5);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const ReflectionLine line = grid.line(grid.bin(i));
+    EXPECT_EQ(grid.index(*grid.find(line)), i);
+    EXPECT_EQ(grid.index(*grid.find(ReflectionLine(line.theta() + kPi, -line.offset()))), i);
+  }
+  EXPECT_FALSE(grid.find(ReflectionLine(0.0, 2.0)));
+}
+
+TEST(LineGrid, SeamLeadsToTheSameLinesTurned) {
+  const LineGrid grid(12, 10, {0.0, 0.0}, 1.5);
+  const auto to = grid.step({0, 3}, -1, 0);
+  ASSERT_TRUE(to);
+  EXPECT_EQ(to->theta, 11);
+  EXPECT_EQ(to->radius, 6);
+  EXPECT_NEAR(grid.line({0, 3}).angleTo(grid.line(*to)), grid.thetaStep(), 1e-12);
+  EXPECT_FALSE(grid.step({4, 9}, 0, 1));
+}
+
+TEST(LineGrid, RefusesBadParameters) {
+  EXPECT_THROW(LineGrid(0, 10, {0.0, 0.0}, 1.0), std::invalid_argument);
+  EXPECT_THROW(LineGrid(10, 4097, {0.0, 0.0}, 1.0), std::invalid_argument);
+  EXPECT_THROW(LineGrid(10, 10, {0.0, std::nan("")}, 1.0), std::invalid_argument);
+  EXPECT_THROW(LineGrid(10, 10, {0.0, 0.0}, 0.0), std::invalid_argument);
+}
+
+TEST(LineMap, StrongestIsTheFirstOfTheGreatest) {
+  LineMap map;
+  EXPECT_TRUE(map.empty());
+  EXPECT_EQ(map.strongest(), 0u);
+  map.values = {0.2f, 0.9f, 0.9f};
+  EXPECT_EQ(map.strongest(), 1u);
+  EXPECT_EQ(map[0], 0.2f);
+}
+
+TEST(ReflectionLine, ReflectingTwiceIsTheIdentity) {
+  RandomStream random(5);
+  for (int i = 0; i < 100; ++i) {
+    const ReflectionLine line(10.0 * symmetric(random), symmetric(random));
+    const Eigen::Vector2d x(symmetric(random), symmetric(random));
+    EXPECT_LT((line.reflect(line.reflect(x)) - x).norm(), 1e-14);
+    EXPECT_NEAR(line.signedDistance(line.reflect(x)), -line.signedDistance(x), 1e-14);
+    const ReflectionLine canonical = line.canonical();
+    EXPECT_GE(canonical.theta(), 0.0);
+    EXPECT_LT(canonical.theta(), kPi);
+    EXPECT_LT((canonical.reflect(x) - line.reflect(x)).norm(), 1e-14);
+  }
+  EXPECT_LT(ReflectionLine(-1e-17, 1.0).canonical().theta(), kPi);
+  EXPECT_THROW(ReflectionLine(std::numeric_limits<double>::quiet_NaN(), 0.0), std::invalid_argument);
+}
+
+TEST(ReflectionLine, ReflectsAsWritten) {
+  // x - 2 (n.x - r) n for n = (1, 0), r = 2 turns (5, 3) into (-1, 3).
+  EXPECT_EQ(ReflectionLine(0.0, 2.0).reflect({5.0, 3.0}), Eigen::Vector2d(-1.0, 3.0));
+  EXPECT_EQ(ReflectionLine().reflect({5.0, 3.0}), Eigen::Vector2d(-5.0, 3.0));
+}
+
+TEST(ReflectionLine, AngleIsThatOfLines) {
+  const ReflectionLine line(0.4, 1.0);
+  for (const double angle : {0.0, 1e-6, 0.3, 0.5 * kPi}) {
+    EXPECT_NEAR(line.angleTo(ReflectionLine(0.4 + angle, -3.0)), angle, 1e-15);
+    EXPECT_NEAR(line.angleTo(ReflectionLine(0.4 - angle + kPi, 2.0)), angle, 1e-15);
+  }
+}
+
+TEST(ReflectionLine, RefusesWhatIsNotFinite) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(ReflectionLine(kInfinity, 0.0), std::invalid_argument);
+  EXPECT_THROW(ReflectionLine(0.0, kInfinity), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/planar_transform.h"
+#include "shapes/complaint.h"
 
 namespace {
 
@@ -73,13 +74,8 @@ TEST(VolumeFunction, AveragesUntilThereAreFewVoxelsAndKeepsTheirPlaces) {
 }
 
 TEST(VolumeFunction, TellsWhyThereIsNoAnswer) {
-  const auto reason = [](const ScalarGrid& grid, const VolumeLevels& levels = {}) -> std::string {
-    try {
-      VolumeFunction(grid, levels, 4096);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+  const auto reason = [](const ScalarGrid& grid, const VolumeLevels& levels = {}) {
+    return complaintOf<std::invalid_argument>([&] { VolumeFunction(grid, levels, 4096); });
   };
   const Eigen::Affine3d unit = Eigen::Affine3d::Identity();
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -1,0 +1,45 @@
+/// Comparisons of planes that were found.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "pcl_symmetry/core/plane_types.h"
+#include "shapes/shapes.h"
+
+namespace pcl_symmetry::test {
+
+/// \return whether one of the planes is that of the shape, to an angle and to an offset from a point.
+inline bool isAmong(const std::vector<SymmetryPlane>& found, const ReflectionPlane& plane, double angle, double offset,
+                    const Eigen::Vector3d& about) {
+  return std::any_of(found.begin(), found.end(), [&](const SymmetryPlane& candidate) {
+    const PlaneError error = planeError(plane, candidate, about);
+    return error.angle <= angle && error.offset <= offset;
+  });
+}
+
+/// \return the number of planes of the shape that are among those found.
+inline int numFound(const Shape& shape, const std::vector<SymmetryPlane>& found, double angle, double offset) {
+  const Eigen::Vector3d middle = shape.points.rowwise().mean();
+  return static_cast<int>(std::count_if(shape.planes.begin(), shape.planes.end(), [&](const ReflectionPlane& plane) {
+    return isAmong(found, plane, angle, offset, middle);
+  }));
+}
+
+inline void expectSamePlanes(const std::vector<SymmetryPlane>& a, const std::vector<SymmetryPlane>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].coefficients(), b[i].coefficients());
+    EXPECT_EQ(a[i].confidence, b[i].confidence);
+    EXPECT_EQ(a[i].score, b[i].score);
+    EXPECT_EQ(a[i].support, b[i].support);
+    EXPECT_EQ(a[i].seen, b[i].seen);
+    EXPECT_EQ(a[i].residual, b[i].residual);
+    EXPECT_EQ(a[i].iterations, b[i].iterations);
+    EXPECT_EQ(a[i].point_support, b[i].point_support);
+  }
+}
+
+}  // namespace pcl_symmetry::test
