@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pcl_symmetry/core/symmetry_map.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry::apps {
@@ -36,6 +37,17 @@ struct CommonOptions {
     options.sigma = sigma.value_or(0.0);
   }
 };
+
+/// The estimators of the transform.
+inline const std::vector<std::string> kMethodNames{"sampled", "exact", "rotational", "voting"};
+
+/// \param name one of kMethodNames.
+inline TransformMethod methodNamed(const std::string& name) {
+  return name == "exact"        ? TransformMethod::Convolution
+         : name == "rotational" ? TransformMethod::Rotational
+         : name == "voting"     ? TransformMethod::Voting
+                                : TransformMethod::Sampled;
+}
 
 /// Number of points spread over a mesh by the tools of the database, where a model is described once and asked often.
 /// chosen: half tells thin parts apart less well, twice takes twice the time.

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "command_line/batch_options.h"
-#include "command_line/common_options.h"
+#include "command_line/run_on_files.h"
 
 namespace pcl_symmetry::apps {
 

@@ -12,11 +12,11 @@
 #include "command_line/csv.h"
 #include "command_line/input_files.h"
 #include "command_line/result_files.h"
-#include "command_line/file_errors.h"
+#include "command_line/tool_errors.h"
+#include "core/base/parallel.h"
 #include "io/json_values.h"
 #include "io/shape_output.h"
 #include "io/standard_streams.h"
-#include "core/base/parallel.h"
 
 namespace pcl_symmetry::apps {
 

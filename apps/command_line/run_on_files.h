@@ -6,14 +6,74 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "command_line/batch_options.h"
-#include "command_line/file_job.h"
-#include "command_line/common_options.h"
+#include "command_line/command_line.h"
+#include "command_line/console.h"
 
 namespace pcl_symmetry::apps {
+
+/// For the help of tools whose inputs are all their arguments without a flag.
+inline const char* const kManyInputs =
+    "files (.pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts, .asc, .txt or .csv), folders, patterns in quotes, lists "
+    "@FILE, or - for standard input";
+/// For the help of tools that take an output after their input.
+inline const char* const kOneOrManyInputs =
+    "file (.pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts, .asc, .txt or .csv), - for standard input, or many: a "
+    "folder, a pattern in quotes, a list @FILE";
+
+struct BatchOptions {
+  std::vector<std::string> inputs;  ///< as inputFiles() takes them
+  std::optional<std::string> csv_path;
+  bool resume = false;
+  /// What the tool writes of each input besides JSON and CSV: names in which {} stands for the name of the input.
+  std::vector<const std::optional<std::string>*> outputs;
+
+  /// Adds -csv and -resume.
+  void addTo(CommandLine& line) {
+    line.text("csv", "FILE", csv_path, "write the result as a table of comma-separated values")
+        .flag("resume", resume,
+              "with several inputs and -json FILE: keep what FILE holds, and go on with the inputs that it does not");
+  }
+};
+
+/// What a tool reports of an input.
+struct FileReport {
+  std::string text;     ///< for standard output, where there is one input
+  nlohmann::json json;  ///< an object; in a file of several inputs it is a line
+  /// Rows of the table of comma-separated values: numbers and strings, one for each column after "file".
+  std::vector<std::vector<nlohmann::json>> rows;
+};
+
+class FileJob {
+public:
+  /// \param console says nothing where there are several inputs.
+  /// \param num_threads as -threads; 1 where there are several inputs, of which each has a thread.
+  FileJob(std::string path, const Console& console, int num_threads)
+      : path_(std::move(path)), console_(console), num_threads_(num_threads) {}
+
+  const std::string& path() const { return path_; }
+  const Console& console() const { return console_; }
+  int numThreads() const { return num_threads_; }
+
+  /// \return the name of an output of this input: {} in the pattern becomes the name of the input without its folder and
+  /// extension.
+  std::string output(const std::string& pattern) const;
+
+  /// What is reported stays reported if something later throws.
+  void report(FileReport report) { report_ = std::move(report); }
+  const std::optional<FileReport>& reported() const { return report_; }
+
+private:
+  std::string path_;
+  const Console& console_;
+  int num_threads_;
+  std::optional<FileReport> report_;
+};
 
 /// \param columns of the CSV table, after "file".
 /// \param analyse called once for each input, from several threads at once; throws what stops this input.

@@ -13,7 +13,7 @@
 #include <sstream>
 #include <vector>
 
-#include "command_line/file_errors.h"
+#include "command_line/tool_errors.h"
 
 namespace pcl_symmetry::apps {
 

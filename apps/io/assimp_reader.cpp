@@ -1,4 +1,4 @@
-#include "io/assimp_reader.h"
+#include "io/shape_readers.h"
 
 #include <assimp/scene.h>
 

@@ -5,11 +5,31 @@
 #include <pcl/types.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace pcl_symmetry::apps {
+
+/// Three fields of float or double that hold a vector of each point.
+class VectorField {
+public:
+  explicit VectorField(const pcl::PCLPointCloud2& cloud, const std::array<const char*, 3>& names = {"x", "y", "z"});
+
+  /// \return whether the cloud has them; otherwise they are not to be asked.
+  bool isThere() const { return is_there_; }
+  bool isDouble() const { return is_double_[0] || is_double_[1] || is_double_[2]; }
+  /// \param cloud with the fields of that of the constructor.
+  Eigen::Vector3d get(const pcl::PCLPointCloud2& cloud, std::size_t i) const;
+  void set(pcl::PCLPointCloud2& cloud, std::size_t i, const Eigen::Vector3d& value) const;
+
+private:
+  std::size_t point_step_;
+  std::array<std::size_t, 3> offsets_{};
+  std::array<bool, 3> is_double_{};
+  bool is_there_ = false;
+};
 
 /// Moves the points from \p first on: x, y, z and the viewpoint vp_x, vp_y, vp_z by the whole map, normals by its
 /// linear part. Other fields stay.
@@ -21,6 +41,9 @@ void movePoints(pcl::PCLPointCloud2& cloud, const Eigen::Affine3d& map, std::siz
 /// \throws InputError where a name is taken.
 pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<std::string>& names,
                                const std::vector<std::vector<float>>& values);
+
+/// One more field `label` of unsigned numbers.
+pcl::PCLPointCloud2 withLabels(const pcl::PCLPointCloud2& cloud, const std::vector<int>& labels);
 
 /// Appends copies of the named points; the result is not organized. One more field of type int32 tells of each copy the
 /// index of the point that it was made of, and is -1 for all others.

@@ -1,4 +1,4 @@
-#include "io/column_reader.h"
+#include "io/shape_readers.h"
 
 #include <algorithm>
 #include <array>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "io/cloud_file.h"
 #include "io/formatted.h"
 
 namespace pcl_symmetry::apps {
@@ -53,20 +54,12 @@ pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const
     return cloud;
   }
   cloud.header = points.header;
-  cloud.width = points.width;
-  cloud.height = points.height;
   cloud.is_dense = points.is_dense;
   for (const char* name : {"x", "y", "z"}) {
-    pcl::PCLPointField field;
-    field.name = name;
-    field.offset = static_cast<pcl::uindex_t>(cloud.fields.size() * sizeof(double));
-    field.datatype = pcl::PCLPointField::FLOAT64;
-    field.count = 1;
-    cloud.fields.push_back(field);
+    Column column{name, pcl::PCLPointField::FLOAT64, 1, sizeof(double), 0, -1};
+    addField(column, cloud);
   }
-  cloud.point_step = 3 * sizeof(double);
-  cloud.row_step = cloud.point_step * cloud.width;
-  cloud.data.resize(points.size() * cloud.point_step);
+  makeRoom(points.width, points.height, cloud);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d point = points[i].getVector3fMap().cast<double>() + shift;
     std::memcpy(&cloud.data[i * cloud.point_step], point.data(), cloud.point_step);

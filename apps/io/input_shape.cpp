@@ -1,6 +1,6 @@
 #include "io/input_shape.h"
 
-#include "command_line/file_errors.h"
+#include "command_line/tool_errors.h"
 #include "io/exact_coordinates.h"
 #include "io/volume_input.h"
 #include "pcl_symmetry/mesh_sampling.h"

@@ -1,4 +1,4 @@
-/// Writes meshes with a value of each vertex.
+/// Meshes and clouds with a value of each face, vertex or point.
 #pragma once
 
 #include <pcl/PolygonMesh.h>
@@ -7,7 +7,24 @@
 #include <string>
 #include <vector>
 
+#include "io/shape_input.h"
+
 namespace pcl_symmetry::apps {
+
+/// Reads a file of the Princeton Segmentation Benchmark: the segment of each face of a mesh, one whole number a line.
+/// \return one label >= 0 per face.
+/// \throws InputError naming the first line that is wrong.
+std::vector<int> readFaceLabels(const std::string& path);
+
+/// Writes such a file whole.
+void writeFaceLabels(const std::string& path, const std::vector<int>& labels);
+
+/// Writes the segments of a shape.
+/// \param path .seg: the labels of a mesh, one a line. .pcd or .ply of a cloud: with all its fields, and `label`
+/// (unsigned; 4294967295 where there is none). .pcd of a mesh: the middles of its faces with `label`. .ply of a mesh:
+/// its faces with `label` and a colour each.
+/// \param labels one per face of a mesh or point of a cloud; below 0: none.
+void saveLabelled(const std::string& path, const Shape& shape, const std::vector<int>& labels);
 
 /// Writes a PLY file of the moved vertices, with one more property of type float, and the polygons.
 /// \param motion of the vertices; beyond what float resolves they are written in double.

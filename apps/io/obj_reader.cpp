@@ -1,4 +1,4 @@
-#include "io/obj_reader.h"
+#include "io/shape_readers.h"
 
 #include <charconv>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "io/off_reader.h"
+#include "io/shape_readers.h"
 
 #include "io/file_text.h"
 

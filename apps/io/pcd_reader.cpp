@@ -1,4 +1,4 @@
-#include "io/pcd_reader.h"
+#include "io/shape_readers.h"
 
 #include <pcl/common/io.h>
 

@@ -1,4 +1,4 @@
-#include "io/ply_reader.h"
+#include "io/shape_readers.h"
 
 #include <pcl/common/io.h>
 
@@ -314,6 +314,7 @@ private:
 
   void addPolygons(const std::vector<pcl::index_t>& indices, bool is_strip) {
     const auto add = [&](std::vector<pcl::index_t> corners) {
+      if (corners.size() < 3) return;
       file_.polygons.emplace_back();
       file_.polygons.back().vertices = std::move(corners);
     };

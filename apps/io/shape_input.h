@@ -39,7 +39,8 @@ Shape loadShape(const std::string& path);
 /// \throws InputError naming the file where there is no such place.
 Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value);
 
+/// \param indices of these points in the cloud, where they are wanted.
 /// \return 3 x N, the finite points of a cloud, same order.
-Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud);
+Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud, std::vector<std::size_t>* indices = nullptr);
 
 }  // namespace pcl_symmetry::apps

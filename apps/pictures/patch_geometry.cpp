@@ -8,9 +8,18 @@
 #include <limits>
 #include <vector>
 
+#include "core/geometry/surface_normals.h"
+#include "io/shape_input.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+
 namespace pcl_symmetry::apps {
 
 namespace {
+
+/// Neighbours that give the normal of a point. chosen: half shows noise as specks, twice rounds edges.
+constexpr int kShadingNeighbours = 12;
+/// chosen: with fewer points neighbours lie all around the shape.
+constexpr std::size_t kMinShadedPoints = 16;
 
 /// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
 std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
@@ -76,6 +85,17 @@ Normalization normalizationOf(const PictureScene& scene) {
   if (box.isEmpty()) throw InputError("nothing to draw, no point is finite");
   const double diagonal = box.diagonal().norm();
   return {box.center(), diagonal > 0 ? 1.0 / diagonal : 1.0};
+}
+
+Points pointNormals(const pcl::PointCloud<pcl::PointXYZ>& points, const Normalization& normalize) {
+  Points result = Points::Constant(3, points.size(), std::numeric_limits<float>::quiet_NaN());
+  std::vector<std::size_t> index;
+  Points finite = finitePoints(points, &index);
+  if (index.size() < kMinShadedPoints || index.size() > kMaxShadedPoints) return result;
+  for (auto x : finite.colwise()) x = normalize(x.cast<double>()).cast<float>();
+  const Points normals = localGeometry(finite, *makeFlannSearch(finite), kShadingNeighbours, 0).normals;
+  for (std::size_t i = 0; i < index.size(); ++i) result.col(index[i]) = normals.col(i);
+  return result;
 }
 
 Eigen::Vector3d pointColor(const PicturePanel& panel, std::size_t point) {

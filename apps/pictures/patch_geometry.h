@@ -1,10 +1,12 @@
-/// Where the rectangles of planes and the lines of axes lie in a picture or a page.
+/// What a picture and a page show alike: where the rectangles of planes and the lines of axes lie, and the shading of
+/// points.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <utility>
 
+#include "pcl_symmetry/core/point_set.h"
 #include "pictures/picture.h"
 
 namespace pcl_symmetry::apps {
@@ -29,6 +31,13 @@ std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const Pictu
 /// \return the ends of the line: as long as the points reach along it, and a tenth more, unless it has a length of its
 /// own.
 std::pair<Eigen::Vector3d, Eigen::Vector3d> axisEnds(const AxisLine& axis, const PictureScene& scene);
+
+/// More points shade themselves by their density. chosen: half leaves medium clouds flat, twice takes twice the time.
+constexpr std::size_t kMaxShadedPoints = 200'000;
+
+/// \return 3 x N, unit, of arbitrary sign, one for each point; not finite where the point is not, and for clouds of
+/// fewer than 16 or more than kMaxShadedPoints points.
+Points pointNormals(const pcl::PointCloud<pcl::PointXYZ>& points, const Normalization& normalize);
 
 /// \return the color of a point in a panel, before shading.
 Eigen::Vector3d pointColor(const PicturePanel& panel, std::size_t point);

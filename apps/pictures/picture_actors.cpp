@@ -23,7 +23,6 @@
 #include <utility>
 
 #include "pictures/patch_geometry.h"
-#include "pictures/point_normals.h"
 
 namespace pcl_symmetry::apps {
 

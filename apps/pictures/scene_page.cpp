@@ -13,7 +13,6 @@
 #include "io/shape_output.h"
 #include "pictures/page_parts.h"
 #include "pictures/patch_geometry.h"
-#include "pictures/point_normals.h"
 
 namespace pcl_symmetry::apps {
 

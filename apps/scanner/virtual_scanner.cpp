@@ -12,9 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "scanner/random_numbers.h"
-#include "scanner/triangle_scene.h"
 #include "core/base/constants.h"
+#include "scanner/triangle_scene.h"
 
 namespace pcl_symmetry::apps {
 
@@ -30,6 +29,20 @@ constexpr double kAcceptedCountError = 0.01;
 /// Pictures until the number of points has to fit. chosen: two or three are enough for most shapes; a thin shape ends
 /// here.
 constexpr int kMaxRounds = 8;
+
+/// Uniform in [0, 1), on every platform the same, which the distributions of the standard library are not.
+/// \param generator of 64 random bits.
+template <typename Generator>
+double uniform(Generator& generator) {
+  return static_cast<double>(generator() >> 11) * 0x1.0p-53;
+}
+
+/// Standard normal by Box and Muller, the same wherever the elementary functions are.
+template <typename Generator>
+double standardNormal(Generator& generator) {
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(generator)));
+  return radius * std::cos(2.0 * kPi * uniform(generator));
+}
 
 [[noreturn]] void reject(const char* field, double value, const char* rule) {
   throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + ", " + rule);

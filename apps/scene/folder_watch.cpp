@@ -6,7 +6,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "command_line/file_errors.h"
+#include "command_line/tool_errors.h"
 
 #if __has_include(<sys/inotify.h>)
 #include <poll.h>

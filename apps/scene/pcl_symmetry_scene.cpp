@@ -9,8 +9,8 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
 #include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"

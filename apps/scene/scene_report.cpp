@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/geometry/viewing_frame.h"
-#include "io/answer_words.h"
+#include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
 #include "io/formatted.h"
@@ -48,10 +48,6 @@ Finding bestOf(const SceneObject& object) {
 std::size_t numPlanes(const SceneObject& object, PlaneKind kind) {
   return static_cast<std::size_t>(std::count_if(object.planes.begin(), object.planes.end(),
                                                 [&](const SymmetryPlane& plane) { return plane.kind == kind; }));
-}
-
-std::string counted(std::size_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 /// What was found of an object, in words.

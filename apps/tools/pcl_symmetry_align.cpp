@@ -1,11 +1,9 @@
 /// The canonical frame of a cloud by its symmetry, or the transform that brings it to another one; completion, and
 /// symmetrized shapes with their asymmetry.
 #include <pcl/common/io.h>
-#include <pcl/console/print.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -17,9 +15,10 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/file_errors.h"
 #include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
+#include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
 #include "io/formatted.h"
@@ -27,7 +26,6 @@
 #include "io/json_values.h"
 #include "io/mesh_output.h"
 #include "io/shape_output.h"
-#include "io/turn_values.h"
 #include "pcl_symmetry/completion.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetrization.h"
@@ -203,22 +201,6 @@ struct Symmetrized {
   std::string text;
 };
 
-/// Writes positions into the fields x, y and z.
-void setPositions(pcl::PCLPointCloud2& fields, const pcl::PointCloud<pcl::PointXYZ>& points,
-                  const Eigen::Vector3d& shift) {
-  for (const pcl::PCLPointField& field : fields.fields) {
-    if (field.name != "x" && field.name != "y" && field.name != "z") continue;
-    const int axis = field.name[0] - 'x';
-    for (std::size_t i = 0; i < points.size() && i < static_cast<std::size_t>(fields.width) * fields.height; ++i) {
-      const double value = static_cast<double>(points[i].data[axis]) + shift[axis];
-      const auto rounded = static_cast<float>(value);
-      std::uint8_t* at = &fields.data[i * fields.point_step + field.offset];
-      if (field.datatype == pcl::PCLPointField::FLOAT64) std::memcpy(at, &value, sizeof(value));
-      if (field.datatype == pcl::PCLPointField::FLOAT32) std::memcpy(at, &rounded, sizeof(rounded));
-    }
-  }
-}
-
 Symmetrized symmetrized(const Console& console, const InputShape& input, const AlignOptions& options,
                         const CommonOptions& common) {
   const ReflectionPlane plane = bestPlane(console, input, common);
@@ -247,7 +229,9 @@ Symmetrized symmetrized(const Console& console, const InputShape& input, const A
     pcl::PCLPointCloud2 kept;
     pcl::copyPointCloud(withFields(input.fields(), {"asymmetry"}, {result.asymmetry}),
                         pcl::Indices(shape.sources.begin(), shape.sources.begin() + size), kept);
-    setPositions(kept, shape.cloud, input.shift());
+    const VectorField position(kept);
+    for (std::size_t i = 0; i < size; ++i)
+      position.set(kept, i, shape.cloud[i].getVector3fMap().cast<double>() + input.shift());
     pcl::Indices all(size);
     std::iota(all.begin(), all.end(), 0);
     result.fields = appendCopies(kept, all, "reflected_of");
@@ -478,8 +462,6 @@ int run(int argc, char** argv) {
   if (options.complete && options.symmetrise != "none")
     throw UsageError("-complete and -symmetrise exclude each other");
   if (options.landmarks && options.symmetrise == "none") throw UsageError("-landmarks needs -symmetrise");
-  // What the classes have to say is said here, in one line.
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   options.batch.inputs = {options.input};
   std::vector<std::string> columns{"converged"};
   for (const char row : {'0', '1', '2', '3'})

@@ -1,6 +1,8 @@
 /// Symmetries, diameter and extent of models, as models_info.json of the BOP pose benchmark has them.
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
+#include <cctype>
 #include <cstdio>
 #include <map>
 #include <mutex>
@@ -12,13 +14,15 @@
 
 #include "bop/isaac_axes.h"
 #include "bop/model_analysis.h"
-#include "bop/model_files.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/input_files.h"
 #include "command_line/run_tool.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "io/answers.h"
 #include "io/json_values.h"
+#include "io/shape_file_kinds.h"
 #include "io/shape_output.h"
 
 namespace {
@@ -72,6 +76,61 @@ CommandLine commandLine(BopOptions& options) {
   return line;
 }
 
+struct ModelFile {
+  std::string path;
+  std::string key;  ///< number of the model
+};
+
+std::vector<std::string> shapesIn(const std::string& folder) {
+  std::vector<std::string> all, numbered;
+  for (const auto& entry : boost::filesystem::directory_iterator(folder)) {
+    if (!hasShapeExtension(entry.path().string())) continue;
+    all.push_back(entry.path().string());
+    if (boost::algorithm::starts_with(entry.path().filename().string(), "obj_")) numbered.push_back(all.back());
+  }
+  if (all.empty()) throw InputError(folder + ": holds no " + kShapeFilesOfFolders + " file");
+  std::vector<std::string>& chosen = numbered.empty() ? all : numbered;
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+/// The number that the name of a file ends in; empty where it ends in none.
+std::string numberOf(const std::string& path) {
+  const std::string stem = boost::filesystem::path(path).stem().string();
+  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+  const auto digits = std::find_if_not(stem.rbegin(), stem.rend(), is_digit).base();
+  const auto number = std::find_if(digits, stem.end(), [](char c) { return c != '0'; });
+  return digits != stem.end() && number == stem.end() ? "0" : std::string(number, stem.end());
+}
+
+/// Files as they are; of a folder the files obj_* that hold shapes, or all shapes where there is none of that name, by
+/// name.
+/// \return each with the number that its name ends in; where there is none the first from 1 on that is free.
+/// \throws UsageError where two files have one number; InputError for a folder without a shape.
+std::vector<ModelFile> modelFiles(const std::vector<std::string>& inputs) {
+  std::vector<ModelFile> models;
+  for (const std::string& input : inputs) {
+    if (!boost::filesystem::is_directory(input)) {
+      models.push_back({input, numberOf(input)});
+      continue;
+    }
+    for (const std::string& path : shapesIn(input)) models.push_back({path, numberOf(path)});
+  }
+  std::map<std::string, std::string> path_of;
+  for (const ModelFile& model : models) {
+    if (model.key.empty()) continue;
+    const auto [entry, is_new] = path_of.insert({model.key, model.path});
+    if (!is_new) throw UsageError(model.path + " and " + entry->second + " are both model " + model.key);
+  }
+  int free = 1;
+  for (ModelFile& model : models) {
+    if (!model.key.empty()) continue;
+    while (path_of.count(std::to_string(free)) > 0) ++free;
+    model.key = std::to_string(free++);
+  }
+  return models;
+}
+
 GivenSymmetries readGiven(const std::string& path, std::size_t num_models) {
   const std::string ending = boost::filesystem::path(path).extension().string();
   GivenSymmetries given = ending == ".yaml" || ending == ".yml" ? readIsaacAxes(path) : readModelsInfo(path);
@@ -100,8 +159,7 @@ Results analyseAll(const std::vector<ModelFile>& files, const BopOptions& option
   std::vector<std::optional<ModelInfo>> infos(files.size());
   std::vector<std::string> errors(files.size());
   const Console console(options.common.quiet);
-  Step searching(console,
-                 "Searching rotations of " + std::to_string(files.size()) + (files.size() == 1 ? " model" : " models"));
+  Step searching(console, "Searching rotations of " + counted(files.size(), "model"));
   std::mutex progress;
   std::size_t num_done = 0;
   parallelBlocks(files.size(), options.common.threads, [&](std::size_t i) {

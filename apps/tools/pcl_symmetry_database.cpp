@@ -1,9 +1,14 @@
 /// Builds and keeps a database of models that pcl_symmetry_match asks.
 #include <pcl/conversions.h>
 
+#include <algorithm>
+#include <array>
+#include <boost/algorithm/string/join.hpp>
+#include <boost/crc.hpp>
 #include <boost/filesystem.hpp>
 #include <cstdio>
-#include <functional>
+#include <ctime>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,13 +16,16 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/file_errors.h"
+#include "command_line/csv.h"
 #include "command_line/input_files.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
+#include "io/answers.h"
+#include "io/formatted.h"
+#include "io/input_shape.h"
 #include "io/json_values.h"
 #include "io/shape_output.h"
-#include "tools/database_listing.h"
-#include "tools/model_files.h"
+#include "pcl_symmetry/symmetry_database.h"
 
 namespace {
 
@@ -34,11 +42,6 @@ struct DatabaseToolOptions {
 
   DatabaseToolOptions() { common.mesh_points = kDatabaseMeshPoints; }
 };
-
-/// "1 model", "2 models".
-std::string counted(std::size_t number, const std::string& what) {
-  return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
-}
 
 CommandLine commandLine(DatabaseToolOptions& options) {
   CommandLine line(
@@ -58,6 +61,67 @@ CommandLine commandLine(DatabaseToolOptions& options) {
       .text("csv", "FILE", options.csv, "list and info: a row for each model")
       .common(options.common, kMeshPoints | kJson | kThreads | kQuiet);
   return line;
+}
+
+/// \return 16 hexadecimal digits, the CRC-64 of the bytes of a file.
+/// \throws InputError where it cannot be read.
+std::string fileChecksum(const std::string& path) {
+  // derived: CRC-64/XZ of ECMA-182.
+  boost::crc_optimal<64, 0x42F0E1EBA9EA3693, 0xFFFFFFFFFFFFFFFF, 0xFFFFFFFFFFFFFFFF, true, true> checksum;
+  std::array<char, 1 << 16> piece;  // bytes read at once. chosen: half and twice take the same time
+  std::ifstream file(path, std::ios::binary);
+  while (file.read(piece.data(), piece.size()) || file.gcount() > 0)
+    checksum.process_bytes(piece.data(), static_cast<std::size_t>(file.gcount()));
+  if (!file.eof()) throw InputError(path + ": cannot be read");
+  return formatted("%016llx", static_cast<unsigned long long>(checksum.checksum()));
+}
+
+/// \return the name of a file without its ending, or its path within the folder that was given, "_" for "/".
+std::string modelName(const InputFile& file, bool by_path) {
+  const fs::path path = file.path;
+  if (!by_path || file.folder.empty()) return path.stem().string();
+  std::string name = fs::relative(path, file.folder).replace_extension().string();
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+
+/// A file that is missing is one of them, to be reported with those that cannot be used.
+std::vector<ModelInput> modelInputs(const DatabaseToolOptions& options) {
+  std::vector<std::string> tags;
+  if (options.tag) tags.push_back(*options.tag);
+  const InputFiles files = inputFiles(options.arguments);
+  std::vector<ModelInput> inputs;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    // The number of points is a part of the checksum: another number is another model.
+    const auto source = [path = files.path(i), num_points = options.common.mesh_points, tags] {
+      return ModelSource{fs::absolute(path).lexically_normal().string(),
+                         fileChecksum(path) + "-" + std::to_string(num_points), tags};
+    };
+    const auto load = [path = files.path(i), &common = options.common] {
+      const InputShape input = loadInput(path, common.mesh_points, common.librarySeed());
+      // Poses of recognition are those of the model's file; a shift would be lost.
+      if (!input.shift().isZero(0.0))
+        throw InputError(path + ": its coordinates are too large for its extent, must be moved near the origin");
+      return *input.points;
+    };
+    inputs.push_back({modelName(files[i], options.names == "path"), source, load});
+  }
+  return inputs;
+}
+
+/// Seconds since 1970 as "2025-01-31T12:00:00Z".
+std::string timeText(std::int64_t time) {
+  const auto seconds = static_cast<std::time_t>(time);
+  std::tm parts{};
+  ::gmtime_r(&seconds, &parts);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+nlohmann::json jsonOf(const ModelInfo& model) {
+  return {{"name", model.name},          {"points", model.num_points},        {"time", timeText(model.time)},
+          {"source", model.source.path}, {"checksum", model.source.checksum}, {"tags", model.source.tags}};
 }
 
 class DatabaseTool {
@@ -93,12 +157,8 @@ private:
   }
 
   int build(SymmetryDatabase& database) const {
-    const std::vector<ModelFile> files = modelFiles(options_.arguments, options_.names == "path");
-    std::vector<std::string> tags;
-    if (options_.tag) tags.push_back(*options_.tag);
-    Step step(console_, "Describing " + counted(files.size(), "model"));
-    const std::vector<ModelInput> inputs =
-        modelInputs(files, options_.common.mesh_points, options_.common.librarySeed(), tags);
+    const std::vector<ModelInput> inputs = modelInputs(options_);
+    Step step(console_, "Describing " + counted(inputs.size(), "model"));
     const BuildReport report = database.build(inputs, [&](double share) { return step.progress(share), true; });
     step.done(counted(static_cast<std::size_t>(report.num_added), "model") +
               (report.num_kept > 0 ? ", " + std::to_string(report.num_kept) + " kept" : ""));
@@ -136,22 +196,27 @@ private:
 
   int show(const SymmetryDatabase& database) const {
     const bool all = options_.command == "list" || options_.arguments.empty();
-    const std::vector<ModelInfo> models = infosOf(database, all ? database.names() : options_.arguments);
-    nlohmann::json json{{"models", modelsJson(models)}};
-    if (options_.command == "list") {
-      for (const ModelInfo& model : models) std::printf("%s\n", model.name.c_str());
-    } else if (all) {
-      json = {{"database", options_.file},
-              {"num_models", database.size()},
-              {"unit", database.unit()},
-              {"bytes", fs::file_size(options_.file)}};
-      std::printf("models  %zu\nunit    %s\nbytes   %ju\n", database.size(),
-                  database.unit().empty() ? "not given" : database.unit().c_str(),
-                  static_cast<std::uintmax_t>(fs::file_size(options_.file)));
-    } else {
-      for (const ModelInfo& model : models) std::printf("%s", modelText(model).c_str());
+    nlohmann::json json{{"models", nlohmann::json::array()}};
+    std::string table = "name,points,time,source,checksum,tags\n";
+    for (const std::string& name : all ? database.names() : options_.arguments) {
+      const ModelInfo model = database.info(name);
+      const std::string time = timeText(model.time), tags = boost::algorithm::join(model.source.tags, " ");
+      json["models"].push_back(jsonOf(model));
+      table += csvLine({name, model.num_points, time, model.source.path, model.source.checksum, tags});
+      if (options_.command == "list") std::printf("%s\n", name.c_str());
+      if (!all)
+        std::printf("%s\n  points    %zu\n  stored    %s\n  source    %s\n  checksum  %s\n  tags      %s\n",
+                    name.c_str(), static_cast<std::size_t>(model.num_points), time.c_str(), model.source.path.c_str(),
+                    model.source.checksum.c_str(), tags.c_str());
     }
-    if (options_.csv) writeText(*options_.csv, modelsCSV(models));
+    if (all && options_.command == "info") {
+      const std::uintmax_t bytes = fs::file_size(options_.file);
+      json = {
+          {"database", options_.file}, {"num_models", database.size()}, {"unit", database.unit()}, {"bytes", bytes}};
+      std::printf("models  %zu\nunit    %s\nbytes   %ju\n", database.size(),
+                  database.unit().empty() ? "not given" : database.unit().c_str(), bytes);
+    }
+    if (options_.csv) writeText(*options_.csv, table);
     writeJson(json);
     return 0;
   }

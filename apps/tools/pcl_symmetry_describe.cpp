@@ -14,13 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "command_line/batch_options.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/csv.h"
-#include "command_line/file_errors.h"
 #include "command_line/input_files.h"
+#include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
 #include "core/base/parallel.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"

@@ -10,8 +10,9 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
+#include "io/answers.h"
 #include "io/formatted.h"
 #include "io/json_values.h"
 #include "io/shape_output.h"
@@ -131,7 +132,7 @@ std::pair<nlohmann::json, std::optional<RasterImage>> analyse(const std::string&
   checkFlat(*contour, transform.getSheetPose(), input);
   std::vector<LineMaximum> lines = transform.getLines();
   if (static_cast<int>(lines.size()) > options.max_lines) lines.resize(options.max_lines);
-  const double ms = searching.done(std::to_string(lines.size()) + (lines.size() == 1 ? " line" : " lines"));
+  const double ms = searching.done(counted(lines.size(), "line"));
 
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const ReflectionLine& found = lines[i].line;

@@ -15,7 +15,6 @@
 #include "io/exact_coordinates.h"
 #include "io/formatted.h"
 #include "io/input_shape.h"
-#include "io/method_names.h"
 #include "io/shape_output.h"
 #include "pictures/picture.h"
 #include "pictures/raster_image.h"
@@ -65,21 +64,6 @@ CommandLine commandLine(MapOptions& options) {
   options.batch.addTo(line);
   return line;
 }
-
-/// The finite points, and where each stands in the cloud.
-struct FinitePoints {
-  Points points;
-  std::vector<std::size_t> indices;
-
-  explicit FinitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud) : points(3, cloud.size()) {
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (!cloud[i].getVector3fMap().allFinite()) continue;
-      points.col(indices.size()) = cloud[i].getVector3fMap();
-      indices.push_back(i);
-    }
-    points.conservativeResize(3, indices.size());
-  }
-};
 
 /// The cloud with a field intensity; its own gets another name.
 pcl::PCLPointCloud2 withIntensity(pcl::PCLPointCloud2 cloud, const std::vector<float>& intensity) {
@@ -179,12 +163,13 @@ RasterImage drawSlices(const SymmetryMeasure& map, const Volume& volume, const P
 /// What was found at the points of a cloud.
 struct MappedCloud {
   pcl::PointCloud<pcl::PointXYZ>::ConstPtr cloud;
-  FinitePoints finite;
-  std::vector<float> symmetry;  ///< of the finite points
+  std::vector<std::size_t> indices;  ///< of the finite points
+  Points points;
+  std::vector<float> symmetry;
   float least, greatest;
 
-  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& points, const SymmetryMeasure& map, int threads)
-      : cloud(points), finite(*points), symmetry(map.through(finite.points, threads)) {
+  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& input, const SymmetryMeasure& map, int threads)
+      : cloud(input), points(finitePoints(*input, &indices)), symmetry(map.through(points, threads)) {
     const auto [low, high] = std::minmax_element(symmetry.begin(), symmetry.end());
     least = *low;
     greatest = *high;
@@ -193,7 +178,7 @@ struct MappedCloud {
 
 void savePoints(const InputShape& input, const MappedCloud& mapped, const std::string& path) {
   std::vector<float> intensity(mapped.cloud->size(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < mapped.symmetry.size(); ++i) intensity[mapped.finite.indices[i]] = mapped.symmetry[i];
+  for (std::size_t i = 0; i < mapped.symmetry.size(); ++i) intensity[mapped.indices[i]] = mapped.symmetry[i];
   saveCloud(path, withIntensity(input.fields(), intensity), input.shape.sensor_origin, input.shape.sensor_orientation);
 }
 
@@ -204,7 +189,7 @@ void drawPoints(const SymmetryMeasure& map, const MappedCloud& mapped, const std
   panel.support.assign(mapped.cloud->size(), 0.0);
   const double range = std::max(1e-9f, mapped.greatest - mapped.least);
   for (std::size_t i = 0; i < mapped.symmetry.size(); ++i)
-    panel.support[mapped.finite.indices[i]] = (mapped.symmetry[i] - mapped.least) / range;
+    panel.support[mapped.indices[i]] = (mapped.symmetry[i] - mapped.least) / range;
   PictureScene scene;
   scene.points = mapped.cloud;
   scene.panels.push_back(panel);
@@ -251,7 +236,7 @@ void analyse(const MapOptions& options, FileJob& job) {
   if (!map.best.empty()) json[map.of] = map.best;
   job.report({text, json, {{mapped.symmetry.size(), mapped.least, mapped.greatest}}});
   if (options.output) savePoints(input, mapped, job.output(*options.output));
-  writeSpace(options, job, input, map, mapped.finite.points);
+  writeSpace(options, job, input, map, mapped.points);
   if (options.png_path) drawPoints(map, mapped, job.output(*options.png_path), options.size);
 }
 

@@ -10,18 +10,16 @@
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/csv.h"
-#include "command_line/file_errors.h"
 #include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
-#include "io/answer_words.h"
+#include "command_line/tool_errors.h"
+#include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
 #include "io/formatted.h"
 #include "io/input_shape.h"
 #include "io/json_values.h"
-#include "io/method_names.h"
 #include "io/shape_output.h"
-#include "io/turn_values.h"
 #include "pcl_symmetry/core/revolution_profile.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
@@ -349,8 +347,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   findings.viewpoint = refinement.getUsedViewpoint();
   findings.num_points = refinement.getUsedIndices().size();
   findings.timing_ms = refinement.getTiming();
-  const std::size_t num_planes = findings.planes.size();
-  std::string summary = std::to_string(num_planes) + (num_planes == 1 ? " plane" : " planes");
+  std::string summary = counted(findings.planes.size(), "plane");
   if (!findings.axes.empty()) summary += ", " + std::to_string(findings.axes.size()) + " axes";
   if (findings.viewpoint)
     summary += std::string(", seen from one side, viewpoint ") + toString(findings.viewpoint_source);

@@ -10,13 +10,13 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/file_errors.h"
 #include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
+#include "io/answers.h"
 #include "io/exact_coordinates.h"
-#include "io/face_labels.h"
 #include "io/input_shape.h"
-#include "io/labelled_shape.h"
+#include "io/mesh_output.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_segmentation.h"
 #include "pictures/picture.h"
@@ -153,7 +153,7 @@ std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, 
     segmentation.segment(segments);
   });
   if (segments.empty()) throw InputError(job.path() + ": has no surface to cut");
-  ms = cutting.done(std::to_string(segments.size()) + (segments.size() == 1 ? " part" : " parts"));
+  ms = cutting.done(counted(segments.size(), "part"));
   return segments;
 }
 
@@ -175,7 +175,7 @@ void analyse(const SegmentOptions& options, FileJob& job) {
   if (options.output) saveLabelled(job.output(*options.output), shape, labels);
   if (options.html_path) {
     PictureScene scene = sceneOf(options, shape, labels);
-    scene.panels[0].label = std::to_string(segments.size()) + (segments.size() == 1 ? " part" : " parts");
+    scene.panels[0].label = counted(segments.size(), "part");
     writePage(scene, {job.path(), ""}, job.output(*options.html_path));
   }
   if (!options.png_path) return;

@@ -6,8 +6,8 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/shape_input.h"
@@ -79,16 +79,16 @@ int run(int argc, char** argv) {
 
   const std::string name = boost::filesystem::path(options.input).stem().string();
   if (!options.screenshot_path) {
-    ViewerWindow window(model, name, false, options.width, options.height);
-    for (const std::string& key : keys) window.press(key);
-    window.run();
+    const auto window = makeViewerWindow(model, name, false, options.width, options.height);
+    for (const std::string& key : keys) window->press(key);
+    window->run();
     return 0;
   }
   Step drawing(console, "Drawing " + *options.screenshot_path);
   requireDisplay(*options.screenshot_path);
-  ViewerWindow window(model, name, true, options.width, options.height);
-  for (const std::string& key : keys) window.press(key);
-  window.save(*options.screenshot_path);
+  const auto window = makeViewerWindow(model, name, true, options.width, options.height);
+  for (const std::string& key : keys) window->press(key);
+  window->save(*options.screenshot_path);
   drawing.done();
   return 0;
 }

@@ -9,10 +9,11 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/file_errors.h"
 #include "command_line/run_on_files.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
 #include "core/base/constants.h"
+#include "io/answers.h"
 #include "io/exact_coordinates.h"
 #include "io/formatted.h"
 #include "io/input_shape.h"
@@ -149,9 +150,8 @@ double choose(ViewpointSelection& selection, const InputShape& input, const View
   selection.setInputCloud(input.points);
   if (options.up) selection.setUp(*options.up);
   selection.setSeparation(options.separation * kPi / 180.0);
-  const std::size_t num_axes = refinement.getAxes().size();
-  return searching.done(std::to_string(planes.size()) + " planes, " + std::to_string(num_axes) +
-                        (num_axes == 1 ? " axis" : " axes"));
+  return searching.done(std::to_string(planes.size()) + " planes, " +
+                        counted(refinement.getAxes().size(), "axis", "axes"));
 }
 
 struct ChosenViews {
@@ -206,8 +206,7 @@ void analyse(const ViewpointToolOptions& options, FileJob& job) {
   const double searching_ms = choose(selection, input, options, job);
   Step choosing(job.console(), "Choosing views");
   const ChosenViews views{selection.getGoodViews(options.num_views), selection.getWorstView()};
-  const double choosing_ms =
-      choosing.done(std::to_string(views.good.size()) + (views.good.size() == 1 ? " view" : " views"));
+  const double choosing_ms = choosing.done(counted(views.good.size(), "view"));
   nlohmann::json json = describe(input, selection, views);
   json["timing_ms"] = {{"load", input.loading_ms}, {"planes", searching_ms}, {"views", choosing_ms}};
   job.report({tableOf(views), json, rowsOf(views)});

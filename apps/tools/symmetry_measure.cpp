@@ -5,11 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "command_line/file_errors.h"
+#include "command_line/tool_errors.h"
 #include "io/exact_coordinates.h"
 #include "io/formatted.h"
 #include "io/json_values.h"
-#include "io/method_names.h"
 #include "pcl_symmetry/axial_symmetry_transform.h"
 #include "pcl_symmetry/core/local_symmetry.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"

@@ -3,8 +3,8 @@
 #include <pcl/common/point_tests.h>
 #include <pcl/conversions.h>
 
-#include <cstdio>
-
+#include "io/answers.h"
+#include "io/formatted.h"
 #include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_alignment.h"
@@ -30,10 +30,8 @@ const char* nameOf(PlaneKind kind) {
 }
 
 std::string labelOf(const SymmetryPlane& plane, std::size_t index, std::size_t num_planes) {
-  char text[160];
-  std::snprintf(text, sizeof(text), "plane %zu of %zu: %s\nconfidence %.2f   support %.2f   score %.2f", index + 1,
-                num_planes, nameOf(plane.kind), plane.confidence, plane.support, plane.score);
-  return text;
+  return formatted("plane %zu of %zu: %s\nconfidence %.2f   support %.2f   score %.2f", index + 1, num_planes,
+                   nameOf(plane.kind), plane.confidence, plane.support, plane.score);
 }
 
 /// Takes the ball to the unit ball.
@@ -71,27 +69,11 @@ SegmentationOptions segmentationOf(const ViewerModelOptions& options, bool seen_
 }
 
 std::string summaryOf(const ViewerModel& model, bool seen_from_one_side) {
-  const auto counted = [](std::size_t number, const char* one, const char* many) {
-    return std::to_string(number) + " " + (number == 1 ? one : many);
-  };
-  std::string summary = counted(model.planes.size(), "plane", "planes");
+  std::string summary = counted(model.planes.size(), "plane");
   if (!model.axes.empty()) summary += ", " + counted(model.axes.size(), "axis", "axes");
-  if (!model.centers.empty()) summary += ", " + counted(model.centers.size(), "center", "centers");
+  if (!model.centers.empty()) summary += ", " + counted(model.centers.size(), "center");
   if (seen_from_one_side) summary += ", seen from one side";
   return summary;
-}
-
-/// The finite ones, in order.
-/// \return their indices.
-std::vector<std::size_t> finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud,
-                                      pcl::PointCloud<pcl::PointXYZ>& finite) {
-  std::vector<std::size_t> indices;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!pcl::isXYZFinite(cloud[i])) continue;
-    indices.push_back(i);
-    finite.push_back(cloud[i]);
-  }
-  return indices;
 }
 
 pcl::PolygonMesh normalized(pcl::PolygonMesh mesh, const ToUnitBall& normalize) {
@@ -118,8 +100,10 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
   model.centers = refinement.getCenters();
   model.frame = frameOf(cloud, options);
 
-  model.points.reset(new pcl::PointCloud<pcl::PointXYZ>);
-  const std::vector<std::size_t> finite = finitePoints(*cloud, *model.points);
+  pcl::Indices finite;
+  for (std::size_t i = 0; i < cloud->size(); ++i)
+    if (pcl::isXYZFinite((*cloud)[i])) finite.push_back(static_cast<pcl::index_t>(i));
+  model.points.reset(new pcl::PointCloud<pcl::PointXYZ>(*cloud, finite));
   const ToUnitBall normalize{boundingBall(model.points->getMatrixXfMap(3, 4, 0))};
   normalize(*model.points);
   if (shape.mesh) model.mesh = normalized(*shape.mesh, normalize);
@@ -127,7 +111,7 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
     SymmetryPlane& plane = model.planes[k];
     const std::vector<float> support = refinement.computePointSupport(plane);
     plane.point_support.clear();
-    for (const std::size_t i : finite) plane.point_support.push_back(support[i]);
+    for (const pcl::index_t i : finite) plane.point_support.push_back(support[i]);
     model.labels.push_back(labelOf(plane, k, model.planes.size()));
     plane.ReflectionPlane::operator=(normalize(plane));
   }

@@ -7,11 +7,12 @@
 #include <map>
 #include <optional>
 
+#include "io/answers.h"
+#include "io/formatted.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pictures/picture_actors.h"
 #include "viewer/isp_frames.h"
 #include "viewer/viewer_canvas.h"
-#include "viewer/viewer_texts.h"
 
 namespace pcl_symmetry::apps {
 
@@ -40,11 +41,9 @@ std::optional<Eigen::Vector3d> viewDirection(const ViewerModel& model, const Vie
   return std::nullopt;
 }
 
-}  // namespace
-
-class ViewerWindow::Implementation {
+class ModelWindow : public ViewerWindow {
 public:
-  Implementation(const ViewerModel& model, const std::string& name, bool off_screen, int width, int height)
+  ModelWindow(const ViewerModel& model, const std::string& name, bool off_screen, int width, int height)
       : model_(model),
         name_(name),
         canvas_(name, off_screen, width, height, [this](const std::string& symbol) { press(symbol); }) {
@@ -60,9 +59,7 @@ public:
     draw();
   }
 
-  const ViewerState& state() const { return state_; }
-
-  bool press(const std::string& symbol) {
+  bool press(const std::string& symbol) override {
     if (!pressKey(state_, symbol)) return false;
     if (state_.step >= 0 && state_.step >= static_cast<int>(frames().size())) state_.step = -1;
     note_.clear();
@@ -81,12 +78,12 @@ public:
     return true;
   }
 
-  void run() {
+  void run() override {
     while (!state_.quit && canvas_.spin()) {
     }
   }
 
-  void save(const std::string& path) { canvas_.save(path); }
+  void save(const std::string& path) override { canvas_.save(path); }
 
 private:
   const SymmetryPlane* plane() const { return state_.num_planes > 0 ? &model_.planes[state_.plane] : nullptr; }
@@ -102,11 +99,7 @@ private:
     return *parts_;
   }
 
-  Points positions() const {
-    Points result(3, model_.points->size());
-    for (std::size_t i = 0; i < model_.points->size(); ++i) result.col(i) = (*model_.points)[i].getVector3fMap();
-    return result;
-  }
+  Points positions() const { return model_.points->getMatrixXfMap(3, 4, 0); }
 
   void draw() {
     canvas_.clear();
@@ -115,24 +108,32 @@ private:
     else
       drawShape();
     if (state_.axes) drawAxes();
-    canvas_.addText(viewerTitle(model_, state_, notes()), true, "title");
+    canvas_.addText(title(), true, "title");
     canvas_.addText(state_.help ? viewerHelp() : "h  keys", false, "help");
     if (const auto direction = viewDirection(model_, state_)) canvas_.lookFrom(model_.views.computePose(*direction));
     state_.camera = CameraMove::Stay;
     canvas_.finish();
   }
 
-  ViewerNotes notes() {
-    ViewerNotes notes;
-    notes.name = name_;
-    notes.message = note_;
+  /// Name, label of the current plane, and the legend of the colours.
+  std::string title() {
+    std::string title = name_ + ": " + model_.summary;
     if (state_.step >= 0) {
-      notes.frame = &frames()[state_.step];
-      notes.num_frames = frames().size();
-    } else if (state_.parts) {
-      notes.num_parts = *std::max_element(parts().begin(), parts().end()) + 1;
+      title += formatted(
+          "\nrefinement of plane %d, step %d of %zu, residual %.4f radii\n"
+          "blue: samples   orange: their reflections   green: closest points",
+          state_.plane + 1, state_.step + 1, frames().size(), frames()[state_.step].residual);
+    } else if (state_.num_planes > 0) {
+      title += "\n" + model_.labels[state_.plane];
+      if (state_.reflection) title += "\norange: reflected points";
     }
-    return notes;
+    if (state_.step < 0 && state_.parts)
+      title += "\n" + counted(static_cast<std::size_t>(*std::max_element(parts().begin(), parts().end())) + 1, "part",
+                              "parts, each in a colour of its own");
+    if (state_.axes) title += "\norange, green, blue: first, second, third principal symmetry axis";
+    if (state_.axes && !model_.axes.empty()) title += "\nblack: axis of revolution";
+    if (state_.axes && !model_.centers.empty()) title += "\nblack: every plane through their crossing is a symmetry";
+    return note_.empty() ? title : title + "\n" + note_;
   }
 
   double pointSize() const {
@@ -183,8 +184,7 @@ private:
     if (closest_to_vertices_.empty()) {
       pcl::PointCloud<pcl::PointXYZ> vertices;
       pcl::fromPCLPointCloud2(model_.mesh->cloud, vertices);
-      Points queries(3, vertices.size());
-      for (std::size_t i = 0; i < vertices.size(); ++i) queries.col(i) = vertices[i].getVector3fMap();
+      const Points queries = vertices.getMatrixXfMap(3, 4, 0);
       std::vector<float> sq_distances;
       makeFlannSearch(positions())->search(queries, kNumClosest, closest_to_vertices_, sq_distances);
     }
@@ -233,25 +233,11 @@ private:
   std::map<int, std::vector<IspFrame>> frames_;  // frames of the planes that were refined
 };
 
-ViewerWindow::ViewerWindow(const ViewerModel& model, const std::string& name, bool off_screen, int width, int height)
-    : implementation_(new Implementation(model, name, off_screen, width, height)) {}
+}  // namespace
 
-ViewerWindow::~ViewerWindow() = default;
-
-const ViewerState& ViewerWindow::state() const {
-  return implementation_->state();
-}
-
-bool ViewerWindow::press(const std::string& symbol) {
-  return implementation_->press(symbol);
-}
-
-void ViewerWindow::run() {
-  implementation_->run();
-}
-
-void ViewerWindow::save(const std::string& path) {
-  implementation_->save(path);
+std::unique_ptr<ViewerWindow> makeViewerWindow(const ViewerModel& model, const std::string& name, bool off_screen,
+                                               int width, int height) {
+  return std::make_unique<ModelWindow>(model, name, off_screen, width, height);
 }
 
 }  // namespace pcl_symmetry::apps

@@ -9,32 +9,27 @@
 
 namespace pcl_symmetry::apps {
 
-/// Needs a display (drawing.h).
 class ViewerWindow {
 public:
-  /// \param name of the shape, in the title and in the names of saved pictures.
-  /// \param off_screen draws, but shows no
-  /// window and takes no mouse.
-  /// \param width,height pixels.
-  ViewerWindow(const ViewerModel& model, const std::string& name, bool off_screen, int width, int height);
-  ~ViewerWindow();
-
-  const ViewerState& state() const;
+  virtual ~ViewerWindow() = default;
 
   /// Does what the key says and draws again.
   /// \return whether the key does anything.
-  bool press(const std::string& symbol);
+  virtual bool press(const std::string& symbol) = 0;
 
   /// Lets the user work until they quit.
-  void run();
+  virtual void run() = 0;
 
   /// Writes what is drawn now as a PNG, whole.
   /// \throws InputError if the file cannot be written.
-  void save(const std::string& path);
-
-private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  virtual void save(const std::string& path) = 0;
 };
+
+/// Needs a display (drawing.h).
+/// \param name of the shape, in the title and in the names of saved pictures.
+/// \param off_screen draws, but shows no window and takes no mouse.
+/// \param width,height pixels.
+std::unique_ptr<ViewerWindow> makeViewerWindow(const ViewerModel& model, const std::string& name, bool off_screen,
+                                               int width, int height);
 
 }  // namespace pcl_symmetry::apps

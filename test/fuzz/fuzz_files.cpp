@@ -10,10 +10,10 @@
 #include "bop/models_info.h"
 #include "command_line/tool_errors.h"
 #include "fuzz/byte_source.h"
-#include "io/assimp_reader.h"
-#include "io/face_labels.h"
 #include "io/load_module.h"
+#include "io/mesh_output.h"
 #include "io/shape_input.h"
+#include "io/shape_readers.h"
 
 // The module is linked, not loaded.
 void* pcl_symmetry::apps::addressInModule(const std::string&, const char*) {

@@ -11,7 +11,7 @@
 #include "command_line/input_files.h"
 #include "command_line/run_on_files.h"
 #include "io/standard_streams.h"
-#include "tools/temporary_folder.h"
+#include "tools/tool_run.h"
 
 namespace {
 
@@ -36,12 +36,7 @@ struct BatchTest : testing::Test {
     });
   }
 
-  std::vector<nlohmann::json> lines() const {
-    std::vector<nlohmann::json> result;
-    std::istringstream text(contentOf(folder / "out.jsonl"));
-    for (std::string line; std::getline(text, line);) result.push_back(nlohmann::json::parse(line));
-    return result;
-  }
+  std::vector<nlohmann::json> lines() const { return jsonLines(contentOf(folder / "out.jsonl")); }
 
   TemporaryFolder folder;
   BatchOptions batch;

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
-#include "tools/lathe_mesh.h"
-#include "tools/tool_run.h"
-#include "pictures/raster_image.h"
 #include "io/shape_input.h"
+#include "pictures/raster_image.h"
 #include "shapes/turning_shapes.h"
+#include "tools/models.h"
+#include "tools/tool_run.h"
 
 namespace {
 
@@ -18,23 +19,14 @@ using namespace pcl_symmetry;
 using nlohmann::json;
 
 std::string offOf(const test::TurningShape& shape) {
-  std::string text =
-      "OFF\n" + std::to_string(shape.vertices.size()) + " " + std::to_string(shape.triangles.size()) + " 0\n";
-  for (const Eigen::Vector3d& v : shape.vertices)
-    text += std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + "\n";
-  for (const Eigen::Vector3i& t : shape.triangles)
-    text += "3 " + std::to_string(t.x()) + " " + std::to_string(t.y()) + " " + std::to_string(t.z()) + "\n";
-  return text;
+  return offText(shape.corners(), shape.triangles);
 }
 
 class BopTool : public ToolTest {
 protected:
   BopTool() : ToolTest(toolPath("bop")) {}
 
-  json infoOf(const std::string& arguments) {
-    EXPECT_EQ(run(arguments + " -quiet -json " + json_), 0) << error_;
-    return json::parse(contentOf(json_));
-  }
+  json infoOf(const std::string& arguments) { return reportOf(arguments + " -quiet"); }
 
   static Eigen::Matrix4d matrixOf(const json& numbers) {
     const auto values = numbers.get<std::vector<double>>();
@@ -42,7 +34,7 @@ protected:
     return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
   }
 
-  const std::string json_ = folder_ / "models_info.json";
+  const std::string json_ = folder_ / "report.json";
   const std::string box_ = folder_.write("obj_000003.off", boxOFF());
   const std::string vase_ = folder_.write("obj_000012.off", vaseOFF());
 };
@@ -120,12 +112,11 @@ TEST_F(BopTool, NumbersModelsAsTheirFilesOrElseByTheFirstFreeNumber) {
 
 TEST_F(BopTool, RefusesTwoModelsOfOneNumber) {
   const std::string other = folder_.write("copy_3.off", boxOFF());
-  EXPECT_EQ(run(box_ + " " + other + " -json " + json_), 2);
-  EXPECT_NE(error_.find("both model 3"), std::string::npos) << error_;
+  EXPECT_TRUE(fails(box_ + " " + other + " -json " + json_, 2, "both model 3"));
 }
 
 TEST_F(BopTool, TakesFolders) {
-  boost::filesystem::create_directories(folder_ / "models");
+  std::filesystem::create_directories(folder_ / "models");
   folder_.write("models/obj_000002.off", boxOFF());
   folder_.write("models/obj_000010.off", "OFF\n1 0 0\n0 0 0\n");
   folder_.write("models/obj_000011.off", boxOFF());
@@ -137,9 +128,8 @@ TEST_F(BopTool, TakesFolders) {
   EXPECT_TRUE(info.contains("2") && info.contains("11"));
   EXPECT_NE(error_.find("obj_000010.off"), std::string::npos) << error_;
   EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
-  boost::filesystem::create_directories(folder_ / "empty");
-  EXPECT_EQ(run((folder_ / "empty") + " -json " + json_), 1);
-  EXPECT_NE(error_.find("holds no .pcd"), std::string::npos) << error_;
+  std::filesystem::create_directories(folder_ / "empty");
+  EXPECT_TRUE(fails((folder_ / "empty") + " -json " + json_, 1, "holds no .pcd"));
 }
 
 /// The box has D2; its file lists one of three half turns, and one turn that is none.
@@ -147,7 +137,7 @@ TEST_F(BopTool, SaysWhereAFileDisagreesWithTheSurface) {
   const std::string given =
       folder_.write("given.json", R"({"3": {"symmetries_discrete": [[1,0,0,0, 0,-1,0,0, 0,0,-1,0, 0,0,0,1]]},
           "12": {"symmetries_continuous": [{"axis": [0,0,1], "offset": [0,0,0]}]}})");
-  const std::string report = folder_ / "report.json", plain = folder_.write("plain.off", boxOFF());
+  const std::string report = folder_ / "check.json", plain = folder_.write("plain.off", boxOFF());
   ASSERT_EQ(
       run(box_ + " " + vase_ + " " + plain + " -quiet -points 2000 -grid 32 -check " + given + " -report " + report), 0)
       << error_;
@@ -172,7 +162,7 @@ TEST_F(BopTool, SaysWhereAFileDisagreesWithTheSurface) {
 TEST_F(BopTool, ShowsThatATurnInAFileIsNone) {
   const std::string given =
       folder_.write("model_info.json", R"({"symmetries_discrete": [[0,-1,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1]]})");
-  const std::string report = folder_ / "report.json";
+  const std::string report = folder_ / "check.json";
   ASSERT_EQ(run(box_ + " -quiet -points 2000 -grid 32 -check " + given + " -report " + report), 0) << error_;
   const json box = json::parse(contentOf(report))["models"]["3"];
   EXPECT_EQ(box["file"], "C4");
@@ -197,62 +187,43 @@ TEST_F(BopTool, AgreesWithWhatItWroteInEveryFormat) {
   }
 }
 
-/// A cube of 6 x 6 squares a side, its side at the given place red and all others grey.
-std::string cubePLY(bool has_red_side) {
-  std::string vertices, faces;
-  int num_vertices = 0, num_faces = 0;
-  constexpr int kSize = 6;
+/// A cube of 24 vertices.
+/// \param more what a vertex has besides its position, of its side, and u and v of 0 or 1 there.
+template <typename More>
+std::string cubePLY(const std::string& comment, const std::string& properties, const More& more) {
+  std::ostringstream vertices, faces;
   for (int side = 0; side < 6; ++side) {
-    const int first = num_vertices;
-    for (int i = 0; i <= kSize; ++i) {
-      for (int k = 0; k <= kSize; ++k, ++num_vertices) {
-        Eigen::Vector3d p;
-        p[side % 3] = side < 3 ? 1.0 : -1.0;
-        p[(side + 1) % 3] = 2.0 * i / kSize - 1.0;
-        p[(side + 2) % 3] = 2.0 * k / kSize - 1.0;
-        vertices += std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) +
-                    (side == 2 && has_red_side ? " 200 20 20\n" : " 120 120 120\n");
-      }
-    }
-    for (int i = 0; i < kSize; ++i)
-      for (int k = 0; k < kSize; ++k, ++num_faces) {
-        const int a = first + i * (kSize + 1) + k;
-        faces += "4 " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(a + kSize + 2) + " " +
-                 std::to_string(a + kSize + 1) + "\n";
-      }
+    const Eigen::Vector3d normal = (side % 2 == 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(side / 2);
+    const Eigen::Vector3d a = Eigen::Vector3d::Unit((side / 2 + 1) % 3), b = normal.cross(a);
+    for (const auto& [u, v] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)})
+      vertices << (normal + (2.0 * u - 1.0) * a + (2.0 * v - 1.0) * b).transpose() << ' ' << more(side, u, v) << '\n';
+    faces << 4;
+    for (int k = 0; k < 4; ++k) faces << ' ' << 4 * side + k;
+    faces << '\n';
   }
-  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(num_vertices) +
-         "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
-         "property uchar blue\nelement face " +
-         std::to_string(num_faces) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces;
+  return "ply\nformat ascii 1.0\n" + comment +
+         "element vertex 24\nproperty float x\nproperty float y\nproperty float z\n" + properties +
+         "element face 6\nproperty list uchar int vertex_indices\nend_header\n" + vertices.str() + faces.str();
 }
 
-/// A cube of 24 vertices. Its sides show the white half of the picture, but one: that shows the whole picture if \p
-/// is_printed.
+/// One side is red where it is told, all others are grey.
+std::string colouredCube(bool has_red_side) {
+  return cubePLY("", "property uchar red\nproperty uchar green\nproperty uchar blue\n",
+                 [=](int side, int, int) { return side == 4 && has_red_side ? "200 20 20" : "120 120 120"; });
+}
+
+/// The sides show the white half of the picture, but one: that shows the whole picture if \p is_printed.
 std::string texturedCube(const std::string& texture, bool is_printed) {
-  std::string vertices, faces;
-  for (int side = 0; side < 6; ++side) {
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    normal[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
-    const Eigen::Vector3d a = Eigen::Vector3d::Unit((side / 2 + 1) % 3), b = normal.cross(a);
-    const double top = is_printed && side == 4 ? 1.0 : 0.45;
-    for (const auto& [u, v] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
-      const Eigen::Vector3d x = normal + (2.0 * u - 1.0) * a + (2.0 * v - 1.0) * b;
-      vertices += std::to_string(x.x()) + " " + std::to_string(x.y()) + " " + std::to_string(x.z()) + " " +
-                  std::to_string(0.05 + 0.9 * u) + " " + std::to_string(0.05 + (top - 0.1) * v) + "\n";
-    }
-    faces += "4";
-    for (int k = 0; k < 4; ++k) faces += " " + std::to_string(4 * side + k);
-    faces += "\n";
-  }
-  return "ply\nformat ascii 1.0\ncomment TextureFile " + texture +
-         "\nelement vertex 24\nproperty float x\nproperty float y\nproperty float z\nproperty float texture_u\n"
-         "property float texture_v\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n" +
-         vertices + faces;
+  return cubePLY("comment TextureFile " + texture + "\n", "property float texture_u\nproperty float texture_v\n",
+                 [=](int side, int u, int v) {
+                   const double top = is_printed && side == 4 ? 1.0 : 0.45;
+                   return std::to_string(0.05 + 0.9 * u) + " " + std::to_string(0.05 + (top - 0.1) * v);
+                 });
 }
 
 TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
-  const std::string plain = folder_.write("obj_1.ply", cubePLY(false)), red = folder_.write("obj_2.ply", cubePLY(true));
+  const std::string plain = folder_.write("obj_1.ply", colouredCube(false)),
+                    red = folder_.write("obj_2.ply", colouredCube(true));
   ASSERT_EQ(run(red + " -quiet -points 2000 -grid 32"), 0) << error_;
   EXPECT_NE(output_.find("1 of 1 models have colours, which were not looked at"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_2.ply  group O"), std::string::npos) << output_;
@@ -262,7 +233,7 @@ TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
   EXPECT_NE(output_.find("obj_2.ply  group C4"), std::string::npos) << output_;
   EXPECT_NE(output_.find("without its colours the group is O"), std::string::npos) << output_;
   // The same red cube with its colours as coordinates in a texture that it does not name.
-  std::string textured = cubePLY(true);
+  std::string textured = colouredCube(true);
   for (const auto& [from, to] : {std::pair("uchar red", "uchar texture_u"), std::pair("uchar green", "uchar texture_v"),
                                  std::pair("uchar blue", "uchar other")})
     textured.replace(textured.find(from), std::string(from).size(), to);
@@ -285,8 +256,8 @@ TEST_F(BopTool, ReadsTheTextureThatAModelOfTheBenchmarkNames) {
   EXPECT_NE(output_.find("obj_1.ply  group O"), std::string::npos) << output_;
   // v runs from bottom to top: half of that side is red.
   EXPECT_NE(output_.find("obj_2.ply  group C1"), std::string::npos) << output_;
-  EXPECT_EQ(run(folder_.write("obj_3.ply", texturedCube("missing.png", true)) + " -quiet -colour"), 1);
-  EXPECT_NE(error_.find("missing.png"), std::string::npos) << error_;
+  EXPECT_TRUE(
+      fails(folder_.write("obj_3.ply", texturedCube("missing.png", true)) + " -quiet -colour", 1, "missing.png"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tools/lathe_mesh.h"
+#include "tools/models.h"
 #include "tools/tool_run.h"
 
 namespace {
@@ -11,7 +11,7 @@ protected:
   Example() : ToolTest("env PATH=" EXAMPLES) {}
 
   void SetUp() override {
-    const std::string mesh = folder_.write("box.off", boxOFF("1.4"));
+    const std::string mesh = folder_.write("box.off", boxOFF(1.4));
     const std::string quiet = " -quiet >" + (folder_ / "ignored");
     ASSERT_EQ(std::system((SCAN_TOOL " " + mesh + " " + (folder_ / "scan.pcd") + quiet).c_str()), 0);
     ASSERT_EQ(std::system((PLANES_TOOL " " + mesh + " -support " + (folder_ / "box.pcd") + quiet).c_str()), 0);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/lathe_mesh.h"
-#include "tools/tool_run.h"
 #include "pictures/contour_input.h"
+#include "tools/models.h"
+#include "tools/tool_run.h"
 
 namespace {
 
@@ -29,8 +29,7 @@ RasterImage triangle() {
 TEST_F(LinesTool, FindsTheLineOfAPicture) {
   writeImage(triangle(), folder_ / "triangle.png");
   for (const std::string flag : {"", " -filled"}) {
-    ASSERT_EQ(run((folder_ / "triangle.png") + flag + " -quiet -json " + (folder_ / "a.json")), 0) << error_;
-    const nlohmann::json shape = nlohmann::json::parse(contentOf(folder_ / "a.json"))["shapes"][0];
+    const nlohmann::json shape = reportOf((folder_ / "triangle.png") + flag + " -quiet")["shapes"][0];
     const nlohmann::json& line = shape["lines"][0];
     const double sign = line["coefficients"][0].get<double>() < 0.0 ? -1.0 : 1.0;
     EXPECT_NEAR(sign * line["coefficients"][0].get<double>(), 1.0, 1e-3);
@@ -60,19 +59,15 @@ TEST_F(LinesTool, ReadsPGMAndDrawsWithoutADisplay) {
 TEST_F(LinesTool, RefusesWhatItCannotUse) {
   EXPECT_EQ(run(""), 2);
   EXPECT_EQ(run(folder_ / "missing.png"), 1);
-  EXPECT_EQ(run(folder_.write("broken.png", "no picture")), 1);
-  EXPECT_NE(error_.find("must be a PNG or binary PGM"), std::string::npos);
+  EXPECT_TRUE(fails(folder_.write("broken.png", "no picture"), 1, "must be a PNG or binary PGM"));
   EXPECT_EQ(run(folder_.write("cut.pgm", "P5\n7 7\n255\nabc")), 1);
   writeImage(RasterImage(8, 8), folder_ / "empty.png");
-  EXPECT_EQ(run(folder_ / "empty.png"), 1);
-  EXPECT_NE(error_.find("shows nothing"), std::string::npos);
-  EXPECT_EQ(run(folder_.write("box.off", boxOFF())), 1);
-  EXPECT_NE(error_.find("8 distinct points, at least 20 are needed"), std::string::npos) << error_;
+  EXPECT_TRUE(fails(folder_ / "empty.png", 1, "shows nothing"));
+  EXPECT_TRUE(fails(folder_.write("box.off", boxOFF()), 1, "8 distinct points, at least 20 are needed"));
   std::string lattice;
   for (int i = 0; i < 27; ++i)
     lattice += std::to_string(i % 3) + ' ' + std::to_string(i / 3 % 3) + ' ' + std::to_string(i / 9) + '\n';
-  EXPECT_EQ(run(folder_.write("lattice.xyz", lattice)), 1);
-  EXPECT_NE(error_.find("off a plane"), std::string::npos) << error_;
+  EXPECT_TRUE(fails(folder_.write("lattice.xyz", lattice), 1, "off a plane"));
 }
 
 TEST(RasterImage, WrittenAndReadIsTheSame) {

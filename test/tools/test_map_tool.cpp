@@ -7,7 +7,7 @@
 
 #include "io/shape_input.h"
 #include "pictures/raster_image.h"
-#include "tools/lathe_mesh.h"
+#include "tools/models.h"
 #include "tools/tool_run.h"
 
 namespace {
@@ -18,11 +18,11 @@ class MapTool : public ToolTest {
 protected:
   MapTool() : ToolTest(toolPath("map")) {}
 
-  const std::string mesh_ = folder_.write("box.off", boxOFF("1.4"));
+  const std::string mesh_ = folder_.write("box.off", boxOFF(1.4));
 };
 
 TEST_F(MapTool, PointsOnThePlanesOfABoxAreTheMostSymmetric) {
-  ASSERT_EQ(run(mesh_ + " " + (folder_ / "box.pcd") + " -quiet -json " + (folder_ / "a.json")), 0) << error_;
+  EXPECT_EQ(reportOf(mesh_ + " " + (folder_ / "box.pcd") + " -quiet")["num_points"], 10000);
   pcl::PointCloud<pcl::PointXYZI> points;
   pcl::fromPCLPointCloud2(loadShape(folder_ / "box.pcd").cloud, points);
   ASSERT_EQ(points.size(), 10000u);
@@ -40,7 +40,6 @@ TEST_F(MapTool, PointsOnThePlanesOfABoxAreTheMostSymmetric) {
   }
   EXPECT_GT(near / num_near, 0.85);
   EXPECT_LT(far / num_far, 0.75);
-  EXPECT_EQ(nlohmann::json::parse(contentOf(folder_ / "a.json"))["num_points"], 10000);
 }
 
 TEST_F(MapTool, WritesAVTKImageAndSlices) {
@@ -56,10 +55,9 @@ TEST_F(MapTool, WritesAVTKImageAndSlices) {
 }
 
 TEST_F(MapTool, ABoxHasThreeAxesOfHalfTurnsAndACenter) {
-  const std::string common = mesh_ + " -quiet -grid 32 -points 3000 -json " + (folder_ / "a.json");
-  ASSERT_EQ(run(common + " -of axes -fold 2 -png " + (folder_ / "a.png")), 0) << error_;
+  const std::string common = mesh_ + " -quiet -grid 32 -points 3000";
+  const auto axes = reportOf(common + " -of axes -fold 2 -png " + (folder_ / "a.png"))["axes"];
   EXPECT_NE(output_.find("symmetry of the axes through the points"), std::string::npos);
-  const auto axes = nlohmann::json::parse(contentOf(folder_ / "a.json"))["axes"];
   ASSERT_GE(axes.size(), 3u);
   for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(axes[k]["fold"], 2);
@@ -69,16 +67,13 @@ TEST_F(MapTool, ABoxHasThreeAxesOfHalfTurnsAndACenter) {
     EXPECT_GT(greatest, 0.995);
     EXPECT_GT(axes[k]["symmetry"], 0.9);
   }
-  ASSERT_EQ(run(common + " -of centers"), 0) << error_;
-  const auto center = nlohmann::json::parse(contentOf(folder_ / "a.json"))["centers"][0]["point"];
+  const auto center = reportOf(common + " -of centers")["centers"][0]["point"];
   for (const double c : center) EXPECT_NEAR(c, 0.0, 0.2);
 }
 
 TEST_F(MapTool, RefusesFoldsThatHaveNoMeaning) {
-  EXPECT_EQ(run(mesh_ + " -fold 3"), 2);
-  EXPECT_NE(error_.find("-fold goes with -of axes"), std::string::npos) << error_;
-  EXPECT_EQ(run(mesh_ + " -of axes -fold 1"), 2);
-  EXPECT_NE(error_.find("a turn of order 1 changes nothing"), std::string::npos) << error_;
+  EXPECT_TRUE(fails(mesh_ + " -fold 3", 2, "-fold goes with -of axes"));
+  EXPECT_TRUE(fails(mesh_ + " -of axes -fold 1", 2, "a turn of order 1 changes nothing"));
   EXPECT_EQ(run(mesh_ + " -of lines"), 2);
 }
 

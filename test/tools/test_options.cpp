@@ -4,15 +4,17 @@
 #include <stdexcept>
 
 #include "command_line/command_line.h"
-#include "command_line/file_errors.h"
 #include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "shapes/complaint.h"
 
 namespace {
 
 using namespace pcl_symmetry::apps;
 using pcl_symmetry::DetectionOptions;
 using pcl_symmetry::Viewpoint;
+using pcl_symmetry::test::complaintOf;
 
 struct Values {
   std::string input;
@@ -40,14 +42,9 @@ bool parse(Values& values, std::vector<const char*> arguments) {
   return line.parse(static_cast<int>(arguments.size()), arguments.data());
 }
 
-std::string complaintAbout(std::vector<const char*> arguments) {
+std::string complaintAbout(const std::vector<const char*>& arguments) {
   Values values;
-  try {
-    parse(values, std::move(arguments));
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return complaintOf<UsageError>([&] { parse(values, arguments); });
 }
 
 TEST(Options, SingleAndDoubleDashMeanTheSame) {
@@ -103,7 +100,7 @@ TEST(Options, ValuesOutOfRangeAreNamedWithTheirRule) {
 
 TEST(Options, PicturesArePNGAndDirectionsAreNotZero) {
   EXPECT_EQ(complaintAbout({"a", "-png", "out.jpg"}), "-png = out.jpg, must end in .png");
-  EXPECT_EQ(complaintAbout({"a", "-png", "OUT.PNG"}), "");
+  EXPECT_EQ(complaintAbout({"a", "-png", "OUT.PNG"}), "no exception");
   EXPECT_EQ(complaintAbout({"a", "-up", "0,0,0"}), "-up = 0,0,0, must not be zero");
 }
 
@@ -120,14 +117,7 @@ TEST(Options, CommonFlagsReachTheOptionsOfTheLibrary) {
 }
 
 TEST(FileErrors, NameTheFileAndNoFunction) {
-  const auto complaint = [](const auto& body) -> std::string {
-    try {
-      namingFile("a.pcd", body);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
+  const auto complaint = [](const auto& body) { return complaintOf<InputError>([&] { namingFile("a.pcd", body); }); };
   EXPECT_EQ(complaint([] { throw pcl::BadArgumentException("points: all at one place", "file.cpp", "f()", 7); }),
             "a.pcd: points: all at one place");
   EXPECT_EQ(complaint([] { throw std::invalid_argument("sigma = -1, must be > 0"); }),

@@ -5,9 +5,9 @@
 #include <limits>
 #include <random>
 
-#include "tools/temporary_folder.h"
 #include "command_line/tool_errors.h"
-#include "io/pcd_reader.h"
+#include "io/shape_readers.h"
+#include "shapes/temporary_folder.h"
 
 namespace {
 

@@ -1,3 +1,4 @@
+/// The tool of planes, and what it shows of all tools: many inputs, standard streams, names, full disks.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -10,9 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "io/shape_input.h"
-#include "tools/lathe_mesh.h"
+#include "tools/models.h"
 #include "tools/tool_run.h"
 
 namespace {
@@ -23,39 +25,9 @@ class PlanesTool : public ToolTest {
 protected:
   PlanesTool() : ToolTest(toolPath("planes")) {}
 
-  nlohmann::json reportOf(const std::string& arguments) {
-    EXPECT_EQ(run(arguments + " -json " + (folder_ / "report.json")), 0) << error_;
-    return nlohmann::json::parse(contentOf(folder_ / "report.json"));
-  }
-
   const std::string box_ = folder_.write("box.off", boxOFF());
   const std::string tetrahedron_ = folder_.write("t.off", tetrahedronOFF());
 };
-
-/// What is printed has few digits, and still is the plane at the points.
-TEST_F(PlanesTool, PrintsPlanesThatAreRightFarFromTheOrigin) {
-  // A prism whose planes are oblique, at map coordinates.
-  const Eigen::Vector3d center(500000.3, 5000000.7, 100.2);
-  std::string off = "OFF\n8 6 12\n";
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d x(i & 1 ? 1.0 : -1.0, i & 2 ? 0.7 : -0.7, i & 4 ? 0.4 : -0.4);
-    const Eigen::Vector3d turned = center + Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()) * x;
-    char text[96];
-    std::snprintf(text, sizeof(text), "%.6f %.6f %.6f\n", turned.x(), turned.y(), turned.z());
-    off += text;
-  }
-  off += "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
-  ASSERT_EQ(run(folder_.write("far.off", off)), 0) << error_;
-  std::istringstream table(output_);
-  std::string line;
-  std::getline(table, line);
-  int num_planes = 0;
-  for (double number, a, b, c, d; std::getline(table, line); ++num_planes) {
-    ASSERT_TRUE(std::istringstream(line) >> number >> a >> b >> c >> d) << line;
-    EXPECT_NEAR(Eigen::Vector3d(a, b, c).dot(center) + d, 0.0, 2e-5) << line;
-  }
-  EXPECT_EQ(num_planes, 3);
-}
 
 TEST_F(PlanesTool, WritesTheProfileOfABodyOfRevolution) {
   const std::string vase =
@@ -73,8 +45,7 @@ TEST_F(PlanesTool, WritesTheProfileOfABodyOfRevolution) {
   ASSERT_EQ(run(vase + " -profile " + (folder_ / "p.svg")), 0) << error_;
   EXPECT_EQ(contentOf(folder_ / "p.svg").rfind("<svg ", 0), 0u);
   EXPECT_EQ(run(vase + " -profile " + (folder_ / "p.txt")), 2);
-  EXPECT_EQ(run(box_ + " -profile " + (folder_ / "p.csv")), 1);
-  EXPECT_NE(error_.find("no body of revolution"), std::string::npos);
+  EXPECT_TRUE(fails(box_ + " -profile " + (folder_ / "p.csv"), 1, "no body of revolution"));
 }
 
 TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
@@ -101,43 +72,35 @@ TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
   EXPECT_NE(output_.find("symmetry"), std::string::npos);
 }
 
-/// A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a metre.
+/// A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a metre; its planes are oblique.
 TEST_F(PlanesTool, KeepsCoordinatesBeyondFloatPrecision) {
-  const Eigen::Vector3d center(500000.3, 5000000.7, 100.2), half(0.5, 0.4, 0.3);
-  std::string off = "OFF\n8 6 12\n";
-  for (int i = 0; i < 8; ++i)
-    for (int k = 0; k < 3; ++k)
-      off += std::to_string(center[k] + (i >> k & 1 ? half[k] : -half[k])) + (k < 2 ? " " : "\n");
-  off += "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
-  const std::string far = folder_.write("far.off", off);
+  const Eigen::Vector3d half(0.5, 0.4, 0.3);
+  const Eigen::Isometry3d pose =
+      Eigen::Translation3d(500000.3, 5000000.7, 100.2) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
+  const std::string far = folder_.write("far.off", boxOFF(pose * boxCorners(half)));
   const nlohmann::json report = reportOf(far + " -support " + (folder_ / "s.pcd"));
   ASSERT_EQ(report["planes"].size(), 3u);
-  std::array<int, 3> along{};
-  for (const auto& plane : report["planes"]) {
-    const auto c = plane["coefficients"].get<std::vector<double>>();
-    const Eigen::Vector3d n(c[0], c[1], c[2]);
-    int axis = 0;
-    n.cwiseAbs().maxCoeff(&axis);
-    ++along[axis];
-    EXPECT_NEAR(n.dot(center) + c[3], 0.0, 1e-3) << "distance of the box's center from the plane";
-  }
-  EXPECT_EQ(along, (std::array<int, 3>{1, 1, 1}));
   std::istringstream table(output_);
   std::string line;
   std::getline(table, line);
+  Eigen::Vector3i along = Eigen::Vector3i::Zero();
   for (const auto& plane : report["planes"]) {
-    double number = 0.0, a = 0.0, b = 0.0, c = 0.0, d = 0.0;
+    const auto c = plane["coefficients"].get<std::vector<double>>();
+    const Eigen::Vector3d n(c[0], c[1], c[2]);
+    along += ((pose.linear().transpose() * n).array().abs() > 0.99).cast<int>().matrix();
+    EXPECT_NEAR(n.dot(pose.translation()) + c[3], 0.0, 1e-3) << "through the middle of the box";
+    double number = 0.0, d = 0.0;
+    Eigen::Vector3d printed;
     std::getline(table, line);
-    ASSERT_TRUE(std::istringstream(line) >> number >> a >> b >> c >> d) << line;
-    EXPECT_NEAR(d, plane["coefficients"][3].get<double>(), 1e-3) << "the table shows enough digits";
+    ASSERT_TRUE(std::istringstream(line) >> number >> printed.x() >> printed.y() >> printed.z() >> d) << line;
+    EXPECT_NEAR(printed.dot(pose.translation()) + d, 0.0, 1e-3) << "few digits, and still the plane at the points";
   }
+  EXPECT_EQ(along, Eigen::Vector3i::Ones());
   const Shape saved = loadShape(folder_ / "s.pcd");
-  for (const pcl::PCLPointField& field : saved.cloud.fields)
-    if (field.name == "x") {
-      EXPECT_EQ(field.datatype, pcl::PCLPointField::FLOAT64);
-    }
+  ASSERT_EQ(saved.cloud.fields.at(0).name, "x");
+  EXPECT_EQ(saved.cloud.fields.at(0).datatype, pcl::PCLPointField::FLOAT64);
   const Eigen::Vector3d first = (*saved.points)[0].getVector3fMap().cast<double>() + saved.shift;
-  EXPECT_LT(((first - center).cwiseAbs() - half).maxCoeff(), 1e-6) << "on the box, in the input frame";
+  EXPECT_LT(((pose.inverse() * first).cwiseAbs() - half).maxCoeff(), 1e-6) << "on the box, in the input frame";
 }
 
 TEST_F(PlanesTool, SaysNone) {
@@ -267,16 +230,108 @@ TEST_F(PlanesTool, AnswersBadInputWithOneLineAndAnExitCode) {
   }
   EXPECT_EQ(contentOf(folder_ / "never.json"), "");
   EXPECT_EQ(run(folder_ / "missing.pcd"), 1);
-  EXPECT_EQ(run(box_ + " -min_confidence 2"), 2);
-  EXPECT_NE(error_.find("min_confidence"), std::string::npos);
+  EXPECT_TRUE(fails(box_ + " -min_confidence 2", 2, "min_confidence"));
   EXPECT_EQ(run(box_ + " -nonsense"), 2);
-  EXPECT_EQ(run(box_ + " -png out.jpg"), 2);
-  EXPECT_NE(error_.find("-png = out.jpg, must end in .png"), std::string::npos) << error_;
+  EXPECT_TRUE(fails(box_ + " -png out.jpg", 2, "-png = out.jpg, must end in .png"));
   EXPECT_EQ(run("--version"), 0);
   EXPECT_EQ(output_.rfind("pcl_symmetry_planes ", 0), 0u) << output_;
   EXPECT_EQ(run(""), 2);
   EXPECT_EQ(run("-h"), 0);
   EXPECT_NE((output_ + error_).find("pcl_symmetry_planes chair.pcd"), std::string::npos);
+}
+
+/// A tool with a folder "in" of two boxes and a file that is no shape.
+class PlanesPipelines : public ToolTest {
+protected:
+  PlanesPipelines() : ToolTest(toolPath("planes")) {
+    std::filesystem::create_directory(folder_ / "in");
+    folder_.write("in/a.off", boxOFF(1.5, 2.0));
+    folder_.write("in/b.off", "no shape");
+    folder_.write("in/c.off", boxOFF(1.5, 3.0));
+  }
+
+  const std::string in_ = folder_ / "in";
+};
+
+TEST_F(PlanesPipelines, TakeAFolder) {
+  EXPECT_EQ(run(in_ + " -quiet -points 2000 -csv " + (folder_ / "t.csv") + " -json " + (folder_ / "t.jsonl") +
+                " -support '" + (folder_ / "{}_support.pcd") + "'"),
+            1);
+  EXPECT_EQ(output_, "");
+  EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
+  EXPECT_NE(error_.find("b.off: does not begin with OFF"), std::string::npos) << error_;
+  const auto found = jsonLines(contentOf(folder_ / "t.jsonl"));
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0]["planes"].size(), 3u);
+  EXPECT_TRUE(found[1].contains("error"));
+  EXPECT_EQ(found[2]["file"], in_ + "/c.off");
+  const std::string csv = contentOf(folder_ / "t.csv");
+  EXPECT_EQ(csv.rfind("file,number,kind,a,b,c,d,", 0), 0u);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
+  EXPECT_EQ(loadShape(folder_ / "a_support.pcd").points->size(), 2000u);
+  EXPECT_EQ(loadShape(folder_ / "c_support.pcd").points->size(), 2000u);
+  // The same as one by one.
+  ASSERT_EQ(run(in_ + "/c.off -quiet -points 2000 -json " + (folder_ / "c.json")), 0);
+  nlohmann::json alone = nlohmann::json::parse(contentOf(folder_ / "c.json")), among = found[2];
+  alone.erase("timing_ms");
+  among.erase("timing_ms");
+  EXPECT_EQ(alone, among);
+}
+
+TEST_F(PlanesPipelines, PrintLinesOfJSONWhereNoFileIsNamed) {
+  ASSERT_EQ(run(in_ + "/a.off " + in_ + "/c.off -quiet -points 2000"), 0) << error_;
+  EXPECT_EQ(jsonLines(output_).size(), 2u);
+  EXPECT_TRUE(fails(in_ + " -png out.png", 2, "must hold {}"));
+  EXPECT_TRUE(fails(in_ + " -resume", 2, "-resume needs -json FILE"));
+}
+
+TEST_F(PlanesPipelines, ReadStandardInputAndWriteStandardOutput) {
+  ASSERT_EQ(run("- -quiet -points 2000 <" + in_ + "/a.off"), 0) << error_;
+  EXPECT_NE(output_.find("symmetry"), std::string::npos);
+  ASSERT_EQ(run("- -quiet -points 2000 -json - <" + in_ + "/a.off"), 0) << error_;
+  EXPECT_EQ(nlohmann::json::parse(output_)["file"], "-");
+  ASSERT_EQ(run("- -quiet -points 2000 -support - <" + in_ + "/a.off"), 0) << error_;
+  EXPECT_EQ(output_.rfind("# .PCD", 0), 0u);
+  ASSERT_EQ(run("- -quiet -points 2000 -csv - <" + in_ + "/a.off"), 0) << error_;
+  EXPECT_EQ(output_.rfind("file,number", 0), 0u);
+  EXPECT_EQ(run("- -quiet -csv - -json - <" + in_ + "/a.off"), 2);
+  EXPECT_TRUE(fails("- -quiet <" + in_ + "/b.off", 1, "standard input: is of no known kind"));
+  EXPECT_TRUE(fails("- -quiet </dev/null", 1, "standard input: is empty"));
+  const std::string cut = folder_.write("cut.off", "OFF\n3 1 0\n0 0 0\n0 0 0\n");
+  EXPECT_TRUE(fails("- -quiet <" + cut, 1, "standard input: x of vertex 2 is missing"));
+}
+
+/// Names in UTF-8, and bytes that are none: file names are bytes.
+TEST_F(PlanesPipelines, TakeNamesInAnyLanguage) {
+  const std::string folder = folder_ / "W\xc3\xbcrfel \xe7\xab\x8b\xe6\x96\xb9";
+  std::filesystem::create_directory(folder);
+  const std::string box = contentOf(in_ + "/a.off");
+  for (const std::string name : {"\xd0\xba\xd1\x83\xd0\xb1 1", "no \xff text", "'quotes' & more"}) {
+    const std::string path = folder + "/" + name;
+    std::ofstream(path + ".off", std::ios::binary) << box;
+    std::string quoted;
+    for (const char c : path) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    const auto out = [&](const std::string& ending) { return "'" + quoted + ending + "'"; };
+    ASSERT_EQ(run(out(".off") + " -quiet -points 2000 -json " + out(".json") + " -csv " + out(".csv") + " -support " +
+                  out("_support.ply") + " -html " + out(".html")),
+              0)
+        << name << ": " << error_;
+    EXPECT_EQ(nlohmann::json::parse(contentOf(path + ".json"))["planes"].size(), 3u) << name;
+    EXPECT_EQ(loadShape(path + "_support.ply").points->size(), 2000u) << name;
+    EXPECT_NE(contentOf(path + ".html"), "") << name;
+  }
+  ASSERT_EQ(run("'" + folder + "' -quiet -points 2000"), 0) << error_;
+  EXPECT_EQ(jsonLines(output_).size(), 6u) << "three boxes, three clouds with support";
+}
+
+TEST_F(PlanesPipelines, SayThatStandardOutputIsFull) {
+  for (const std::string flags : {"-json -", "-csv -", "-support -", ""}) {
+    const int status = std::system((toolPath("planes") + " " + in_ + "/a.off -quiet -points 2000 " + flags +
+                                    " >/dev/full 2>" + (folder_ / "stderr"))
+                                       .c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1) << flags;
+    EXPECT_NE(contentOf(folder_ / "stderr").find("standard output"), std::string::npos) << flags;
+  }
 }
 
 }  // namespace

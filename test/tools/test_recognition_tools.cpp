@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <pcl/io/pcd_io.h>
 
-#include <boost/filesystem.hpp>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,8 +11,8 @@
 #include "core/matching/symmetry_descriptor.h"
 #include "pcl_symmetry/point_types.h"
 #include "recognition/model_store.h"
-#include "tools/lathe_mesh.h"
-#include "tools/temporary_folder.h"
+#include "shapes/temporary_folder.h"
+#include "tools/models.h"
 #include "tools/tool_run.h"
 
 namespace {
@@ -84,11 +84,10 @@ TEST_F(DescribeTool, SaysWhatIsWrongAndDoesTheRest) {
   folder_.write("broken.off", "OFF\n3 1 0\n0 0 0\n");
   EXPECT_EQ(run(out + " " + (folder_ / "broken.off") + " " + (folder_ / "box.off") + " -points 2000 -quiet"), 1);
   EXPECT_NE(error_.find("broken.off"), std::string::npos) << "-quiet hides no failure: " << error_;
-  EXPECT_TRUE(boost::filesystem::exists(out + "/box.pcd"));
-  boost::filesystem::create_directories(folder_ / "other");
+  EXPECT_TRUE(std::filesystem::exists(out + "/box.pcd"));
+  std::filesystem::create_directories(folder_ / "other");
   folder_.write("other/box.off", boxOFF());
-  EXPECT_EQ(run(out + " " + (folder_ / "box.off") + " " + (folder_ / "other/box.off")), 1);
-  EXPECT_NE(error_.find("names must differ"), std::string::npos) << error_;
+  EXPECT_TRUE(fails(out + " " + (folder_ / "box.off") + " " + (folder_ / "other/box.off"), 1, "names must differ"));
   EXPECT_EQ(run(out + " " + (folder_ / "box.off") + " -type nonsense"), 2);
 }
 
@@ -113,13 +112,10 @@ TEST_F(DatabaseTools, BuildAskAndChange) {
   EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
   ASSERT_EQ(database("list " + models_), 0);
   EXPECT_EQ(output_, "box\ntetrahedron\nvase\n");
-  const std::string found = folder_ / "found.json";
-  ASSERT_EQ(match(models_ + " " + vase + " -max 2 -json " + found), 0) << error_;
-  json answer = json::parse(contentOf(found));
+  json answer = reportOf("./pcl_symmetry_match " + models_ + " " + vase + " -max 2");
   ASSERT_EQ(answer["matches"].size(), 2u);
   EXPECT_EQ(answer["matches"][0]["name"], "vase");
-  ASSERT_EQ(match(models_ + " " + box + " -recognize -json " + found), 0) << error_;
-  answer = json::parse(contentOf(found));
+  answer = reportOf("./pcl_symmetry_match " + models_ + " " + box + " -recognize");
   EXPECT_TRUE(answer["known"]);
   EXPECT_EQ(answer["models"][0]["name"], "box");
   EXPECT_EQ(answer["models"][0]["transform"].size(), 16u);
@@ -130,7 +126,7 @@ TEST_F(DatabaseTools, BuildAskAndChange) {
 }
 
 TEST_F(DatabaseTools, GoOnTakeFoldersAndTellWhatTheyHold) {
-  boost::filesystem::create_directories(folder_ / "shapes/more");
+  std::filesystem::create_directories(folder_ / "shapes/more");
   folder_.write("shapes/a.off", boxOFF());
   folder_.write("shapes/more/b.off", tetrahedronOFF());
   folder_.write("shapes/notes.txt", "mine");
@@ -138,15 +134,14 @@ TEST_F(DatabaseTools, GoOnTakeFoldersAndTellWhatTheyHold) {
   const std::string build = "build " + models_ + " -points 2000 -names path -unit m -tag thing ";
   ASSERT_EQ(database(build + (folder_ / "shapes")), 0) << error_;
   folder_.write("shapes/a.off", boxOFF() + "\n");
-  const std::string report = folder_ / "report.json";
-  ASSERT_EQ(database(build + (folder_ / "shapes") + " '" + (folder_ / "va*.off") + "' -json " + report), 0) << error_;
-  const json built = json::parse(contentOf(report));
+  const json built =
+      reportOf("./pcl_symmetry_database " + build + (folder_ / "shapes") + " '" + (folder_ / "va*.off") + "'");
   EXPECT_EQ(built["added"], 2) << "the file that changed and the new one";
   EXPECT_EQ(built["kept"], 1);
-  ASSERT_EQ(database("list " + models_ + " -csv " + (folder_ / "list.csv") + " -json " + report), 0) << error_;
+  const json listed = reportOf("./pcl_symmetry_database list " + models_ + " -csv " + (folder_ / "list.csv"));
   EXPECT_EQ(output_, "a\nmore_b\nvase\n");
   EXPECT_EQ(contentOf(folder_ / "list.csv").rfind("name,points,time,source,checksum,tags\na,2000,", 0), 0u);
-  EXPECT_EQ(json::parse(contentOf(report))["models"][1]["tags"][0], "thing");
+  EXPECT_EQ(listed["models"][1]["tags"][0], "thing");
   ASSERT_EQ(database("info " + models_), 0) << error_;
   EXPECT_EQ(output_.rfind("models  3\nunit    m\n", 0), 0u) << output_;
   ASSERT_EQ(database("info " + models_ + " vase"), 0) << error_;
@@ -186,13 +181,10 @@ TEST_F(DatabaseTools, MergesParts) {
   ASSERT_EQ(database("build " + first + " " + vase + " " + other + flags + " -part"), 0) << error_;
   ASSERT_EQ(database("build " + second + " " + box + flags + " -part"), 0) << error_;
   EXPECT_EQ(contentsOf(first)["projection"].front(), "0") << "parts are not fitted";
-  ASSERT_EQ(database("merge " + merged + " " + first + " " + second + " -json " + (folder_ / "merged.json")), 0)
-      << error_;
-  EXPECT_EQ(json::parse(contentOf(folder_ / "merged.json"))["added"], 3);
+  EXPECT_EQ(reportOf("./pcl_symmetry_database merge " + merged + " " + first + " " + second)["added"], 3);
   EXPECT_EQ(contentsOf(merged), contentsOf(one));
   const auto answer = [&](const std::string& file) {
-    EXPECT_EQ(match(file + " " + box + " -points 2000 -json " + (folder_ / "answer.json")), 0) << error_;
-    return json::parse(contentOf(folder_ / "answer.json"))["matches"];
+    return reportOf("./pcl_symmetry_match " + file + " " + box + " -points 2000")["matches"];
   };
   EXPECT_EQ(answer(merged), answer(one));
   // What cannot be merged changes nothing.
@@ -202,7 +194,7 @@ TEST_F(DatabaseTools, MergesParts) {
   EXPECT_NE(error_.find(inches + ": unit = 'inch', must be '' as in " + merged), std::string::npos) << error_;
   EXPECT_EQ(contentOf(merged), before);
   EXPECT_EQ(database("merge " + (folder_ / "new.db") + " " + first + " " + inches), 1);
-  EXPECT_FALSE(boost::filesystem::exists(folder_ / "new.db"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new.db"));
 }
 
 }  // namespace

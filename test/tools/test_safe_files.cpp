@@ -1,7 +1,11 @@
-/// Files that are written survive kills and full disks; files that are read cannot ask for more memory than they hold.
+/// Files that are written hold all fields, and survive kills and full disks; files that are read cannot ask for more
+/// memory than they hold.
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -9,9 +13,9 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/filesystem.hpp>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -19,14 +23,17 @@
 #include <set>
 #include <thread>
 
-#include "tools/temporary_folder.h"
+#include "io/mesh_output.h"
 #include "io/shape_input.h"
-#include "io/face_labels.h"
 #include "io/shape_output.h"
+#include "shapes/complaint.h"
+#include "shapes/temporary_folder.h"
 
 namespace {
 
 using namespace pcl_symmetry::apps;
+
+using pcl_symmetry::test::complaintOf;
 
 /// All points of a cloud have the number of the cloud as coordinates.
 pcl::PCLPointCloud2 cloudOf(int number, std::uint32_t size) {
@@ -120,16 +127,11 @@ TEST(SafeFiles, FullDisksLeaveTheOldFile) {
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   for (const auto& [name, write] : writers(kSize)) {
     write(folder / name, 1);
-    const std::uint64_t size = boost::filesystem::file_size(folder / name);
+    const std::uint64_t size = std::filesystem::file_size(folder / name);
     for (const std::uint64_t limit : {std::uint64_t{1}, std::uint64_t{100}, size / 2, size - 1}) {
       const rlimit full{limit, before.rlim_max};
       ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
-      std::string message;
-      try {
-        write(folder / name, 7);
-      } catch (const InputError& error) {
-        message = error.what();
-      }
+      const std::string message = complaintOf<InputError>([&write = write, path = folder / name] { write(path, 7); });
       ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
       EXPECT_NE(message.find(name), std::string::npos)
           << name << ", " << limit << " bytes of " << size << ": " << message;
@@ -158,15 +160,10 @@ TEST(SafeFiles, FullDisksAreNamed) {
     if (!mountTinyDisk(folder / ".")) _exit(77);
     int num_wrong = 0;
     for (const auto& [name, write] : writers(20'000)) {
-      std::string message;
-      try {
-        write(folder / name, 7);
-        if (name == "compressed.pcd") {  // its equal points fit
-          boost::filesystem::remove(folder / name);
-          continue;
-        }
-      } catch (const InputError& error) {
-        message = error.what();
+      const std::string message = complaintOf<InputError>([&write = write, path = folder / name] { write(path, 7); });
+      if (name == "compressed.pcd" && message == "no exception") {  // its equal points fit
+        std::filesystem::remove(folder / name);
+        continue;
       }
       const bool is_named = message.find(name + ": cannot be written, No space left on device") != std::string::npos;
       if (!is_named || !folder.names().empty()) {
@@ -196,12 +193,7 @@ std::string messageWithLittleMemory(const std::string& path) {
     const rlim_t bytes = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + (64u << 20);
     const rlimit limit{bytes, bytes};
     setrlimit(RLIMIT_AS, &limit);
-    std::string message = "was read";
-    try {
-      loadShape(path);
-    } catch (const std::exception& error) {
-      message = error.what();
-    }
+    const std::string message = complaintOf<std::exception>([&] { loadShape(path); });
     const auto written = ::write(ends[1], message.data(), message.size());
     _exit(written == static_cast<ssize_t>(message.size()) ? 0 : 1);
   }
@@ -241,7 +233,111 @@ TEST(SafeFiles, HeadersCannotAskForMoreMemoryThanTheFileHolds) {
     EXPECT_NE(message.find(name), std::string::npos) << name << ": " << message;
     EXPECT_EQ(message.find("memory"), std::string::npos) << message;
   }
-  EXPECT_EQ(messageWithLittleMemory(folder.write("good.pcd", pcd("1", "ascii\n1 2 3\n"))), "was read");
+  EXPECT_EQ(messageWithLittleMemory(folder.write("good.pcd", pcd("1", "ascii\n1 2 3\n"))), "no exception");
+}
+
+TEST(MakeFolder, MakesWhatIsMissingAndRefusesAFile) {
+  const TemporaryFolder folder;
+  makeFolder(folder / "a/b/");
+  makeFolder(folder / "a/.");
+  makeFolder(".");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a"});
+  folder.write("file", "");
+  EXPECT_THROW(makeFolder(folder / "file"), InputError);
+  EXPECT_THROW(makeFolder(folder / "file/below"), InputError);
+}
+
+TEST(WriteAtomically, KeepsTheOldFileWhenTheWriterFails) {
+  const TemporaryFolder folder;
+  folder.write("a.txt", "old");
+  EXPECT_THROW(writeAtomically(folder / "a.txt",
+                               [](const std::string& temporary) {
+                                 std::ofstream(temporary) << "half";
+                                 throw std::runtime_error("stop");
+                               }),
+               std::runtime_error);
+  EXPECT_THROW(writeAtomically(folder / "a.txt", [](const std::string&) {}), InputError);
+  EXPECT_EQ(contentOf(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.names().size(), 1u);
+}
+
+TEST(WriteAtomically, NamesTheFileThatCannotBeWritten) {
+  const TemporaryFolder folder;
+  for (const std::string& path : {folder / "missing/a.txt", folder / ".", std::string()}) {
+    EXPECT_THROW(writeText(path, "x"), InputError) << path;
+  }
+  EXPECT_THROW(writeText("/dev/full", "x"), InputError);
+  EXPECT_THROW(writeText("/proc/a.txt", "x"), InputError);
+}
+
+TEST(WriteAtomically, RemovesTheTemporaryFileWhenInterrupted) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const TemporaryFolder folder;
+    const pid_t child = fork();
+    if (child == 0) {
+      writeAtomically(folder / "a.txt", [&](const std::string& temporary) {
+        std::ofstream(temporary) << "half";
+        raise(signal);
+      });
+      _exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+    EXPECT_TRUE(folder.names().empty());
+  }
+}
+
+TEST(SaveCloud, KeepsFieldsOrganizationAndPose) {
+  const TemporaryFolder folder;
+  pcl::PointCloud<pcl::PointXYZRGBNormal> cloud(4, 3);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud[i].x = 0.1f * static_cast<float>(i);
+    cloud[i].y = 1.0f / 3.0f;
+    cloud[i].curvature = static_cast<float>(i);
+    cloud[i].g = static_cast<std::uint8_t>(i);
+  }
+  cloud[5].z = std::numeric_limits<float>::quiet_NaN();
+  pcl::PCLPointCloud2 fields;
+  pcl::toPCLPointCloud2(cloud, fields);
+  const Eigen::Vector4f origin(1, -2, 0.5f, 0);
+  const Eigen::Quaternionf orientation(0.5f, 0.5f, -0.5f, 0.5f);
+  const auto check = [&](const std::string& path, bool organized) {
+    const Shape loaded = loadShape(path);
+    ASSERT_EQ(loaded.points->size(), cloud.size()) << path;
+    EXPECT_EQ(loaded.cloud.width, organized ? 4u : loaded.cloud.width);
+    EXPECT_TRUE(loaded.sensor_origin.head<3>().isApprox(origin.head<3>())) << path << loaded.sensor_origin.transpose();
+    EXPECT_GT(std::abs(loaded.sensor_orientation.dot(orientation)), 1 - 1e-5) << path;
+    EXPECT_TRUE(loaded.points->sensor_origin_.head<3>().isApprox(origin.head<3>()));
+    pcl::PointCloud<pcl::PointXYZRGBNormal> back;
+    pcl::fromPCLPointCloud2(loaded.cloud, back);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      EXPECT_EQ(back[i].x, cloud[i].x);
+      EXPECT_EQ(back[i].y, cloud[i].y);
+      EXPECT_EQ(back[i].curvature, cloud[i].curvature);
+      EXPECT_EQ(back[i].g, cloud[i].g) << path;
+    }
+    EXPECT_TRUE(std::isnan(back[5].z));
+    EXPECT_FALSE(loaded.points->is_dense);
+  };
+  for (const PCDEncoding encoding : {PCDEncoding::Ascii, PCDEncoding::Binary, PCDEncoding::BinaryCompressed}) {
+    saveCloud(folder / "cloud.pcd", fields, origin, orientation, encoding);
+    check(folder / "cloud.pcd", true);
+  }
+  saveCloud(folder / "cloud.ply", fields, origin, orientation);
+  check(folder / "cloud.ply", false);
+  EXPECT_EQ(folder.names().size(), 2u);
+}
+
+TEST(SaveCloud, RefusesWhatItCannotWrite) {
+  const TemporaryFolder folder;
+  pcl::PCLPointCloud2 empty;
+  const Eigen::Vector4f origin = Eigen::Vector4f::Zero();
+  EXPECT_THROW(saveCloud(folder / "a.pcd", empty, origin, Eigen::Quaternionf::Identity()), InputError);
+  EXPECT_THROW(saveCloud(folder / "a.xyz", empty, origin, Eigen::Quaternionf::Identity()), InputError);
+  EXPECT_THROW(checkCloudExtension("a.xyz"), UsageError);
+  EXPECT_NO_THROW(checkCloudExtension("a.PCD"));
+  EXPECT_TRUE(folder.names().empty());
 }
 
 }  // namespace

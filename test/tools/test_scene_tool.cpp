@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
+#include <pcl/common/io.h>
 #include <pcl/io/pcd_io.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <boost/filesystem.hpp>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "io/shape_input.h"
+#include "pcl/clouds.h"
 #include "shapes/table.h"
 #include "tools/tool_run.h"
 
@@ -25,13 +27,9 @@ using namespace pcl_symmetry::apps;
 class SceneTool : public ToolTest {
 protected:
   SceneTool() : ToolTest(toolPath("scene")) {
-    const test::Scan& scan = table_.scan;
-    pcl::PointCloud<pcl::PointXYZRGB> cloud(scan.width, scan.height);
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      cloud[i].getVector3fMap() = scan.pixels.col(static_cast<Eigen::Index>(i));
-      cloud[i].r = 200;
-    }
-    cloud.is_dense = false;
+    pcl::PointCloud<pcl::PointXYZRGB> cloud;
+    pcl::copyPointCloud(*test::pictureOf(table_.scan), cloud);
+    for (pcl::PointXYZRGB& point : cloud) point.r = 200;
     pcl::io::savePCDFileBinary(scene_, cloud);
   }
 
@@ -40,14 +38,10 @@ protected:
 };
 
 TEST_F(SceneTool, WritesWhatItFinds) {
-  const std::string report_file = folder_ / "objects.json", completed = folder_ / "completed.pcd",
-                    png = folder_ / "objects.png";
-  ASSERT_EQ(run(scene_ + " " + completed + " -max_points 1000 -json " + report_file + " -png " + png + " -html " +
-                (folder_ / "page.html")),
-            0)
-      << error_;
+  const std::string completed = folder_ / "completed.pcd", png = folder_ / "objects.png";
+  const nlohmann::json report =
+      reportOf(scene_ + " " + completed + " -max_points 1000 -png " + png + " -html " + (folder_ / "page.html"));
   EXPECT_EQ(output_.substr(0, output_.find('\n')), "1 supporting plane, 2 objects");
-  const nlohmann::json report = nlohmann::json::parse(contentOf(report_file));
   ASSERT_EQ(report["objects"].size(), 2u);
   EXPECT_EQ(report["viewpoint"]["from"], "rays");
   ASSERT_EQ(report["supports"].size(), 1u);
@@ -106,7 +100,7 @@ private:
 template <typename Holds>
 bool comesToHold(const std::string& file, const Holds& holds) {
   for (int i = 0; i < 1200; ++i) {
-    if (boost::filesystem::exists(file) && holds(contentOf(file))) return true;
+    if (std::filesystem::exists(file) && holds(contentOf(file))) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return false;
@@ -115,28 +109,23 @@ bool comesToHold(const std::string& file, const Holds& holds) {
 TEST_F(SceneTool, TellsWhatTouches) {
   // A second box on the first one, turned by none but off its middle.
   const test::Table stack({{0.0, 0.0, 0.0}, {-0.1, 0.33, 0.24}});
-  pcl::PointCloud<pcl::PointXYZ> cloud(stack.scan.width, stack.scan.height);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    cloud[i].getVector3fMap() = stack.scan.pixels.col(static_cast<Eigen::Index>(i));
-  const std::string file = folder_ / "stack.pcd", report_file = folder_ / "stack.json";
-  pcl::io::savePCDFileBinary(file, cloud);
-  ASSERT_EQ(run(file + " -ground 0,0,1,0 -no_frames -max_points 1000 -json " + report_file), 0) << error_;
-  const nlohmann::json report = nlohmann::json::parse(contentOf(report_file));
+  const std::string file = folder_ / "stack.pcd";
+  pcl::io::savePCDFileBinary(file, *test::pictureOf(stack.scan));
+  const nlohmann::json report = reportOf(file + " -ground 0,0,1,0 -no_frames -max_points 1000");
   EXPECT_EQ(report["supports"][0]["coefficients"], (std::vector<double>{0.0, 0.0, 1.0, 0.0}));
   for (const nlohmann::json& junction : report["junctions"]) {
     EXPECT_EQ(junction["joined"].get<bool>(), junction["objects"][0] == junction["objects"][1]);
     EXPECT_NE(output_.find(" explains "), std::string::npos);
   }
-  ASSERT_EQ(run(file + " -no_separation -no_frames -max_points 1000 -json " + report_file), 0) << error_;
-  const nlohmann::json together = nlohmann::json::parse(contentOf(report_file));
+  const nlohmann::json together = reportOf(file + " -no_separation -no_frames -max_points 1000");
   EXPECT_EQ(together["objects"].size(), 1u);
   EXPECT_TRUE(together["junctions"].empty());
 }
 
 TEST_F(SceneTool, WatchesAFolder) {
   const std::string watched = folder_ / "frames", output = folder_ / "lines", messages = folder_ / "messages";
-  boost::filesystem::create_directory(watched);
-  boost::filesystem::copy_file(scene_, watched + "/before.pcd");
+  std::filesystem::create_directory(watched);
+  std::filesystem::copy_file(scene_, watched + "/before.pcd");
   Watcher watcher(watched, output, messages);
   ASSERT_TRUE(comesToHold(messages, [](const std::string& text) { return text.find("Watching") != text.npos; }));
   const auto lines = [&](std::ptrdiff_t count) {
@@ -157,13 +146,11 @@ TEST_F(SceneTool, WatchesAFolder) {
   std::ofstream(watched + "/notes.txt") << "no cloud";
   std::ofstream(watched + "/.hidden.pcd") << "no cloud";
   ASSERT_TRUE(lines(2));
-  boost::filesystem::copy_file(scene_, watched + "/part");
-  boost::filesystem::rename(watched + "/part", watched + "/slow.pcd");  // in place of the first one
+  std::filesystem::copy_file(scene_, watched + "/part");
+  std::filesystem::rename(watched + "/part", watched + "/slow.pcd");  // in place of the first one
   ASSERT_TRUE(lines(3));
   EXPECT_EQ(watcher.stop(SIGTERM), 0);
-  std::istringstream text(contentOf(output));
-  std::vector<nlohmann::json> found;
-  for (std::string line; std::getline(text, line);) found.push_back(nlohmann::json::parse(line));
+  const std::vector<nlohmann::json> found = jsonLines(contentOf(output));
   ASSERT_EQ(found.size(), 3u);
   EXPECT_EQ(found[0]["file"], watched + "/slow.pcd");
   EXPECT_EQ(found[0]["objects"].size(), 2u);
@@ -180,22 +167,17 @@ TEST_F(SceneTool, EndsItsWatchOnASignalAndWithItsFolder) {
     ASSERT_TRUE(comesToHold(messages, [](const std::string& text) { return text.find("Watching") != text.npos; }));
     EXPECT_EQ(watcher.stop(signal), 0);
   }
-  EXPECT_EQ(run("-watch " + (folder_ / "none")), 1);
-  EXPECT_NE(error_.find("none: cannot be watched"), std::string::npos) << error_;
+  EXPECT_TRUE(fails("-watch " + (folder_ / "none"), 1, "none: cannot be watched"));
   EXPECT_EQ(run(scene_ + " -watch " + (folder_ / "")), 2);
-  EXPECT_EQ(run(""), 2);
-  EXPECT_NE(error_.find("missing argument 'input'"), std::string::npos) << error_;
+  EXPECT_TRUE(fails("", 2, "missing argument 'input'"));
 }
 
 TEST_F(SceneTool, RefusesWhatIsNoScene) {
   const std::string mesh = folder_.write("t.off", "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  EXPECT_EQ(run(mesh), 1);
-  EXPECT_NE(error_.find(mesh + ": is a mesh, must be a cloud as a sensor sees it"), std::string::npos) << error_;
-  EXPECT_EQ(run(scene_ + " -database " + (folder_ / "none.db")), 1);
-  EXPECT_NE(error_.find("none.db"), std::string::npos) << error_;
+  EXPECT_TRUE(fails(mesh, 1, mesh + ": is a mesh, must be a cloud as a sensor sees it"));
+  EXPECT_TRUE(fails(scene_ + " -database " + (folder_ / "none.db"), 1, "none.db"));
   EXPECT_EQ(run(scene_ + " -min_points 3"), 2);
-  EXPECT_EQ(run(scene_ + " -ground 0,0,1"), 2);
-  EXPECT_NE(error_.find("-ground = 0,0,1, must be four numbers A,B,C,D"), std::string::npos) << error_;
+  EXPECT_TRUE(fails(scene_ + " -ground 0,0,1", 2, "-ground = 0,0,1, must be four numbers A,B,C,D"));
   EXPECT_EQ(run(scene_ + " out.txt"), 2);
 }
 

@@ -7,30 +7,22 @@
 #include <set>
 #include <sstream>
 
-#include "tools/tool_run.h"
+#include "io/mesh_output.h"
 #include "pictures/raster_image.h"
-#include "io/face_labels.h"
 #include "shapes/meshes.h"
+#include "tools/models.h"
+#include "tools/tool_run.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 using nlohmann::json;
 
-std::string offOf(const test::Mesh& mesh) {
-  std::ostringstream off;
-  off << "OFF\n" << mesh.vertices.cols() << ' ' << mesh.polygons.size() << " 0\n" << mesh.vertices.transpose() << '\n';
-  for (const auto& polygon : mesh.polygons) {
-    off << polygon.size();
-    for (const int v : polygon) off << ' ' << v;
-    off << '\n';
-  }
-  return off.str();
-}
-
 class SegmentTool : public ToolTest {
 protected:
-  SegmentTool() : ToolTest(toolPath("segment")) { folder_.write("dumbbell.off", offOf(dumbbell_)); }
+  SegmentTool() : ToolTest(toolPath("segment")) {
+    folder_.write("dumbbell.off", offText(dumbbell_.vertices.cast<double>(), dumbbell_.polygons));
+  }
 
   const test::Mesh dumbbell_ = test::dumbbell();
   const std::string mesh_ = folder_ / "dumbbell.off", seg_ = folder_ / "out.seg", json_ = folder_ / "tree.json";

@@ -1,3 +1,4 @@
+/// Shapes as other programs write them: what they mean is read, what is left out is said, what is wrong is refused.
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
 #include <sys/stat.h>
@@ -5,9 +6,11 @@
 
 #include <array>
 #include <cstring>
+#include <thread>
 
 #include "io/shape_input.h"
-#include "tools/temporary_folder.h"
+#include "shapes/complaint.h"
+#include "shapes/temporary_folder.h"
 
 namespace {
 
@@ -24,35 +27,37 @@ std::string plainPCD(int points, const std::string& data) {
   return pcd("x y z", "4 4 4", "F F F", points, 1, points, data);
 }
 
-const char* const kPLYVertex = "property float x\nproperty float y\nproperty float z\n";
+const std::string kPLYVertex = "property float x\nproperty float y\nproperty float z\n";
+const std::string kSquare = "0 0 0\n2 0 0\n2 1 0\n0 1 0\n";
 
 std::string ply(const std::string& format, const std::string& elements, const std::string& body) {
   return "ply\nformat " + format + " 1.0\n" + elements + "end_header\n" + body;
 }
 
-/// \return the complaint, checked to be one line that names the file.
-std::string complaintOnReading(const std::string& path) {
-  testing::internal::CaptureStderr();
-  testing::internal::CaptureStdout();
-  std::string message;
-  try {
-    loadShape(path);
-  } catch (const InputError& error) {
-    message = error.what();
+class LoadShape : public testing::Test {
+protected:
+  Shape read(const std::string& name, const std::string& content) const {
+    return loadShape(folder_.write(name, content));
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout(), "") << path;
-  EXPECT_EQ(message.rfind(path + ": ", 0), 0u) << "'" << message << "' for " << path;
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  return message;
-}
-
-struct BadFile {
-  std::string name, content, complaint;
+  std::string complaint(const std::string& name, const std::string& content) const {
+    return complaintOnReading(folder_.write(name, content));
+  }
+  /// \return the complaint, checked to be one line that names the file.
+  static std::string complaintOnReading(const std::string& path) {
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    const std::string message = pcl_symmetry::test::complaintOf<InputError>([&] { loadShape(path); });
+    EXPECT_EQ(testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout(), "") << path;
+    EXPECT_EQ(message.rfind(path + ": ", 0), 0u) << "'" << message << "' for " << path;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  }
+  const TemporaryFolder folder_;
 };
 
-TEST(LoadShape, RefusesBadFilesWithOneLine) {
+TEST_F(LoadShape, RefusesBadFilesWithOneLine) {
   const std::string raw(12, '\1');
-  const std::vector<BadFile> files = {
+  const std::array<std::string, 3> files[] = {
       {"empty.pcd", "", "is empty"},
       {"headerless.pcd", "1 2 3\n4 5 6\n", "has no PCD header"},
       {"garbage.pcd", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "has no PCD header"},
@@ -78,23 +83,21 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"empty.ply", "", "is empty"},
       {"garbage.ply", "hello\n", "does not begin with ply"},
       {"cut.ply", "ply\nformat ascii 1.0\n", "ends before end_header"},
-      {"format.ply", ply("zip", std::string("element vertex 1\n") + kPLYVertex, "1 2 3\n"), "PLY format = zip"},
+      {"format.ply", ply("zip", "element vertex 1\n" + kPLYVertex, "1 2 3\n"), "PLY format = zip"},
       {"no_vertex.ply", ply("ascii", "element face 0\n", ""), "has no element vertex"},
       {"no_z.ply", ply("ascii", "element vertex 1\nproperty float x\nproperty float y\n", "1 2\n"),
        "vertex property z"},
-      {"two_billion.ply", ply("binary_little_endian", std::string("element vertex 2000000000\n") + kPLYVertex, raw),
+      {"two_billion.ply", ply("binary_little_endian", "element vertex 2000000000\n" + kPLYVertex, raw),
        "but only 12 bytes"},
-      {"twice.ply", ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "property float x\n", "1 2 3 4\n"),
+      {"twice.ply", ply("ascii", "element vertex 1\n" + kPLYVertex + "property float x\n", "1 2 3 4\n"),
        "property x of vertex stands twice"},
       {"two_elements.ply",
-       ply("ascii", std::string("element vertex 1\n") + kPLYVertex + "element vertex 1\n" + kPLYVertex,
-           "1 2 3\n4 5 6\n"),
+       ply("ascii", "element vertex 1\n" + kPLYVertex + "element vertex 1\n" + kPLYVertex, "1 2 3\n4 5 6\n"),
        "element vertex stands twice"},
-      {"cut_ascii.ply", ply("ascii", std::string("element vertex 2\n") + kPLYVertex, "1 2 3\n4.5555555 5\n"),
-       "is missing"},
+      {"cut_ascii.ply", ply("ascii", "element vertex 2\n" + kPLYVertex, "1 2 3\n4.5555555 5\n"), "is missing"},
       {"list.ply",
        ply("binary_little_endian",
-           std::string("element vertex 1\n") + kPLYVertex + "element face 1\nproperty list uint int vertex_indices\n",
+           "element vertex 1\n" + kPLYVertex + "element face 1\nproperty list uint int vertex_indices\n",
            raw + "\xff\xff\xff\xff" + raw),
        "a corner of face 0 = 16843009"},
       {"empty.off", "", "is empty"},
@@ -113,21 +116,19 @@ TEST(LoadShape, RefusesBadFilesWithOneLine) {
       {"cut.glb", std::string("glTF\2\0\0\0\xff\xff\0\0", 12), "cannot be read"},
       {"unknown.abc", "1 2 3\n", "unknown extension '.abc', must be .pcd"},
       {"none", "1 2 3\n", "unknown extension ''"}};
-  const TemporaryFolder folder;
-  for (const BadFile& file : files) {
-    const std::string message = complaintOnReading(folder.write(file.name, file.content));
-    EXPECT_NE(message.find(file.complaint), std::string::npos) << file.name << ": " << message;
+  for (const auto& [name, content, said] : files) {
+    const std::string message = complaint(name, content);
+    EXPECT_NE(message.find(said), std::string::npos) << name << ": " << message;
   }
 }
 
-TEST(LoadShape, RefusesWhatIsNoReadableFile) {
-  const TemporaryFolder folder;
-  EXPECT_NE(complaintOnReading(folder / "missing.pcd").find("no such file"), std::string::npos);
-  boost::filesystem::create_directory(folder / "directory.pcd");
-  EXPECT_NE(complaintOnReading(folder / "directory.pcd").find("is a directory"), std::string::npos);
+TEST_F(LoadShape, RefusesWhatIsNoReadableFile) {
+  EXPECT_NE(complaintOnReading(folder_ / "missing.pcd").find("no such file"), std::string::npos);
+  std::filesystem::create_directory(folder_ / "directory.pcd");
+  EXPECT_NE(complaintOnReading(folder_ / "directory.pcd").find("is a directory"), std::string::npos);
   if (geteuid() == 0) return;
-  chmod(folder.write("locked.pcd", "x").c_str(), 0);
-  EXPECT_NE(complaintOnReading(folder / "locked.pcd").find("cannot be opened"), std::string::npos);
+  chmod(folder_.write("locked.pcd", "x").c_str(), 0);
+  EXPECT_NE(complaintOnReading(folder_ / "locked.pcd").find("cannot be opened"), std::string::npos);
 }
 
 /// Binary glTF: 12 bytes of header, a chunk of JSON, a chunk of values.
@@ -147,21 +148,19 @@ std::string glb(const std::string& primitive, const std::string& values) {
          number(values.size()) + std::string("BIN\0", 4) + values;
 }
 
-TEST(LoadShape, ReadsMeshesOfEveryKind) {
-  const TemporaryFolder folder;
-  const std::string square = "0 0 0\n2 0 0\n2 1 0\n0 1 0\n";
-  folder.write("plain.off", "OFF\n4 2 0\n" + square + "3 0 1 2\n4 0 1 2 3\n");
-  folder.write("same_line.off", "OFF 4 2 0\n# comment\n" + square + "3 0 1 2 255 0 0\n4 0 1 2 3\n");
-  folder.write("glued.OFF", "OFF4 2 0\n" + square + "3 0 1 2\n4 0 1 2 3\n2 0 1\n"),
-      folder.write("color.off",
-                   "COFF\n4 2 0\n0 0 0 9 9 9 9\n2 0 0 9 9 9 9\n2 1 0 9 9 9 9\n0 1 0 9 9 9 9\n3 0 1 2\n4 0 1 2 3\n");
-  folder.write("text.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3\nf 1 2 3 4\n");
-  folder.write("text.ply", ply("ascii",
-                               std::string("element vertex 4\n") + kPLYVertex +
-                                   "element face 2\nproperty list uchar int vertex_indices\n",
-                               square + "3 0 1 2\n4 0 1 2 3\n"));
+TEST_F(LoadShape, ReadsMeshesOfEveryKind) {
+  folder_.write("plain.off", "OFF\n4 2 0\n" + kSquare + "3 0 1 2\n4 0 1 2 3\n");
+  folder_.write("same_line.off", "OFF 4 2 0\n# comment\n" + kSquare + "3 0 1 2 255 0 0\n4 0 1 2 3\n");
+  folder_.write("glued.OFF", "OFF4 2 0\n" + kSquare + "3 0 1 2\n4 0 1 2 3\n2 0 1\n"),
+      folder_.write("color.off",
+                    "COFF\n4 2 0\n0 0 0 9 9 9 9\n2 0 0 9 9 9 9\n2 1 0 9 9 9 9\n0 1 0 9 9 9 9\n3 0 1 2\n4 0 1 2 3\n");
+  folder_.write("text.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3\nf 1 2 3 4\n");
+  folder_.write(
+      "text.ply",
+      ply("ascii", "element vertex 4\n" + kPLYVertex + "element face 2\nproperty list uchar int vertex_indices\n",
+          kSquare + "3 0 1 2\n4 0 1 2 3\n"));
   for (const char* name : {"plain.off", "same_line.off", "glued.OFF", "color.off", "text.obj", "text.ply"}) {
-    const Shape shape = loadShape(folder / name);
+    const Shape shape = loadShape(folder_ / name);
     ASSERT_TRUE(shape.mesh) << name;
     EXPECT_EQ(shape.points->size(), 4u) << name;
     ASSERT_EQ(shape.mesh->polygons.size(), 2u) << name;
@@ -172,46 +171,41 @@ TEST(LoadShape, ReadsMeshesOfEveryKind) {
   }
 }
 
-TEST(LoadShape, JoinsTheRepeatedCornersOfSTL) {
-  const TemporaryFolder folder;
+TEST_F(LoadShape, JoinsTheRepeatedCornersOfSTL) {
   const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
     return "facet normal 0 0 1\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c + "\nendloop\nendfacet\n";
   };
-  folder.write("square.stl",
-               "solid s\n" + facet("0 0 0", "2 0 0", "2 1 0") + facet("0 0 0", "2 1 0", "0 1 0") + "endsolid s\n");
-  const Shape shape = loadShape(folder / "square.stl");
+  folder_.write("square.stl",
+                "solid s\n" + facet("0 0 0", "2 0 0", "2 1 0") + facet("0 0 0", "2 1 0", "0 1 0") + "endsolid s\n");
+  const Shape shape = loadShape(folder_ / "square.stl");
   EXPECT_EQ(shape.points->size(), 4u);
   EXPECT_EQ(shape.mesh->polygons.size(), 2u);
 }
 
-TEST(LoadShape, ReadsThePointsOfRangeGrids) {
-  const TemporaryFolder folder;
+TEST_F(LoadShape, ReadsThePointsOfRangeGrids) {
   const std::string info = "obj_info num_cols 3\nobj_info num_rows 1\n";
   const std::string grid = "element range_grid 3\nproperty list uchar int vertex_indices\n";
   const std::string text = ply("ascii", info + "element vertex 2\n" + kPLYVertex + grid, "1 2 3\n4 5 6\n1 0\n0\n1 1\n");
-  const Shape shape = loadShape(folder.write("grid.ply", text));
+  const Shape shape = read("grid.ply", text);
   ASSERT_EQ(shape.points->size(), 2u);
   EXPECT_EQ((*shape.points)[1].x, 4.0f);
 }
 
-TEST(LoadShape, ShiftsNothingWhereTheExtentIsNoNormalNumber) {
-  const TemporaryFolder folder;
+TEST_F(LoadShape, ShiftsNothingWhereTheExtentIsNoNormalNumber) {
   for (const std::string x : {"1e300", "0", "1"}) {
     const std::string points = x + " 0 0\n" + x + " 5e-324 0\n";
-    const Shape shape =
-        loadShape(folder.write("tiny.pcd", pcd("x y z", "8 8 8", "F F F", 2, 1, 2, "ascii\n" + points)));
+    const Shape shape = read("tiny.pcd", pcd("x y z", "8 8 8", "F F F", 2, 1, 2, "ascii\n" + points));
     EXPECT_TRUE(shape.shift.isZero(0.0)) << x;
     EXPECT_EQ(shape.points->size(), 2u);
   }
 }
 
-TEST(LoadShape, ReadsPointsOfColumnsAndOfFilesWithoutFaces) {
-  const TemporaryFolder folder;
-  folder.write("a.xyz", "# x y z red\n0 0 0 255\n\n2 1 0.5 0 0\n");
-  folder.write("a.obj", "# points\nv 0 0 0\n  v 2 1 0.5\n");
-  folder.write("a.off", "OFF\n2 0 0\n0 0 0\n2 1 0.5\n");
+TEST_F(LoadShape, ReadsPointsOfColumnsAndOfFilesWithoutFaces) {
+  folder_.write("a.xyz", "# x y z red\n0 0 0 255\n\n2 1 0.5 0 0\n");
+  folder_.write("a.obj", "# points\nv 0 0 0\n  v 2 1 0.5\n");
+  folder_.write("a.off", "OFF\n2 0 0\n0 0 0\n2 1 0.5\n");
   for (const char* name : {"a.xyz", "a.obj", "a.off"}) {
-    const Shape shape = loadShape(folder / name);
+    const Shape shape = loadShape(folder_ / name);
     EXPECT_FALSE(shape.mesh) << name;
     ASSERT_EQ(shape.points->size(), 2u) << name;
     EXPECT_EQ((*shape.points)[1].getVector3fMap(), Eigen::Vector3f(2, 1, 0.5f)) << name;
@@ -219,26 +213,24 @@ TEST(LoadShape, ReadsPointsOfColumnsAndOfFilesWithoutFaces) {
   }
 }
 
-TEST(LoadShape, ReadsBinaryGlTF) {
-  const TemporaryFolder folder;
+TEST_F(LoadShape, ReadsBinaryGlTF) {
   const float corners[9] = {0, 0, 0, 2, 0, 0, 2, 1, 0};
   const std::string values(reinterpret_cast<const char*>(corners), sizeof(corners));
-  const Shape mesh = loadShape(folder.write("mesh.glb", glb(R"({"attributes":{"POSITION":0},"mode":4})", values)));
+  const Shape mesh = loadShape(folder_.write("mesh.glb", glb(R"({"attributes":{"POSITION":0},"mode":4})", values)));
   ASSERT_TRUE(mesh.mesh);
   EXPECT_EQ(mesh.mesh->polygons.size(), 1u);
   EXPECT_EQ(mesh.points->at(2).getVector3fMap(), Eigen::Vector3f(2, 1, 5)) << "in the frame of the scene";
-  const Shape points = loadShape(folder.write("points.glb", glb(R"({"attributes":{"POSITION":0},"mode":0})", values)));
+  const Shape points = loadShape(folder_.write("points.glb", glb(R"({"attributes":{"POSITION":0},"mode":0})", values)));
   EXPECT_FALSE(points.mesh);
   ASSERT_EQ(points.points->size(), 3u);
   EXPECT_EQ(points.points->at(1).getVector3fMap(), Eigen::Vector3f(2, 0, 5));
-  const Shape fan = loadShape(folder.write("fan.glb", glb(R"({"attributes":{"POSITION":0},"mode":6})", values)));
+  const Shape fan = loadShape(folder_.write("fan.glb", glb(R"({"attributes":{"POSITION":0},"mode":6})", values)));
   ASSERT_TRUE(fan.mesh);
   EXPECT_EQ(fan.mesh->polygons.size(), 1u);
 }
 
 /// A scene is a tree, and counts are those of the file: nothing is read in circles or beyond the end.
-TEST(LoadShape, RefusesGlTFThatPromisesTooMuch) {
-  const TemporaryFolder folder;
+TEST_F(LoadShape, RefusesGlTFThatPromisesTooMuch) {
   const float corners[9] = {0, 0, 0, 2, 0, 0, 2, 1, 0};
   const std::string values(reinterpret_cast<const char*>(corners), sizeof(corners));
   const std::string triangle = R"({"attributes":{"POSITION":0},"mode":4})";
@@ -247,7 +239,7 @@ TEST(LoadShape, RefusesGlTFThatPromisesTooMuch) {
     std::string text = whole;
     EXPECT_NE(text.find(from), std::string::npos) << from;
     text.replace(text.find(from), from.size(), to + std::string(from.size() - to.size(), ' '));
-    return complaintOnReading(folder.write("a.glb", text));
+    return complaintOnReading(folder_.write("a.glb", text));
   };
   const std::vector<std::array<std::string, 3>> changes = {
       {R"("count":3)", R"("count":4)", "accessors[0]"},
@@ -260,24 +252,23 @@ TEST(LoadShape, RefusesGlTFThatPromisesTooMuch) {
   for (const auto& [from, to, said] : changes) EXPECT_NE(changed(from, to).find(said), std::string::npos) << from;
   std::string quantized = whole;
   quantized.replace(quantized.find(R"("scene":0)"), 9, R"("e":"KHR_mesh_quantization")");
-  EXPECT_NE(complaintOnReading(folder.write("a.glb", quantized)).find("is compressed by KHR_mesh_quantization"),
+  EXPECT_NE(complaintOnReading(folder_.write("a.glb", quantized)).find("is compressed by KHR_mesh_quantization"),
             std::string::npos);
 }
 
 /// Map coordinates of a square of one metre, which float cannot tell apart: its spacing there is half a metre.
-TEST(LoadShape, ShiftsCoordinatesThatFloatCannotHold) {
-  const TemporaryFolder folder;
+TEST_F(LoadShape, ShiftsCoordinatesThatFloatCannotHold) {
   const std::string a = "500000.25 5000000.125 100", b = "500001.25 5000000.125 100", c = "500001.25 5000001.125 100";
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
-  folder.write("a.off", "OFF\n3 1 0\n" + a + "\n" + b + "\n" + c + "\n3 0 1 2\n");
-  folder.write("a.obj", "v " + a + "\nv " + b + "\nv " + c + "\nf 1 2 3\n");
-  folder.write("a.xyz", a + "\n" + b + "\n" + c + "\n");
-  folder.write("a.pcd", pcd("x y z", "8 8 8", "F F F", 3, 1, 3, "ascii\n" + a + "\n" + b + "\n" + c + "\n"));
-  folder.write("a.ply",
-               ply("ascii", "element vertex 3\nproperty double x\nproperty double y\nproperty double z\n" + faces,
-                   a + "\n" + b + "\n" + c + "\n3 0 1 2\n"));
+  folder_.write("a.off", "OFF\n3 1 0\n" + a + "\n" + b + "\n" + c + "\n3 0 1 2\n");
+  folder_.write("a.obj", "v " + a + "\nv " + b + "\nv " + c + "\nf 1 2 3\n");
+  folder_.write("a.xyz", a + "\n" + b + "\n" + c + "\n");
+  folder_.write("a.pcd", pcd("x y z", "8 8 8", "F F F", 3, 1, 3, "ascii\n" + a + "\n" + b + "\n" + c + "\n"));
+  folder_.write("a.ply",
+                ply("ascii", "element vertex 3\nproperty double x\nproperty double y\nproperty double z\n" + faces,
+                    a + "\n" + b + "\n" + c + "\n3 0 1 2\n"));
   for (const char* name : {"a.off", "a.obj", "a.xyz", "a.pcd", "a.ply"}) {
-    const Shape shape = loadShape(folder / name);
+    const Shape shape = loadShape(folder_ / name);
     EXPECT_FALSE(shape.shift.isZero(0.0)) << name;
     ASSERT_EQ(shape.points->size(), 3u) << name;
     const Eigen::Vector3d expected[3] = {
@@ -295,8 +286,190 @@ TEST(LoadShape, ShiftsCoordinatesThatFloatCannotHold) {
     pcl::fromPCLPointCloud2(shape.mesh->cloud, vertices);
     EXPECT_EQ(vertices.at(2).getVector3fMap(), (*shape.points)[2].getVector3fMap()) << name;
   }
-  const Shape near = loadShape(folder.write("near.off", "OFF\n3 1 0\n7 7 7\n8 7 7\n8 8 7\n3 0 1 2\n"));
+  const Shape near = read("near.off", "OFF\n3 1 0\n7 7 7\n8 7 7\n8 8 7\n3 0 1 2\n");
   EXPECT_TRUE(near.shift.isZero(0.0)) << "float is precise enough";
+}
+
+template <typename Value>
+std::string bytesOf(const std::vector<Value>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
+}
+
+Eigen::MatrixXf pointsOf(const Shape& shape) {
+  return shape.points->getMatrixXfMap(3, 4, 0);
+}
+
+TEST_F(LoadShape, PLYListsOfAnyType) {
+  for (const std::string length : {"char", "uchar", "short", "ushort", "int", "uint", "int8", "uint32"})
+    for (const std::string index : {"char", "uchar", "short", "ushort", "int", "uint", "uint16"}) {
+      const Shape shape =
+          read("a.ply", ply("ascii",
+                            "element vertex 4\n" + kPLYVertex + "element face 2\nproperty uchar flags\nproperty list " +
+                                length + " " + index + " vertex_index\n",
+                            kSquare + "7 3 0 1 2\n7 4 0 1 2 3\n"));
+      ASSERT_TRUE(shape.mesh) << length << " " << index;
+      ASSERT_EQ(shape.mesh->polygons.size(), 2u);
+      EXPECT_EQ(shape.mesh->polygons[1].vertices, (pcl::Indices{0, 1, 2, 3})) << length << " " << index;
+      EXPECT_TRUE(shape.left_out.empty());
+    }
+  std::string body = bytesOf<float>({0, 0, 0, 2, 0, 0, 2, 1, 0});
+  body += bytesOf<std::uint16_t>({3}) + bytesOf<std::uint32_t>({2, 1, 0});
+  const std::string elements =
+      "element vertex 3\n" + kPLYVertex + "element face 1\nproperty list ushort uint vertex_indices\n";
+  EXPECT_EQ(read("b.ply", ply("binary_little_endian", elements, body)).mesh->polygons.at(0).vertices,
+            (pcl::Indices{2, 1, 0}));
+  std::string big;
+  for (std::size_t i = 0; i < body.size();) {
+    const std::size_t size = i == 36 ? 2 : 4;
+    std::string value = body.substr(i, size);
+    std::reverse(value.begin(), value.end());
+    big += value;
+    i += size;
+  }
+  EXPECT_EQ(read("c.ply", ply("binary_big_endian", elements, big)).mesh->polygons.at(0).vertices,
+            (pcl::Indices{2, 1, 0}));
+}
+
+TEST_F(LoadShape, PLYStripsOfTriangles) {
+  const Shape shape = read(
+      "a.ply",
+      ply("ascii", "element vertex 4\n" + kPLYVertex + "element tristrips 1\nproperty list int int vertex_indices\n",
+          kSquare + "8 0 1 3 2 -1 0 1 2\n"));
+  ASSERT_TRUE(shape.mesh);
+  ASSERT_EQ(shape.mesh->polygons.size(), 3u);
+  EXPECT_EQ(shape.mesh->polygons[0].vertices, (pcl::Indices{0, 1, 3}));
+  EXPECT_EQ(shape.mesh->polygons[1].vertices, (pcl::Indices{3, 1, 2})) << "the same side is in front";
+  EXPECT_EQ(shape.mesh->polygons[2].vertices, (pcl::Indices{0, 1, 2}));
+}
+
+TEST_F(LoadShape, PLYPropertiesOfAnyTypeAndOrder) {
+  std::string body;
+  for (int i = 0; i < 2; ++i) body += bytesOf<std::uint8_t>({9}) + bytesOf<float>({1.5f + static_cast<float>(i), 2, 3});
+  const Shape red =
+      read("a.ply", ply("binary_little_endian", "element vertex 2\nproperty uchar red\n" + kPLYVertex, body));
+  EXPECT_EQ(pointsOf(red).col(1), Eigen::Vector3f(2.5f, 2, 3));
+  const Shape colored = read(
+      "b.ply", ply("ascii",
+                   "element vertex 1\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty float "
+                   "z\nproperty float nx\nproperty float x\nproperty float y\n",
+                   "1 2 3 7 0.5 8 9\n"));
+  EXPECT_EQ(pointsOf(colored).col(0), Eigen::Vector3f(8, 9, 7));
+  EXPECT_EQ(colored.cloud.fields[0].name, "rgb");
+  EXPECT_EQ(colored.cloud.fields[2].name, "normal_x");
+  EXPECT_EQ(std::memcmp(colored.cloud.data.data(), "\3\2\1\0", 4), 0);
+  const Shape whole =
+      read("c.ply",
+           ply("ascii", "element vertex 2\nproperty int x\nproperty short y\nproperty uchar z\n", "-5 6 7\n1 2 3\n"));
+  EXPECT_EQ(pointsOf(whole).col(0), Eigen::Vector3f(-5, 6, 7));
+  const Shape lists = read("d.ply", ply("ascii",
+                                        "element vertex 2\nproperty list uchar int parts\n" + kPLYVertex +
+                                            "element edge 1\nproperty int a\n",
+                                        "2 0 0 1 2 3\n0 4 5 6\n7\n"));
+  EXPECT_EQ(pointsOf(lists).col(1), Eigen::Vector3f(4, 5, 6));
+  EXPECT_EQ(lists.left_out, (std::vector<std::string>{"list parts of the vertices", "1 of element edge"}));
+}
+
+TEST_F(LoadShape, PLYThatIsWrongIsRefusedWithTheReason) {
+  const std::string face =
+      "element vertex 4\n" + kPLYVertex + "element face 1\nproperty list uchar int vertex_indices\n";
+  for (const auto& [wrong, said] : {std::pair("3 0 1 4\n", "a corner of face 0 = 4, must be >= 0 and < 4"),
+                                    std::pair("3 0 1 -1\n", "a corner of face 0 = -1"),
+                                    std::pair("3 0 1 x\n", "vertex_indices of face 0 = x, must be a number"),
+                                    std::pair("-3 0 1 2\n", "length of list vertex_indices of face 0")})
+    EXPECT_NE(complaint("a.ply", ply("ascii", face, kSquare + wrong)).find(said), std::string::npos) << wrong;
+}
+
+TEST_F(LoadShape, PCDWithEmptyPaddingAndWholeCoordinates) {
+  const Shape empty =
+      read("a.pcd", pcd("x y z _ ring _", "4 4 4 1 1 1", "F F F U U U\nCOUNT 1 1 1 0 1 3", 2, 1, 2,
+                        "binary\n" + bytesOf<float>({1, 2, 3}) + "\7..." + bytesOf<float>({4, 5, 6}) + "\t..."));
+  EXPECT_EQ(pointsOf(empty).col(1), Eigen::Vector3f(4, 5, 6));
+  EXPECT_EQ(empty.cloud.fields.back().name, "ring");
+  EXPECT_EQ(empty.cloud.data.at(empty.cloud.point_step + empty.cloud.fields.back().offset), '\t');
+  const Shape whole = read("b.pcd", pcd("x y z", "2 4 1", "I I U", 2, 1, 2, "ascii\n-1 70000 3\n4 5 6\n"));
+  EXPECT_EQ(pointsOf(whole).col(0), Eigen::Vector3f(-1, 70000, 3));
+}
+
+TEST_F(LoadShape, OBJThatNamesTexturesAndNormalsItDoesNotHave) {
+  const std::string vertices = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n";
+  for (const std::string faces : {"f 1/1/1 2/2/2 3/3/3 4/4/4\n", "f 1//7 2//7 3//7 4//7\n", "f 1/5 2/6 3/7 4/8\n",
+                                  "f -4 -3 -2 -1\n", "f 1 2 \\\n 3 4\r\n"}) {
+    const Shape shape = read("a.obj", "mtllib no_such.mtl\no part\n" + vertices + "usemtl red\ns off\n" + faces);
+    ASSERT_TRUE(shape.mesh) << faces;
+    ASSERT_EQ(shape.mesh->polygons.size(), 1u);
+    EXPECT_EQ(shape.mesh->polygons[0].vertices, (pcl::Indices{0, 1, 2, 3})) << faces;
+    EXPECT_EQ(pointsOf(shape).col(2), Eigen::Vector3f(2, 1, 0));
+  }
+  EXPECT_NE(complaint("a.obj", vertices + "f 1 2 5\n").find("a corner of face 0 = 5, must be <= 4"), std::string::npos);
+  EXPECT_NE(complaint("a.obj", vertices + "f 1 2 0\n").find("a corner of face 0 = 0"), std::string::npos);
+}
+
+TEST_F(LoadShape, STLWithBytesBehindItAndWordsBeforeIt) {
+  const std::string triangle(bytesOf<float>({0, 0, 1, 0, 0, 0, 2, 0, 0, 2, 1, 0}) + std::string(2, '\0'));
+  const std::string binary = std::string(80, ' ') + std::string("\1\0\0\0", 4) + triangle;
+  for (const std::string behind : {"", "\n", "1234567"}) {
+    const Shape shape = read("a.stl", binary + behind);
+    ASSERT_TRUE(shape.mesh);
+    EXPECT_EQ(pointsOf(shape).col(2), Eigen::Vector3f(2, 1, 0)) << behind.size();
+  }
+  const std::string text =
+      "solid s\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 2 0 0\n   vertex 2 1 0\n  endloop\n "
+      "endfacet\nendsolid s\n";
+  std::string capitals = text;
+  for (char& c : capitals) c = static_cast<char>(std::toupper(c));
+  for (const std::string& content : {text, capitals, "\n\n" + text, "# made by hand\n" + text, "\t" + text}) {
+    const Shape shape = read("b.stl", content);
+    ASSERT_TRUE(shape.mesh) << content;
+    EXPECT_EQ(pointsOf(shape).col(2), Eigen::Vector3f(2, 1, 0)) << content;
+  }
+}
+
+TEST_F(LoadShape, ColumnsOfText) {
+  const std::pair<const char*, const char*> files[] = {
+      {"cloud_compare.xyz", "//X Y Z\n1 2 3\n4 5 6\n"},
+      {"words.xyz", "X Y Z R G B\n1 2 3 9 9 9\n4 5 6 9 9 9\n"},
+      {"commas.txt", "1,2,3\n4,5,6\n"},
+      {"mark.xyz",
+       "\xef\xbb\xbf"
+       "1 2 3\r\n4 5 6\r\n"},
+      {"count.pts", "2\n1 2 3 -2047 9 9 9\n4 5 6 -2047 9 9 9\n"},
+      {"semicolons.csv", "1;2;3\n4;5;6\n"},
+      {"decimal_commas.csv", "1,0;2,0;3,0\n4,0;5,0;6,0\n"},
+      {"tabs.asc", "1\t2\t3\n4\t5\t6\n"},
+      {"names.csv", "time,\"x\",\"y\",\"z\",id\n0.5,1,2,3,a\n0.6,4,5,6,b\n"},
+      {"paraview.csv", "\"Temp\",\"Points:0\",\"Points:1\",\"Points:2\"\n7,1,2,3\n7,4,5,6\n"},
+      {"last_cell_empty.csv", "id,x,y,z,comment\n7,1,2,3,\n8,4,5,6,\n"},
+      {"labels.csv", "point,1,2,3\npoint,4,5,6\n"},
+      {"title.txt", "Points of a box\n\n1 2 3\n4 5 6\n"},
+      {"sentence.xyz", "# made from x y z\n1 2 3\n4 5 6\n"},
+      {"spaced.csv", " x , y , z \n 1 , 2 , 3 ,\n 4 , 5 , 6 ,\n"}};
+  for (const auto& [name, content] : files) {
+    const Shape shape = read(name, content);
+    ASSERT_EQ(shape.points->size(), 2u) << name;
+    EXPECT_EQ(pointsOf(shape).col(0), Eigen::Vector3f(1, 2, 3)) << name;
+    EXPECT_EQ(pointsOf(shape).col(1), Eigen::Vector3f(4, 5, 6)) << name;
+    const bool has_more = std::string(content).find('9') != std::string::npos || std::string(name) == "names.csv";
+    EXPECT_TRUE(!has_more || shape.left_out.size() == 1) << name;
+  }
+}
+
+TEST_F(LoadShape, ColumnsThatAreWrongAreRefusedWithTheLine) {
+  EXPECT_NE(complaint("a.csv", "x,y,z\n1,2,3\n1,b,3\n").find("line 3 has y = b, must be a number"), std::string::npos);
+  EXPECT_NE(complaint("a.csv", "1,2,3\n1,2\n").find("line 2 has 2 columns, must have at least 3"), std::string::npos);
+  EXPECT_NE(complaint("a.xyz", "1 2\n").find("line 1 = 1 2, must hold three numbers"), std::string::npos);
+  EXPECT_NE(complaint("a.pts", "3\n1 2 3\n").find("holds 1 points, its first line says 3"), std::string::npos);
+  EXPECT_NE(complaint("a.csv", "1,,3\n1,2,3\n").find("line 1"), std::string::npos);
+  EXPECT_NE(complaint("a.txt", "Dear reader,\nhello\n").find("has no points"), std::string::npos);
+}
+
+TEST_F(LoadShape, Pipes) {
+  for (const std::string name : {"pipe.xyz", "pipe"}) {  // the second as <(...) of a shell
+    ASSERT_EQ(::mkfifo((folder_ / name).c_str(), 0600), 0);
+    std::thread writer([&] { std::ofstream(folder_ / name) << "1 2 3\n4 5 6\n"; });
+    const Shape shape = loadShape(folder_ / name);
+    writer.join();
+    EXPECT_EQ(shape.points->size(), 2u) << name;
+  }
 }
 
 }  // namespace

@@ -7,7 +7,8 @@
 #include "bop/isaac_axes.h"
 #include "bop/models_info.h"
 #include "core/base/constants.h"
-#include "tools/temporary_folder.h"
+#include "shapes/complaint.h"
+#include "shapes/temporary_folder.h"
 
 namespace {
 
@@ -62,13 +63,8 @@ TEST(ModelsInfo, OfDopeIsAFileOfOneModel) {
 
 TEST(ModelsInfo, RefusesWhatIsNoMotion) {
   const TemporaryFolder folder;
-  const auto messageOf = [&](const std::string& text) -> std::string {
-    try {
-      readModelsInfo(folder.write("bad.json", text));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+  const auto messageOf = [&](const std::string& text) {
+    return test::complaintOf<InputError>([&] { readModelsInfo(folder.write("bad.json", text)); });
   };
   const std::pair<const char*, const char*> wrong[] = {
       {"[1]", "bad.json: must be a JSON object"},

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pictures/raster_image.h"
-#include "tools/lathe_mesh.h"
+#include "tools/models.h"
 #include "tools/tool_run.h"
 
 namespace {
@@ -15,12 +15,11 @@ class ViewpointTool : public ToolTest {
 protected:
   ViewpointTool() : ToolTest(toolPath("viewpoint")) {}
 
-  const std::string mesh_ = folder_.write("box.off", boxOFF("1.4"));
+  const std::string mesh_ = folder_.write("box.off", boxOFF(1.4));
 };
 
 TEST_F(ViewpointTool, LooksAtABoxFromACornerAndWorstAlongItsPlanes) {
-  ASSERT_EQ(run(mesh_ + " -quiet -json " + (folder_ / "a.json")), 0) << error_;
-  const nlohmann::json answer = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+  const nlohmann::json answer = reportOf(mesh_ + " -quiet");
   const auto best = answer["best"]["direction"].get<std::vector<double>>();
   const auto worst = answer["worst"]["direction"].get<std::vector<double>>();
   double largest = 0.0;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -81,11 +82,10 @@ TEST_F(MapsOfVolumes, AreOfPlanesAxesAndCentersAndSeenAtAScale) {
   const std::string path = folder_.write("a.mha", metaImage(bytesOf(body())));
   for (const std::string flags :
        {"-method exact", "-method rotational", "-method voting", "-of axes -fold 2", "-of centers", "-scale 0.4"}) {
-    ASSERT_EQ(run(path + " -quiet -grid 16 -json " + (folder_ / "a.json") + " " + flags), 0) << error_;
-    const nlohmann::json json = nlohmann::json::parse(contentOf(folder_ / "a.json"));
+    const nlohmann::json report = reportOf(path + " -quiet -grid 16 " + flags);
     // No center lies at the border, where the values of the map are read.
-    EXPECT_GT(flags == "-of centers" ? json["centers"][0]["symmetry"] : json["greatest"], 0.6) << flags;
-    EXPECT_GT(json["num_points"], 500) << "the border of the body";
+    EXPECT_GT(flags == "-of centers" ? report["centers"][0]["symmetry"] : report["greatest"], 0.6) << flags;
+    EXPECT_GT(report["num_points"], 500) << "the border of the body";
   }
 }
 
@@ -94,14 +94,7 @@ protected:
   Volumes() : ToolTest(toolPath("planes")) {}
 
   nlohmann::json planesOf(const std::string& path, const std::string& flags = "") {
-    EXPECT_EQ(run(path + " -quiet " + flags + " -json " + (folder_ / "out.json")), 0) << error_;
-    return nlohmann::json::parse(contentOf(folder_ / "out.json"))["planes"];
-  }
-
-  std::string failureOf(const std::string& path) {
-    EXPECT_EQ(run(path + " -quiet"), 1) << path;
-    EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
-    return error_;
+    return reportOf(path + " -quiet " + flags)["planes"];
   }
 };
 
@@ -138,21 +131,21 @@ TEST_F(Volumes, AreDrawnAsSlicesAndTheirSurfaceIsAMesh) {
 }
 
 TEST_F(Volumes, ThatAreBadGetASentence) {
-  const std::vector<float> values = body();
-  const std::string data = bytesOf(values);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_NE(failureOf(folder_.write("cut.nii", nifti(data).substr(0, 90'000))).find("cut off"), std::string::npos);
-  EXPECT_NE(failureOf(folder_.write("cut.nrrd", nrrd(data).substr(0, 90'000))).find("cut.nrrd"), std::string::npos);
-  EXPECT_NE(failureOf(folder_.write("cut.mha", metaImage(data).substr(0, 90'000))).find("cut.mha"), std::string::npos);
-  EXPECT_NE(failureOf(folder_.write("text.nii.gz", "no volume")).find("text.nii.gz"), std::string::npos);
-  EXPECT_NE(failureOf(folder_.write("text.vti", "<VTKFile")).find("text.vti"), std::string::npos);
-  EXPECT_NE(failureOf(folder_.write("zero.mha", metaImage(bytesOf(std::vector<float>(values.size()))))).find("equal"),
-            std::string::npos);
-  EXPECT_NE(
-      failureOf(folder_.write("nan.mha", metaImage(bytesOf(std::vector<float>(values.size(), nan))))).find("finite"),
-      std::string::npos);
-  EXPECT_NE(failureOf(folder_.write("one.mha", metaImage(data, "44 1920 1"))).find("slices"), std::string::npos);
-  EXPECT_NE(failureOf(folder_ / "missing.nii").find("missing.nii"), std::string::npos);
+  const std::string data = bytesOf(body());
+  const std::vector<float> zero(body().size()), nan(body().size(), std::numeric_limits<float>::quiet_NaN());
+  const std::array<std::string, 3> files[] = {{"cut.nii", nifti(data).substr(0, 90'000), "cut off"},
+                                              {"cut.nrrd", nrrd(data).substr(0, 90'000), "cut.nrrd"},
+                                              {"cut.mha", metaImage(data).substr(0, 90'000), "cut.mha"},
+                                              {"text.nii.gz", "no volume", "text.nii.gz"},
+                                              {"text.vti", "<VTKFile", "text.vti"},
+                                              {"zero.mha", metaImage(bytesOf(zero)), "equal"},
+                                              {"nan.mha", metaImage(bytesOf(nan)), "finite"},
+                                              {"one.mha", metaImage(data, "44 1920 1"), "slices"}};
+  for (const auto& [name, content, said] : files) {
+    EXPECT_TRUE(fails(folder_.write(name, content) + " -quiet", 1, said));
+    EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
+  }
+  EXPECT_TRUE(fails((folder_ / "missing.nii") + " -quiet", 1, "missing.nii"));
   EXPECT_EQ(run(folder_.write("a.mha", metaImage(data)) + " -levels 5,3"), 2);
 }
 

@@ -5,14 +5,25 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
-#include "tools/temporary_folder.h"
+#include "shapes/temporary_folder.h"
 
 /// \return the path of a tool.
 /// \param name without the common beginning, e.g. "planes".
 inline std::string toolPath(const std::string& name) {
   return std::string(TOOLS_FOLDER) + "/pcl_symmetry_" + name;
+}
+
+/// \return the lines of a text, each of which is JSON.
+inline std::vector<nlohmann::json> jsonLines(const std::string& text) {
+  std::vector<nlohmann::json> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(nlohmann::json::parse(line));
+  return lines;
 }
 
 class ToolTest : public testing::Test {
@@ -26,6 +37,19 @@ protected:
     output_ = contentOf(folder_ / "stdout");
     error_ = contentOf(folder_ / "stderr");
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  /// Runs a tool that must not fail. \return what it reports.
+  nlohmann::json reportOf(const std::string& arguments) {
+    EXPECT_EQ(run(arguments + " -json " + (folder_ / "report.json")), 0) << error_;
+    return nlohmann::json::parse(contentOf(folder_ / "report.json"));
+  }
+
+  /// \return whether the tool ends with this exit code and these words among its errors.
+  testing::AssertionResult fails(const std::string& arguments, int code, const std::string& words) {
+    const int ended = run(arguments);
+    if (ended == code && error_.find(words) != std::string::npos) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << arguments << ": exit code " << ended << ", " << error_;
   }
 
   const TemporaryFolder folder_;

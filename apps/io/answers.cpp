@@ -1,10 +1,44 @@
-#include "io/turn_values.h"
+#include "io/answers.h"
 
 #include "io/exact_coordinates.h"
 #include "io/formatted.h"
 #include "io/json_values.h"
 
 namespace pcl_symmetry::apps {
+
+const char* toString(PlaneKind kind) {
+  switch (kind) {
+    case PlaneKind::Symmetry:
+      return "symmetry";
+    case PlaneKind::Possible:
+      return "possible";
+    case PlaneKind::Local:
+      return "local";
+    case PlaneKind::Approximate:
+      break;
+  }
+  return "approximate";
+}
+
+const char* toString(ViewpointSource source) {
+  switch (source) {
+    case ViewpointSource::Given:
+      return "given";
+    case ViewpointSource::Rays:
+      return "rays";
+    case ViewpointSource::Stored:
+      return "stored";
+    case ViewpointSource::Inferred:
+      return "inferred";
+    case ViewpointSource::None:
+      break;
+  }
+  return "none";
+}
+
+std::string counted(std::size_t number, const std::string& one, const std::string& many) {
+  return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
+}
 
 nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Vector3d& shift) {
   nlohmann::json json = nlohmann::json::array();
