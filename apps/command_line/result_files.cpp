@@ -70,7 +70,7 @@ void ResultFiles::Sink::open(const std::string& path, const std::string& header,
     // Line by line, because the file may be larger than what the tool needs besides.
     writeAtomically(path, [&](const std::string& temporary) {
       file_.open(temporary, std::ios::binary | std::ios::trunc);
-      add(header);
+      file_ << header;
       forWholeLines(path, [&](const std::string& line) {
         if (keeps(line)) file_ << line << '\n';
       });
@@ -78,17 +78,26 @@ void ResultFiles::Sink::open(const std::string& path, const std::string& header,
       if (!file_) fail();
     });
     file_.open(path, std::ios::binary | std::ios::app);
+    size_ = boost::filesystem::file_size(path);
   } else {
     file_.open(path, std::ios::binary | std::ios::trunc);
-    add(header);
   }
   if (!file_) fail();
+  if (!resume) add(header);
 }
 
 void ResultFiles::Sink::add(const std::string& text) {
   if (isStandardStream(path_)) return writeStandardOutput(text);
   file_ << text << std::flush;
-  if (!file_) fail();
+  if (!file_) {
+    const int reason = errno;
+    boost::system::error_code ignored;  // a device has no size
+    boost::filesystem::resize_file(path_, size_, ignored);
+    if (size_ == 0 && !ignored) boost::filesystem::remove(path_, ignored);
+    errno = reason;
+    fail();
+  }
+  size_ += text.size();
 }
 
 void ResultFiles::Sink::fail() const {

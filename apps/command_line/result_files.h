@@ -42,6 +42,7 @@ private:
 
     std::string path_;
     std::ofstream file_;
+    std::uintmax_t size_ = 0;  // bytes of the file that are whole lines
   };
 
   std::set<std::string> kept_;
