@@ -45,7 +45,7 @@ struct AlignOptions {
   std::string input;
   std::optional<std::string> output, target, html_path, png_path, landmarks;
   std::string symmetrise = "none";
-  bool complete = false, as_published = false;
+  bool complete = false, as_published = false, cut = false;
   CommonOptions common;
 };
 
@@ -68,6 +68,9 @@ CommandLine commandLine(AlignOptions& options) {
           "sides, or the side that the normal of the plane points away from (left) or to (right). A mesh keeps its "
           "faces and is written as .ply. The field asymmetry of a point tells how far the shape is outside of the "
           "reflection of its other side there, along the normal; -html and -png show it")
+      .flag("cut", options.cut,
+            "with -symmetrise and a mesh: cut it at the plane, and write one side (of mean the left one) and its "
+            "reflection, whose faces match exactly")
       .text("landmarks", "FILE", options.landmarks,
             "with -symmetrise: lines of six numbers, a landmark and its counterpart, or of three, one of the midline; "
             "their asymmetry is reported")
@@ -196,7 +199,8 @@ nlohmann::json landmarksJson(const Landmarks& landmarks, const ReflectionPlane& 
 struct Symmetrized {
   pcl::PCLPointCloud2 fields;  ///< of a cloud
   std::optional<pcl::PolygonMesh> mesh;
-  std::vector<float> asymmetry;  ///< of each point of the input
+  std::vector<float> asymmetry;       ///< of each point of the input
+  std::vector<float> mesh_asymmetry;  ///< of each vertex of the mesh
   nlohmann::json json;
   std::string text;
 };
@@ -220,7 +224,9 @@ Symmetrized symmetrized(const Console& console, const InputShape& input, const A
   if (input.shape.mesh) {
     const SymmetrizedMesh shape = symmetrize(*input.shape.mesh, plane, half, common.threads);
     report(shape);
-    result.mesh = shape.mesh;
+    result.mesh_asymmetry = shape.asymmetry;
+    result.mesh = options.cut ? mirroredHalf(shape.mesh, plane, half != SymmetrizedHalf::Right, &result.mesh_asymmetry)
+                              : shape.mesh;
     result.json["deviation"] = shape.deviation;
   } else {
     const SymmetrizedCloud<pcl::PointXYZ> shape = symmetrize(*input.points, plane, half, common.threads);
@@ -446,7 +452,7 @@ void analyse(const AlignOptions& options, FileJob& job) {
   if (shape && shape->mesh) {
     const Eigen::Isometry3d T_output_shifted = motion.transform * Eigen::Translation3d(input.shift());
     if (options.output)
-      saveMesh(job.output(*options.output), *shape->mesh, T_output_shifted, "asymmetry", shape->asymmetry);
+      saveMesh(job.output(*options.output), *shape->mesh, T_output_shifted, "asymmetry", shape->mesh_asymmetry);
     return;
   }
   pcl::PCLPointCloud2 fields = shape ? std::move(shape->fields) : input.fields();
@@ -461,6 +467,7 @@ int run(int argc, char** argv) {
   if (options.output) checkCloudExtension(*options.output);
   if (options.complete && options.symmetrise != "none")
     throw UsageError("-complete and -symmetrise exclude each other");
+  if (options.cut && options.symmetrise == "none") throw UsageError("-cut needs -symmetrise");
   if (options.landmarks && options.symmetrise == "none") throw UsageError("-landmarks needs -symmetrise");
   options.batch.inputs = {options.input};
   std::vector<std::string> columns{"converged"};

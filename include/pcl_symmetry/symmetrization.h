@@ -68,6 +68,11 @@ struct SymmetrizedMesh {
 SymmetrizedMesh symmetrize(const pcl::PolygonMesh& mesh, const ReflectionPlane& plane,
                            SymmetrizedHalf half = SymmetrizedHalf::Mean, int num_threads = 0);
 
+/// One side of a mesh, cut at the plane, and its reflection, see the core's function of this name. Vertices have the
+/// fields of their sources; where the mesh has values of its vertices, theirs are \p values.
+pcl::PolygonMesh mirroredHalf(const pcl::PolygonMesh& mesh, const ReflectionPlane& plane, bool left = true,
+                              std::vector<float>* values = nullptr);
+
 /// The counterpart of each point of a cloud: the point closest to its reflection.
 /// \param max_distance of a counterpart from the reflection, input units, >= 0; 0 = 1 % of the diameter.
 /// \return for each point that has one, its index, that of the counterpart, and the squared distance of the counterpart

@@ -184,6 +184,8 @@ TEST_F(AlignTool, SymmetrisesAMeshAndACloud) {
   EXPECT_EQ(written.mesh->polygons.size(), 6u);
   EXPECT_TRUE(std::isfinite(fieldOf<float>(written.cloud, "asymmetry", 3)));
   EXPECT_NE(output_.find("landmarks: object asymmetry"), std::string::npos);
+  ASSERT_EQ(run(mesh + " " + (folder_ / "c.ply") + " -symmetrise mean -cut"), 0) << error_;
+  EXPECT_EQ(loadShape(folder_ / "c.ply").mesh->polygons.size(), 28u) << "two triangles of an end, twelve of four sides";
   EXPECT_TRUE(fails(mesh + " " + (folder_ / "s.pcd") + " -symmetrise mean", 2, ".ply"));
   const std::string bad = folder_.write("bad.txt", "1 2 3\n1 2\n");
   EXPECT_TRUE(fails(mesh + " -symmetrise mean -landmarks " + bad, 1, "bad.txt: line 2"));

@@ -29,7 +29,7 @@ struct SymmetrizedShape {
   double mean_asymmetry = 0.0;      ///< mean of the absolute values, of a mesh by area
   double greatest_asymmetry = 0.0;  ///< greatest absolute value
   /// Greatest distance of a vertex of the result, reflected, from the result, input units. Triangles of both sides that
-  /// do not match leave that of their chords from the curved surface; 0 for a cloud.
+  /// do not match leave that of their chords from the curved surface, see mirroredHalf(); 0 for a cloud.
   double deviation = 0.0;
 };
 
@@ -41,6 +41,19 @@ struct SymmetrizedShape {
 /// \throws std::invalid_argument for an index that is no vertex, and a mesh without area.
 SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles,
                                  const ReflectionPlane& plane, SymmetrizedHalf half, int num_threads = 0);
+
+/// A mesh whose triangles a plane maps onto each other.
+struct MirroredMesh {
+  Points vertices;  ///< 3 x M, input frame
+  std::vector<Eigen::Vector3i> triangles;
+  std::vector<int> sources;  ///< M; the given vertex that each is, or is the reflection of; at the cut one beside it
+};
+
+/// One side of a mesh, cut at the plane, and its reflection. Of a symmetrized mesh the same shape with triangles that
+/// match: it is its own reflection but for the rounding of float.
+/// \param left the side that the normal of the plane points away from.
+MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles,
+                          const ReflectionPlane& plane, bool left = true);
 
 /// Symmetrizes a cloud: points move to the mean of the surface at them and of the reflection of the other side there.
 /// The signs of its asymmetry take normals to point away from the center of mass.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <map>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -26,6 +26,7 @@ struct SymmetrizingRules {
   float at_border = 1e-5f;   // radii
   int judged = 5000;         // vertices that the deviation is measured at
   float beside = 2.0f;       // spacings beside a sample of a cloud, beyond which nothing is there
+  double on_plane = 1e-6;    // of the greatest distance from the plane: closer vertices lie on it
   double pair_share = 0.01;  // of the diameter, greatest distance of a counterpart by default
 };
 constexpr SymmetrizingRules kSymmetrizing;
@@ -178,6 +179,56 @@ SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Ei
           std::max(result.deviation, radius * (reflected(moved.col(i), normal) - other.points.col(i)).norm());
     if (moves[i]) result.points.col(i) = (origin + radius * moved.col(i).cast<double>()).cast<float>();
   }
+  return result;
+}
+
+MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles,
+                          const ReflectionPlane& plane, bool left) {
+  const std::vector<Eigen::Vector3i> finite = finiteTriangles(vertices, triangles);
+  std::vector<double> heights(vertices.cols());  // into the side that is kept
+  double greatest = 0.0;
+  for (const Eigen::Vector3i& t : finite)
+    for (const int i : t) {
+      heights[i] = (left ? -1.0 : 1.0) * plane.signedDistance(vertices.col(i).cast<double>());
+      greatest = std::max(greatest, std::abs(heights[i]));
+    }
+  for (double& height : heights)
+    if (std::abs(height) < kSymmetrizing.on_plane * greatest) height = 0.0;
+
+  MirroredMesh result;
+  std::vector<Eigen::Vector3d> points;
+  std::vector<int> reflections;
+  std::map<std::pair<int, int>, int> known;  // vertices that stay: a, a; cuts of an edge: a, b
+  const auto vertex = [&](int a, int b) {
+    if (a > b) std::swap(a, b);
+    const auto [entry, is_new] = known.try_emplace({a, b}, static_cast<int>(points.size()));
+    if (!is_new) return entry->second;
+    const double share = a == b ? 0.0 : heights[a] / (heights[a] - heights[b]);
+    const Eigen::Vector3d x = (1.0 - share) * vertices.col(a).cast<double>() + share * vertices.col(b).cast<double>();
+    const bool is_shared = a != b || heights[a] == 0.0;
+    points.push_back(is_shared ? Eigen::Vector3d(0.5 * (x + plane.reflect(x))) : x);
+    if (!is_shared) points.push_back(plane.reflect(x));
+    reflections.push_back(static_cast<int>(points.size()) - 1);
+    reflections.resize(points.size(), entry->second);
+    result.sources.resize(points.size(), share > 0.5 ? b : a);
+    return entry->second;
+  };
+  for (const Eigen::Vector3i& t : finite) {
+    if (std::max({heights[t[0]], heights[t[1]], heights[t[2]]}) <= 0.0) continue;
+    std::vector<int> corners;  // of the part that is kept
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      if (heights[a] >= 0.0) corners.push_back(vertex(a, a));
+      if (heights[a] * heights[b] < 0.0) corners.push_back(vertex(a, b));
+    }
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      const int a = corners[0], b = corners[k - 1], c = corners[k];
+      result.triangles.emplace_back(a, b, c);
+      result.triangles.emplace_back(reflections[a], reflections[c], reflections[b]);
+    }
+  }
+  result.vertices.resize(3, points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) result.vertices.col(i) = points[i].cast<float>();
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/base/constants.h"
 #include "core/geometry/mesh_sampling.h"
+#include "core/geometry/open_edges.h"
 #include "core/geometry/triangle_tree.h"
 #include "shapes/meshes.h"
 
@@ -61,6 +62,24 @@ TEST(SymmetrizedMesh, IsItsOwnReflection) {
     const float expected = half == SymmetrizedHalf::Mean ? 1.025f : half == SymmetrizedHalf::Left ? 1.0f : 1.05f;
     EXPECT_NEAR(shape.points.row(0).maxCoeff(), expected, 1e-3);
     EXPECT_NEAR(shape.points.row(0).minCoeff(), -expected, 1e-3);
+  }
+}
+
+/// A ball whose triangles the plane x = 0.3 z does not map onto each other.
+TEST(MirroredHalf, IsItsOwnReflectionWhateverTheTriangles) {
+  const test::TriangleMesh mesh = bumped(100, 200, 0.0, 0.6);
+  const ReflectionPlane tilted(Eigen::Vector3d(1.0, 0.0, -0.3).normalized(), 0.0);
+  for (const bool left : {true, false}) {
+    const MirroredMesh half = mirroredHalf(mesh.vertices, mesh.triangles, tilted, left);
+    const TriangleTree tree(half.vertices, half.triangles);
+    for (Eigen::Index i = 0; i < half.vertices.cols(); ++i) {
+      const Eigen::Vector3d x = half.vertices.col(i).cast<double>();
+      EXPECT_LT(std::sqrt(tree.closestTo(tilted.reflect(x).cast<float>()).sq_distance), 1e-6);
+      const Eigen::Vector3d source = mesh.vertices.col(half.sources[i]).cast<double>();
+      EXPECT_LT(std::min((x - source).norm(), (tilted.reflect(x) - source).norm()), 0.04) << "an edge";
+    }
+    EXPECT_EQ(openEdges(half.vertices, half.triangles).size(), 2u * 200u)
+        << "the holes at the poles, or their reflections";
   }
 }
 
