@@ -8,6 +8,8 @@
 #include <sstream>
 #include <utility>
 
+#include "io/shape_output.h"
+
 namespace pcl_symmetry::apps {
 
 namespace po = boost::program_options;
@@ -187,7 +189,11 @@ CommandLine& CommandLine::common(CommonOptions& options, unsigned flags) {
   }
   if (flags & kSeed) number("seed", options.seed, "start of the random streams");
   if (flags & kThreads) number("threads", options.threads, Range::closed(0, 4096), "number of threads, 0 = all");
-  if (flags & kJson) text("json", "FILE", options.json_path, "write the result as JSON");
+  if (flags & kJson)
+    add("json", "FILE", "write the result as JSON", [&options](const std::string& path) {
+      checkTarget(path);
+      options.json_path = path;
+    });
   if (flags & kQuiet) flag("quiet", options.quiet, "print errors only");
   return *this;
 }

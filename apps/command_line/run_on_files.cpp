@@ -59,6 +59,9 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
              const std::vector<std::string>& columns, const std::function<void(FileJob&)>& analyse) {
   const bool text_wanted = numToStandardOutput(batch, common) == 0;
   if (batch.resume) throw UsageError("-resume needs several inputs: a folder, a pattern, a list or more arguments");
+  for (const std::optional<std::string>* output : batch.outputs)
+    if (*output) checkTarget(**output);
+  if (batch.csv_path) checkTarget(*batch.csv_path);
   const Console console(common.quiet);
   FileJob job(path, console, common.threads);
   const auto write = [&] {

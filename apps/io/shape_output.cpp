@@ -92,7 +92,14 @@ private:
   int descriptor_;
 };
 
-/// \throws InputError where no file can be made.
+/// Of a cloud to be written; standard output takes PCD.
+std::string lowerExtension(const std::string& path) {
+  if (isStandardStream(path)) return ".pcd";
+  return boost::algorithm::to_lower_copy(fs::path(path).extension().string());
+}
+
+}  // namespace
+
 void checkTarget(const std::string& path) {
   if (isStandardStream(path)) return;
   if (path.empty()) throw InputError("output name is empty");
@@ -101,14 +108,6 @@ void checkTarget(const std::string& path) {
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored)) failToWrite(path, "there is no directory " + folder.string());
 }
-
-/// Of a cloud to be written; standard output takes PCD.
-std::string lowerExtension(const std::string& path) {
-  if (isStandardStream(path)) return ".pcd";
-  return boost::algorithm::to_lower_copy(fs::path(path).extension().string());
-}
-
-}  // namespace
 
 void writeStream(const std::string& path, const std::function<void(std::ostream&)>& writer) {
   const auto write = [&](std::ostream& stream) {

@@ -8,10 +8,14 @@
 #include <iosfwd>
 #include <string>
 
-#include "io/cloud_writer.h"
 #include "command_line/tool_errors.h"
+#include "io/cloud_writer.h"
 
 namespace pcl_symmetry::apps {
+
+/// Lets a tool refuse before the long work.
+/// \throws InputError where no file of this name can be made: its folder is missing, or it is a folder.
+void checkTarget(const std::string& path);
 
 /// Everything that tools write goes this way: into a temporary file beside `path`, which is renamed when it is whole.
 /// It

@@ -229,6 +229,10 @@ TEST_F(PlanesTool, AnswersBadInputWithOneLineAndAnExitCode) {
     EXPECT_NE(error_.find(name), std::string::npos) << error_;
   }
   EXPECT_EQ(contentOf(folder_ / "never.json"), "");
+  for (const char* output : {" -json ", " -csv ", " -support "}) {
+    EXPECT_EQ(run(box_ + output + "missing/out.pcd"), 1);
+    EXPECT_EQ(output_, "") << "refused before the work";
+  }
   EXPECT_EQ(run(folder_ / "missing.pcd"), 1);
   EXPECT_TRUE(fails(box_ + " -min_confidence 2", 2, "min_confidence"));
   EXPECT_EQ(run(box_ + " -nonsense"), 2);
