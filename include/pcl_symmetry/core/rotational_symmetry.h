@@ -29,7 +29,7 @@ struct ObjectSymmetryOptions {
   /// Greatest share of the surface, in one or more pieces together, that a symmetry may map off the surface: a plug, a
   /// notch, a screw. At most an eighth of it may be off by more than ten tolerances: handles are parts, not features.
   /// In [0, 1].
-  double max_feature = 0.10;
+  double max_feature = 0.15;
   bool other_tolerances = false;  ///< finds the groups at half and twice the tolerance too
   double min_confidence = 0.5;    ///< least confidence of rotations that are called symmetries, in [0, 1]
   std::uint64_t seed = 1;         ///< of all random draws

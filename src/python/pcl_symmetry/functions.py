@@ -343,7 +343,7 @@ def rotations(
     *,
     tolerance: float = 0.01,
     absolute_tolerance: float = 0.0,
-    max_feature: float = 0.1,
+    max_feature: float = 0.15,
     seed: int = 1,
     threads: int = 0,
 ) -> Rotations:
