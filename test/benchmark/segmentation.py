@@ -140,7 +140,7 @@ def tool(*flags):
 METHODS = {"people": None, "one": lambda mesh, path, arguments: np.zeros(len(mesh.triangles), int), "k-means": k_means,
            "segment": segment, "points": segment_points,
            "concavity": tool("-evidence", "concavity"),
-           **{f"paper-{depth}": tool("-method", "splitting", "-depth", str(depth)) for depth in (1, 2, 3, 4)},
+           **{f"paper-{depth}": tool("-method", "splitting", "-as_published", "-depth", str(depth)) for depth in (1, 2, 3, 4)},
            "judged": lambda mesh, path, arguments: read_labels(f"{arguments.judge}/{pathlib.Path(path).stem}.seg", mesh)}  # fmt: skip
 
 
