@@ -8,7 +8,6 @@
 
 #include "core/base/constants.h"
 #include "core/geometry/mesh_sampling.h"
-#include "core/geometry/open_edges.h"
 #include "core/geometry/triangle_tree.h"
 #include "shapes/meshes.h"
 
