@@ -42,6 +42,7 @@ bool areOne(const SymmetryPlane& a, const SymmetryPlane& b, const BoundingBall& 
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
   constexpr double kSameAsFlat = 0.02;  // radians; a reflection across the plane of a flat shape is uninformative
+  constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
   std::vector<SymmetryPlane> kept;
   std::optional<SymmetryPlane> dropped;
   for (SymmetryPlane& plane : found.planes) {
@@ -61,7 +62,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
     return a.kind != b.kind ? a.kind < b.kind : a.kind < PlaneKind::Approximate && a.confidence > b.confidence;
   });
   found.planes = std::move(kept);
-  if (found.best) {
+  if (found.best && found.best->share >= kNearlySymmetric) {
     refine(mesh, *found.best, found.tolerance, options);
     if (found.best->kind != PlaneKind::Approximate) {
       found.planes.push_back(*found.best);
