@@ -100,7 +100,8 @@ TEST_F(AlignTool, KeepsCoordinatesBeyondFloatPrecision) {
   const nlohmann::json report = reportOf(far + " " + (folder_ / "out.pcd"));
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(report["center"][k].get<double>(), center[k], 0.01);
   EXPECT_LT((transformOf(report) * center).norm(), 0.02) << "of the input frame";
-  for (const pcl::PointXYZ& point : *loadShape(folder_ / "out.pcd").points)
+  const Shape turned = loadShape(folder_ / "out.pcd");
+  for (const pcl::PointXYZ& point : *turned.points)
     ASSERT_LT(point.getVector3fMap().norm(), 0.75f) << "half of the diagonal is 0.71";
 }
 

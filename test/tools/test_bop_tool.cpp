@@ -187,35 +187,41 @@ TEST_F(BopTool, AgreesWithWhatItWroteInEveryFormat) {
   }
 }
 
-/// A cube of 24 vertices.
-/// \param more what a vertex has besides its position, of its side, and u and v of 0 or 1 there.
+/// A cube whose sides have vertices of their own.
+/// \param size squares along an edge.
+/// \param more what a vertex has besides its position, of its side, and u and v from 0 to 1 there.
 template <typename More>
-std::string cubePLY(const std::string& comment, const std::string& properties, const More& more) {
+std::string cubePLY(const std::string& comment, const std::string& properties, int size, const More& more) {
   std::ostringstream vertices, faces;
+  int num_vertices = 0;
   for (int side = 0; side < 6; ++side) {
     const Eigen::Vector3d normal = (side % 2 == 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(side / 2);
     const Eigen::Vector3d a = Eigen::Vector3d::Unit((side / 2 + 1) % 3), b = normal.cross(a);
-    for (const auto& [u, v] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)})
-      vertices << (normal + (2.0 * u - 1.0) * a + (2.0 * v - 1.0) * b).transpose() << ' ' << more(side, u, v) << '\n';
-    faces << 4;
-    for (int k = 0; k < 4; ++k) faces << ' ' << 4 * side + k;
-    faces << '\n';
+    for (int i = 0; i <= size; ++i)
+      for (int k = 0; k <= size; ++k, ++num_vertices) {
+        const double u = double(i) / size, v = double(k) / size;
+        vertices << (normal + (2.0 * u - 1.0) * a + (2.0 * v - 1.0) * b).transpose() << ' ' << more(side, u, v) << '\n';
+        if (i == size || k == size) continue;
+        faces << "4 " << num_vertices << ' ' << num_vertices + size + 1 << ' ' << num_vertices + size + 2 << ' '
+              << num_vertices + 1 << '\n';
+      }
   }
-  return "ply\nformat ascii 1.0\n" + comment +
-         "element vertex 24\nproperty float x\nproperty float y\nproperty float z\n" + properties +
-         "element face 6\nproperty list uchar int vertex_indices\nend_header\n" + vertices.str() + faces.str();
+  return "ply\nformat ascii 1.0\n" + comment + "element vertex " + std::to_string(num_vertices) +
+         "\nproperty float x\nproperty float y\nproperty float z\n" + properties + "element face " +
+         std::to_string(6 * size * size) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices.str() +
+         faces.str();
 }
 
 /// One side is red where it is told, all others are grey.
 std::string colouredCube(bool has_red_side) {
-  return cubePLY("", "property uchar red\nproperty uchar green\nproperty uchar blue\n",
-                 [=](int side, int, int) { return side == 4 && has_red_side ? "200 20 20" : "120 120 120"; });
+  return cubePLY("", "property uchar red\nproperty uchar green\nproperty uchar blue\n", 6,
+                 [=](int side, double, double) { return side == 4 && has_red_side ? "200 20 20" : "120 120 120"; });
 }
 
 /// The sides show the white half of the picture, but one: that shows the whole picture if \p is_printed.
 std::string texturedCube(const std::string& texture, bool is_printed) {
-  return cubePLY("comment TextureFile " + texture + "\n", "property float texture_u\nproperty float texture_v\n",
-                 [=](int side, int u, int v) {
+  return cubePLY("comment TextureFile " + texture + "\n", "property float texture_u\nproperty float texture_v\n", 1,
+                 [=](int side, double u, double v) {
                    const double top = is_printed && side == 4 ? 1.0 : 0.45;
                    return std::to_string(0.05 + 0.9 * u) + " " + std::to_string(0.05 + (top - 0.1) * v);
                  });
