@@ -6,6 +6,7 @@
 #include "core/rotation/rotation_cover.h"
 #include "io/file_text.h"
 #include "io/json_values.h"
+#include "core/rotation/rotation_cover.h"
 
 namespace pcl_symmetry::apps {
 
