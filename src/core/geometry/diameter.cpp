@@ -13,7 +13,8 @@ namespace {
 /// Index and squared distance of the point farthest from a position.
 std::pair<Eigen::Index, float> farthestOf(const Eigen::Vector3f& position, const PointsRef& points) {
   Eigen::Index index = 0;
-  const float sq_distance = (points.colwise() - position).colwise().squaredNorm().maxCoeff(&index);
+  const auto squares = (points.colwise() - position).array().square();
+  const float sq_distance = (squares.row(0) + squares.row(1) + squares.row(2)).maxCoeff(&index);
   return {index, sq_distance};
 }
 
