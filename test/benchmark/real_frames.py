@@ -32,6 +32,7 @@ import scenes
 LEARN_BOXES, LEARN_CYLINDERS = range(25), range(33, 45)  # 25 to 32 show parts of objects
 VEHICLE_FRAMES = ("000950", "000965")
 MAX_ANGLE = math.radians(5)
+SURE = 0.8  # confidence from which answers are counted by themselves: no number of the library is fitted to these frames
 
 
 def show(repository, path):
@@ -136,10 +137,20 @@ def fit_box(points, normals, random):
     return {"shape": "box", "planes": [{"coefficients": [*map(float, n), float(-n @ center)]} for n in normals_of_planes]}
 
 
-def fit_cylinder(points, normals, up, random):
-    """Axis of a cylinder that stands on the support; None where its wall is not round."""
-    across = np.linalg.svd(up[None])[2][1:]
-    wall = np.abs(normals @ up) < 0.3
+def level_axis(normals, up):
+    """The level direction that most normals are across: the axis of a cylinder that lies on the support."""
+    level = np.linalg.svd(up[None])[2][1:]
+    rows = normals @ level.T
+    for _ in range(3):
+        axis = np.linalg.eigh(rows.T @ rows)[1][:, 0] @ level
+        rows = (normals @ level.T)[np.abs(normals @ axis) < 0.3]
+    return axis
+
+
+def fit_cylinder(points, normals, along, random):
+    """Axis of a cylinder along a direction, and the number of points on its wall; None where the wall is not round."""
+    across = np.linalg.svd(along[None])[2][1:]
+    wall = np.abs(normals @ along) < 0.3
     x = points[wall] @ across.T
     if len(x) < 300:
         return None
@@ -160,7 +171,8 @@ def fit_cylinder(points, normals, up, random):
         y = x[off(circle) < 0.006]
         u, v, w = np.linalg.lstsq(np.c_[2 * y, np.ones(len(y))], (y * y).sum(1), rcond=None)[0]
         circle = np.array([u, v]), math.sqrt(w + u * u + v * v)
-    return {"shape": "cylinder", "axis": {"point": [*map(float, circle[0] @ across)], "direction": [*map(float, up)]}}
+    axis = {"point": [*map(float, circle[0] @ across)], "direction": [*map(float, along)]}
+    return {"shape": "cylinder", "axis": axis, "on_wall": int(count)}
 
 
 def objects_of(frame, points, labels):
@@ -178,7 +190,12 @@ def objects_of(frame, points, labels):
         some.estimate_normals(open3d.geometry.KDTreeSearchParamKNN(40))
         some.orient_normals_towards_camera_location()
         x, normals = np.asarray(some.points), np.asarray(some.normals)
-        fit = fit_box(x, normals, random) if frame in LEARN_BOXES else fit_cylinder(x, normals, up, random)
+        if frame in LEARN_BOXES:
+            fit = fit_box(x, normals, random)
+        else:
+            fit, lying = (fit_cylinder(x, normals, along, random) for along in (up, level_axis(normals, up)))
+            if lying and lying["on_wall"] > 3600:  # of 6000: the insides of bowls and pots have fewer
+                fit = lying
         truths[label] = {"shape": None, **(fit or {}), "center": [*map(float, p.mean(0))],
                          "extent": float(np.linalg.norm(np.ptp(p, axis=0)))}  # fmt: skip
     return truths
@@ -205,17 +222,20 @@ def is_right(kind, answer, truth, max_offset):
 
 
 def judge(answers, truth, max_offset=0.03):
-    """decided: the first answer that decides is right; listed: any answer is, possible ones too; wrong; none."""
+    """decided: the first answer that decides is right; listed: any answer is, possible ones too; wrong; none; sure: right
+    where that answer is one of confidence SURE and more, else None."""
     right = lambda kind, answer: bool(is_right(kind, answer, truth, max_offset))
     axes, found = answers.get("axes", []), answers.get("planes", [])
-    decided = [right("axis", a) for a in axes if a.get("confidence", 1) >= planes.MIN_CONFIDENCE]
-    decided += [right("plane", p) for p in found if p.get("kind", "symmetry") == "symmetry"]
+    deciding = [("axis", a) for a in axes if a.get("confidence", 1) >= planes.MIN_CONFIDENCE]
+    deciding += [("plane", p) for p in found if p.get("kind", "symmetry") == "symmetry"]
+    decided = [right(*answer) for answer in deciding]
+    is_sure = bool(deciding) and deciding[0][1].get("confidence", 0) >= SURE
     every = [right("axis", a) for a in axes] + [right("plane", p) for p in found]
     if answers.get("best"):
         every.append(right("plane", answers["best"]))
     center = bool(answers.get("centers"))
     return {"decided": decided[:1] == [True], "listed": any(every), "none": not decided and not center,
-            "wrong": decided[:1] == [False] or (center and not decided)}  # fmt: skip
+            "sure": decided[0] if is_sure else None, "wrong": decided[:1] == [False] or (center and not decided)}  # fmt: skip
 
 
 def objects_found(name, points, arguments):
@@ -293,6 +313,9 @@ def report(rows):
     table_rows = [[*group, *(of(group, field).text for field in fields)] for group in groups]
     header = ["way", "shape", "decided right", "listed", "wrong", "none"]
     bench.print_table("Answers for real things; 95 % Wilson intervals", header, table_rows)
+    for way in dict.fromkeys(way for way, _ in groups):
+        sure = bench.Rate(row["sure"] for row in rows if row["way"] == way and row.get("sure") is not None)
+        print(f"{way}: right of the answers with a confidence of {SURE} and more: {sure.text}")
     found = bench.Rate(row["found"] for row in rows if "found" in row)
     if found.total:
         print("Objects of frames found with an overlap of half and more:", found.text)
