@@ -79,7 +79,9 @@ public:
     SceneObject object;
     object.indices = indices;
     SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-    refinement.setOptions(options_.detection);
+    DetectionOptions detection = options_.detection;
+    detection.folds = false;  // an object has planes, axes of revolution and centers
+    refinement.setOptions(detection);
     prepare(refinement, object, std::make_shared<const SeenSpace>(seenOf(indices)));
     object.planes = refinement.compute();
     object.axes = refinement.getAxes();

@@ -58,6 +58,7 @@ struct DetectionOptions {
   bool evidence = false;  ///< fills Detection::evidence; takes about as long again as the detection
   bool families = true;   ///< planes through one axis or one center are reported as such in place of single planes
   bool turns = true;      ///< axes of rotations of scans are searched too; false saves about a third of the time
+  bool folds = true;      ///< of these also axes of rotations by a part of a turn; false saves most of that time
   int max_planes = 64;    ///< >= 1; folds of rotations go up to 60
   int max_possible = 5;   ///< symmetries and possible planes together, where there are possible ones, >= 1
   int num_cells = 64;     ///< cells of the distance transform along each side, in [8, 512]

@@ -88,6 +88,9 @@ public:
   /// where the ray met nothing, +infinity where no ray passed.
   double depthBehind(const Eigen::Vector3d& x) const;
 
+  /// \return whether a picture has a pixel at a point in the frame of the points, also one without a depth.
+  bool isInPicture(const Eigen::Vector3d& x) const;
+
   /// \param points 3 x M, in the frame of the points.
   /// \return for each whether depthBehind() is negative: M values, 1 in free space.
   std::vector<char> areFree(const Eigen::Matrix3Xd& points) const;

@@ -185,7 +185,8 @@ struct JudgedTurns {
 
 class AxisJudge {
 public:
-  explicit AxisJudge(const TurnEvidence& evidence) : evidence_(evidence) {}
+  /// \param most_fold of the rotations that are tried besides those by any angle.
+  AxisJudge(const TurnEvidence& evidence, int most_fold) : evidence_(evidence), most_fold_(most_fold) {}
 
   Line3d fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
 
@@ -202,7 +203,7 @@ public:
       if (!best || turns.margin > best->margin) best = turns;
     };
     if (kRough.allow(roundTurns(roughly, kRough))) take(exactly(line, 0));
-    for (int fold = detection_rules.most_turn_fold; fold >= 2; --fold) {
+    for (int fold = most_fold_; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
       if (kRough.allow(turnsOfFold(roughly, fold, 0.0, kRough))) take(exactly(line, fold));
     }
@@ -228,6 +229,7 @@ private:
   }
 
   const TurnEvidence& evidence_;
+  int most_fold_;
 };
 
 /// Planes that may be symmetries, normalized frame.
@@ -265,8 +267,8 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
   };
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
   append(startsFromPlanes(planesOfAxes(planes, cloud), detection_rules.most_turn_fold));
-  append(startsFromTransform(cloud, options.seed, options.num_threads));
-  const AxisJudge judge(evidence);
+  if (options.folds) append(startsFromTransform(cloud, options.seed, options.num_threads));
+  const AxisJudge judge(evidence, options.folds ? detection_rules.most_turn_fold : 1);
   std::vector<Line3d> fitted(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
   std::vector<Line3d> lines;

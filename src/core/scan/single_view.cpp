@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -113,7 +112,7 @@ double cutShare(const PointsRef& points, const Visibility& seen, double margin) 
     if (aside.isZero()) continue;
     const Eigen::Vector3d beside = viewpoint + forward + (1.0 + margin) * aside;
     count += 1.0;
-    num_cut += seen.depthBehind(beside) == std::numeric_limits<double>::infinity() ? 1.0 : 0.0;
+    num_cut += seen.isInPicture(beside) ? 0.0 : 1.0;
   }
   return num_cut / std::max(1.0, count);
 }

@@ -40,7 +40,7 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 /// How much of a cloud the picture cut off.
 /// \param points 3 x N, finite, N >= 1, seen within 75 degrees of one direction.
 /// \param margin where the picture is looked up beyond the outermost points, share of their distance from the middle.
-/// \return share of the directions of the outline, seen from the viewpoint, in which no ray passed beside the cloud.
+/// \return share of the directions of the outline, seen from the viewpoint, in which the picture ends beside the cloud.
 double cutShare(const PointsRef& points, const Visibility& seen, double margin);
 
 }  // namespace pcl_symmetry

@@ -158,6 +158,14 @@ double Visibility::depthBehind(const Eigen::Vector3d& x) const {
   return behind;
 }
 
+bool Visibility::isInPicture(const Eigen::Vector3d& x) const {
+  return std::any_of(pictures_.begin(), pictures_.end(), [&](const Picture& picture) {
+    const Eigen::Vector3d image = picture.projection * x.homogeneous();
+    const Eigen::Array2d pixel = image.head<2>().array() / image.z() + 0.5;
+    return image.z() > 0.0 && (pixel >= 0.0).all() && pixel.x() < picture.width && pixel.y() < picture.height;
+  });
+}
+
 std::vector<char> Visibility::areFree(const Eigen::Matrix3Xd& points) const {
   std::vector<char> is_free;
   for (Eigen::Index i = 0; i < points.cols(); ++i) is_free.push_back(depthBehind(points.col(i)) < 0.0);
