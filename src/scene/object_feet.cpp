@@ -8,24 +8,13 @@
 #include <utility>
 
 #include "core/base/median.h"
+#include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
 
 namespace {
 
-// Distances of points of one object, around its box: where the noise of a support is taken. chosen: half takes it of
-// few points, twice of places with other noise.
-constexpr double kAround = 10.0;
-// Least number of these points. chosen: the median of 50 is certain to 18 %; fewer take chance for noise.
-constexpr std::size_t kLeastAround = 50;
-// Deviations of the noise that a foot rises above. chosen: 3 in 100 000 points of a plane do; at half, one in 40 does,
-// at twice, feet stay with the plane.
-constexpr double kRises = 4.0;
-// The same in spacings, for planes without noise. chosen: any value below 1, as the rows of pixels on a wall are a
-// spacing apart; rounding must not reach it.
-constexpr double kRisesAtLeast = 0.25;
-// derived: standard deviation of a normal distribution per median of absolute values.
-constexpr double kDeviationPerMedian = 1.4826;
+constexpr double kDeviationPerMedian = 1.4826;  // of absolute values, normal distribution
 
 struct Box {
   Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
@@ -92,12 +81,13 @@ void offerFeet(const SymmetryScene::Cloud::ConstPtr& scene, const std::vector<Su
 
 double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& support, const pcl::Indices& cluster,
                    double spacing, double distance) {
-  const Box around(scene, cluster, kAround * distance);
+  const Box around(scene, cluster, scene_rules.around * distance);
   std::vector<double> heights;
   for (const pcl::index_t i : support.indices)
     if (around.contains(scene[i].getVector3fMap())) heights.push_back(std::abs(heightOver(support, scene[i])));
-  if (heights.size() < kLeastAround) return std::numeric_limits<double>::infinity();
-  return std::max(kRisesAtLeast * spacing, kRises * kDeviationPerMedian * median(std::move(heights)));
+  if (heights.size() < scene_rules.least_around) return std::numeric_limits<double>::infinity();
+  return std::max(scene_rules.rises_at_least * spacing,
+                  scene_rules.rises * kDeviationPerMedian * median(std::move(heights)));
 }
 
 void returnFeet(const SymmetryScene::Cloud::ConstPtr& scene, std::vector<SupportingPlane>& supports,

@@ -17,55 +17,11 @@
 #include "core/scan/sensor_noise.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "scene/object_feet.h"
+#include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
 
 namespace {
-
-// Spacings and roughnesses of the points: distance of points of a supporting plane. chosen: half leaves a film of the
-// table under the objects, twice takes off their feet.
-constexpr double kPlaneSpacings = 2.0, kPlaneRoughnesses = 4.0;
-// Spacings between points of one object. chosen: half breaks slanted surfaces up, twice joins neighbouring objects.
-constexpr double kClusterSpacings = 4.0;
-// Share of an object's points above a plane that it stands on or before. chosen: half takes things that stick through a
-// plane for things on it, at 1 a single stray point decides.
-constexpr double kAboveShare = 0.98;
-// Plane distances that an object may seem to reach into its support where the noise of the support is not known.
-// chosen: half takes noise of its foot for a contradiction, twice lets reflections sink into the table.
-constexpr double kSupportMargin = 2.0;
-
-// Points that the scale is measured at. chosen: the median of 1000 is certain to 4 %; half 6 %, twice costs time.
-constexpr std::size_t kScaleSamples = 1000;
-// Planes that are tried. chosen: a table, a floor, three walls and a large box; half leaves walls among the objects.
-constexpr int kMostPlanes = 6;
-// Share of the points. chosen: at half, faces of boxes are tried, at twice, tables under many objects are missed.
-constexpr double kLeastShare = 0.08;
-// Share of the points from which a plane that nothing stands on is a support. chosen: at half, lids of large boxes are,
-// at twice, empty tables are reported as objects.
-constexpr double kBareShare = 0.25;
-// Points above or below a plane, as a share of its own, that show on which side the scene is. chosen: at half, flying
-// pixels decide, at twice, a single small object on a table is not seen.
-constexpr double kTellingShare = 0.01;
-// Plane distances behind a plane within which the other faces of a body begin. chosen: half misses flat boxes, twice
-// takes what lies under a low table for a part of it.
-constexpr double kAttached = 10.0;
-// Share of a plane's points beyond each end of its footprint. chosen: half takes in what stands beside it, twice misses
-// what stands at its rim.
-constexpr double kFootprintTrim = 0.05;
-// Iterations of the sample consensus. chosen: a plane of 8 % of the points needs 10^4 draws of three for certainty, of
-// 20 % it needs 600; PCL stops early where a great plane is found. Half misses small tables, twice takes twice the
-// time.
-constexpr int kConsensusIterations = 1000;
-// Points that the draws are judged by. derived: the share of a plane of 8 % is then known to 0.3 %.
-constexpr std::size_t kConsensusPoints = 10'000;
-// Times that a plane is fitted, and medians of the distances of its points within which they count. chosen: three
-// rounds take the feet of objects out of the fit; two leave some of them; more change nothing. Normal noise keeps 96 %
-// of the points within three medians; at half, the fit is that of chance, at twice, feet tilt it.
-constexpr int kFitRounds = 3;
-constexpr double kFitDeviations = 3.0;
-// Plane distances within which the rest of a bent or noisy plane lies, and the share of a cluster in it. chosen: half
-// reports pieces of the table, twice drops flat objects such as books.
-constexpr double kRemainder = 2.0, kRemainderShare = 0.9;
 
 /// A plane that sample consensus found among some points.
 struct Consensus {
@@ -79,10 +35,10 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
   // What pcl::SACSegmentation does, without its other models.
   using Model = pcl::SampleConsensusModelPlane<pcl::PointXYZ>;
   pcl::Indices some;
-  const std::size_t stride = 1 + (points.size() - 1) / kConsensusPoints;
+  const std::size_t stride = 1 + (points.size() - 1) / scene_rules.consensus_points;
   for (std::size_t i = 0; i < points.size(); i += stride) some.push_back(points[i]);
   pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(pcl::make_shared<Model>(scene, some), distance);
-  consensus.setMaxIterations(kConsensusIterations);
+  consensus.setMaxIterations(scene_rules.consensus_iterations);
   if (!consensus.computeModel()) return std::nullopt;
   Consensus plane;
   Eigen::VectorXf found, coefficients;
@@ -100,13 +56,13 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
 /// of them, which is tilted by their noise and by points of what stands on it.
 Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane) {
   Eigen::Vector4d coefficients = plane.coefficients;
-  for (int round = 0; round < kFitRounds; ++round) {
+  for (int round = 0; round < scene_rules.fit_rounds; ++round) {
     const auto height = [&](pcl::index_t i) {
       return std::abs(coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval()));
     };
     std::vector<double> heights;
     for (const pcl::index_t i : plane.inliers) heights.push_back(height(i));
-    const double most = kFitDeviations * median(std::move(heights));
+    const double most = scene_rules.fit_deviations * median(std::move(heights));
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     const Eigen::Vector3d origin = scene[plane.inliers.front()].getVector3fMap().cast<double>();
@@ -142,16 +98,18 @@ Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const p
   const auto extent = [&](const Eigen::Vector3d& axis) {
     std::vector<double> places;
     for (const pcl::index_t i : plane.inliers) places.push_back(along(i, axis));
-    std::sort(places.begin(), places.end());
-    const auto trim = static_cast<std::size_t>(kFootprintTrim * static_cast<double>(places.size() - 1));
-    return std::pair<double, double>(places[trim], places[places.size() - 1 - trim]);
+    const auto trim = static_cast<std::ptrdiff_t>(scene_rules.footprint_trim * static_cast<double>(places.size() - 1));
+    const auto first = places.begin() + trim, last = places.end() - 1 - trim;
+    std::nth_element(places.begin(), first, places.end());
+    std::nth_element(first, last, places.end());
+    return std::pair<double, double>(*first, *last);
   };
   const auto [u_low, u_high] = extent(u);
   const auto [v_low, v_high] = extent(v);
   Sides sides;
   for (const pcl::index_t i : others) {
     const double height = along(i, n) + plane.coefficients[3], at_u = along(i, u), at_v = along(i, v);
-    sides.attached += height < -distance && height > -kAttached * distance ? 1 : 0;
+    sides.attached += height < -distance && height > -scene_rules.attached * distance ? 1 : 0;
     if (std::abs(height) <= distance || at_u < u_low || at_u > u_high || at_v < v_low || at_v > v_high) continue;
     ++(height > 0.0 ? sides.above : sides.below);
   }
@@ -171,9 +129,9 @@ bool isRemainder(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
                  double distance) {
   const auto num_near = std::count_if(cluster.begin(), cluster.end(), [&](pcl::index_t i) {
     const double height = support.coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval());
-    return std::abs(height) <= kRemainder * distance;
+    return std::abs(height) <= scene_rules.remainder * distance;
   });
-  return static_cast<double>(num_near) > kRemainderShare * static_cast<double>(cluster.size());
+  return static_cast<double>(num_near) > scene_rules.remainder_share * static_cast<double>(cluster.size());
 }
 
 }  // namespace
@@ -182,7 +140,7 @@ SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices&
   Points surface(3, static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     surface.col(static_cast<Eigen::Index>(i)) = scene[points[i]].getVector3fMap();
-  const std::size_t stride = 1 + (points.size() - 1) / kScaleSamples;
+  const std::size_t stride = 1 + (points.size() - 1) / scene_rules.scale_samples;
   Points places(3, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
   const auto search = makeFlannSearch(surface);
@@ -201,8 +159,8 @@ SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices&
 
 SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
   const SurfaceScale scale = surfaceScale(scene, points);
-  return {scale.spacing, kPlaneSpacings * scale.spacing + kPlaneRoughnesses * scale.roughness,
-          kClusterSpacings * scale.spacing};
+  return {scale.spacing, scene_rules.plane_spacings * scale.spacing + scene_rules.plane_roughnesses * scale.roughness,
+          scene_rules.cluster_spacings * scale.spacing};
 }
 
 SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
@@ -214,13 +172,13 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
     points.col(static_cast<Eigen::Index>(i)) = scene[object[i]].getVector3fMap();
   const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
   const double off = std::max(tolerance * diagonal, resolvedTolerance(points, *seen.visibility()));
-  const double most = kSupportMargin * distances.plane;
+  const double most = scene_rules.support_margin * distances.plane;
   SeenSpace result = seen;
   for (const SupportingPlane& support : supports) {
     const Eigen::RowVector3f normal = support.coefficients.head<3>().cast<float>();
     const auto offset = static_cast<float>(support.coefficients[3] + most);
     const auto num_above = ((normal * points).array() > -offset).count();
-    if (static_cast<double>(num_above) < kAboveShare * static_cast<double>(object.size())) continue;
+    if (static_cast<double>(num_above) < scene_rules.above_share * static_cast<double>(object.size())) continue;
     // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
     // table, where a reflection costs nothing.
     const double rise = riseOfNoise(scene, support, object, distances.spacing, distances.cluster);
@@ -256,12 +214,12 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
                                           const std::optional<Eigen::Vector3d>& viewpoint, double distance) {
   std::vector<SupportingPlane> supports;
   pcl::Indices candidates = points, others = points;
-  for (int round = 0; round < kMostPlanes; ++round) {
+  for (int round = 0; round < scene_rules.most_planes; ++round) {
     std::optional<Consensus> plane = greatestPlane(scene, candidates, distance);
     const auto share = [&](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(points.size());
     };
-    if (!plane || share(plane->inliers.size()) < kLeastShare) break;
+    if (!plane || share(plane->inliers.size()) < scene_rules.least_share) break;
     plane->coefficients = fitted(*scene, *plane);
     candidates = without(candidates, plane->inliers, scene->size());
     if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;
@@ -270,10 +228,11 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
       plane->coefficients *= -1.0;
       std::swap(sides.above, sides.below);
     }
-    const double few = kTellingShare * static_cast<double>(plane->inliers.size());
+    const double few = scene_rules.telling_share * static_cast<double>(plane->inliers.size());
     const bool tells = static_cast<double>(sides.above + sides.below) > few;
     // Above a table lies what stands on it. Behind the face of a box the other faces begin.
-    const bool is_bare = share(plane->inliers.size()) >= kBareShare && static_cast<double>(sides.attached) <= few;
+    const bool is_bare =
+        share(plane->inliers.size()) >= scene_rules.bare_share && static_cast<double>(sides.attached) <= few;
     const bool supports_others = tells ? sides.above >= sides.below : is_bare;
     if (!supports_others) continue;
     others = without(others, plane->inliers, scene->size());

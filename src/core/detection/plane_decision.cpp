@@ -87,7 +87,9 @@ PlaneKind PlaneDecision::kindOf(const ReflectionPlane& plane, double confidence)
 }
 
 bool PlaneDecision::isResolved() const {
-  return measure_.tolerance() >= std::min(measure_.resolution(), detection_rules.coarsest_tolerance * cloud_.extent);
+  return measure_.tolerance() >= measure_.resolution() ||
+         (measure_.tolerance() >= detection_rules.coarsest_tolerance * cloud_.extent &&
+          measure_.resolution() <= detection_rules.coarsest_resolution * cloud_.extent);
 }
 
 bool PlaneDecision::isPlace() const {

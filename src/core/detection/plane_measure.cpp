@@ -130,7 +130,10 @@ Points PlaneMeasure::matchedNormals(const IspStep& step) const {
 
 bool PlaneMeasure::isSeenEmpty(const Eigen::Vector3d& x, double rim) const {
   const Visibility& visibility = *cloud_.visibility;
-  if (visibility.depthBehind(x) >= 0.0) return false;
+  const double behind = visibility.depthBehind(x);
+  if (behind >= 0.0) return false;
+  // What a camera measured beside an object is off by its errors.
+  if (std::isfinite(behind)) rim = std::max(rim, resolution_);
   if (rim <= 0.0) return true;
   const Eigen::Vector3d ray = (x - visibility.viewpoint()).normalized(), u = ray.unitOrthogonal(), v = ray.cross(u);
   for (const Eigen::Vector3d& aside : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)})

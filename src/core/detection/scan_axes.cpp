@@ -266,8 +266,10 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
     starts.insert(starts.end(), more.begin(), more.end());
   };
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
-  append(startsFromPlanes(planesOfAxes(planes, cloud), detection_rules.most_turn_fold));
-  if (options.folds) append(startsFromTransform(cloud, options.seed, options.num_threads));
+  if (options.folds) {
+    append(startsFromPlanes(planesOfAxes(planes, cloud), detection_rules.most_turn_fold));
+    append(startsFromTransform(cloud, options.seed, options.num_threads));
+  }
   const AxisJudge judge(evidence, options.folds ? detection_rules.most_turn_fold : 1);
   std::vector<Line3d> fitted(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });

@@ -149,6 +149,24 @@ TEST(SpaceSeenFrom, AcceptsNoisyScans) {
   EXPECT_TRUE(spaceSeenFrom(points, viewpoint));
 }
 
+TEST(CutShare, IsOfTheOutlineBesideWhichThePictureEnds) {
+  // A square of 40 x 40 pixels, one unit away, in a picture without other depths.
+  const auto cutAt = [](int first) {
+    Visibility::Projection projection = Visibility::Projection::Identity();
+    projection.leftCols<3>() << 100.0, 0.0, 49.5, 0.0, 100.0, 49.5, 0.0, 0.0, 1.0;
+    std::vector<float> depths(100 * 100, Visibility::kNoRay);
+    Points points(3, 40 * 40);
+    for (int i = 0; i < 1600; ++i) {
+      const int u = first + i % 40, v = first + i / 40;
+      depths[100 * v + u] = 1.0f;
+      points.col(i) << (static_cast<float>(u) - 49.5f) / 100.0f, (static_cast<float>(v) - 49.5f) / 100.0f, 1.0f;
+    }
+    return cutShare(points, Visibility(projection, 100, 100, depths), 0.1);
+  };
+  EXPECT_EQ(cutAt(30), 0.0);
+  EXPECT_NEAR(cutAt(0), 0.5, 0.1);
+}
+
 TEST(LayeredShare, CountsLayers) {
   RandomStream random(6);
   Points points(3, 4000);
