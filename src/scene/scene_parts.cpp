@@ -101,8 +101,9 @@ Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const p
     const auto trim = static_cast<std::ptrdiff_t>(scene_rules.footprint_trim * static_cast<double>(places.size() - 1));
     const auto first = places.begin() + trim, last = places.end() - 1 - trim;
     std::nth_element(places.begin(), first, places.end());
+    const double low = *first;
     std::nth_element(first, last, places.end());
-    return std::pair<double, double>(*first, *last);
+    return std::pair<double, double>(low, *last);
   };
   const auto [u_low, u_high] = extent(u);
   const auto [v_low, v_high] = extent(v);
