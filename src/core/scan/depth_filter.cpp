@@ -114,15 +114,13 @@ private:
   std::vector<float> inverse_;
 };
 
-}  // namespace
-
-double inverseDepthError(const DepthImage& image) {
-  const std::vector<float> inverse = inverted(image.depths);
+/// Standard deviation of an inverse depth, by second differences of pixels that are some columns apart.
+double deviationOfBends(const std::vector<float>& inverse, const DepthImage& image, int apart) {
   std::vector<float> bends;
   for (int v = 0; v < image.height; ++v) {
     const float* row = &inverse[static_cast<std::size_t>(v) * image.width];
-    for (int u = 1; u + 1 < image.width; ++u) {
-      const float bend = row[u - 1] - 2.0f * row[u] + row[u + 1];
+    for (int u = apart; u + apart < image.width; ++u) {
+      const float bend = row[u - apart] - 2.0f * row[u] + row[u + apart];
       if (std::isfinite(bend)) bends.push_back(std::abs(bend));
     }
   }
@@ -133,6 +131,15 @@ double inverseDepthError(const DepthImage& image) {
   for (std::ptrdiff_t i = 0; i < size; ++i) sum += static_cast<double>(bends[i]) * bends[i];
   // A second difference has 1 + 4 + 1 times the variance of a pixel.
   return std::sqrt(sum / static_cast<double>(size) / 6.0) / kScan.trimmed_deviation;
+}
+
+}  // namespace
+
+double inverseDepthError(const DepthImage& image) {
+  const std::vector<float> inverse = inverted(image.depths);
+  const double error = deviationOfBends(inverse, image, 1);
+  // Over twice the distance a shape bends four times as much, and errors are the same.
+  return deviationOfBends(inverse, image, 2) < kScan.most_growth * error ? error : 0.0;
 }
 
 FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads) {

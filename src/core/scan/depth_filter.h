@@ -20,7 +20,8 @@ struct FilteredDepths {
 
 /// Errors of the inverse depths, from what neighbors on slanted planes cannot explain: there, inverse depths grow
 /// evenly from pixel to pixel. Errors of stereo and of structured light are the same for all inverse depths.
-/// \return standard deviation, units of the inverse depths; 0 for fewer than three pixels in line.
+/// \return standard deviation, units of the inverse depths; 0 for fewer than three pixels in line, and where the shape
+/// bends by more.
 double inverseDepthError(const DepthImage& image);
 
 /// Takes the errors of a depth camera out of its picture.

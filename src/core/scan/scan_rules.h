@@ -12,6 +12,7 @@ struct ScanRules {
   /// Root mean square of the least 80 % of normal errors, per standard deviation.
   double trimmed_deviation = 0.6616;
   double least_error = 0.1;  ///< pixel sizes; smaller errors do no harm to shapes
+  double most_growth = 2.0;  ///< of second differences at twice the distance; a Kinect has up to 1.6, shapes 4
   /// Tangent of the slant up to which neighbors count at the start; best on five scenes.
   double slant_at_start = 1.0;
   /// Errors of an inverse depth beyond which a pixel shows another surface; best on five scenes.

@@ -64,6 +64,8 @@ TEST(DepthFilter, FindsTheErrorsOfTheCameraOnSlantedPlanes) {
   EXPECT_NEAR(inverseDepthError(noisy(picture(slanted))), kError, 0.1 * kError) << "4600 second differences";
   EXPECT_NEAR(inverseDepthError(noisy(picture(step))), kError, 0.1 * kError) << "an edge is no error";
   EXPECT_LT(inverseDepthError(picture(slanted)), 1e-5) << "rounding to float";
+  const DepthImage round = picture([](int u, int v) { return 1.0 + 1e-3 * (u * u + v * v); });
+  EXPECT_EQ(inverseDepthError(round), 0.0) << "a shape bends more over more pixels";
 }
 
 TEST(DepthFilter, LeavesAThirdOfTheErrors) {
