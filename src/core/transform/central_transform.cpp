@@ -41,18 +41,14 @@ CenterMap centralTransform(const GaussianEdt& edt, int num_centers, const AxialT
   const LookupTable table = tableOf(edt, visibility, options.num_threads);
   // The image of x is 2 c - x.
   const Eigen::Matrix3Xf mirrored = -centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
-  // |f|^2 by the same samples: their noise cancels, and D of an exact symmetry is 1 for any seed.
-  const LineKernel kernel = lineKernel(options.simd, table.numFunctions());
-  std::vector<std::vector<double>> own(table.numFunctions(), std::vector<double>(1));
-  MovedLines(edt, table, kernel, 1).add(-mirrored, Eigen::Vector3f::Zero(), Eigen::Vector3f::UnitX(), 0, 1, own);
-  const double scale = 1.0 / own[0][0];
+  const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   CenterMap map;
   map.num_centers = num_centers;
   map.step = 2.0 * edt.radius() / num_centers;
   map.origin = edt.center().array() - edt.radius() + 0.5 * map.step;
   map.values.resize(static_cast<std::size_t>(num_centers) * num_centers * num_centers);
   parallelBlocks(num_centers, options.num_threads, [&](std::size_t z) {
-    MovedLines lines(edt, table, kernel, num_centers);
+    MovedLines lines(edt, table, lineKernel(options.simd, table.numFunctions()), num_centers);
     std::vector<std::vector<double>> totals(table.numFunctions(), std::vector<double>(num_centers));
     const Eigen::Vector3f step(static_cast<float>(2.0 * map.step / edt.cellSize()), 0.0f, 0.0f);
     for (int y = 0; y < num_centers; ++y) {
