@@ -22,7 +22,7 @@ from scipy.spatial.transform import Rotation
 import bench
 import solids
 
-TOLERANCE, MAX_OFF, MAX_FAR, FAR = 0.01, 0.15, 0.01875, 10  # diameters, shares of the area, shares, tolerances
+TOLERANCE, MAX_OFF, MAX_FAR, FAR = 0.01, 0.10, 0.0125, 10  # diameters, shares of the area, shares, tolerances
 NUM_ANGLES = 16  # of an axis of revolution, of 1/17 of a turn: no fold divides it
 NUM_POSES = 20  # pairs that distances of poses are tried on
 
