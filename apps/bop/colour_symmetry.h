@@ -1,14 +1,33 @@
-/// Which symmetries of a shape also keep its colours.
+/// The colours of a surface, from its vertices or from a texture, and which symmetries of a shape keep them.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
+#include <string>
 
-#include "bop/surface_colours.h"
+#include "io/shape_input.h"
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace pcl_symmetry::apps {
+
+/// Points of a surface, one colour each.
+struct SurfaceColours {
+  Points points;         ///< minus the shift of the shape
+  Eigen::Matrix3Xf rgb;  ///< sRGB in [0, 1]
+};
+
+/// Whether a file has colours for its vertices, or coordinates in a texture.
+bool hasColours(const Shape& shape);
+
+/// The vertices with their colours; or, where a PLY file names a texture in the comment "TextureFile NAME", as the
+/// models of the BOP benchmark do, points of its triangles with the colours of that picture, which lies beside the
+/// file.
+/// \return nothing where the file has neither.
+/// \throws InputError where the texture cannot be read.
+std::optional<SurfaceColours> surfaceColours(const Shape& shape, const std::string& path);
 
 /// Difference of colours in CIELAB that counts as none. chosen: half takes uneven light of a scan for print, twice
 /// overlooks pale print. 2.3 is just noticeable side by side.

@@ -11,8 +11,8 @@
 
 #include "command_line/tool_errors.h"
 #include "core/geometry/diameter.h"
+#include "io/answers.h"
 #include "io/exact_coordinates.h"
-#include "io/json_values.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/mesh_sampling.h"
 

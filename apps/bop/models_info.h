@@ -1,4 +1,5 @@
-/// Files of symmetries: models_info.json of the BOP benchmark, and model_info.json of DOPE's data generation.
+/// Files of symmetries: models_info.json of the BOP benchmark, model_info.json of DOPE's data generation, and the
+/// strings such as "z_180" and "x_full" that Isaac ROS takes for FoundationPose.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -40,5 +41,27 @@ ListedSymmetries symmetriesFromJson(const nlohmann::json& entry, const std::stri
 /// \return symmetries by the number of the model; for a file of one model by an empty name.
 /// \throws InputError naming the file, the entry, field, value and rule.
 std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path);
+
+/// The parameter symmetry_axes: turns about x, y and z by an angle in degrees, or by any angle ("full"). Isaac composes
+/// one turn about each axis, and turns about the origin of the mesh.
+struct IsaacAxes {
+  std::vector<std::string> axes;
+  bool is_complete = true;  ///< false where the group has rotations that turns about x, y and z do not compose
+};
+
+/// \param symmetries axes up to 5 degrees off a coordinate axis count as this one.
+IsaacAxes isaacAxes(const ObjectSymmetries& symmetries);
+
+/// \return turns about the origin.
+/// \throws InputError naming the string and the rule.
+ListedSymmetries symmetriesFromIsaac(const std::vector<std::string>& axes, const std::string& where);
+
+/// A YAML line `name: ["z_90", "z_180", "z_270"]`.
+std::string isaacLine(const std::string& name, const std::vector<std::string>& axes);
+
+/// Reads lines such as isaacLine() writes, one for each model, or the parameter `symmetry_axes: [...]` of a ROS file.
+/// \return symmetries by the number of the model; those of symmetry_axes by an empty name.
+/// \throws InputError naming the file and the rule.
+std::map<std::string, ListedSymmetries> readIsaacAxes(const std::string& path);
 
 }  // namespace pcl_symmetry::apps

@@ -1,12 +1,12 @@
 #include "command_line/result_files.h"
 
+#include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cerrno>
 #include <cstring>
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "command_line/csv.h"
 #include "io/shape_output.h"
 #include "io/standard_streams.h"
 
@@ -102,6 +102,34 @@ void ResultFiles::Sink::add(const std::string& text) {
 
 void ResultFiles::Sink::fail() const {
   throw InputError(path_ + ": cannot be written, " + std::strerror(errno));
+}
+
+namespace {
+
+std::string cellOf(const nlohmann::json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  const std::string text = value.get<std::string>();
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  return "\"" + boost::algorithm::replace_all_copy(text, "\"", "\"\"") + "\"";
+}
+
+}  // namespace
+
+std::string csvLine(const std::vector<nlohmann::json>& cells) {
+  std::string line;
+  for (const nlohmann::json& cell : cells) line += (line.empty() ? "" : ",") + cellOf(cell);
+  return line + "\n";
+}
+
+std::string firstCell(const std::string& line) {
+  if (line.empty() || line.front() != '"') return line.substr(0, line.find(','));
+  std::string cell;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if (line[i] == '"' && (i + 1 == line.size() || line[++i] != '"')) break;
+    cell += line[i];
+  }
+  return cell;
 }
 
 }  // namespace pcl_symmetry::apps

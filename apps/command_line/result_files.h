@@ -1,8 +1,10 @@
-/// The files that the results of many inputs go to, line by line.
+/// Files of results: tables of comma-separated values (RFC 4180, lines end with a line feed), and lines of JSON that
+/// are kept when a batch goes on.
 #pragma once
 
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -49,5 +51,12 @@ private:
   Sink json_, csv_;
   bool has_json_ = false, has_csv_ = false;
 };
+
+/// \param cells strings and numbers; null is an empty cell.
+/// \return a line with its end
+std::string csvLine(const std::vector<nlohmann::json>& cells);
+
+/// \return the first cell of a line
+std::string firstCell(const std::string& line);
 
 }  // namespace pcl_symmetry::apps

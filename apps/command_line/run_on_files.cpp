@@ -9,12 +9,11 @@
 #include <mutex>
 #include <utility>
 
-#include "command_line/csv.h"
 #include "command_line/input_files.h"
 #include "command_line/result_files.h"
 #include "command_line/tool_errors.h"
 #include "core/base/parallel.h"
-#include "io/json_values.h"
+#include "io/answers.h"
 #include "io/shape_output.h"
 #include "io/standard_streams.h"
 

@@ -1,9 +1,10 @@
-/// What stops a tool, and the exit code that each reason stands for.
+/// What stops a tool, the exit code that each reason stands for, and the frame that turns one into the other.
 #pragma once
 
 #include <pcl/exceptions.h>
 
 #include <exception>
+#include <functional>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -41,5 +42,9 @@ auto namingFile(const std::string& path, const Body& body) -> decltype(body()) {
     throw InputError(path + ": " + error.what());
   }
 }
+
+/// Runs the body of a tool and turns what it throws into one line on standard error and an exit code: 0 done (or what
+/// the body returns), 1 could not be done, 2 wrong usage.
+int runTool(int argc, char** argv, const std::function<int(int argc, char** argv)>& body);
 
 }  // namespace pcl_symmetry::apps

@@ -1,8 +1,6 @@
 #include "io/answers.h"
 
 #include "io/exact_coordinates.h"
-#include "io/formatted.h"
-#include "io/json_values.h"
 
 namespace pcl_symmetry::apps {
 

@@ -1,8 +1,11 @@
-/// Answers as tools write them: words, lines of tables, JSON.
+/// Answers as tools write them: text as printf() writes it, words, lines of tables, and JSON.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pcl_symmetry/core/detect_planes.h"
@@ -25,5 +28,41 @@ nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Ve
 
 /// A line such as "axis of order 6: through 0 0 0 along 0.000000 0.000000 1.000000, confidence 0.973".
 std::string lineOf(const SymmetryTurn& turn, const Eigen::Vector3d& shift);
+
+/// JSON as text. Names of files are bytes: what is no UTF-8 is replaced, where nlohmann's default would throw.
+/// \param indent blanks a level; -1: one line
+template <typename Json>
+std::string jsonText(const Json& json, int indent = 2) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+inline std::vector<double> numbersOf(const Eigen::VectorXd& v) {
+  return {v.data(), v.data() + v.size()};
+}
+
+/// \return 16 numbers, row by row
+inline std::vector<double> rowMajor(const Eigen::Matrix4d& matrix) {
+  std::vector<double> numbers;
+  for (int i = 0; i < 16; ++i) numbers.push_back(matrix(i / 4, i % 4));
+  return numbers;
+}
+
+inline std::vector<double> rowMajor(const Eigen::Isometry3d& transform) {
+  return rowMajor(transform.matrix());
+}
+
+inline nlohmann::json timingJson(const std::vector<std::pair<std::string, double>>& timing_ms) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const auto& [stage, ms] : timing_ms) json[stage] = ms;
+  return json;
+}
+
+/// \return what printf() prints.
+template <typename... Values>
+std::string formatted(const char* format, Values... values) {
+  std::string text(static_cast<std::size_t>(std::snprintf(nullptr, 0, format, values...)), '\0');
+  std::snprintf(text.data(), text.size() + 1, format, values...);
+  return text;
+}
 
 }  // namespace pcl_symmetry::apps

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "command_line/tool_errors.h"
-#include "io/vertex_welder.h"
+#include "io/exact_coordinates.h"
 
 namespace pcl_symmetry::apps {
 

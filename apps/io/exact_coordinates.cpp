@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "io/answers.h"
 #include "io/cloud_file.h"
-#include "io/formatted.h"
 
 namespace pcl_symmetry::apps {
 

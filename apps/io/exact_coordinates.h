@@ -10,7 +10,11 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
+#include <cstring>
+#include <functional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "pcl_symmetry/core/reflection_plane.h"
@@ -61,5 +65,31 @@ int lengthDigits(const Eigen::Vector3d& shift);
 
 /// \return "x y z" with the given number of significant digits
 std::string spelled(const Eigen::Vector3d& point, int digits);
+
+class VertexWelder {
+public:
+  explicit VertexWelder(ExactShape& shape) : shape_(shape) {}
+
+  /// \return the index of the vertex in the shape.
+  pcl::index_t add(const Eigen::Vector3d& vertex) {
+    const Key key{vertex + Eigen::Vector3d::Zero()};  // 0 in place of -0
+    const auto [entry, is_new] = index_of_.emplace(key, static_cast<pcl::index_t>(shape_.vertices.size()));
+    if (is_new) shape_.vertices.push_back(vertex);
+    return entry->second;
+  }
+
+private:
+  /// Bits are compared, so that values that are no numbers are no trouble.
+  struct Key {
+    Eigen::Vector3d xyz;
+    std::string_view bytes() const { return {reinterpret_cast<const char*>(xyz.data()), sizeof(double) * 3}; }
+    bool operator==(const Key& other) const { return bytes() == other.bytes(); }
+  };
+  struct Hash {
+    std::size_t operator()(const Key& key) const { return std::hash<std::string_view>()(key.bytes()); }
+  };
+  ExactShape& shape_;
+  std::unordered_map<Key, pcl::index_t, Hash> index_of_;
+};
 
 }  // namespace pcl_symmetry::apps

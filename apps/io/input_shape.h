@@ -1,11 +1,15 @@
-/// A file as the tools analyse it: the points of a cloud, points spread over a mesh, or a volume.
+/// A file as the tools analyse it: the points of a cloud, points spread over a mesh, or a volume of CT, MR and other
+/// devices, which VTK reads: NIfTI, NRRD, MetaImage and VTK images.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
-#include "command_line/common_options.h"
+#include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "io/exact_coordinates.h"
 #include "io/shape_input.h"
 #include "pcl_symmetry/core/scalar_grid.h"
 
@@ -35,5 +39,27 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
 
 /// Warns of what the file holds and the shape does not.
 void warnOfLeftOut(const Console& console, const std::string& path, const Shape& shape);
+
+/// The endings of files that loadVolume() reads.
+inline const char* const kVolumeFiles = ".nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd or .vti";
+
+/// \return whether the name ends in one of kVolumeFiles, in capitals or not.
+bool isVolumePath(const std::string& path);
+
+/// A volume in the physical frame of its file: RAS for NIfTI, that of the header otherwise.
+struct Volume {
+  std::shared_ptr<ScalarGrid> grid;
+  std::vector<std::string> left_out;  ///< what the file holds beyond that, such as later times
+};
+
+/// \throws InputError naming the file where it is no volume, or cut off.
+Volume loadVolume(const std::string& path);
+
+// In the module of VTK.
+extern "C" {
+void readVolume(const std::string& path, Volume& volume);
+/// The surface on which the volume has a value (flying edges).
+void contourVolume(const ScalarGrid& grid, double value, ExactShape& surface);
+}
 
 }  // namespace pcl_symmetry::apps

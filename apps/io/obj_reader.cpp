@@ -3,8 +3,8 @@
 #include <charconv>
 #include <limits>
 
+#include "io/exact_coordinates.h"
 #include "io/file_text.h"
-#include "io/vertex_welder.h"
 
 namespace pcl_symmetry::apps {
 

@@ -12,10 +12,10 @@
 #include "command_line/flag_values.h"
 #include "io/cloud_fields.h"
 #include "io/file_text.h"
+#include "io/input_shape.h"
 #include "io/load_module.h"
 #include "io/shape_readers.h"
 #include "io/standard_streams.h"
-#include "io/volume_input.h"
 #include "pictures/drawing.h"
 
 namespace pcl_symmetry::apps {

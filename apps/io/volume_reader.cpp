@@ -20,7 +20,7 @@
 #include <sstream>
 
 #include "command_line/tool_errors.h"
-#include "io/volume_input.h"
+#include "io/input_shape.h"
 #include "pictures/drawing.h"
 #include "pictures/vtk_messages.h"
 

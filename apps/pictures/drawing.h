@@ -8,7 +8,6 @@
 
 #include "pictures/picture.h"
 #include "pictures/raster_image.h"
-#include "pictures/volume_image.h"
 
 namespace pcl_symmetry::apps {
 

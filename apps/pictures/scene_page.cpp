@@ -11,10 +11,14 @@
 #include <vector>
 
 #include "io/shape_output.h"
-#include "pictures/page_parts.h"
 #include "pictures/patch_geometry.h"
 
 namespace pcl_symmetry::apps {
+
+// The parts of a page that are the same for all shapes; made of page.html, three.min.js and viewer.js by CMake.
+extern const char* const kPageHead;     ///< HTML up to the first script
+extern const char* const kPageLibrary;  ///< three.js with its licence
+extern const char* const kPageViewer;   ///< JavaScript
 
 namespace {
 

@@ -9,12 +9,11 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/run_tool.h"
 #include "command_line/tool_errors.h"
+#include "io/answers.h"
 #include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
-#include "io/json_values.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_scene.h"
 #include "pictures/scene_page.h"

@@ -8,8 +8,6 @@
 #include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
-#include "io/formatted.h"
-#include "io/json_values.h"
 
 namespace pcl_symmetry::apps {
 

@@ -12,16 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "bop/isaac_axes.h"
 #include "bop/model_analysis.h"
+#include "bop/models_info.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/input_files.h"
-#include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "io/answers.h"
-#include "io/json_values.h"
 #include "io/shape_file_kinds.h"
 #include "io/shape_output.h"
 

@@ -16,14 +16,11 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/csv.h"
 #include "command_line/input_files.h"
-#include "command_line/run_tool.h"
+#include "command_line/result_files.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
-#include "io/formatted.h"
 #include "io/input_shape.h"
-#include "io/json_values.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_database.h"
 

@@ -10,15 +10,11 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/run_tool.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
-#include "io/formatted.h"
-#include "io/json_values.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/core/symmetry_map.h"
 #include "pcl_symmetry/planar_symmetry_transform_2d.h"
-#include "pictures/contour_input.h"
 #include "pictures/raster_image.h"
 
 namespace {

@@ -1,30 +1,170 @@
 /// The transform mapped back to space: for each point of a cloud and each cell of a volume the greatest symmetry of any
 /// plane, axis or center there.
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/run_on_files.h"
-#include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
+#include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
-#include "io/formatted.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
+#include "pcl_symmetry/axial_symmetry_transform.h"
+#include "pcl_symmetry/core/local_symmetry.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pictures/picture.h"
 #include "pictures/raster_image.h"
-#include "pictures/volume_image.h"
-#include "tools/symmetry_measure.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
+
+struct SymmetryMeasure {
+  std::string of;             ///< planes, axes or centers
+  std::size_t num_tried = 0;  ///< number of these
+  /// The greatest symmetry of what passes through each of 3 x N points, with a number of threads.
+  std::function<std::vector<float>(const Points&, int)> through;
+  std::vector<std::string> lines = {};            ///< the best of these, as printed
+  nlohmann::json best = nlohmann::json::array();  ///< the same as JSON
+  std::vector<AxisLine> axes = {};                ///< the best axes, for pictures
+};
+
+/// What is measured.
+struct MeasureOptions {
+  std::string of = "planes";       ///< planes, axes or centers
+  int fold = -1;                   ///< of axes: order of the turns, 0 = any angle; below 0: 2 to 8 and any angle
+  std::string method = "sampled";  ///< of planes: the estimator, one of kMethodNames
+  double scale = 0.0;              ///< of planes: radius of the window around each point, of the shape's; 0: the whole
+};
+
+constexpr int kMostListed = 5;        // chosen: a screen holds them; half hides axes of a box, twice shows chance
+constexpr double kLeastListed = 0.6;  // D; chosen: half lists axes of any shape, at 1 noise hides true ones
+
+/// Gives a transform what all of them take.
+template <typename Transform>
+void setUp(Transform& transform, const InputShape& input, const CommonOptions& common) {
+  if (common.sigma) transform.setSigma(*common.sigma);
+  transform.setRandomSeed(common.librarySeed());
+  transform.setNumberOfThreads(common.threads);
+  transform.setViewpoint(shifted(common.viewpoint, input.shift()));
+  if (input.volume)
+    transform.setInputVolume(input.volume, input.levels);
+  else
+    transform.setInputCloud(input.points);
+}
+
+template <typename Transform>
+void checkAnswer(const Transform& transform, const InputShape& input) {
+  if (!transform.getReason().empty()) throw InputError(input.path + ": " + transform.getReason());
+}
+
+SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
+  PlanarSymmetryTransform<pcl::PointXYZ> transform;
+  transform.setGridSize(common.grid);
+  transform.setMethod(methodNamed(options.method));
+  setUp(transform, input, common);
+  const auto map = std::make_shared<const SymmetryMap>(transform.compute());
+  checkAnswer(transform, input);
+  if (options.scale > 0.0) {
+    LocalSymmetryOptions local;
+    local.scale = options.scale * map->grid.radius();
+    local.seed = common.librarySeed();
+    return {"planes", static_cast<std::size_t>(local.num_directions),
+            [edt = transform.getDistanceTransform(), local](const Points& points, int threads) mutable {
+              local.num_threads = threads;
+              return localSymmetry(*edt, points, local);
+            }};
+  }
+  return {"planes", map->values.size(),
+          [map](const Points& points, int threads) { return pointSymmetry(*map, points, threads); }};
+}
+
+SymmetryMeasure ofAxes(const InputShape& input, const CommonOptions& common, int fold) {
+  AxialSymmetryTransform<pcl::PointXYZ> transform;
+  // A map of axes has one dimension more: half the cells, a quarter of the angles theta.
+  const int num_phi = std::max(2, common.grid / 2 * 2);
+  transform.setNumCells(std::max(8, common.grid / 2));
+  transform.setMapSize(std::max(1, common.grid / 4), num_phi, std::max(1, common.grid / 2));
+  if (fold >= 0) transform.setFolds({fold});
+  setUp(transform, input, common);
+  const auto map = std::make_shared<const AxisMap>(transform.compute());
+  checkAnswer(transform, input);
+  SymmetryMeasure measure{"axes", map->greatest.size(), [map](const Points& points, int threads) {
+                            return axialPointSymmetry(*map, points, threads);
+                          }};
+  for (const AxisMaximum& maximum : transform.getAxes(kMostListed, kLeastListed)) {
+    const Eigen::Vector3d d = maximum.axis.direction();
+    const Eigen::Vector3d local = maximum.axis.projection(map->grid.center());
+    const Eigen::Vector3d p = shiftedBack(local, input.shift());
+    const std::string angles = maximum.fold == 0 ? "any angle" : "fold " + std::to_string(maximum.fold);
+    measure.lines.push_back(formatted("axis %9.6f %9.6f %9.6f through %.6g %.6g %.6g  %s  D %.3f", d.x(), d.y(), d.z(),
+                                      p.x(), p.y(), p.z(), angles.c_str(), maximum.value));
+    measure.best.push_back({{"point", {p.x(), p.y(), p.z()}},
+                            {"direction", {d.x(), d.y(), d.z()}},
+                            {"fold", maximum.fold},
+                            {"symmetry", maximum.value},
+                            {"folds", map->folds},
+                            {"symmetry_of_folds", maximum.values}});
+    AxisLine line;
+    line.point = local;
+    line.direction = d;
+    line.color = distinctColor(measure.axes.size());
+    measure.axes.push_back(line);
+  }
+  return measure;
+}
+
+SymmetryMeasure ofCenters(const InputShape& input, const CommonOptions& common) {
+  AxialSymmetryTransform<pcl::PointXYZ> transform;
+  transform.setNumCells(common.grid);
+  setUp(transform, input, common);
+  const auto map = std::make_shared<const CenterMap>(transform.computeCenters(std::min(512, common.grid)));
+  checkAnswer(transform, input);
+  const auto through = [map](const Points& points, int) {
+    std::vector<float> values;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      values.push_back(static_cast<float>((*map)(points.col(i).cast<double>())));
+    return values;
+  };
+  SymmetryMeasure measure{"centers", map->values.size(), through};
+  const Eigen::Vector3d p = shiftedBack(map->center(map->strongest()), input.shift());
+  const double value = map->values[map->strongest()];
+  measure.lines.push_back(formatted("center %.6g %.6g %.6g  D %.3f", p.x(), p.y(), p.z(), value));
+  measure.best.push_back({{"point", {p.x(), p.y(), p.z()}}, {"symmetry", value}});
+  return measure;
+}
+
+/// The measure of equation 1, PRST = sqrt((1 + D) / 2), in place of D. Estimates of D beyond [0, 1] count as its ends,
+/// so that values lie within [0.707, 1].
+SymmetryMeasure byEquation1(SymmetryMeasure measure) {
+  measure.through = [of_d = std::move(measure.through)](const Points& points, int threads) {
+    std::vector<float> values = of_d(points, threads);
+    for (float& value : values) value = std::sqrt(0.5f * (1.0f + std::clamp(value, 0.0f, 1.0f)));
+    return values;
+  };
+  return measure;
+}
+
+/// \throws InputError where the input holds no answer.
+SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
+  return namingFile(input.path, [&] {
+    if (options.of == "axes") return ofAxes(input, common, options.fold);
+    return options.of == "centers" ? ofCenters(input, common) : ofPlanes(input, common, options);
+  });
+}
 
 const Eigen::Vector3d kSurfaceColor(0.84, 0.37, 0.0);  // vermilion: apart from every grey, for all eyes
 
@@ -73,12 +213,12 @@ pcl::PCLPointCloud2 withIntensity(pcl::PCLPointCloud2 cloud, const std::vector<f
 }
 
 /// A box of cells around the shape.
-struct Volume {
+struct CellBox {
   Eigen::Vector3d origin;  ///< center of cell (0, 0, 0), input frame
   double cell_size;
   Eigen::Array3i size;
 
-  Volume(const Points& points, int num_cells) {
+  CellBox(const Points& points, int num_cells) {
     // share of the longest edge, on each side; chosen: twice wastes cells, half cuts planes
     constexpr double kMargin = 0.1;
     const Eigen::Vector3d low = points.rowwise().minCoeff().cast<double>(),
@@ -92,7 +232,7 @@ struct Volume {
   Eigen::Vector3d center(int x, int y, int z) const { return origin + cell_size * Eigen::Vector3d(x, y, z); }
 };
 
-void writeSymmetry(const SymmetryMeasure& map, const Volume& volume, const Eigen::Vector3d& shift, int threads,
+void writeSymmetry(const SymmetryMeasure& map, const CellBox& volume, const Eigen::Vector3d& shift, int threads,
                    const std::string& path) {
   Points centers(3, static_cast<Eigen::Index>(volume.size.cast<std::int64_t>().prod()));
   Eigen::Index i = 0;
@@ -109,7 +249,7 @@ struct Slice {
   Eigen::Vector3d middle;
   double step;  ///< edge of a pixel, input units
 
-  Slice(const Volume& volume, int axis_seen_along, int num_pixels)
+  Slice(const CellBox& volume, int axis_seen_along, int num_pixels)
       : across((axis_seen_along + 1) % 3), up((axis_seen_along + 2) % 3), axis(axis_seen_along), size(num_pixels) {
     const Eigen::Vector3d extent = volume.cell_size * volume.size.cast<double>();
     middle = volume.origin + 0.5 * (extent.array() - volume.cell_size).matrix();
@@ -144,7 +284,7 @@ struct Slice {
   }
 };
 
-RasterImage drawSlices(const SymmetryMeasure& map, const Volume& volume, const Points& points, int size, int threads) {
+RasterImage drawSlices(const SymmetryMeasure& map, const CellBox& volume, const Points& points, int size, int threads) {
   std::vector<Slice> slices;
   std::vector<std::vector<float>> symmetry;
   float least = std::numeric_limits<float>::max(), greatest = 0.0f;
@@ -200,7 +340,7 @@ void drawPoints(const SymmetryMeasure& map, const MappedCloud& mapped, const std
 /// What is written of the space around the points.
 void writeSpace(const MapOptions& options, const FileJob& job, const InputShape& input, const SymmetryMeasure& map,
                 const Points& points) {
-  const Volume volume(points, options.cells);
+  const CellBox volume(points, options.cells);
   if (options.volume_path) {
     const std::string path = job.output(*options.volume_path);
     Step writing(job.console(), "Writing " + path);

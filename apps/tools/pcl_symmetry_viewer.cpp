@@ -6,7 +6,6 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/run_tool.h"
 #include "command_line/tool_errors.h"
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"

@@ -4,7 +4,6 @@
 #include <pcl/conversions.h>
 
 #include "io/answers.h"
-#include "io/formatted.h"
 #include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_alignment.h"

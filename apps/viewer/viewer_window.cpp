@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "io/answers.h"
-#include "io/formatted.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pictures/picture_actors.h"
 #include "viewer/isp_frames.h"

@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 
-#include "bop/isaac_axes.h"
 #include "bop/models_info.h"
 #include "command_line/tool_errors.h"
 #include "fuzz/byte_source.h"

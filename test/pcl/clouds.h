@@ -1,6 +1,7 @@
-/// The synthetic shapes and scans as PCL clouds.
+/// The synthetic shapes and scans as PCL clouds, and what PCL's classes say of wrong parameters.
 #pragma once
 
+#include <pcl/exceptions.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "shapes/complaint.h"
 #include "shapes/scans.h"
 
 namespace pcl_symmetry::test {
@@ -70,6 +72,12 @@ inline std::vector<std::pair<std::string, pcl::PointCloud<pcl::PointXYZ>::Ptr>> 
   clouds.emplace_back("19 distinct points", few);
   clouds.emplace_back("a line", line);
   return clouds;
+}
+
+/// \return what a class of PCL says of wrong parameters.
+template <typename Body>
+std::string messageOf(const Body& body) {
+  return complaintOf<pcl::BadArgumentException>(body);
 }
 
 }  // namespace pcl_symmetry::test

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/base/random.h"
+#include "pcl/clouds.h"
 #include "pcl_symmetry/symmetry_database.h"
 
 namespace pcl_symmetry::test {
@@ -35,15 +36,7 @@ inline Cloud rodOnBox(const Eigen::Vector3d& half, double rod, const Eigen::Isom
 }
 
 inline Cloud ball() {
-  Cloud cloud;
-  RandomStream random(9);
-  while (cloud.size() < 5000) {
-    const Eigen::Vector3d x = Eigen::Vector3d::NullaryExpr([&] { return 2.0 * random.uniform() - 1.0; });
-    if (x.norm() > 1.0 || x.norm() < 0.1) continue;
-    cloud.push_back({});
-    cloud.back().getVector3fMap() = x.normalized().cast<float>();
-  }
-  return cloud;
+  return *toCloud(sphere(5000, 9));
 }
 
 /// The points that a scanner there sees.

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "pcl/clouds.h"
-#include "pcl/error_message.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pcl/error_message.h"
+#include "pcl/clouds.h"
 #include "pcl/pcl_meshes.h"
 
 namespace pcl_symmetry {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "pcl/error_message.h"
+#include "pcl/clouds.h"
 
 namespace pcl_symmetry {
 namespace {

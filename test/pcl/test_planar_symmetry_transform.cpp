@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "pcl/clouds.h"
-#include "pcl/error_message.h"
 #include "pcl/pcl_meshes.h"
 
 namespace pcl_symmetry {

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "pcl/clouds.h"
-#include "pcl/error_message.h"
 #include "pcl/pcl_meshes.h"
 
 namespace {

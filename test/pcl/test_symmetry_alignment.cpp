@@ -4,7 +4,6 @@
 
 #include "pcl/clouds.h"
 #include "pcl/counting_search.h"
-#include "pcl/error_message.h"
 #include "shapes/scans.h"
 
 namespace pcl_symmetry {

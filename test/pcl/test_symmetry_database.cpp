@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl/error_message.h"
+#include "pcl/clouds.h"
 #include "pcl/kinds.h"
 #include "recognition/model_store.h"
 #include "recognition/sqlite_connection.h"

@@ -11,7 +11,6 @@
 
 #include "pcl/clouds.h"
 #include "pcl/counting_search.h"
-#include "pcl/error_message.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_detection.h"
 #include "shapes/found_planes.h"

@@ -8,7 +8,6 @@
 
 #include "pcl/clouds.h"
 #include "pcl/counting_search.h"
-#include "pcl/error_message.h"
 #include "pcl/pcl_meshes.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "shapes/meshes.h"

@@ -9,12 +9,10 @@
 
 #include "core/base/random.h"
 #include "pcl/clouds.h"
-#include "pcl/error_message.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "shapes/found_planes.h"
 #include "shapes/scans.h"
-#include "shapes/table.h"
 
 namespace pcl_symmetry {
 namespace {

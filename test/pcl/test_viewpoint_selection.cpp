@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "pcl/clouds.h"
-#include "pcl/error_message.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace pcl_symmetry {

@@ -16,7 +16,7 @@
 
 #include "io/shape_input.h"
 #include "pcl/clouds.h"
-#include "shapes/table.h"
+#include "shapes/scans.h"
 #include "tools/tool_run.h"
 
 namespace {

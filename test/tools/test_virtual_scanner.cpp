@@ -18,17 +18,6 @@ using namespace pcl_symmetry::apps;
 
 using pcl_symmetry::test::boxMesh;
 
-/// \return where the ray enters the box, in multiples of the direction; infinite if it misses (slab method).
-double entryInto(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  double enter = 0, leave = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    const double a = (box.min()[k] - origin[k]) / direction[k], b = (box.max()[k] - origin[k]) / direction[k];
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
-  }
-  return enter <= leave ? enter : std::numeric_limits<double>::infinity();
-}
-
 Eigen::Vector3d positionOf(const pcl::PointXYZ& point) {
   return point.getVector3fMap().cast<double>();
 }
@@ -61,7 +50,7 @@ TEST_F(BoxScan, EveryPixelSeesTheFirstSurfaceOnItsRay) {
                                         1);
         const Eigen::Vector3d origin = scan.T_scan_sensor.translation();
         const Eigen::Vector3d ray = scan.T_scan_sensor.linear() * in_sensor;
-        const double entry = entryInto(box_, origin, ray);
+        const double entry = pcl_symmetry::test::Block{center_.cast<double>(), half_.cast<double>()}.hit(origin, ray);
         const pcl::PointXYZ& point = scan.cloud->at(column, row);
         ASSERT_EQ(std::isfinite(point.x), std::isfinite(entry)) << column << " " << row;
         if (!std::isfinite(entry)) continue;

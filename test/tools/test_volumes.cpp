@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/volume_input.h"
+#include "io/input_shape.h"
 #include "pictures/raster_image.h"
 #include "tools/tool_run.h"
 

@@ -1,11 +1,18 @@
-/// Bodies of revolution and spheres, told from polygons and from bodies with a handle.
+/// Bodies of revolution, spheres and regular polygons, told from each other and from bodies with a handle.
 #include "core/detection/plane_families.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
+#include "core/detection/cloud_subset.h"
+#include "core/detection/fold_spectrum.h"
+#include "core/detection/plane_lattice.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "shapes/counting_search.h"
+#include "shapes/shapes.h"
 #include "shapes/turning_shapes.h"
 
 namespace {
@@ -155,6 +162,170 @@ TEST(Families, PlanesComeSinglyWhereFamiliesAreOff) {
   const Detection round = detectPlanes(sphere(5000, 1).cloud(), options);
   EXPECT_TRUE(round.centers.empty());
   EXPECT_GE(round.planes.size(), 3u);
+}
+
+const Line3d kPolygonLine(Eigen::Vector3d(0.1, -0.05, 0.2), Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
+
+std::vector<ReflectionPlane> planesAt(const std::vector<double>& places, int fold) {
+  const PlaneLattice lattice{kPolygonLine, fold, 0.37, 0};
+  std::vector<ReflectionPlane> planes;
+  for (const double k : places) planes.push_back(lattice.plane(k));
+  return planes;
+}
+
+bool holds(const PlaneLattice& lattice, const ReflectionPlane& plane) {
+  for (int k = 0; k < lattice.fold; ++k)
+    if (lattice.plane(k).angleTo(plane) < 0.01 &&
+        std::abs(std::abs(lattice.plane(k).offset()) - std::abs(plane.offset())) < 0.01)
+      return true;
+  return false;
+}
+
+/// The wall of a wheel: a radius of 1 + depth cos(num_teeth angle), 0.6 high, with Gaussian noise. Where \p thinned,
+/// density falls to a quarter from one side to the other.
+Points wheel(int num_teeth, double depth, double noise, bool thinned, std::uint64_t seed, int num_points = 10'000) {
+  RandomStream random(seed);
+  Points points(3, num_points);
+  for (Eigen::Index i = 0; i < num_points;) {
+    const double angle = 2.0 * kPi * random.uniform(), r = 1.0 + depth * std::cos(num_teeth * angle);
+    const Eigen::Vector3d x(r * std::cos(angle), r * std::sin(angle), 0.6 * random.uniform());
+    if (thinned && random.uniform() > 0.625 + 0.375 * x.x()) continue;
+    points.col(i++) = (x + noise * Eigen::Vector3d(gaussian(random), gaussian(random), gaussian(random))).cast<float>();
+  }
+  return points;
+}
+
+std::size_t numRight(const Detection& detection, int num_teeth) {
+  const auto right = [&](const SymmetryPlane& plane) {
+    if (plane.kind != PlaneKind::Symmetry) return false;
+    if (std::abs(plane.normal().z()) > 0.999) return std::abs(std::abs(plane.offset()) - 0.3) < 0.02;
+    const double angle = std::atan2(plane.normal().y(), plane.normal().x()) + 0.5 * kPi, step = kPi / num_teeth;
+    return std::abs(plane.normal().z()) < 0.02 && std::abs(plane.offset()) < 0.02 &&
+           std::abs(std::remainder(angle, step)) < 0.02;
+  };
+  return static_cast<std::size_t>(std::count_if(detection.planes.begin(), detection.planes.end(), right));
+}
+
+DetectionOptions manyPlanes() {
+  DetectionOptions options;
+  options.max_planes = 64;
+  options.num_threads = 1;
+  return options;
+}
+
+TEST(PlaneLattice, AFewPlanesOfAPolygonTellTheOthers) {
+  const auto planes = planesAt({0, 3, 7, 8, 13, 14}, 17);
+  const auto lattice = findLattice(planes);
+  ASSERT_TRUE(lattice);
+  EXPECT_EQ(lattice->fold, 17);
+  EXPECT_EQ(lattice->num_planes, 6);
+  for (const ReflectionPlane& plane : planesAt({0, 1, 2, 5, 11, 16}, 17)) EXPECT_TRUE(holds(*lattice, plane));
+  EXPECT_FALSE(holds(*lattice, planesAt({0.5}, 17)[0]));
+}
+
+TEST(PlaneLattice, APlaneAcrossTheLineDoesNotMatter) {
+  auto planes = planesAt({0, 1, 2, 4, 6}, 7);
+  planes.insert(planes.begin(), ReflectionPlane(kPolygonLine.direction(), 0.4));
+  const auto lattice = findLattice(planes);
+  ASSERT_TRUE(lattice);
+  EXPECT_EQ(lattice->fold, 7);
+}
+
+TEST(PlaneLattice, PlanesAtRandomAnglesHaveNone) {
+  RandomStream random(3);
+  int num_found = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<double> places;
+    for (int k = 0; k < 8; ++k) places.push_back(random.uniform());
+    num_found += findLattice(planesAt(places, 1)) ? 1 : 0;
+  }
+  EXPECT_LE(num_found, 1);
+}
+
+TEST(PlaneLattice, FewPlanesSayNothing) {
+  EXPECT_FALSE(findLattice({}));
+  EXPECT_FALSE(findLattice(planesAt({0, 1, 2}, 5)));
+}
+
+TEST(Polygons, AllPlanesOfManyFoldsAreFound) {
+  for (const int n : {19, 24}) {
+    const Detection found = detectPlanes(wheel(n, 0.08, 0.0, false, 1), manyPlanes());
+    EXPECT_EQ(numRight(found, n), static_cast<std::size_t>(n) + 1) << n;
+    EXPECT_TRUE(found.axes.empty());
+  }
+}
+
+TEST(Polygons, NoiseAndUnevenDensityLeaveThem) {
+  for (const bool thinned : {false, true}) {
+    const Detection found = detectPlanes(wheel(12, 0.12, 0.03, thinned, 2), manyPlanes());
+    EXPECT_EQ(numRight(found, 12), 13u) << (thinned ? "thinned" : "even");
+    EXPECT_EQ(found.planes.size(), 13u);
+    for (const SymmetryPlane& plane : found.planes) EXPECT_EQ(plane.point_support.size(), 10'000u);
+  }
+}
+
+TEST(Polygons, ARoundWallHasAnAxisInNoiseAndUnevenDensity) {
+  for (const bool thinned : {false, true}) {
+    const Detection found = detectPlanes(wheel(1, 0.0, 0.03, thinned, 3), manyPlanes());
+    ASSERT_EQ(found.axes.size(), 1u) << (thinned ? "thinned" : "even");
+    EXPECT_GT(std::abs(found.axes[0].direction.z()), std::cos(1.5 * kDegree));
+  }
+}
+
+/// Of a noisy cloud that is thinner on one side, fewer points decide: the search of the user finds these among all.
+TEST(Polygons, AGivenSearchIsAskedWhereTheDensityIsUneven) {
+  AskedSearch asked;
+  const Points points = wheel(12, 0.12, 0.03, true, 2);
+  PlaneInput input(points);
+  input.make_search = asked.make();
+  const Detection found = detectPlanes(input, manyPlanes());
+  EXPECT_EQ(numRight(found, 12), 13u);
+  EXPECT_EQ(asked.num_made, 1);
+  EXPECT_GT(asked.num_queries, 100'000);
+}
+
+/// Rows of the file that lie in order must not decide: a wheel whose points are sorted is the same wheel.
+TEST(Polygons, TheOrderOfThePointsDoesNotMatter) {
+  Points sorted = wheel(1, 0.0, 0.03, false, 4, 6000);
+  std::vector<int> order(static_cast<std::size_t>(sorted.cols()));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return sorted(0, a) < sorted(0, b); });
+  Points along(3, sorted.cols());
+  for (std::size_t i = 0; i < order.size(); ++i) along.col(static_cast<Eigen::Index>(i)) = sorted.col(order[i]);
+  EXPECT_EQ(detectPlanes(along, manyPlanes()).axes.size(), 1u);
+}
+
+TEST(EvenDensity, LeavesEvenCloudsAloneAndEvensOthers) {
+  const auto keptOf = [](const Points& points) {
+    const GaussianEdt edt(points);
+    return evenlyDense(NormalizedCloud(points, edt, nullptr, nullptr, 1), 1);
+  };
+  EXPECT_EQ(keptOf(wheel(12, 0.12, 0.03, false, 5)).size(), 10'000u);
+  const Points thinned = wheel(12, 0.12, 0.03, true, 5);
+  std::size_t dense = 0, thin = 0;
+  for (const int i : keptOf(thinned)) (thinned(0, i) > 0.0f ? dense : thin) += 1;
+  const auto all_dense = static_cast<double>((thinned.row(0).array() > 0.0f).count());
+  EXPECT_GT(all_dense / (10'000.0 - all_dense), 1.8);
+  EXPECT_LT(static_cast<double>(dense) / static_cast<double>(thin), 1.3);
+}
+
+TEST(EvenDensity, FewPointsStay) {
+  Points few = Points::Random(3, 30);
+  const GaussianEdt edt(few);
+  EXPECT_EQ(evenlyDense(NormalizedCloud(few, edt, nullptr, nullptr, 1), 1).size(), 30u);
+}
+
+TEST(FoldSpectrum, ToldFromARoundBody) {
+  const auto foldOf = [](const Points& points) {
+    const GaussianEdt edt(points);
+    const NormalizedCloud cloud(points, edt, nullptr, nullptr, 1);
+    const Eigen::Vector3d middle = (Eigen::Vector3d(0.0, 0.0, 0.3) - cloud.center) / cloud.scale;
+    const auto lattice = latticeBySpectrum(cloud, cloud.points, Line3d(middle, Eigen::Vector3d::UnitZ()), 1);
+    return lattice ? lattice->fold : 0;
+  };
+  for (const int n : {3, 7, 16}) EXPECT_EQ(foldOf(wheel(n, 0.1, 0.04, false, 6)), n);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(foldOf(wheel(1, 0.0, 0.04, false, seed)), 0);
+  EXPECT_EQ(foldOf(wheel(2, 0.2, 0.04, false, 7)), 0) << "two planes are no polygon";
 }
 
 }  // namespace

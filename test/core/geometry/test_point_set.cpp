@@ -1,3 +1,4 @@
+/// Sets of points, the greatest distance in them, and their subsets.
 #include "pcl_symmetry/core/point_set.h"
 
 #include <gtest/gtest.h>
@@ -5,8 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <stdexcept>
 
+#include "core/base/random.h"
+#include "core/geometry/answerable_points.h"
 #include "core/geometry/diameter.h"
+#include "core/geometry/distinct_points.h"
+#include "core/geometry/spread_subset.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -100,6 +107,133 @@ TEST(FarthestPair, IsTheDiameterOfMostShapesAndNeverMuchLess) {
   EXPECT_GE(farthestPair(round), diameter(round) / std::sqrt(3.0));
   EXPECT_EQ(farthestPair(Points(3, 0)), 0.0);
   EXPECT_EQ(farthestPair(Points::Ones(3, 100)), 0.0);
+}
+
+TEST(DistinctPoints, KeepsTheFirstCopyOfEachPositionInOrder) {
+  const Points originals = asymmetricBlob(500, 3).cloud();
+  RandomStream random(5);
+  Points all(3, 3000);
+  std::vector<int> first_at(originals.cols(), -1), expected_of, kept;
+  for (Eigen::Index i = 0; i < all.cols(); ++i) {
+    const auto k = static_cast<int>(random.below(originals.cols()));
+    all.col(i) = originals.col(k);
+    if (first_at[k] < 0) {
+      first_at[k] = static_cast<int>(kept.size());
+      kept.push_back(k);
+    }
+    expected_of.push_back(first_at[k]);
+  }
+  const DistinctPoints distinct(all);
+  EXPECT_EQ(distinct.index_of, expected_of);
+  ASSERT_EQ(distinct.points.cols(), static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    EXPECT_EQ(distinct.points.col(static_cast<Eigen::Index>(i)), originals.col(kept[i]));
+}
+
+TEST(DistinctPoints, TakesBothZerosForOne) {
+  Points all = Points::Zero(3, 3);
+  all(1, 1) = -0.0f;
+  all(2, 2) = 1.0f;
+  const DistinctPoints distinct(all);
+  EXPECT_EQ(distinct.index_of, (std::vector<int>{0, 0, 1}));
+  EXPECT_EQ(distinct.points.cols(), 2);
+}
+
+TEST(DistinctPoints, LeavesDifferentPointsAlone) {
+  const Points points = asymmetricBlob(2000, 4).cloud();
+  const DistinctPoints distinct(points);
+  EXPECT_EQ(distinct.points, points);
+  EXPECT_EQ(DistinctPoints(Points(3, 0)).points.cols(), 0);
+}
+
+/// Points of a line segment of length 2 in a random pose.
+Points line(int num_points, std::uint64_t seed, const Eigen::Vector3d& middle = Eigen::Vector3d::Zero()) {
+  RandomStream random(seed);
+  const Eigen::Vector3d direction = randomDirection(random);
+  Points points(3, num_points);
+  for (int i = 0; i < num_points; ++i) points.col(i) = (middle + symmetric(random) * direction).cast<float>();
+  return points;
+}
+
+TEST(WhyUnanswerable, CountsDistinctPoints) {
+  const Points twenty = box(20, Sampling::Random, 1).cloud();
+  EXPECT_EQ(whyUnanswerable(twenty), "");
+  EXPECT_EQ(whyUnanswerable(twenty.leftCols(19)), "19 distinct points, at least 20 are needed");
+  EXPECT_EQ(whyUnanswerable(twenty.leftCols(12).replicate(1, 100)), "12 distinct points, at least 20 are needed");
+  EXPECT_EQ(whyUnanswerable(Points::Constant(3, 1000, -1e9f)), "1 distinct point, at least 20 are needed");
+  EXPECT_EQ(whyUnanswerable(Points(3, 0)), "0 distinct points, at least 20 are needed");
+}
+
+TEST(WhyUnanswerable, KnowsOnePlace) {
+  // Coordinates of 1e9 are multiples of 64: these points differ by the last bit alone.
+  Points points(3, 27);
+  for (int i = 0; i < 27; ++i)
+    points.col(i) = Eigen::Vector3f::Constant(1e9f) + 64.0f * Eigen::Vector3f(i % 3, i / 3 % 3, i / 9);
+  EXPECT_EQ(whyUnanswerable(points), "all points are at one position, up to the rounding of their coordinates");
+}
+
+TEST(WhyUnanswerable, KnowsLinesUpToRounding) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Points points = line(100, seed);
+    for (const float scale : {1e-12f, 1.0f, 1e12f})
+      EXPECT_EQ(whyUnanswerable(points * scale), "all points lie on one line") << seed << ", scale " << scale;
+    for (const double distance : {10.0, 1e3, 1e5})
+      EXPECT_EQ(whyUnanswerable(line(100, seed, {distance, -distance, 0.3 * distance})), "all points lie on one line")
+          << seed << ", " << distance << " away";
+  }
+}
+
+TEST(WhyUnanswerable, LeavesThinThingsAlone) {
+  // A millionth of the length of 2 is 2e-6: one point 1e-5 off the line makes it more than a line.
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Points points = line(100, seed);
+    const Eigen::Vector3f along = points.col(0) - points.col(1);
+    points.col(50) += 1e-5f * along.unitOrthogonal();
+    EXPECT_EQ(whyUnanswerable(points), "") << seed;
+  }
+  EXPECT_EQ(whyUnanswerable(box({1.0, 0.6, 0.0}, 100, Sampling::Random, 2).cloud()), "");
+}
+
+TEST(WhyUnanswerable, RefusesValuesThatAreNotFinite) {
+  for (const float value : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    for (const int num_points : {1, 100}) {
+      Points points = box(num_points, Sampling::Random, 3).cloud();
+      points(2, num_points - 1) = value;
+      EXPECT_THROW(whyUnanswerable(points), std::invalid_argument) << num_points;
+    }
+  }
+}
+
+TEST(SpreadSubset, KeepsDifferentPointsAndNamesOneBesideEach) {
+  const Points points = moved(box(20'000, Sampling::Random, 1), randomPose(2)).cloud();
+  const SpreadSubset subset = spreadSubset(points, 3000, 1);
+  EXPECT_EQ(subset.kept.size(), 3000u);
+  EXPECT_EQ(std::set<int>(subset.kept.begin(), subset.kept.end()).size(), 3000u);
+  ASSERT_EQ(subset.beside.size(), 20'000u);
+  const auto [least, most] = std::minmax_element(subset.beside.begin(), subset.beside.end());
+  EXPECT_GE(*least, 0);
+  EXPECT_LT(*most, 3000);
+  // Every kept point stands beside itself.
+  for (std::size_t k = 0; k < subset.kept.size(); ++k)
+    EXPECT_EQ(subset.beside[static_cast<std::size_t>(subset.kept[k])], static_cast<int>(k));
+}
+
+TEST(SpreadSubset, KeepsTheShareOfEachSide) {
+  // Nine of ten points lie above: chance would keep 200 +- 13 of 2000 below.
+  Points points(3, 20'000);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const auto x = static_cast<float>(i % 141) / 141.0f, y = static_cast<float>(i / 141) / 142.0f;
+    points.col(i) << x, y, i % 10 == 0 ? -1.0f : 1.0f;
+  }
+  const SpreadSubset subset = spreadSubset(points, 2000, 3);
+  const auto below = std::count_if(subset.kept.begin(), subset.kept.end(), [&](int i) { return points(2, i) < 0.0f; });
+  EXPECT_NEAR(static_cast<double>(below), 200.0, 10.0);
+}
+
+TEST(SpreadSubset, OfPointsAtOnePlaceOrOnALine) {
+  EXPECT_EQ(spreadSubset(Points::Ones(3, 100), 10, 1).kept.size(), 10u);
+  const Points line = Eigen::Vector3f(1.0f, 2.0f, 2.0f) * Eigen::RowVectorXf::LinSpaced(1001, -1.0f, 1.0f);
+  EXPECT_EQ(spreadSubset(line, 100, 1).kept.size(), 100u);
 }
 
 }  // namespace

@@ -1,14 +1,22 @@
-/// Normals of a surface, and the axis or center that they point to.
+/// Normals of surfaces, directions spread and turned, and principal axes.
 #include "core/geometry/surface_normals.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
+#include "core/geometry/axis_rotations.h"
+#include "core/geometry/directions.h"
+#include "core/geometry/principal_axes.h"
 #include "core/geometry/revolution_of_normals.h"
+#include "core/geometry/thin_shape.h"
+#include "core/geometry/viewing_frame.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry {
@@ -125,6 +133,134 @@ TEST(CenterOfNormals, IsThatOfACap) {
     cap.samples.push_back(i);
   }
   EXPECT_LT((centerOfNormals(cap.points, cap.normals, cap.samples) - center).norm(), 1e-5);
+}
+
+TEST(PrincipalAxes, AreThoseOfTheBox) {
+  // Mirrored samples have no covariance between the box's axes beyond rounding. Variance along x of a surface sample
+  // falls with the half extents.
+  for (std::uint64_t pose = 0; pose < 3; ++pose) {
+    const Eigen::Isometry3d motion = randomPose(pose);
+    const PrincipalAxes axes = principalAxes(moved(box(4000, Sampling::Mirrored, 1), motion).cloud());
+    EXPECT_LT((axes.center - motion.translation()).norm(), 1e-6);
+    EXPECT_NEAR(axes.axes.determinant(), 1.0, 1e-12);
+    EXPECT_LT((axes.axes.transpose() * axes.axes - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(axes.axes.col(i).dot(motion.linear().col(i))), 1.0, 1e-10) << i;
+    EXPECT_GT(axes.variances[0], axes.variances[1]);
+    EXPECT_GT(axes.variances[1], axes.variances[2]);
+  }
+}
+
+TEST(PrincipalAxes, VariancesAreThoseOfTheDefinition) {
+  const Points points = (Points(3, 4) << 2, -2, 0, 0, 0, 0, 1, -1, 3, 3, 3, 3).finished();
+  const PrincipalAxes axes = principalAxes(points);
+  EXPECT_LT((axes.center - Eigen::Vector3d(0.0, 0.0, 3.0)).norm(), 1e-15);
+  EXPECT_LT((axes.variances - Eigen::Vector3d(2.0, 0.5, 0.0)).norm(), 1e-14);
+}
+
+TEST(PrincipalAxes, PlanesLieAcrossThemThroughTheCenter) {
+  const PrincipalAxes axes = principalAxes(asymmetricBlob(500, 1).cloud());
+  const auto planes = principalPlanes(axes);
+  ASSERT_EQ(planes.size(), 3u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(std::abs(planes[i].normal().dot(axes.axes.col(i))), 1.0, 1e-14);
+    EXPECT_NEAR(planes[i].signedDistance(axes.center), 0.0, 1e-14);
+  }
+  EXPECT_THROW(principalAxes(Points(3, 0)), std::invalid_argument);
+}
+
+Points boxOf(const Eigen::Vector3f& size) {
+  Points points(3, 1000);
+  RandomStream random(1);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    for (int k = 0; k < 3; ++k) points(k, i) = size[k] * static_cast<float>(random.uniform() - 0.5);
+  return points;
+}
+
+Thinness thinness(const Points& points, double plane_tolerance, double line_tolerance) {
+  return thinnessOf(points, principalAxes(points), plane_tolerance, line_tolerance);
+}
+
+Thinness thinness(const Points& points, double tolerance) {
+  return thinness(points, tolerance, tolerance);
+}
+
+TEST(Thinness, IsThatOfTheSizesBeyondTheTolerance) {
+  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.5f}), 0.02), Thinness::Solid);
+  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.03f}), 0.02), Thinness::Sheet);
+  EXPECT_EQ(thinness(boxOf({2.0f, 0.02f, 0.02f}), 0.02), Thinness::Line);
+  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.03f}), 0.005), Thinness::Solid) << "another tolerance";
+}
+
+TEST(Thinness, ALineHasAToleranceOfItsOwn) {
+  const Points rod = boxOf({2.0f, 0.03f, 0.03f});
+  EXPECT_EQ(thinness(rod, 0.005, 0.03), Thinness::Line);
+  EXPECT_EQ(thinness(rod, 0.005, 0.005), Thinness::Solid);
+}
+
+TEST(Thinness, AFewPointsBesideDoNotCount) {
+  Points points = boxOf({2.0f, 1.0f, 0.0f});
+  points(2, 500) = 0.5f;
+  EXPECT_EQ(thinness(points, 0.02), Thinness::Sheet);
+}
+
+TEST(GoldenFraction, IsTheFractionalPartOfMultiples) {
+  EXPECT_EQ(goldenFraction(0), 0.0);
+  EXPECT_DOUBLE_EQ(kGoldenSection, 0.5 * (std::sqrt(5.0) - 1.0));
+  for (int k = 1; k < 1000; ++k) EXPECT_NEAR(goldenFraction(k), std::fmod(k * kGoldenSection, 1.0), 1e-12);
+}
+
+TEST(SpiralDirection, CutsTheHalfSphereIntoRingsOfEqualArea) {
+  EXPECT_DOUBLE_EQ(kGoldenAngle, 2.0 * kPi * (1.0 - kGoldenSection));
+  constexpr int kCount = 50;
+  for (int k = 0; k < kCount; ++k) {
+    const Eigen::Vector3d n = spiralDirection(k, kCount, 0.7);
+    EXPECT_NEAR(n.norm(), 1.0, 1e-15);
+    EXPECT_DOUBLE_EQ(n.z(), (k + 0.5) / kCount);
+    EXPECT_NEAR(std::atan2(n.y(), n.x()), 0.7, 1e-12);
+  }
+}
+
+TEST(EvenDirections, LieAboutTheOriginAndApartFromEachOther) {
+  EXPECT_THROW(evenDirections(0), std::invalid_argument);
+  const auto single = evenDirections(1);
+  ASSERT_EQ(single.size(), 1u);
+  EXPECT_NEAR(single[0].norm(), 1.0, 1e-15);
+  for (const int count : {10, 200}) {
+    const auto directions = evenDirections(count);
+    ASSERT_EQ(static_cast<int>(directions.size()), count);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      EXPECT_NEAR(directions[i].norm(), 1.0, 1e-15);
+      if (i > 0) {
+        EXPECT_LT(directions[i].z(), directions[i - 1].z());
+      }
+      sum += directions[i];
+      // A square lattice of this density has its points sqrt(4 pi / count) apart; the spiral keeps three quarters.
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_GT((directions[i] - directions[j]).norm(), 0.75 * std::sqrt(4.0 * kPi / count));
+    }
+    EXPECT_LT(sum.norm() / count, 0.05);
+  }
+}
+
+TEST(AxisRotations, AreTheDifferentRotationsOfTheAxes) {
+  const auto& rotations = axisRotations();
+  EXPECT_EQ(rotations[0], Eigen::Matrix3i::Identity());
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    const Eigen::Matrix3d matrix = rotations[i].cast<double>();
+    EXPECT_TRUE(matrix.isUnitary());
+    EXPECT_NEAR(matrix.determinant(), 1.0, 1e-12);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(rotations[i], rotations[j]);
+  }
+}
+
+TEST(ViewingFrame, IsARotationThatLooksForward) {
+  for (const Eigen::Vector3d& forward : evenDirections(50)) {
+    const Eigen::Matrix3d R = viewingFrame(forward);
+    EXPECT_TRUE((R * R.transpose()).isIdentity(1e-14));
+    EXPECT_NEAR(R.determinant(), 1.0, 1e-14);
+    EXPECT_TRUE((R * forward).isApprox(Eigen::Vector3d::UnitZ(), 1e-14));
+  }
 }
 
 }  // namespace

@@ -1,18 +1,26 @@
-/// Single views are told from everything else by the points alone, and so is where they were taken from.
+/// What a scan tells of its scanner: where it stood, which errors its depths have, and which sides its picture cuts.
 #include "core/scan/viewpoint_inference.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
+#include "core/scan/depth_filter.h"
+#include "core/scan/picture_frame.h"
 #include "core/scan/scan_density.h"
+#include "core/scan/sensor_noise.h"
 #include "core/scan/single_view.h"
+#include "pcl_symmetry/core/visibility.h"
 #include "shapes/scans.h"
+#include "shapes/shapes.h"
 
-namespace pcl_symmetry {
 namespace {
 
-using namespace test;
+using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
 
 const Eigen::Vector3d kElsewhere(0.1, 0.2, 0.3);  // among the points: explains none of the clouds
 
@@ -231,5 +239,199 @@ TEST(ScanDensity, TooFewPointsAndPointsWithoutExtentHaveNoViewpoint) {
   EXPECT_TRUE(std::isinf(ScanDensity(line).unexplained({5.0, 0.0, 0.0})));
 }
 
+constexpr int kWidth = 80, kHeight = 60;
+constexpr double kPixelAngle = 1.0 / 500.0;
+constexpr double kError = 1.5e-3;  // of inverse depths, per metre: 1.5 mm at 1 m, as of structured light
+
+using DepthOf = std::function<double(int u, int v)>;
+
+DepthImage picture(const DepthOf& depth_of) {
+  DepthImage image{kWidth, kHeight, {}, kPixelAngle};
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) image.depths.push_back(static_cast<float>(depth_of(u, v)));
+  return image;
+}
+
+DepthImage noisy(DepthImage image) {
+  RandomStream random(7);
+  for (float& depth : image.depths) depth = static_cast<float>(1.0 / (1.0 / depth + kError * gaussian(random)));
+  return image;
+}
+
+/// A floor that rises towards the back: its inverse depths grow evenly.
+double slanted(int, int v) {
+  return 1.0 / (0.8 + 0.004 * v);
+}
+
+/// Two walls, one 10 cm before the other.
+double step(int u, int) {
+  return u < kWidth / 2 ? 0.9 : 1.0;
+}
+
+double rootMeanSquare(const std::vector<float>& depths, const DepthOf& truth) {
+  double sum = 0.0, count = 0.0;
+  for (int v = 0; v < kHeight; ++v) {
+    for (int u = 0; u < kWidth; ++u) {
+      const double depth = depths[static_cast<std::size_t>(v * kWidth + u)];
+      if (std::isnan(depth)) continue;
+      sum += std::pow(depth - truth(u, v), 2.0);
+      count += 1.0;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+TEST(DepthFilter, FindsTheErrorsOfTheCameraOnSlantedPlanes) {
+  EXPECT_NEAR(inverseDepthError(noisy(picture(slanted))), kError, 0.1 * kError) << "4600 second differences";
+  EXPECT_NEAR(inverseDepthError(noisy(picture(step))), kError, 0.1 * kError) << "an edge is no error";
+  EXPECT_LT(inverseDepthError(picture(slanted)), 1e-5) << "rounding to float";
+  const DepthImage round = picture([](int u, int v) { return 1.0 + 1e-3 * (u * u + v * v); });
+  EXPECT_EQ(inverseDepthError(round), 0.0) << "a shape bends more over more pixels";
+}
+
+TEST(DepthFilter, LeavesAThirdOfTheErrors) {
+  // The mean of 25 pixels has a fifth of the error; weights and the ends of the picture cost some of it.
+  for (const DepthOf& truth : {DepthOf(slanted), DepthOf(step)}) {
+    const DepthImage image = noisy(picture(truth));
+    const FilteredDepths filtered = filterDepths(image, 2, 1);
+    EXPECT_LT(rootMeanSquare(filtered.depths, truth), rootMeanSquare(image.depths, truth) / 3.0);
+    EXPECT_LT(static_cast<double>(filtered.num_flying), 0.03 * kWidth * kHeight)
+        << "1.2 % of normal errors are as great";
+  }
+}
+
+TEST(DepthFilter, TakesFlyingPixelsOut) {
+  DepthImage image = noisy(picture(step));
+  std::vector<std::size_t> flying;
+  for (int v = 0; v < kHeight; ++v) flying.push_back(static_cast<std::size_t>(v * kWidth + kWidth / 2));
+  RandomStream random(3);
+  for (const std::size_t i : flying) image.depths[i] = static_cast<float>(0.93 + 0.04 * random.uniform());
+  const FilteredDepths filtered = filterDepths(image, 2, 1);
+  const auto num_left =
+      std::count_if(flying.begin(), flying.end(), [&](std::size_t i) { return !std::isnan(filtered.depths[i]); });
+  EXPECT_LE(num_left, 0.1 * static_cast<double>(flying.size()));
+}
+
+TEST(DepthFilter, LeavesPicturesWithoutErrorsAsTheyAre) {
+  const DepthImage image = picture(step);
+  const FilteredDepths filtered = filterDepths(image, 2, 1);
+  EXPECT_EQ(filtered.depths, image.depths);
+  EXPECT_EQ(filtered.num_flying, 0u);
+  EXPECT_EQ(filtered.inverse_error, 0.0);
+}
+
+TEST(DepthFilter, PixelsWithoutAPointHaveNone) {
+  DepthImage image = noisy(picture(slanted));
+  image.depths[5] = std::numeric_limits<float>::quiet_NaN();
+  image.depths[6] = std::numeric_limits<float>::infinity();
+  image.depths[7] = -1.0f;
+  const FilteredDepths filtered = filterDepths(image, 2, 1);
+  for (const std::size_t i : {5u, 6u, 7u}) EXPECT_TRUE(std::isnan(filtered.depths[i])) << i;
+  const DepthImage empty = picture([](int, int) { return std::numeric_limits<double>::quiet_NaN(); });
+  EXPECT_EQ(filterDepths(empty, 2, 1).inverse_error, 0.0);
+  EXPECT_EQ(inverseDepthError({1, 1, {1.0f}, kPixelAngle}), 0.0);
+}
+
+TEST(SensorNoise, ResolvesWhatItsErrorsLeave) {
+  const double error = sensorError(noisy(picture(slanted)));
+  EXPECT_GT(error, kError) << "neighbors share a part of it";
+  Visibility::Projection projection = Visibility::Projection::Zero();
+  projection.leftCols<3>() = Eigen::Matrix3d::Identity();
+  const Visibility seen = Visibility(projection, 1, 1, {1.0f}).withDepthErrors(error);
+  Points near(3, 2), far(3, 2);
+  near << 0.0f, 0.1f, 0.0f, 0.0f, 1.0f, 1.0f;
+  far = 2.0f * near;
+  EXPECT_NEAR(resolvedTolerance(near, seen), 2.17 * std::sqrt(2.0) * error, 1e-9);
+  EXPECT_NEAR(resolvedTolerance(far, seen), 4.0 * resolvedTolerance(near, seen), 1e-9);
+}
+
+TEST(DepthFilter, IsTheSameForAnyNumberOfThreads) {
+  const DepthImage image = noisy(picture(slanted));
+  EXPECT_EQ(rootMeanSquare(filterDepths(image, 2, 1).depths, slanted),
+            rootMeanSquare(filterDepths(image, 2, 8).depths, slanted));
+}
+
+constexpr double kPixel = 0.01, kRoll = 0.3;
+
+Eigen::Array2d turned(double x, double y, double roll = kRoll) {
+  return {std::cos(roll) * x - std::sin(roll) * y, std::sin(roll) * x + std::cos(roll) * y};
+}
+
+/// Pixels of a disc of 40 pixels, at most \p right columns to the right of its middle and \p up rows above it.
+std::vector<Eigen::Array2d> disc(int right, int up) {
+  std::vector<Eigen::Array2d> positions;
+  for (int v = -40; v <= up; ++v)
+    for (int u = -40; u <= right; ++u)
+      if (std::hypot(u, v) <= 40.3) positions.push_back(turned(kPixel * u, kPixel * v));
+  return positions;
+}
+
+TEST(FrameSides, ARoundObjectThatIsSeenAsAWholeHasNone) {
+  EXPECT_TRUE(frameSides(disc(40, 40)).empty());
+}
+
+TEST(FrameSides, AreWhereTheLastRowIsAsLongAsTheOnesBefore) {
+  const std::vector<FrameSide> one = frameSides(disc(25, 40));
+  ASSERT_EQ(one.size(), 1u);
+  // The search turns a side by a quarter of a degree at a time, and a row of 60 pixels by that is a quarter of a pixel.
+  EXPECT_NEAR(one[0].offset, 25.5 * kPixel, 0.5 * kPixel);
+  EXPECT_NEAR(one[0].normal.dot(turned(1.0, 0.0).matrix()), 1.0, 1e-3);
+  EXPECT_EQ(frameSides(disc(25, 30)).size(), 2u);
+}
+
+TEST(FrameSides, CutLegsAreEnough) {
+  // Four bars of twelve pixels that leave the picture, below a disc.
+  std::vector<Eigen::Array2d> positions = disc(40, 40);
+  for (int bar = 0; bar < 4; ++bar)
+    for (int v = -70; v < -20; ++v)
+      for (int u = 0; u < 12; ++u) positions.push_back(turned(kPixel * (-33 + 18 * bar + u), kPixel * v));
+  const std::vector<FrameSide> sides = frameSides(positions);
+  ASSERT_EQ(sides.size(), 1u);
+  EXPECT_NEAR(sides[0].normal.dot(turned(0.0, -1.0).matrix()), 1.0, 1e-3);
+}
+
+TEST(FrameSides, PlacesWithoutRowsHaveNone) {
+  std::vector<Eigen::Array2d> positions;
+  RandomStream random(1);
+  for (int i = 0; i < 5000; ++i)
+    if (const Eigen::Array2d p(symmetric(random), symmetric(random)); p.matrix().norm() < 1.0 && p.x() < 0.6)
+      positions.push_back(p);
+  EXPECT_TRUE(frameSides(positions).empty());
+  EXPECT_TRUE(frameSides({}).empty());
+  EXPECT_TRUE(frameSides({{0.0, 0.0}}).empty());
+  EXPECT_TRUE(frameSides(std::vector<Eigen::Array2d>(100, {1.0, 2.0})).empty());
+}
+
+TEST(FrameSides, BeyondThemNothingIsKnown) {
+  // A unit sphere seen from a distance of 4, its picture cut off on the right.
+  const double focal = 200.0;
+  Points points(3, 0);
+  std::vector<Eigen::Vector3f> hits;
+  for (int v = -60; v <= 60; ++v)
+    for (int u = -60; u <= 20; ++u) {
+      const Eigen::Vector3d ray = Eigen::Vector3d(u / focal, v / focal, 1.0).normalized();
+      const double along = 4.0 * ray.z(), sq_half = 1.0 - 16.0 + along * along;
+      if (sq_half > 0.0) hits.push_back(((along - std::sqrt(sq_half)) * ray).cast<float>());
+    }
+  points.resize(3, static_cast<Eigen::Index>(hits.size()));
+  for (std::size_t i = 0; i < hits.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = hits[i];
+  const auto seen = Visibility::fromPoints(points, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(seen);
+  constexpr double kFree = -std::numeric_limits<double>::infinity(), kUnknown = -kFree;
+  for (const double depth : {3.0, 4.0, 9.0}) {
+    const auto at = [&](double u, double v) {
+      return seen->depthBehind(depth * Eigen::Vector3d(u / focal, v / focal, 1.0));
+    };
+    EXPECT_EQ(at(22.0, 0.0), kUnknown) << "right of the cut";
+    EXPECT_EQ(at(80.0, 30.0), kUnknown);
+    EXPECT_EQ(at(-60.0, 0.0), kFree) << "left of the sphere";
+    EXPECT_EQ(at(0.0, 60.0), kFree);
+    EXPECT_EQ(at(0.0, -60.0), kFree);
+    // The same in other units and from another origin.
+    const Visibility other = seen->normalized({1.0, -2.0, 3.0}, 2.5);
+    const Eigen::Vector3d beyond = depth * Eigen::Vector3d(22.0 / focal, 0.0, 1.0);
+    EXPECT_EQ(other.depthBehind((beyond - Eigen::Vector3d(1.0, -2.0, 3.0)) / 2.5), kUnknown);
+  }
+}
+
 }  // namespace
-}  // namespace pcl_symmetry

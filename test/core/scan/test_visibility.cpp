@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "shapes/scans.h"
-#include "shapes/table.h"
 
 namespace {
 

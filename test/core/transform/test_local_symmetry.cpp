@@ -1,15 +1,18 @@
-/// Symmetry within a window around each point.
+/// Symmetry at a scale, and where the space was seen to be free.
 #include "pcl_symmetry/core/local_symmetry.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
+#include "core/transform/free_space.h"
+#include "shapes/scans.h"
 #include "shapes/shapes.h"
 
 namespace {
 
 using namespace pcl_symmetry;
+using namespace pcl_symmetry::test;
 
 LocalSymmetryOptions optionsFor(double scale) {
   LocalSymmetryOptions options;
@@ -48,6 +51,54 @@ TEST(LocalSymmetry, RefusesBadOptionsAndIsTheSameForAnyNumberOfThreads) {
   const std::vector<float> expected = localSymmetry(edt, box, options);
   options.num_threads = 8;
   EXPECT_EQ(localSymmetry(edt, box, options), expected);
+}
+
+const Eigen::Vector3d kViewpoint(0.5, -1.0, -5.0);
+
+TEST(FreeSpace, IsFreeInFrontAndBesideAndNothingBehind) {
+  const Points points = facing(sphere(20'000, 1).cloud(), kViewpoint);
+  const auto seen = Visibility::fromPoints(points, kViewpoint);
+  ASSERT_TRUE(seen);
+  const GaussianEdt edt(points);
+  const std::vector<float> free = freeSpace(edt, *seen);
+  ASSERT_EQ(free.size(), edt.values().size());
+  const Eigen::Vector3d forward = -kViewpoint.normalized();
+  int num_front = 0, num_behind = 0, num_lost = 0, num_wrong = 0;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    ASSERT_GE(free[i], 0.0f);
+    ASSERT_LE(free[i], 1.0f - edt.values()[i]) << "on the surface nothing is free";
+    const Eigen::Vector3d x = edt.cellCenter(i);
+    // The picture is exact to a pixel: cells that lie farther than that from the surface and the silhouette are clear.
+    const double across = (x - x.dot(forward) * forward).norm(), before = -x.dot(forward);
+    if (before > 0.3 && x.norm() > 1.1) {
+      ++num_front;
+      num_lost += free[i] != 1.0f - edt.values()[i] ? 1 : 0;
+    } else if (across < 0.8 && (x.norm() < 0.9 || before < 0.0)) {
+      ++num_behind;
+      num_wrong += free[i] != 0.0f ? 1 : 0;
+    }
+  }
+  EXPECT_GT(num_front, 1000);
+  EXPECT_GT(num_behind, 1000);
+  EXPECT_EQ(num_lost, 0) << "of " << num_front << " cells in front";
+  EXPECT_EQ(num_wrong, 0) << "of " << num_behind << " cells within the sphere and in its shadow";
+  for (const int num_threads : {1, 2, 8}) EXPECT_EQ(freeSpace(edt, *seen, num_threads), free) << num_threads;
+}
+
+TEST(SeenSymmetry, HasTheLimitsThatItShould) {
+  EXPECT_EQ(seenSymmetry(1.0, 0.0), 1.0);
+  EXPECT_EQ(seenSymmetry(0.0, 0.0), 0.0) << "what nobody could see has no merit";
+  EXPECT_EQ(seenSymmetry(0.0, 1.0), 0.0);
+  for (double d = 0.0; d < 1.0; d += 0.1) {
+    for (double f = 0.0; f < 1.0; f += 0.1) {
+      EXPECT_GE(seenSymmetry(d, f), 0.0);
+      EXPECT_LE(seenSymmetry(d, f), 1.0);
+      EXPECT_GT(seenSymmetry(d + 0.1, f), seenSymmetry(d, f));
+      if (d > 0.0) {
+        EXPECT_LT(seenSymmetry(d, f + 0.1), seenSymmetry(d, f));
+      }
+    }
+  }
 }
 
 }  // namespace

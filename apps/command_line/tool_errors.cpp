@@ -1,4 +1,4 @@
-#include "command_line/run_tool.h"
+#include "command_line/tool_errors.h"
 
 #include <pcl/console/print.h>
 #include <pcl/exceptions.h>
@@ -12,8 +12,6 @@
 #include <new>
 #include <sstream>
 #include <vector>
-
-#include "command_line/tool_errors.h"
 
 namespace pcl_symmetry::apps {
 
