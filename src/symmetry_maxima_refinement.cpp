@@ -17,8 +17,8 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-// Tolerances from which neighboring points are so far apart that they are no surface. chosen: 5 000 points of one side
-// of an object are one tolerance apart, the points of a car in a LiDAR's sweep three.
+// Tolerances from which neighboring points are so far apart that they are no surface. 5 000 points of one side of an
+// object are one tolerance apart, the points of a car in a LiDAR's sweep three.
 constexpr double kNoSurface = 1.5;
 
 }  // namespace

@@ -20,15 +20,13 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Share of the surface whose colour a symmetry may change. chosen: half refuses scans with uneven light, twice
-// overlooks a label.
+// Share of the surface whose colour a symmetry may change.
 constexpr double kMostChanged = 0.05;
-// Samples around a place that may have its colour. chosen: half takes the edge of a pattern for a difference, twice
-// overlooks thin lines.
+// Samples around a place that may have its colour.
 constexpr int kNumColoursNear = 4;
-// Turns that stand for all turns about an axis. chosen: half takes stripes for one colour, twice takes twice the time.
+// Turns that stand for all turns about an axis.
 constexpr int kNumTurns = 8;
-// Greatest fold of stripes. chosen: half overlooks fine patterns, at twice that samples are as far apart as stripes.
+// Greatest fold of stripes.
 constexpr int kMaxFold = 24;
 
 Eigen::Isometry3d turnAbout(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& center) {
@@ -67,7 +65,7 @@ std::vector<Eigen::Isometry3d> keptTurns(const ContinuousSymmetry& axis, const C
 
 /// The half turn about a line across an axis that changes least.
 Eigen::Isometry3d bestFlip(const ContinuousSymmetry& axis, const ColouredSurface& surface) {
-  constexpr int kNumLines = 90;  // chosen: 2 degrees apart; half misses fine stripes, twice takes twice the time
+  constexpr int kNumLines = 90;
   const Eigen::Vector3d across = axis.axis.unitOrthogonal();
   Eigen::Isometry3d best = turnAbout(across, kPi, axis.offset);
   double least = surface.changedShare(best);
@@ -173,10 +171,9 @@ ObjectSymmetries keepingColours(const ObjectSymmetries& found, const ColouredSur
 
 namespace {
 
-// Points of a surface with a texture. chosen: ten times those that ask for colours; half blurs thin lines, twice takes
-// twice the memory.
+// Points of a surface with a texture.
 constexpr int kTexturedPoints = 100'000;
-constexpr int kMostHeaderLines = 1000;  // chosen: headers have tens of lines; the rest of a file may be binary
+constexpr int kMostHeaderLines = 1000;
 
 const pcl::PCLPointField* fieldOf(const pcl::PCLPointCloud2& cloud, const std::vector<const char*>& names) {
   for (const pcl::PCLPointField& field : cloud.fields)
@@ -294,7 +291,7 @@ SurfaceColours textureColours(const Shape& shape, const Eigen::Matrix2Xf& coordi
   for (const auto& triangle : triangles) area += areaOf(triangle);
   std::vector<Eigen::Vector3f> points, rgb;
   for (const auto& triangle : triangles) {
-    // derived: p (p + 1) / 2 points for p parts of an edge
+    // p (p + 1) / 2 points for p parts of an edge
     const double share = area > 0.0 ? areaOf(triangle) / area : 0.0;
     addPoints(triangle, std::max(1, static_cast<int>(std::lround(std::sqrt(2.0 * kTexturedPoints * share)))), image,
               points, rgb);

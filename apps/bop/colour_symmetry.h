@@ -29,8 +29,7 @@ bool hasColours(const Shape& shape);
 /// \throws InputError where the texture cannot be read.
 std::optional<SurfaceColours> surfaceColours(const Shape& shape, const std::string& path);
 
-/// Difference of colours in CIELAB that counts as none. chosen: half takes uneven light of a scan for print, twice
-/// overlooks pale print. 2.3 is just noticeable side by side.
+/// Difference of colours in CIELAB that counts as none.
 constexpr double kColourTolerance = 12.0;
 
 /// CIELAB of an sRGB colour under D65.

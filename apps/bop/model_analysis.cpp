@@ -20,8 +20,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Points spread over a mesh to measure distances. chosen: half blurs edges by half a per cent of the diameter, twice
-// takes twice the time.
+// Points spread over a mesh to measure distances.
 constexpr int kEvidencePoints = 20'000;
 
 void shiftBack(ObjectSymmetries& symmetries, const Eigen::Vector3d& shift) {
@@ -45,9 +44,9 @@ Points sampled(const Shape& shape, const Points& vertices, int num_points, std::
   return shape.mesh ? finitePoints(*sampleMesh(*shape.mesh, num_points, seed)) : vertices;
 }
 
-/// Rejected candidates that are told of, those that fail least. chosen: a screen holds them; the rest fail widely.
+/// Rejected candidates that are told of, those that fail least.
 constexpr int kMostRejections = 3;
-constexpr double kFarFailure = 10.0;  // tolerances; derived: as ObjectSymmetryOptions::max_feature has it
+constexpr double kFarFailure = 10.0;  // tolerances; as ObjectSymmetryOptions::max_feature has it
 
 pcl::PointXYZRGB colouredPoint(const Eigen::Vector3f& x, double distance, double tolerance) {
   // Grey, vermilion and purple of Okabe and Ito: apart for all eyes.

@@ -17,8 +17,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Greatest entry of R R^T - I of a rotation in a file. chosen: half refuses matrices with two digits, twice takes
-// matrices that scale by 2 %.
+// Greatest entry of R R^T - I of a rotation in a file.
 constexpr double kRotationError = 0.02;
 
 using nlohmann::json;
@@ -74,7 +73,7 @@ const json& listOf(const json& entry, const char* field, const std::string& wher
   return entry[field];
 }
 
-// Bytes of a name that a message shows. chosen: the line stays readable
+// Bytes of a name that a message shows.
 constexpr std::size_t kShownOfName = 40;
 
 /// A name as it stands in the file, on one line: line breaks and the like stay escaped, and a long one is cut off.
@@ -160,8 +159,7 @@ std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) 
 
 namespace {
 
-// Angle between an axis and a coordinate axis that counts as none. chosen: half refuses hand-aligned models, twice
-// moves the surface by a tenth of its size.
+// Angle between an axis and a coordinate axis that counts as none.
 constexpr double kAligned = 5.0 * kDegree;
 
 const std::string kNames = "xyz";

@@ -15,10 +15,9 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Greatest distance of a point between turns that are one, share of the diameter. chosen: half takes an axis that
-// people drew by hand for another one, twice takes folds of 60 for round.
+// Greatest distance of a point between turns that are one, share of the diameter.
 constexpr double kOneTurn = 0.02;
-// Turns that stand for all turns about an axis. chosen: half takes polygons for round, twice takes twice the time.
+// Turns that stand for all turns about an axis.
 constexpr int kNumAngles = 8;
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
@@ -68,7 +67,7 @@ public:
 private:
   /// The points farthest along many directions: those that decide on greatest distances.
   static Points cornersOf(const Points& points) {
-    constexpr int kNumDirections = 200;  // chosen: half is 10 degrees coarse, twice takes twice the time
+    constexpr int kNumDirections = 200;
     std::vector<int> corners;
     for (const Eigen::Vector3d& direction : evenDirections(kNumDirections)) {
       int farthest = 0;
@@ -220,10 +219,10 @@ void printCheck(const std::string& name, const SymmetryCheck& check, double diam
 
 namespace {
 
-// Spacings around a sample that count as its plane. derived: no point of an even grid is farther than sqrt(1/2);
-// samples drawn at random leave gaps of twice that.
+// Spacings around a sample that count as its plane. No point of an even grid is farther than sqrt(1/2); samples drawn
+// at random leave gaps of twice that.
 constexpr float kReach = 1.5f;
-// Share of the points whose distance is reported. derived: the share of the surface that a symmetry maps onto it.
+// Share of the points whose distance is reported. The share of the surface that a symmetry maps onto it.
 constexpr double kDeviationShare = 0.97;
 
 }  // namespace

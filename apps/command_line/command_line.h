@@ -55,7 +55,6 @@ inline TransformMethod methodNamed(const std::string& name) {
 }
 
 /// Number of points spread over a mesh by the tools of the database, where a model is described once and asked often.
-/// chosen: half tells thin parts apart less well, twice takes twice the time.
 constexpr int kDatabaseMeshPoints = 20'000;
 
 /// Which of the common flags a tool offers.

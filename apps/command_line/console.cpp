@@ -10,7 +10,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr int kBarWidth = 30;  // characters; chosen: half is coarse, twice leaves no room for long names
+constexpr int kBarWidth = 30;  // characters
 
 void printColored(const std::string& text, int attribute, int color, bool terminal) {
   if (terminal) pcl::console::change_text_color(stderr, attribute, color);

@@ -21,11 +21,9 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Results that wait for one before them, for each thread. chosen: half makes threads wait for a file that takes as
-/// long as thirty others, twice only takes memory.
+/// Results that wait for one before them, for each thread.
 constexpr std::size_t kWaitingPerThread = 64;
-/// Failures that are kept to be named at the end. chosen: half hides more of them, twice scrolls everything else away;
-/// all of them have a line in the results.
+/// Failures that are kept to be named at the end.
 constexpr std::size_t kMaxFailures = 1000;
 
 std::string stemOf(const std::string& path) {

@@ -13,10 +13,9 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Spacing of float numbers, relative. derived: 23 bits of mantissa.
+/// Spacing of float numbers, relative. 23 bits of mantissa.
 constexpr double kFloatSpacing = 0x1.0p-23;
-/// Spacing of coordinates that is allowed, in extents. chosen: the tools report planes to about 1e-4 of the extent;
-/// half shifts clouds that need no shift, twice costs digits of thin parts.
+/// Spacing of coordinates that is allowed, in extents.
 constexpr double kAllowedSpacing = 1e-5;
 
 }  // namespace
@@ -105,7 +104,7 @@ Eigen::Vector4d printedCoefficients(const ReflectionPlane& plane, const Eigen::V
 }
 
 int lengthDigits(const Eigen::Vector3d& shift) {
-  // derived: six digits tell 1e-5 of the extent; a shift of up to a million extents takes six more.
+  // Six digits tell 1e-5 of the extent; a shift of up to a million extents takes six more.
   return shift.isZero(0.0) ? 6 : 12;
 }
 

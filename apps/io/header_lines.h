@@ -13,7 +13,7 @@
 
 namespace pcl_symmetry::apps {
 
-/// Points of a file at most. derived: PCL's indices are 32-bit integers.
+/// Points of a file at most. PCL's indices are 32-bit integers.
 constexpr std::uint64_t kMaxPoints = std::numeric_limits<std::int32_t>::max();
 
 using Words = std::vector<std::string>;

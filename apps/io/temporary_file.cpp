@@ -16,7 +16,6 @@ namespace fs = boost::filesystem;
 
 namespace {
 
-// chosen: more files than are written at once; of half as many a busy batch that is interrupted may leave some behind.
 constexpr std::size_t kNumSlots = 64;
 
 /// Names of the files being written, in storage that a signal handler may read.

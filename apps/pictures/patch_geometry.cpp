@@ -16,9 +16,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Neighbours that give the normal of a point. chosen: half shows noise as specks, twice rounds edges.
+/// Neighbours that give the normal of a point.
 constexpr int kShadingNeighbours = 12;
-/// chosen: with fewer points neighbours lie all around the shape.
 constexpr std::size_t kMinShadedPoints = 16;
 
 /// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.

@@ -138,7 +138,7 @@ void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& sc
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
   if (is_short) {
-    // Steps of the depth buffer. chosen: lines stay in front of all of the scene; half lets them sink into it.
+    // Steps of the depth buffer.
     constexpr double kInFront = -66'000.0;
     mapper->SetResolveCoincidentTopologyToPolygonOffset();
     mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, kInFront);

@@ -32,7 +32,7 @@ void RasterImage::paste(const RasterImage& tile, int x, int y) {
 }
 
 RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns) {
-  constexpr int kGap = 4;  // pixels between pictures; chosen: half is hard to see, twice wastes room
+  constexpr int kGap = 4;  // pixels between pictures
   const int num = static_cast<int>(tiles.size()), columns = num_columns > 0 ? std::min(num_columns, num) : num;
   const int rows = (num + columns - 1) / columns, width = tiles[0].width + kGap, height = tiles[0].height + kGap;
   RasterImage image(columns * width - kGap, rows * height - kGap);

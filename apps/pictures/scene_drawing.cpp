@@ -17,19 +17,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/constants.h"
 #include "pictures/drawing.h"
 #include "pictures/picture_actors.h"
 #include "pictures/vtk_messages.h"
-#include "core/base/constants.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Pictures up to this edge, pixels, are drawn at twice their size. chosen: half leaves steps in large pictures, twice
-/// is more than the graphics memory of small machines.
+/// Pictures up to this edge, pixels, are drawn at twice their size.
 constexpr int kMaxSuperSampled = 4096;
-constexpr double kViewAngle = 25.0;  ///< degrees; chosen: half looks flat, twice distorts the edges
+constexpr double kViewAngle = 25.0;  ///< degrees
 
 /// Places the camera so that all of the panel lies inside the picture, below the label and left of the colour bar.
 /// \param bar_share part of the panel's width that the colour bar takes.

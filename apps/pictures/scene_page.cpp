@@ -22,11 +22,10 @@ extern const char* const kPageViewer;   ///< JavaScript
 
 namespace {
 
-/// Points of a page. chosen: a page of half as many is 4 MB smaller, of twice as many takes seconds to open.
+/// Points of a page.
 constexpr std::size_t kMaxPagePoints = 200'000;
-constexpr int kBarColors = 12;  // derived: the anchors of the colour scale
-/// Segments of a panel whose colours stand before its name. chosen: as many as have colours of their own; twice fill
-/// two lines with colours that repeat.
+constexpr int kBarColors = 12;  // the anchors of the colour scale
+/// Segments of a panel whose colours stand before its name.
 constexpr int kMostSwatches = 8;
 
 template <typename Value>

@@ -77,7 +77,7 @@ private:
 };
 
 /// Distances from single and double precision that differ by more are those of a triangle seen edge on, where the exact
-/// one is no better; diagonals of the mesh. chosen: half and twice give the same scans.
+/// one is no better; diagonals of the mesh.
 constexpr double kCoarseError = 1e-3;
 
 TriangleScene::TriangleScene(const pcl::PolygonMesh& mesh) {
@@ -170,15 +170,13 @@ double distanceAlong(const TriangleScene& scene, const Eigen::Vector3d& origin, 
   return std::abs(distance - coarse) < kCoarseError ? distance : coarse;
 }
 
-/// Edge of the largest picture, pixels. chosen: 64 million rays; half is short of ten million points, twice needs 2 GB.
+/// Edge of the largest picture, pixels.
 constexpr int kMaxResolution = 8192;
-/// Edge of the first picture, which tells the share of hits, pixels. chosen: half misses thin shapes, twice takes
-/// longer.
+/// Edge of the first picture, which tells the share of hits, pixels.
 constexpr int kFirstResolution = 128;
-/// Relative error of the number of points. chosen: half takes one picture more, twice is visible in "10 000 points".
+/// Relative error of the number of points.
 constexpr double kAcceptedCountError = 0.01;
-/// Pictures until the number of points has to fit. chosen: two or three are enough for most shapes; a thin shape ends
-/// here.
+/// Pictures until the number of points has to fit.
 constexpr int kMaxRounds = 8;
 
 /// Uniform in [0, 1), on every platform the same, which the distributions of the standard library are not.

@@ -31,10 +31,10 @@ extern "C" void stopWatching(int) {
 
 namespace {
 
-// derived: what a user, a service manager and a closed terminal end a program by.
+// What a user, a service manager and a closed terminal end a program by.
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
-// Bytes. chosen: some hundred names at once; fewer need more reads, more take memory.
+// Bytes.
 constexpr std::size_t kBufferSize = 1u << 16;
 
 }  // namespace

@@ -13,20 +13,18 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Points of the overview. chosen: half shows gaps in near surfaces, twice takes twice the time to draw.
+// Points of the overview.
 constexpr std::size_t kDrawnPoints = 150'000;
-// Objects that have a panel of their own. chosen: twice makes panels too small to read, half leaves objects out.
+// Objects that have a panel of their own.
 constexpr std::size_t kMostPanels = 8;
-// Pixels. chosen: a panel of an object is readable; half is not, twice makes large files.
+// Pixels.
 constexpr int kPanelWidth = 520, kPanelHeight = 440;
-// Colour of points that a symmetry added, counted from that of the object. chosen: far from it among the eight colours;
-// at 8 it would be a lighter one of the same.
+// Colour of points that a symmetry added, counted from that of the object.
 constexpr int kAddedColor = 5;
 // Above the line of sight, as a share of the distance: the scene is looked at slightly from above, so that depths tell.
-// chosen: at 0 the picture is that of the sensor, at 1 it shows what the sensor did not see.
 constexpr double kRaised = 0.25;
 
-// Radii of the object. chosen: axes and planes stick out of it; half hides them in it, twice covers its neighbours.
+// Radii of the object.
 constexpr double kAxisReach = 1.4, kPlaneReach = 1.1;
 
 struct Finding {

@@ -63,9 +63,9 @@ CommandLine commandLine(DatabaseToolOptions& options) {
 /// \return 16 hexadecimal digits, the CRC-64 of the bytes of a file.
 /// \throws InputError where it cannot be read.
 std::string fileChecksum(const std::string& path) {
-  // derived: CRC-64/XZ of ECMA-182.
+  // CRC-64/XZ of ECMA-182.
   boost::crc_optimal<64, 0x42F0E1EBA9EA3693, 0xFFFFFFFFFFFFFFFF, 0xFFFFFFFFFFFFFFFF, true, true> checksum;
-  std::array<char, 1 << 16> piece;  // bytes read at once. chosen: half and twice take the same time
+  std::array<char, 1 << 16> piece;  // bytes read at once
   std::ifstream file(path, std::ios::binary);
   while (file.read(piece.data(), piece.size()) || file.gcount() > 0)
     checksum.process_bytes(piece.data(), static_cast<std::size_t>(file.gcount()));

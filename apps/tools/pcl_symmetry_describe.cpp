@@ -37,7 +37,7 @@ using namespace pcl_symmetry::apps;
 namespace fs = boost::filesystem;
 
 /// The points spread over a mesh are the same for all seeds: -seed draws what is computed from them.
-constexpr std::uint64_t kMeshSeed = 1;  // chosen: the default of sampleMesh(); any other gives other points
+constexpr std::uint64_t kMeshSeed = 1;
 
 struct DescribeOptions {
   std::string output;

@@ -50,7 +50,7 @@ CommandLine commandLine(LinesOptions& options) {
 
 /// The map over the sheet (Figure 2), the contour on top.
 RasterImage draw(const PlanarSymmetryTransform2D<pcl::PointXYZ>& transform, const LineMap& map, int size, int threads) {
-  constexpr double kMargin = 1.12;  // in radii of the shape; chosen: the line of the outline is not cut
+  constexpr double kMargin = 1.12;  // in radii of the shape
   const double half = kMargin * map.grid.radius(), step = 2.0 * half / size;
   Points2D places(2, size * size);
   for (int i = 0; i < size * size; ++i) {
@@ -84,7 +84,6 @@ nlohmann::json toJson(const PlanarSymmetryTransform2D<pcl::PointXYZ>& transform,
 }
 
 /// Largest distance of points from their plane, root mean square over that from their middle within the plane.
-/// chosen: half refuses contours with noise, twice lets flat boxes through; a box of 5 x 3 x 1 has 0.3.
 constexpr double kMaxUnevenness = 0.05;
 
 /// \throws InputError where the points do not lie in a plane.

@@ -50,8 +50,8 @@ struct MeasureOptions {
   double scale = 0.0;              ///< of planes: radius of the window around each point, of the shape's; 0: the whole
 };
 
-constexpr int kMostListed = 5;        // chosen: a screen holds them; half hides axes of a box, twice shows chance
-constexpr double kLeastListed = 0.6;  // D; chosen: half lists axes of any shape, at 1 noise hides true ones
+constexpr int kMostListed = 5;
+constexpr double kLeastListed = 0.6;  // D
 
 /// Gives a transform what all of them take.
 template <typename Transform>
@@ -219,7 +219,7 @@ struct CellBox {
   Eigen::Array3i size;
 
   CellBox(const Points& points, int num_cells) {
-    // share of the longest edge, on each side; chosen: twice wastes cells, half cuts planes
+    // Share of the longest edge, on each side
     constexpr double kMargin = 0.1;
     const Eigen::Vector3d low = points.rowwise().minCoeff().cast<double>(),
                           high = points.rowwise().maxCoeff().cast<double>();

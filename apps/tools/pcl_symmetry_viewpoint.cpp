@@ -80,7 +80,7 @@ PictureScene sceneOf(const InputShape& input, const SelectedView& view, const st
 
 /// The score as a spherical function (Figure 16): directions scaled and coloured by it.
 PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView& best, const SelectedView& worst) {
-  constexpr int kRings = 120, kAround = 240;  // derived: 1.5 degrees; chosen: half shows facets
+  constexpr int kRings = 120, kAround = 240;  // 1.5 degrees
   const Eigen::Vector3d up = selection.getUpAxis(), side = up.unitOrthogonal(), front = up.cross(side);
   pcl::PointCloud<pcl::PointXYZ>::Ptr surface(new pcl::PointCloud<pcl::PointXYZ>);
   PicturePanel panel;

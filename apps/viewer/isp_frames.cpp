@@ -12,13 +12,11 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Where the shown refinement starts, radians and radii from the plane. chosen: far enough to be seen, near enough to
-// come back.
+// Where the shown refinement starts, radians and radii from the plane.
 constexpr double kTurn = 12.0 * kPi / 180.0, kShift = 0.05;
-// Width of the weights and the step that ends the refinement, radii. chosen: half and twice change the number of
-// frames.
+// Width of the weights and the step that ends the refinement, radii.
 constexpr double kSigma = 0.12, kResting = 1e-3;
-constexpr int kMaxFrames = 20, kNumSamples = 5'000, kNumShown = 120;  // chosen: more markers hide each other
+constexpr int kMaxFrames = 20, kNumSamples = 5'000, kNumShown = 120;
 
 IspFrame frameOf(const Points& points, const std::vector<int>& samples, const ReflectionPlane& plane,
                  const IspStep& step) {

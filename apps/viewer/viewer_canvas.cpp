@@ -39,15 +39,13 @@ vtkStandardNewMacro(KeyStyle);
 
 namespace {
 
-// chosen: markers stay in front of the points; half lets them sink into the cloud.
 constexpr double kInFront = -4000.0;               // steps of the depth buffer
-constexpr double kViewAngle = 25.0 * kPi / 180.0;  // derived: that of ViewpointSelection's cameras
-constexpr float kRoom =
-    1.2f;  // factor on the distance of the camera; chosen: planes that reach beyond the shape are seen whole
-constexpr int kFontSize = 15;    // pixels; chosen: half cannot be read, twice covers the shape
-constexpr int kTextMargin = 12;  // pixels from the left; chosen: as wide as a letter
-constexpr double kLine = 0.95;   // height of a line of text, in font sizes; chosen: that of PCL's font
-constexpr int kSpinTime = 20;    // milliseconds; chosen: half spins idly, twice makes keys slow
+constexpr double kViewAngle = 25.0 * kPi / 180.0;  // that of ViewpointSelection's cameras
+constexpr float kRoom = 1.2f;                      // factor on the distance of the camera
+constexpr int kFontSize = 15;                      // pixels
+constexpr int kTextMargin = 12;                    // pixels from the left
+constexpr double kLine = 0.95;                     // height of a line of text, in font sizes
+constexpr int kSpinTime = 20;                      // milliseconds
 
 pcl::PointCloud<pcl::PointXYZRGB>::Ptr colored(const ViewerCanvas::Cloud& points, const ViewerCanvas::ColorOf& color) {
   pcl::PointCloud<pcl::PointXYZRGB>::Ptr result(new pcl::PointCloud<pcl::PointXYZRGB>);

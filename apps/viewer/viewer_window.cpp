@@ -19,7 +19,7 @@ namespace {
 
 using namespace viewer_colors;
 
-constexpr double kFaintSize = 2.0;  // pixels; chosen: twice covers the samples, half is invisible
+constexpr double kFaintSize = 2.0;  // pixels
 
 /// The direction that a key asked for; none: the camera stays.
 std::optional<Eigen::Vector3d> viewDirection(const ViewerModel& model, const ViewerState& state) {
@@ -49,7 +49,7 @@ public:
     state_.num_planes = static_cast<int>(model.planes.size());
     state_.has_mesh = model.mesh.has_value();
     // Support on a mesh of few vertices would be lost between them.
-    constexpr std::size_t kFineMesh = 2'000;  // vertices; chosen: half shows gradients between far vertices
+    constexpr std::size_t kFineMesh = 2'000;  // vertices
     state_.mesh = state_.has_mesh && model.mesh->cloud.width * model.mesh->cloud.height >= kFineMesh;
     PictureScene scene;
     scene.points = model_.points;
@@ -179,7 +179,7 @@ private:
 
   /// The support for the current plane at the vertices of the mesh: the mean over the closest points.
   std::vector<double> vertexSupport() {
-    constexpr int kNumClosest = 4;  // points; chosen: half is noisy, twice blurs
+    constexpr int kNumClosest = 4;  // points
     if (closest_to_vertices_.empty()) {
       pcl::PointCloud<pcl::PointXYZ> vertices;
       pcl::fromPCLPointCloud2(model_.mesh->cloud, vertices);

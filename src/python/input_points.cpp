@@ -19,8 +19,8 @@ namespace pcl_symmetry::python {
 
 namespace {
 
-/// Share of the extent. chosen: a hundredth of the default tolerance of 1 %, which no decision notices; ten times as
-/// much costs results a digit, a tenth refuses clouds far from the origin that give the same planes.
+/// Share of the extent. A hundredth of the default tolerance of 1 %, which no decision notices; ten times as much costs
+/// results a digit, a tenth refuses clouds far from the origin that give the same planes.
 constexpr double kMostRounding = 1e-4;
 
 using Rows = py::array_t<float, py::array::forcecast>;

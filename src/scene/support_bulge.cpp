@@ -14,7 +14,7 @@ namespace pcl_symmetry::detail {
 namespace {
 
 // Tolerances, root mean square distance of the points of a flat piece from their plane. measured: 17 pieces of the wall
-// of PCL's stereo picture have 0.5 to 2.4. chosen: at half, a third of them stay, at twice, low objects count as flat.
+// of PCL's stereo picture have 0.5 to 2.4. At half, a third of them stay, at twice, low objects count as flat.
 constexpr double kFlat = 3.0;
 // Share of the outline of a bulge along which the surface goes on into a support. measured: 0.58 to 1 for 16 of these
 // pieces; at most 0.18 for objects of nine scenes of fold 0 on a table, with the noise of a depth camera.

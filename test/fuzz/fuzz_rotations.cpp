@@ -11,7 +11,7 @@ using namespace pcl_symmetry;
 void checkGroup(const ObjectSymmetries& symmetries) {
   FUZZ_CHECK(symmetries.center.allFinite());
   FUZZ_CHECK(fuzz::isShare(symmetries.support) && fuzz::isShare(symmetries.confidence));
-  // derived: the icosahedron with its reflections has 120 elements, from() allows twice as many.
+  // The icosahedron with its reflections has 120 elements, from() allows twice as many.
   FUZZ_CHECK(symmetries.discrete.size() < 240);
   for (const Eigen::Isometry3d& motion : symmetries.discrete) {
     FUZZ_CHECK(motion.matrix().allFinite());

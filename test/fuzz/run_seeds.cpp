@@ -14,7 +14,7 @@ namespace {
 using pcl_symmetry::RandomStream;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr int kMostChanges = 8;  // of a seed. chosen: one alone is soon tried everywhere, many break all checks at once
+constexpr int kMostChanges = 8;  // of a seed
 
 std::vector<Bytes> seedsOf(const std::string& folder) {
   std::vector<std::filesystem::path> paths;

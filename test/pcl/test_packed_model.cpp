@@ -72,7 +72,7 @@ TEST(PackedModel, SizesThatTheBytesCannotHoldAreRefused) {
   EXPECT_EQ(messageOf(gigabyte.bytes(), detail::decompressed), "has fewer bytes than it says");
   const std::string zeros(1 << 20, '\0');
   EXPECT_EQ(detail::decompressed(detail::compressed(zeros, detail::Effort::High)), zeros) << "nothing shrinks more";
-  // derived: (2^32 - 2) rows of two bytes and four more, times 2^31 columns, are 2^64 bytes.
+  // (2^32 - 2) rows of two bytes and four more, times 2^31 columns, are 2^64 bytes.
   detail::PackedBytes matrix;
   matrix.put(std::uint8_t{2});
   matrix.put(std::uint32_t{0xfffffffe});

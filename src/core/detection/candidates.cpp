@@ -8,8 +8,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Radians, and radii. chosen: a peak of D is about 0.1 radians wide at the default sigma; smaller values refine a peak
-// more than once, larger ones merge planes of a regular polygon with many sides.
+// Radians, and radii. A peak of D is about 0.1 radians wide at the default sigma; smaller values refine a peak more
+// than once, larger ones merge planes of a regular polygon with many sides.
 constexpr PlaneTolerance kBasin{0.1, 0.06};
 
 }  // namespace

@@ -32,7 +32,7 @@ public:
   std::vector<Eigen::Index> nearOf(const PointsRef& points, float bound) const;
 
 private:
-  static constexpr float kFarthest = 1e-3f;  // derived: below f at the cut of the transform, exp(-2.6^2) = 1.2e-3
+  static constexpr float kFarthest = 1e-3f;  // below f at the cut of the transform, exp(-2.6^2) = 1.2e-3
   const GaussianEdt& edt_;
   Eigen::Vector3d center_;
   double scale_;

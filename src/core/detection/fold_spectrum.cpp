@@ -117,7 +117,7 @@ std::optional<double> phaseByReflections(const NormalizedCloud& cloud, const Lin
 /// What several planes say together.
 double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
-  // derived: what differs from plane to plane of a cloud
+  // What differs from plane to plane of a cloud
   static constexpr std::array kMeans{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
                                      &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
                                      &PlaneEvidence::unknown};

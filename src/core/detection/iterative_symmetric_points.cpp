@@ -55,7 +55,7 @@ void cellsOf(const float* points, int size, const CellFrame& frame, std::int32_t
 }  // namespace
 
 std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) const {
-  constexpr int kTogether = 256;  // points. chosen: their cells stay in the first cache
+  constexpr int kTogether = 256;  // points. Their cells stay in the first cache
   CellFrame frame{{}, {}, scale_, edt_.cellSize(), edt_.numCells()};
   for (int k = 0; k < 3; ++k) {
     frame.center[k] = center_[k];

@@ -17,8 +17,8 @@ namespace pcl_symmetry {
 namespace {
 
 /// Edge of a flat disc: sum over its samples of the share of neighbors beyond the edge, over the root of their number.
-/// derived: k neighbors lie within rho = sqrt(k / pi) spacings. Of the neighbors of samples within rho of a straight
-/// edge, 2 rho / (3 pi) per spacing of edge lie beyond it. A disc of n samples has an edge of 2 sqrt(pi n) spacings.
+/// K neighbors lie within rho = sqrt(k / pi) spacings. Of the neighbors of samples within rho of a straight edge, 2 rho
+/// / (3 pi) per spacing of edge lie beyond it. A disc of n samples has an edge of 2 sqrt(pi n) spacings.
 double edgeOfDisc() {
   const double reach = std::sqrt((detection_rules.num_smoothing + 1) / kPi);
   return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);

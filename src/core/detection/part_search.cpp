@@ -24,8 +24,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Planes that are one: radians, and radii of the points. chosen: half of what is between the planes of a prism of 24
-// sides.
+// Planes that are one: radians, and radii of the points. Half of what is between the planes of a prism of 24 sides.
 constexpr PlaneTolerance kSamePlane{0.07, 0.04};
 
 /// Farthest-point sampling: each seed is the point farthest from those before.
@@ -52,7 +51,7 @@ void markWithin(const float* points, int size, const float* center, double sq_ra
 
 /// Indices of the points in a ball.
 std::vector<int> within(const Points& points, const Eigen::Vector3f& center, double radius) {
-  constexpr int kBlock = 512;  // points. chosen: marks of a block stay in the first cache
+  constexpr int kBlock = 512;  // points. Marks of a block stay in the first cache
   char inside[kBlock];
   std::vector<int> found(static_cast<std::size_t>(points.cols()));
   std::size_t count = 0;

@@ -202,8 +202,8 @@ JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
 
 namespace {
 
-// Radians, and radii: how far the slope of a maximum may reach. chosen: twice the limits of a basin of refinement;
-// smaller values report planes that came to rest on a slope, larger ones only cost a value of D each.
+// Radians, and radii: how far the slope of a maximum may reach. Twice the limits of a basin of refinement; smaller
+// values report planes that came to rest on a slope, larger ones only cost a value of D each.
 constexpr PlaneTolerance kSlope{0.2, 0.15};
 
 /// Refinement can come to rest on the way to a maximum, where few points say how to go on (on flat pieces, for

@@ -193,7 +193,7 @@ public:
   /// The best rotations about a line.
   std::optional<JudgedTurns> judged(const Line3d& line) const {
     constexpr TurnLimits kRough{detection_rules.rough_turns * detection_rules.most_off,
-                                detection_rules.rough_turns * detection_rules.most_far};  // derived: from both
+                                detection_rules.rough_turns * detection_rules.most_far};  // from both
     const auto roughly = [&](double angle) {
       return evidence_.roughly(Eigen::Affine3d(turnAbout(line, angle)), detection_rules.rough_slack, kRough.off,
                                kRough.far);

@@ -8,7 +8,7 @@ namespace pcl_symmetry {
 
 /// Some pairs of a sample and the closest point to its reflection, coordinate by coordinate.
 struct PairBlock {
-  static constexpr int kMost = 128;  ///< pairs. chosen: 13 KB, so that a block stays in the first cache
+  static constexpr int kMost = 128;  ///< pairs. 13 KB, so that a block stays in the first cache
   using Coordinates = double[3][kMost];
 
   int size = 0;
@@ -19,7 +19,7 @@ struct PairBlock {
 
 /// What the pairs of a block add to the sums of one kind of step, each for itself.
 struct StepTerms {
-  static constexpr int kSums = 12;  ///< derived: a matrix of 3 x 3 and a vector
+  static constexpr int kSums = 12;  ///< a matrix of 3 x 3 and a vector
 
   int size = 0;
   double values[kSums][PairBlock::kMost];

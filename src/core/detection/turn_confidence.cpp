@@ -26,8 +26,7 @@ Eigen::Affine3d mirrorThrough(const Line3d& line, double angle) {
 
 /// TurnSigns::planes_off.
 double planesOff(const TurnEvidence& evidence, const Line3d& line) {
-  constexpr double kStep =
-      0.5 * kPi / detection_rules.num_plane_pairs;  // radians. derived: pairs repeat after a right angle
+  constexpr double kStep = 0.5 * kPi / detection_rules.num_plane_pairs;  // radians. Pairs repeat after a right angle
   const auto cost = [&](double angle) {
     double sum = 0.0;
     for (const double turned : {angle, angle + 0.5 * kPi}) {

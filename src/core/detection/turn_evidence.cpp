@@ -188,7 +188,7 @@ Line3d TurnEvidence::fitted(const Line3d& start, const std::vector<double>& angl
     pulls.squares.diagonal().array() +=
         detection_rules.fit_ridge * pulls.squares.trace() + detection_rules.least_turn_f;
     const Eigen::Vector4d step = pulls.squares.ldlt().solve(pulls.sum);
-    constexpr double kMostStep = 0.1;  // radians, radii; chosen: starts are closer, larger steps leave the basin
+    constexpr double kMostStep = 0.1;  // radians, radii; starts are closer, larger steps leave the basin
     line = movedLine(line, step * std::min(1.0, kMostStep / std::max(detection_rules.fit_step, step.norm())));
     line.origin() = line.projection(Eigen::Vector3d::Zero());
   }

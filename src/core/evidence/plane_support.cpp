@@ -71,7 +71,7 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
 }
 
 std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads) {
-  constexpr std::size_t kBlockSize = 2048;  // points. chosen: large enough that threads start seldom
+  constexpr std::size_t kBlockSize = 2048;  // points. Large enough that threads start seldom
   std::vector<float> support(static_cast<std::size_t>(samples.size()));
   parallelRanges(support.size(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
@@ -86,7 +86,7 @@ double meanSupport(const std::vector<float>& support) {
 
 std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,
                                 int num_threads) {
-  constexpr std::size_t kBlockSize = 4096;  // points. chosen: large enough that threads start seldom
+  constexpr std::size_t kBlockSize = 4096;  // points. Large enough that threads start seldom
   const BoundingBall ball = boundingBall(samples);
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);

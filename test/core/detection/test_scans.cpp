@@ -307,7 +307,7 @@ SeenFromOneSide seenFrom(const TurningShape& shape, const Eigen::Vector3d& viewp
   const Points all = shape.sampled(14000, seed).cloud();
   const std::optional<Visibility> whole = Visibility::fromPoints(all, viewpoint);
   EXPECT_TRUE(whole.has_value());
-  // radii of the shapes; chosen: above the depth of a slanted pixel, below the thickness of the shapes
+  // Radii of the shapes
   const Points kept =
       pointsWhere(all, [&](const Eigen::Vector3f& x) { return whole->depthBehind(x.cast<double>()) < 0.08; });
   return {kept, Visibility::fromPoints(kept, viewpoint)};

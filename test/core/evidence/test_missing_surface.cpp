@@ -316,7 +316,7 @@ TEST(SplitSurface, ATruePlaneReachesTheShareOfTheHalvesWhateverTheNoise) {
     const SplitSurface halves(noisyBox(noise), 1, 1);
     const double own = shareWithin(halves.ownDistances(), kTolerance);
     const double mapped = shareWithin(halves.reflectedDistances({Eigen::Vector3d::UnitX(), 0.0}), kTolerance);
-    // derived: 3000 points each, four standard errors of a difference of shares.
+    // 3000 points each, four standard errors of a difference of shares.
     EXPECT_NEAR(mapped, own, 4.0 * std::sqrt(2.0 * own * (1.0 - own) / 3000.0) + 0.002);
     const double moved = shareWithin(halves.reflectedDistances({Eigen::Vector3d::UnitX(), 0.1}), kTolerance);
     EXPECT_LT(moved, 0.97 * own) << "a plane that maps one side 0.2 away";
@@ -341,7 +341,7 @@ TEST(SplitSurface, OwnScoreIsThatOfATruePlane) {
       return std::inner_product(a.values().begin(), a.values().end(), b.values().begin(), 0.0) /
              std::sqrt(a.sqNorm() * b.sqNorm());
     };
-    // derived: three times the deviation of D of true planes (evidence/README.md).
+    // Three times the deviation of D of true planes (evidence/README.md).
     for (const int axis : {0, 1, 2}) EXPECT_NEAR(scoreOf({Eigen::Vector3d::Unit(axis), 0.0}), own, 0.006) << axis;
     EXPECT_LT(scoreOf({Eigen::Vector3d::UnitX(), 0.1}), own - 0.02) << "a plane that maps one side 0.2 away";
   }

@@ -223,7 +223,7 @@ TEST(NeighborWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
     double excess = 0.0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       ASSERT_GE(walked[i], 0);
-      // derived: four roundings, which vector instructions leave out or not
+      // Four roundings, which vector instructions leave out or not
       EXPECT_FLOAT_EQ(sq_walked[i], (queries.col(i) - points.col(walked[i])).squaredNorm());
       EXPECT_GE(sq_walked[i], sq_closest[i] * (1.0f - 1e-6f));
       num_same += walked[i] == closest[i] ? 1 : 0;

@@ -87,7 +87,7 @@ TEST(SurfacePoints, AreSpreadEvenly) {
     EXPECT_NEAR(few.normals.col(i).norm(), 1.0f, 1e-4f);
     for (Eigen::Index j = 0; j < i; ++j) least = std::min(least, (few.points.col(i) - few.points.col(j)).norm());
   }
-  // derived: of 200 points drawn at random on 5 units of area, two would be within sqrt(5 / (pi 200^2 / 2)) = 0.01.
+  // Of 200 points drawn at random on 5 units of area, two would be within sqrt(5 / (pi 200^2 / 2)) = 0.01.
   EXPECT_GT(least, 0.05f);
   EXPECT_EQ(evenSurfacePoints(points.leftCols(50), 200, 1).points.cols(), 50);
   const std::vector<SurfacePoints> both = evenSurfacePoints(points, {100, 200}, 1);
@@ -233,7 +233,7 @@ TEST(PoseScreening, FindsTheShapeAndImprovesItsPose) {
       ASSERT_GE(found[0].T_shape_scan.size(), 1u);
       EXPECT_LE(found[0].T_shape_scan.size(), 3u);
       const Eigen::Isometry3d error = found[0].T_shape_scan[0] * scannedBox(scale).inverse();
-      // derived: the start is off by 0.2 radians; points of a box of 1.2 radii are 0.06 apart.
+      // The start is off by 0.2 radians; points of a box of 1.2 radii are 0.06 apart.
       EXPECT_LT(angleUpToHalfTurns(error.linear()), 0.1) << k;
       EXPECT_LT(error.translation().norm(), 0.06 * scale) << k;
     }
