@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "pictures/drawing.h"
 #include "io/load_module.h"
 #include "io/shape_output.h"
+#include "pictures/drawing.h"
 
 namespace pcl_symmetry::apps {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "pictures/colors.h"
 #include "command_line/tool_errors.h"
+#include "pictures/colors.h"
 
 namespace pcl_symmetry::apps {
 

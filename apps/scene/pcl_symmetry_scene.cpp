@@ -172,7 +172,8 @@ int run(int argc, char** argv) {
     drawScene(input, scene, *options.png_path);
     drawing.done();
   }
-  if (options.html_path) writePage(selectableObjects(input, scene), {*options.input, table, cameraPicture(input)}, *options.html_path);
+  if (options.html_path)
+    writePage(selectableObjects(input, scene), {*options.input, table, cameraPicture(input)}, *options.html_path);
   return 0;
 }
 

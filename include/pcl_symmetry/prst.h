@@ -25,12 +25,24 @@ namespace detail {
 
 /// Which of the paper's descriptors an output holds.
 enum class SymmetryDescriptorKind { PRST, PRSD, GEDT };
-inline SymmetryDescriptorKind kindOf(const PRSTSignature32768&) { return SymmetryDescriptorKind::PRST; }
-inline SymmetryDescriptorKind kindOf(const PRSDSignature1024&) { return SymmetryDescriptorKind::PRSD; }
-inline SymmetryDescriptorKind kindOf(const GEDTSignature32768&) { return SymmetryDescriptorKind::GEDT; }
-inline float* valuesOf(PRSTSignature32768& signature) { return signature.prst; }
-inline float* valuesOf(PRSDSignature1024& signature) { return signature.prsd; }
-inline float* valuesOf(GEDTSignature32768& signature) { return signature.gedt; }
+inline SymmetryDescriptorKind kindOf(const PRSTSignature32768&) {
+  return SymmetryDescriptorKind::PRST;
+}
+inline SymmetryDescriptorKind kindOf(const PRSDSignature1024&) {
+  return SymmetryDescriptorKind::PRSD;
+}
+inline SymmetryDescriptorKind kindOf(const GEDTSignature32768&) {
+  return SymmetryDescriptorKind::GEDT;
+}
+inline float* valuesOf(PRSTSignature32768& signature) {
+  return signature.prst;
+}
+inline float* valuesOf(PRSDSignature1024& signature) {
+  return signature.prsd;
+}
+inline float* valuesOf(GEDTSignature32768& signature) {
+  return signature.gedt;
+}
 
 /// Parameters of PRSTEstimation.
 struct PRSTParameters {
@@ -141,8 +153,8 @@ protected:
   void computeFeature(PointCloudOut& output) override {
     output.width = output.height = 1;
     try {
-      const std::vector<float> values = detail::describeBySymmetry(points_, parameters_, seen_ ? &*seen_ : nullptr,
-                                                                   detail::kindOf(output[0]));
+      const std::vector<float> values =
+          detail::describeBySymmetry(points_, parameters_, seen_ ? &*seen_ : nullptr, detail::kindOf(output[0]));
       std::copy(values.begin(), values.end(), detail::valuesOf(output[0]));
     } catch (const std::invalid_argument& reason) {
       warnOfNoAnswer(std::string("input cloud: ") + reason.what());

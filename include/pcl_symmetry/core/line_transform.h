@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
-#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/gaussian_edt_2d.h"
+#include "pcl_symmetry/core/local_maxima.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 

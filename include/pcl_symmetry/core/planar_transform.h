@@ -45,9 +45,9 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
 
 /// Options of convolutionTransform().
 struct ConvolutionTransformOptions {
-  double spacing = 0.9;    ///< of the resampled lattice, in sigmas, in (0, 1], but no less than a cell along one
-                           ///< axis; 0.5 halves the error and is slower
-  int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
+  double spacing = 0.9;  ///< of the resampled lattice, in sigmas, in (0, 1], but no less than a cell along one
+                         ///< axis; 0.5 halves the error and is slower
+  int num_threads = 0;   ///< >= 0; 0 = one per core; the map does not depend on it
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

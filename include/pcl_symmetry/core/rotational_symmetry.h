@@ -134,7 +134,6 @@ struct ObjectSymmetries {
   /// \return distance, input units.
   /// \throws std::invalid_argument without a point.
   double surfaceDistance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2, const PointsRef& points) const;
-
 };
 
 /// Finds the group of rotations of a shape: both the rotations that planes of symmetry generate and those of shapes

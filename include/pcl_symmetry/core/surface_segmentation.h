@@ -79,8 +79,9 @@ struct SplittingOptions {
   double concavity_weight = 0.0;
 
   /// Keeps to the letter of Sections 4.4 and 5.3: the features are the strongest max_planes maxima of the exact
-  /// map as publishedPlanes() refines them, with 1000 points for the paper's 10 000, and elements outside the two largest components go to the closer one. Otherwise such a maximum stays a feature at its
-  /// place on the grid, maxima of one basin count once, and the cut assigns the other elements.
+  /// map as publishedPlanes() refines them, with 1000 points for the paper's 10 000, and elements outside the two
+  /// largest components go to the closer one. Otherwise such a maximum stays a feature at its place on the grid, maxima
+  /// of one basin count once, and the cut assigns the other elements.
   bool as_published = false;
 
   /// \throws std::invalid_argument naming field, value and rule.

@@ -21,9 +21,9 @@ struct FrameOptions {
   /// Its width, input units, >= 0; 0 = 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more.
   double sigma = 0.0;
   int num_theta = 32;    ///< bins of the map that candidates for the first plane come from, >= 1
-  int num_phi = 128;       ///< even, >= 2
-  int num_radius = 64;     ///< >= 1
-  int num_samples = 64;    ///< samples of that map's transform, >= 1
+  int num_phi = 128;     ///< even, >= 2
+  int num_radius = 64;   ///< >= 1
+  int num_samples = 64;  ///< samples of that map's transform, >= 1
   /// Scores that differ by no more than this are equal, >= 0. The sampled D of a symmetry varies by 0.02 to 0.03 with
   /// the angle of the plane.
   double tie = 0.06;

@@ -41,7 +41,7 @@ bool areOne(const SymmetryPlane& a, const SymmetryPlane& b, const BoundingBall& 
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  constexpr double kSameAsFlat = 0.02;  // radians; a reflection across the plane of a flat shape is uninformative
+  constexpr double kSameAsFlat = 0.02;      // radians; a reflection across the plane of a flat shape is uninformative
   constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
   std::vector<SymmetryPlane> kept;
   std::optional<SymmetryPlane> dropped;

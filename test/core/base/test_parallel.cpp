@@ -19,7 +19,6 @@
 namespace {
 
 using namespace pcl_symmetry;
-using namespace pcl_symmetry::test;
 
 TEST(Parallel, AForkedChildRunsLoopsAfterItsParentHas) {
   const auto sum = [] {
