@@ -207,7 +207,7 @@ protected:
 TEST_F(SegmentTool, WritesASegmentForEachFaceATreeAndAPicture) {
   ASSERT_EQ(run(mesh_ + " " + seg_ + " -parts 3 -json " + json_ + " -size 300 -png " + (folder_ / "p.png")), 0)
       << error_;
-  const std::vector<int> labels = apps::readFaceLabels(seg_);
+  const std::vector<int> labels = readFaceLabels(seg_);
   ASSERT_EQ(labels.size(), dumbbell_.polygons.size());
   EXPECT_EQ(std::set<int>(labels.begin(), labels.end()), (std::set<int>{0, 1, 2}));
   const json tree = json::parse(contentOf(json_));
@@ -218,16 +218,16 @@ TEST_F(SegmentTool, WritesASegmentForEachFaceATreeAndAPicture) {
   EXPECT_EQ(tree["tree"][0]["parent"], -1);
   EXPECT_FALSE(tree["tree"][0]["planes"].empty());
   EXPECT_NE(error_.find("3 parts"), std::string::npos) << error_;
-  const apps::RasterImage picture = apps::readImage(folder_ / "p.png");
+  const RasterImage picture = readImage(folder_ / "p.png");
   EXPECT_EQ(picture.width, 300);
   EXPECT_EQ(picture.height, 300);
   ASSERT_EQ(run(mesh_ + " -parts 3 -size 300 -up 1,0,0 -png " + (folder_ / "q.png")), 0) << error_;
-  EXPECT_NE(apps::readImage(folder_ / "q.png").pixels, picture.pixels);
+  EXPECT_NE(readImage(folder_ / "q.png").pixels, picture.pixels);
 }
 
 TEST_F(SegmentTool, MethodsOfThePaper) {
   ASSERT_EQ(run(mesh_ + " " + seg_ + " -method splitting -depth 1 -quiet"), 0) << error_;
-  const std::vector<int> labels = apps::readFaceLabels(seg_);
+  const std::vector<int> labels = readFaceLabels(seg_);
   EXPECT_EQ(*std::max_element(labels.begin(), labels.end()), 1);
   EXPECT_EQ(error_, "");
 }
