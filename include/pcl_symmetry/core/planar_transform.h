@@ -11,7 +11,7 @@
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Instruction set of the inner loops. All give the same bytes.
-enum class Simd { Auto, Scalar, Avx2, Avx512 };
+enum class Simd { Auto, Scalar, Avx2 };
 
 /// \return whether this processor supports the instruction set.
 bool simdSupported(Simd simd);

@@ -7,13 +7,7 @@
 #include "core/transform/lookup_table.h"
 
 #if defined(__x86_64__)
-#pragma GCC diagnostic push
-#if !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wuninitialized"  // from GCC 12's own AVX-512 header
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
 #include <immintrin.h>
-#pragma GCC diagnostic pop
 #endif
 
 namespace pcl_symmetry {
@@ -66,7 +60,7 @@ void accumulateScalar(const Lines& lines, const std::uint8_t* table, int bits, s
 template <int kFunctions>
 __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const std::uint8_t* table, int bits,
                                                     std::int32_t* const* sums) {
-  constexpr int num_lanes = 8;
+  constexpr int num_lanes = kLineLanes;
   const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   const __m256i byte = _mm256_set1_epi32(0xFF);
   const __m256i zero = _mm256_setzero_si256();
@@ -104,67 +98,11 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
   }
 }
 
-/// Goes block by block of planes, and through the lines that have some of them inside: the sums stay in registers, and
-/// no branch asks how many planes a line has.
-template <int kFunctions>
-__attribute__((target("avx512f"))) void accumulateAvx512(const Lines& lines, const std::uint8_t* table, int bits,
-                                                         std::int32_t* const* sums) {
-  constexpr int num_lanes = kLineLanes;
-  const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  const __m512i byte = _mm512_set1_epi32(0xFF);
-  const __m512i zero = _mm512_setzero_si512();
-  const __m128i fraction = _mm_cvtsi32_si128(LookupTable::kFractionBits);
-  // Whole cells along y go to their place in the index by one shift.
-  const __m128i to_row = _mm_cvtsi32_si128(LookupTable::kFractionBits - bits), slice = _mm_cvtsi32_si128(2 * bits);
-  const __m512i of_row = _mm512_set1_epi32(((1 << bits) - 1) << bits);
-  std::int32_t chosen[kMostLines + num_lanes];
-  for (std::int32_t first = 0; first < lines.count; first += num_lanes) {
-    const __m512i begin = _mm512_set1_epi32(first), end = _mm512_set1_epi32(first + num_lanes);
-    int num_chosen = 0;
-    for (int i = 0; i < lines.size; i += num_lanes) {
-      const auto there = static_cast<__mmask16>((1u << std::min(num_lanes, lines.size - i)) - 1u);
-      const __m512i k_begin = _mm512_maskz_loadu_epi32(there, lines.k_begin + i),
-                    k_end = _mm512_maskz_loadu_epi32(there, lines.k_end + i);
-      const __mmask16 some =
-          _mm512_mask_cmpgt_epi32_mask(_mm512_mask_cmplt_epi32_mask(there, k_begin, end), k_end, begin);
-      _mm512_storeu_si512(chosen + num_chosen,
-                          _mm512_maskz_compress_epi32(some, _mm512_add_epi32(_mm512_set1_epi32(i), lane)));
-      num_chosen += __builtin_popcount(some);
-    }
-    const __m512i at = _mm512_add_epi32(begin, lane);
-    __m512i moved[3], total[kFunctions];
-    for (int axis = 0; axis < 3; ++axis) moved[axis] = _mm512_mullo_epi32(at, _mm512_set1_epi32(lines.step[axis]));
-    for (__m512i& sum : total) sum = zero;
-    for (int c = 0; c < num_chosen; ++c) {
-      const std::int32_t i = chosen[c];
-      const __m512i x = _mm512_add_epi32(_mm512_set1_epi32(lines.x[i]), moved[0]);
-      const __m512i y = _mm512_add_epi32(_mm512_set1_epi32(lines.y[i]), moved[1]);
-      const __m512i z = _mm512_add_epi32(_mm512_set1_epi32(lines.z[i]), moved[2]);
-      const __mmask16 inside = _mm512_mask_cmplt_epi32_mask(
-          _mm512_cmpge_epi32_mask(at, _mm512_set1_epi32(lines.k_begin[i])), at, _mm512_set1_epi32(lines.k_end[i]));
-      constexpr int and_or = 0xEA;  // the table of (a and b) or c
-      const __m512i in_row =
-          _mm512_ternarylogic_epi32(_mm512_sra_epi32(y, to_row), of_row, _mm512_sra_epi32(x, fraction), and_or);
-      const __m512i index = _mm512_add_epi32(_mm512_sll_epi32(_mm512_sra_epi32(z, fraction), slice), in_row);
-      __m512i values = _mm512_mask_i32gather_epi32(zero, inside, index, table, kFunctions);
-      for (__m512i& sum : total) {
-        sum = _mm512_add_epi32(sum, _mm512_and_si512(values, byte));
-        values = _mm512_srli_epi32(values, 8);
-      }
-    }
-    for (int g = 0; g < kFunctions; ++g) {
-      std::int32_t* const sum = sums[g] + first;
-      _mm512_storeu_si512(sum, _mm512_add_epi32(_mm512_loadu_si512(sum), total[g]));
-    }
-  }
-}
-
 #endif
 
 template <int kFunctions>
 LineKernel kernelOf(Simd simd) {
 #if defined(__x86_64__)
-  if (simd == Simd::Avx512 || (simd == Simd::Auto && simdSupported(Simd::Avx512))) return accumulateAvx512<kFunctions>;
   if (simd == Simd::Avx2 || (simd == Simd::Auto && simdSupported(Simd::Avx2))) return accumulateAvx2<kFunctions>;
 #endif
   return accumulateScalar<kFunctions>;

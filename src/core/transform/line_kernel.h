@@ -7,9 +7,8 @@
 
 namespace pcl_symmetry {
 
-/// Lanes of the widest kernel; arrays of results are padded by twice as many: 32-bit integers in an AVX-512
-/// register.
-constexpr int kLineLanes = 16;
+/// Lanes of the widest kernel, 32-bit integers in an AVX2 register; arrays of results are padded by twice as many.
+constexpr int kLineLanes = 8;
 
 /// Lines that a kernel adds up at a time, at most: they stay in the first cache (30 kB), and sums of bytes fit
 /// in 32 bits.
@@ -40,7 +39,6 @@ struct Lines {
   std::int32_t* k_end;    ///< of each line
   int size;               ///< number of lines, <= kMostLines
   std::int32_t step[3];   ///< of all lines
-  int count;              ///< of points of a line: none has a k_end beyond it
 };
 
 /// Coordinates of samples, each in an array of its own: vectors of several samples are loaded at once.
@@ -50,7 +48,7 @@ struct SampleCoordinates {
 
 /// Fills the lines that the images of points run along when the points are reflected in parallel planes.
 /// \param points lines.size of them, in cells from the first cell center.
-/// \param[out] lines size is given; all but step and count are filled.
+/// \param[out] lines size is given; all but step are filled.
 void setUpLines(const SampleCoordinates& points, const ParallelPlanes& planes, const CubeInTable& cube, Lines& lines);
 
 /// sums[g][k] += sum over lines of function g of the table at point k. The sums are integers, so that every kernel

@@ -28,7 +28,7 @@ void setUpMoved(const float* moved, const float* start, const float* step, float
     lx[i] = static_cast<std::int32_t>((x + to_table) * one);
     ly[i] = static_cast<std::int32_t>((y + to_table) * one);
     lz[i] = static_cast<std::int32_t>((z + to_table) * one);
-    // |place + k step|^2 <= sq_clip, a quadratic inequality in k
+    // |x + k step|^2 <= sq_clip, a quadratic inequality in k
     const float middle = -(x * tx + y * ty + z * tz) * inverse;
     const float sq_reach = (sq_clip - (x * x + y * y + z * z)) * inverse + middle * middle;
     const float reach = std::sqrt(std::max(0.0f, sq_reach));
@@ -56,7 +56,7 @@ void MovedLines::add(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start
                      int begin, int end, std::vector<std::vector<double>>& totals) {
   const float one = static_cast<float>(1 << LookupTable::kFractionBits);
   std::int32_t* const data = storage_.data();
-  Lines lines{data, data + kMostLines, data + 2 * kMostLines, data + 3 * kMostLines, data + 4 * kMostLines, 0, {}, end};
+  Lines lines{data, data + kMostLines, data + 2 * kMostLines, data + 3 * kMostLines, data + 4 * kMostLines, 0, {}};
   Eigen::Vector3f rounded;
   for (int axis = 0; axis < 3; ++axis) {
     lines.step[axis] = static_cast<std::int32_t>(std::lround(step[axis] * one));
@@ -75,7 +75,7 @@ void MovedLines::add(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start
 }
 
 LookupTable tableOf(const GaussianEdt& edt, const Visibility* visibility, int num_threads) {
-  // Sharpened by 1/12: a sample's uniform place in its cell and the look-up of the nearest cell are two boxes.
+  // Sharpened by 1/12: a sample's uniform position in its cell and the look-up of the nearest cell are two boxes.
   std::vector<const float*> functions{edt.interpolation().data()};
   std::vector<float> free_space;
   if (visibility) free_space = freeSpace(edt, *visibility, num_threads);

@@ -20,7 +20,7 @@ public:
 
   /// Adds up the table's functions over moved samples.
   /// \param moved 3 x N, the samples at step 0, relative to \p start.
-  /// \param start,step the image k of a sample is its moved place + start + k * step.
+  /// \param start,step the image k of a sample is its moved position + start + k * step.
   /// \param begin,end steps to add up, in [0, num_steps].
   /// \param[in,out] totals for each function of the table one sum per step.
   void add(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step, int begin, int end,
@@ -42,7 +42,7 @@ LookupTable tableOf(const GaussianEdt& edt, const Visibility* visibility, int nu
 /// Samples of f in cells from the middle of the cube.
 Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads);
 
-/// A place of the input frame in cells from the middle of the cube.
+/// A position of the input frame in cells from the middle of the cube.
 Eigen::Vector3d toCells(const GaussianEdt& edt, const Eigen::Vector3d& x);
 
 }  // namespace pcl_symmetry

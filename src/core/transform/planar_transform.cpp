@@ -26,7 +26,6 @@ SymmetryMap mapWithoutSight(const GaussianEdt& edt, const PlaneGrid& grid, const
 bool simdSupported(Simd simd) {
 #if defined(__x86_64__)
   if (simd == Simd::Avx2) return __builtin_cpu_supports("avx2");
-  if (simd == Simd::Avx512) return __builtin_cpu_supports("avx512f");
 #endif
   return simd == Simd::Auto || simd == Simd::Scalar;
 }

@@ -56,8 +56,7 @@ public:
         totals_(table.numFunctions(), std::vector<double>(num_radius)) {
     for (auto& sums : chunk_sums_) sums_of_.push_back(sums.data());
     std::int32_t* const data = storage_.data();
-    lines_ = {data, data + kMostLines, data + 2 * kMostLines, data + 3 * kMostLines, data + 4 * kMostLines, 0,
-              {},   num_radius};
+    lines_ = {data, data + kMostLines, data + 2 * kMostLines, data + 3 * kMostLines, data + 4 * kMostLines, 0, {}};
   }
 
   /// \return for each function of the table one sum per plane.
@@ -128,7 +127,7 @@ void SampledTransformOptions::validate() const {
 
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options,
                              const std::vector<float>& free_space) {
-  // Sharpened by 1/12: a sample's uniform place in its cell and the look-up of the nearest cell are two boxes.
+  // Sharpened by 1/12: a sample's uniform position in its cell and the look-up of the nearest cell are two boxes.
   std::vector<const float*> functions{edt.interpolation().data()};
   if (!free_space.empty()) functions.push_back(checkedFreeSpace(edt, free_space));
   const LookupTable table(functions, edt.numCells(), options.num_threads);
