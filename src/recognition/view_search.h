@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/matching/view_code.h"
-#include "core/matching/view_index.h"
 #include "recognition/fitted_forms.h"
 #include "recognition/model_store.h"
 

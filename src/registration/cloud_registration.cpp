@@ -5,7 +5,6 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/stopwatch.h"
-#include "core/registration/frame_hypotheses.h"
 #include "core/registration/pose_covariance.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/ranked_poses.h"

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/base/simd.h"
-#include "core/transform/edt_samples.h"
+#include "core/transform/sampled_transform.h"
 #include "core/transform/free_space.h"
 #include "pcl_symmetry/core/visibility.h"
 

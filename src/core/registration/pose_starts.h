@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/registration/posed_surface.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace pcl_symmetry {
 
@@ -12,7 +13,7 @@ namespace pcl_symmetry {
 /// \return n rotations; every rotation is within about 160 / cbrt(n) degrees of one of them.
 std::vector<Eigen::Matrix3d> uniformRotations(int num_rotations);
 
-/// Completes rotations to poses: the translation puts a turned scan where the model has to be to be seen so.
+/// Completes rotations to poses: the translation puts a rotated scan where the model has to be to be seen so.
 ///
 /// As seen by the scanner, the middle of the scan's outline is put on the middle of the model's, and the front of the
 /// scan on the front of the model. Without a viewpoint the centers of mass meet.
@@ -29,5 +30,15 @@ private:
   Eigen::Matrix3d R_scanner_scan_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d scan_anchor_, model_anchor_ = Eigen::Vector3d::Zero();
 };
+
+/// The poses that bring the symmetry frame of one cloud to that of another, in all ways that symmetry leaves open
+/// (Section 5.1).
+///
+/// The axes of \p b may have any order and any signs that are a rotation: 24 ways, from every equally good frame of
+/// \p a that is a maximum. About an axis of revolution of \p a the poses differ by steps of 45 degrees: between a scan
+/// and a whole, the handle of a mug may be hidden.
+/// \param a,b frames of two clouds, each in its own input frame.
+/// \return T_b_a; poses whose rotation is within 10 degrees of an earlier one are left out.
+std::vector<Eigen::Isometry3d> frameHypotheses(const SymmetryFrame& a, const SymmetryFrame& b);
 
 }  // namespace pcl_symmetry

@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/segmentation/consensus.h"
 #include "core/segmentation/merge_fit.h"
 #include "core/segmentation/mirrored_labels.h"
 #include "core/segmentation/part_evidence.h"
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/segment_tree.h"
+#include "core/segmentation/segmentation_rules.h"
+#include "core/segmentation/surface_patches.h"
 
 namespace pcl_symmetry {
 
@@ -97,6 +101,140 @@ Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptio
   Segmentation result = segmentsOf(graph, *first, std::move(labels), weights);
   tell(1.0);
   return result;
+}
+
+namespace {
+
+/// Elements that lie in one cell of every division.
+struct CommonCells {
+  std::vector<int> of_element;          ///< from 0
+  std::vector<double> areas;            ///< shares of the surface
+  std::vector<std::vector<int>> cells;  ///< per division: its cell that holds each common cell
+
+  int size() const { return static_cast<int>(areas.size()); }
+};
+
+/// Numbers the intersections of the divisions.
+std::vector<int> intersections(const std::vector<MergedDivision>& divisions) {
+  std::vector<int> cell(divisions.front().cell.size(), 0);
+  for (const MergedDivision& division : divisions) {
+    std::map<std::pair<int, int>, int> number;
+    for (std::size_t i = 0; i < cell.size(); ++i)
+      cell[i] = number.emplace(std::pair(cell[i], division.cell[i]), static_cast<int>(number.size())).first->second;
+  }
+  return cell;
+}
+
+std::vector<double> areaShares(const SurfaceGraph& graph, const std::vector<int>& label) {
+  const double whole = graph.area();
+  std::vector<double> areas(1 + static_cast<std::size_t>(*std::max_element(label.begin(), label.end())), 0.0);
+  for (int i = 0; i < graph.size(); ++i) areas[label[i]] += graph.areas[i] / whole;
+  return areas;
+}
+
+CommonCells commonCells(const SurfaceGraph& graph, const std::vector<MergedDivision>& divisions) {
+  CommonCells common;
+  common.of_element = intersections(divisions);
+  const std::vector<double> areas = areaShares(graph, common.of_element);
+  const double least = std::min(kSegmentation.least_cell, *std::max_element(areas.begin(), areas.end()));
+  std::vector<int> number(areas.size(), -1);
+  int size = 0;
+  for (std::size_t c = 0; c < areas.size(); ++c)
+    if (areas[c] >= least) number[c] = size++;
+  common.cells.assign(divisions.size(), std::vector<int>(static_cast<std::size_t>(size), 0));
+  for (std::size_t i = 0; i < common.of_element.size(); ++i) {
+    int& cell = common.of_element[i];
+    cell = number[cell];
+    for (std::size_t d = 0; cell >= 0 && d < divisions.size(); ++d) common.cells[d][cell] = divisions[d].cell[i];
+  }
+  common.of_element = filledFromClosest(graph, std::move(common.of_element));
+  common.areas = areaShares(graph, common.of_element);
+  return common;
+}
+
+/// Clusters of common cells with the sums of the probabilities of their pairs.
+class Clusters {
+public:
+  Clusters(const SurfaceGraph& graph, const CommonCells& common, const std::vector<MergedDivision>& divisions)
+      : cluster_(static_cast<std::size_t>(common.size())),
+        areas_(common.areas),
+        neighbors_(cluster_.size()),
+        sums_(Eigen::MatrixXf::Zero(common.size(), common.size())),
+        num_clusters_(common.size()) {
+    std::iota(cluster_.begin(), cluster_.end(), 0);
+    for (const SurfaceGraph::Edge& edge : graph.edges) {
+      const int a = common.of_element[edge.from], b = common.of_element[edge.to];
+      if (a == b) continue;
+      neighbors_[a].insert(b);
+      neighbors_[b].insert(a);
+    }
+    for (int a = 0; a < common.size(); ++a) {
+      for (int b = 0; b < common.size(); ++b) {
+        for (std::size_t d = 0; d < divisions.size(); ++d)
+          sums_(b, a) += divisions[d].probability(common.cells[d][b], common.cells[d][a]);
+        sums_(b, a) *= static_cast<float>(areas_[a] * areas_[b] / static_cast<double>(divisions.size()));
+      }
+    }
+  }
+
+  int size() const { return num_clusters_; }
+  const std::vector<int>& ofCells() const { return cluster_; }
+
+  struct Pair {
+    int a = -1, b = -1;
+    double probability = -1.0;
+  };
+
+  /// The neighbors that are most likely one part; a = -1 if no two clusters are neighbors.
+  Pair likeliest() const {
+    Pair best;
+    for (int a = 0; a < static_cast<int>(neighbors_.size()); ++a) {
+      for (auto b = neighbors_[a].upper_bound(a); b != neighbors_[a].end(); ++b) {
+        const double area = areas_[a] * areas_[*b], mean = area > 0.0 ? sums_(a, *b) / area : 1.0;
+        if (mean > best.probability) best = {a, *b, mean};
+      }
+    }
+    return best;
+  }
+
+  void merge(int a, int b) {
+    std::replace(cluster_.begin(), cluster_.end(), b, a);
+    sums_.col(a) += sums_.col(b);
+    sums_.row(a) += sums_.row(b);
+    areas_[a] += areas_[b];
+    for (const int c : neighbors_[b]) {
+      neighbors_[c].erase(b);
+      if (c == a) continue;
+      neighbors_[a].insert(c);
+      neighbors_[c].insert(a);
+    }
+    neighbors_[b].clear();
+    --num_clusters_;
+  }
+
+private:
+  std::vector<int> cluster_;              ///< of each cell
+  std::vector<double> areas_;             ///< of clusters, shares of the surface
+  std::vector<std::set<int>> neighbors_;  ///< of clusters
+  Eigen::MatrixXf sums_;                  ///< mean probability times both areas
+  int num_clusters_;
+};
+
+}  // namespace
+
+std::vector<int> consensus(const SurfaceGraph& graph, const std::vector<MergedDivision>& divisions, int num_parts) {
+  const CommonCells common = commonCells(graph, divisions);
+  Clusters clusters(graph, common, divisions);
+  while (num_parts == 0 || clusters.size() > num_parts) {
+    const Clusters::Pair pair = clusters.likeliest();
+    if (pair.a < 0 || (num_parts == 0 && pair.probability < 0.5)) break;
+    clusters.merge(pair.a, pair.b);
+  }
+  std::map<int, int> number;
+  std::vector<int> part;
+  for (const int cell : common.of_element)
+    part.push_back(number.emplace(clusters.ofCells()[cell], static_cast<int>(number.size())).first->second);
+  return part;
 }
 
 }  // namespace pcl_symmetry

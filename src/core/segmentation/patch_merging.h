@@ -1,5 +1,9 @@
 #pragma once
 
+#include <vector>
+
+#include "core/segmentation/region_merging.h"
+#include "pcl_symmetry/core/surface_graph.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 
 namespace pcl_symmetry {
@@ -10,5 +14,15 @@ namespace pcl_symmetry {
 /// \param options valid.
 /// \return labels, tree and images.
 Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptions& options);
+
+/// Cuts a surface into parts that several divisions agree on.
+///
+/// The Rand distance counts pairs of elements. The parts with the least expected distance therefore hold the pairs
+/// whose mean probability to be one part is above 1/2: neighbors with the highest mean are merged until it falls
+/// below.
+/// \param divisions of the same elements, at least one.
+/// \param num_parts 0: ends at 1/2; otherwise at this number of parts, or at pieces that no edge connects.
+/// \return the part of each element, from 0.
+std::vector<int> consensus(const SurfaceGraph& graph, const std::vector<MergedDivision>& divisions, int num_parts);
 
 }  // namespace pcl_symmetry

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/simd.h"
-#include "core/transform/edt_samples.h"
+#include "core/transform/sampled_transform.h"
 #include "core/transform/free_space.h"
 
 namespace pcl_symmetry {

@@ -12,7 +12,6 @@
 #include "core/base/random.h"
 #include "core/matching/pose_screening.h"
 #include "core/matching/view_code.h"
-#include "core/matching/view_index.h"
 
 namespace pcl_symmetry {
 namespace {

@@ -10,10 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/registration/frame_hypotheses.h"
+#include "core/registration/pose_starts.h"
 #include "core/registration/pose_covariance.h"
 #include "core/registration/pose_scoring.h"
-#include "core/registration/pose_starts.h"
 #include "core/registration/posed_surface.h"
 #include "core/registration/ranked_poses.h"
 #include "pcl_symmetry/core/visibility.h"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
-#include "core/segmentation/consensus.h"
+#include "core/segmentation/patch_merging.h"
 #include "core/segmentation/graph_cut.h"
 #include "core/segmentation/mirrored_labels.h"
 #include "core/segmentation/segment_borders.h"
