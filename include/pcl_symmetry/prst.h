@@ -98,8 +98,7 @@ public:
   /// Sets the size of the ball that is described. It is relative to the cloud, unlike that of setRadiusSearch(), which
   /// is ignored.
   /// \param radius in mean distances of the points from the center, > 0; default 2.
-  /// \throws
-  /// pcl::BadArgumentException for another radius.
+  /// \throws pcl::BadArgumentException for another radius.
   void setRadius(double radius) {
     detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.radius = radius; });
   }

@@ -24,10 +24,8 @@ std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t
 /// them and all hypotheses are improved coarsely, the best of those finely, by Gauss-Newton steps with a shrinking
 /// Gaussian.
 /// \param scan,model each about its own center, in units of the model's radius.
-/// \param hypotheses
-/// T_model_scan to improve beside the screened ones, for instance those that bring symmetry frames together.
-/// \return
-/// best first.
+/// \param hypotheses T_model_scan to improve beside the screened ones, such as those that bring frames together.
+/// \return best first.
 /// \throws std::invalid_argument for bad options.
 std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<Eigen::Isometry3d>& hypotheses,
