@@ -79,6 +79,19 @@ TEST(Scans, TruePlanesAreAmongTheAnswers) {
   EXPECT_LE(num_wrong, static_cast<int>(0.21 * static_cast<double>(scans().size())));
 }
 
+TEST(Scans, ACameraThatResolvesTooLittleDecidesNothing) {
+  const Scan view = scan(blockBox(), {2.5, -3.0, 2.0});
+  const Points cloud = view.cloud();
+  const double depth = (centerOfMass(cloud) - view.viewpoint).norm();
+  const auto kindAt = [&](double resolution) {  // in diameters
+    const double error = resolution * diagonal(cloud) / (3.07 * depth * depth);
+    const Visibility seen = view.visibility().withDepthErrors(error);
+    return detectPlanes({cloud, &seen}).planes.front().kind;
+  };
+  EXPECT_EQ(kindAt(0.04), PlaneKind::Symmetry);
+  EXPECT_EQ(kindAt(0.1), PlaneKind::Possible);
+}
+
 TEST(Scans, SameBytesForAnyNumberOfThreads) {
   const Scan view = scan(blockL(), {2.5, -3.0, 2.0});
   const Points cloud = view.cloud();
@@ -136,37 +149,38 @@ TEST(OpenSurfaces, SheetThatIsAlikeOnBothSidesKeepsItsPlane) {
   EXPECT_GT(std::abs(detection.planes.front().normal().x()), std::cos(1.0 * kDegree));
 }
 
-/// Two boxes on a table, of which the picture shows a disc of 80 pixels.
-Scan tableInDisc() {
+/// Two boxes on a table, of which the picture shows 60 columns.
+Scan tableInStrip() {
   const BlockObject table{{{{0.0, 0.0, -0.05}, {3.0, 3.0, 0.05}},
                            {{-0.5, 0.0, 0.2}, {0.25, 0.15, 0.2}},
                            {{0.5, 0.0, 0.2}, {0.25, 0.15, 0.2}}},
                           {}};
-  Scan view = scan(table, {0.0, -5.0, 4.0});
+  Scan view = scan(table, {0.0, -5.0, 4.0}, 0.0);
   for (int v = 0; v < view.height; ++v)
     for (int u = 0; u < view.width; ++u)
-      if (std::hypot(u - 0.5 * (view.width - 1), v - 0.5 * (view.height - 1)) > 40.0)
+      if (std::abs(u - 0.5 * (view.width - 1)) > 30.0)
         view.pixels.col(v * view.width + u).setConstant(std::numeric_limits<float>::quiet_NaN());
   return view;
 }
 
-/// \param outside depth of the pixels without a point.
-Visibility seenWith(const Scan& view, float outside) {
+/// \param width of the middle of the picture, which is left.
+Visibility seenWith(const Scan& view, int width) {
   const Visibility seen = view.visibility();
+  const int first = (view.width - width) / 2;
   std::vector<float> depths;
   for (int v = 0; v < view.height; ++v)
-    for (int u = 0; u < view.width; ++u) depths.push_back(std::isfinite(seen.depth(u, v)) ? seen.depth(u, v) : outside);
+    for (int u = 0; u < width; ++u) depths.push_back(seen.depth(first + u, v));
   Eigen::Matrix3d camera;
-  camera << view.focal, 0.0, 0.5 * (view.width - 1), 0.0, view.focal, 0.5 * (view.height - 1), 0.0, 0.0, 1.0;
+  camera << view.focal, 0.0, 0.5 * (width - 1), 0.0, view.focal, 0.5 * (view.height - 1), 0.0, 0.0, 1.0;
   const Visibility::Projection projection = camera * view.T_camera_object.matrix().topRows<3>();
-  return Visibility(projection, view.width, view.height, std::move(depths)).withDepthErrors(1e-6);
+  return Visibility(projection, width, view.height, std::move(depths)).withDepthErrors(1e-6);
 }
 
 TEST(OpenSurfaces, TableThatThePictureCutsOffIsPossibleAtMost) {
-  const Scan view = tableInDisc();
+  const Scan view = tableInStrip();
   const Points cloud = view.cloud();
-  const Visibility whole = seenWith(view, Visibility::kBackground), cut = seenWith(view, Visibility::kNoRay);
-  EXPECT_TRUE(hasSymmetry(detectPlanes({cloud, &whole}))) << "a round table";
+  const Visibility whole = seenWith(view, view.width), cut = seenWith(view, 60);
+  EXPECT_TRUE(hasSymmetry(detectPlanes({cloud, &whole}))) << "a long table";
   EXPECT_FALSE(hasSymmetry(detectPlanes({cloud, &cut})));
 }
 
