@@ -148,6 +148,16 @@ class Judging(unittest.TestCase):
         beside = {"planes": [{"coefficients": [0, 1, 0, -0.1], "kind": "symmetry"}]}
         self.assertTrue(real_frames.judge(through, truth)["decided"])
         self.assertTrue(real_frames.judge(beside, truth)["wrong"])
+        self.assertIsNone(real_frames.judge(through, truth)["sure"])
+        through["planes"][0]["confidence"] = 0.9
+        self.assertTrue(real_frames.judge(through, truth)["sure"])
+
+    def test_axis_of_a_cylinder_that_lies(self):
+        angles = np.random.default_rng(0).uniform(0, np.pi, 500)
+        along = np.array([0.6, 0.8, 0])
+        normals = np.outer(np.cos(angles), [-0.8, 0.6, 0]) + np.outer(np.sin(angles), [0, 0, 1])
+        found = real_frames.level_axis(np.vstack([normals, np.tile(along, (100, 1))]), np.array([0.0, 0, 1]))
+        self.assertGreater(abs(found @ along), 0.999)
 
 
 class Runs(unittest.TestCase):
