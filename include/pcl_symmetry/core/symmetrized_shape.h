@@ -44,7 +44,7 @@ SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Ei
 
 /// A mesh whose triangles a plane maps onto each other.
 struct MirroredMesh {
-  Points vertices;  ///< 3 x M, input frame
+  Points vertices;                         ///< 3 x M, input frame
   std::vector<Eigen::Vector3i> triangles;  ///< indices of these vertices
   std::vector<int> sources;  ///< M; the given vertex that each is, or is the reflection of; at the cut one beside it
 };
