@@ -4,8 +4,8 @@
 #include <array>
 
 #include "core/base/simd.h"
-#include "core/transform/sampled_transform.h"
 #include "core/transform/free_space.h"
+#include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {

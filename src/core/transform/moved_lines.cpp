@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/base/simd.h"
-#include "core/transform/sampled_transform.h"
 #include "core/transform/free_space.h"
+#include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {
 

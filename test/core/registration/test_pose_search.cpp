@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/registration/pose_starts.h"
 #include "core/registration/pose_covariance.h"
 #include "core/registration/pose_scoring.h"
+#include "core/registration/pose_starts.h"
 #include "core/registration/posed_surface.h"
 #include "core/registration/ranked_poses.h"
 #include "pcl_symmetry/core/visibility.h"

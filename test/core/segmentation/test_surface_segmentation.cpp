@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
-#include "core/segmentation/patch_merging.h"
 #include "core/segmentation/graph_cut.h"
 #include "core/segmentation/mirrored_labels.h"
+#include "core/segmentation/patch_merging.h"
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/surface_patches.h"
 #include "pcl_symmetry/core/surface_graph.h"
