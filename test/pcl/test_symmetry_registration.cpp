@@ -359,7 +359,19 @@ TEST_F(SymmetryRegistrationTest, RefusesWrongParameters) {
 
 /// Points on a box of 4 x 3 x 2, and on a block on its top that leaves it no symmetry.
 Points blockOnBox(std::uint64_t seed) {
-  return surfaceOf({{{{0.0, 0.0, 0.0}, {2.0, 1.5, 1.0}}, {{1.1, 0.75, 1.4}, {0.5, 0.45, 0.4}}}, {}}, 3000, seed);
+  RandomStream random(seed);
+  Points points(3, 3000);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const bool block = i % 4 == 0;
+    const Eigen::Vector3d low = block ? Eigen::Vector3d(0.6, 0.3, 1.0) : Eigen::Vector3d(-2.0, -1.5, -1.0);
+    const Eigen::Vector3d high = block ? Eigen::Vector3d(1.6, 1.2, 1.8) : Eigen::Vector3d(2.0, 1.5, 1.0);
+    Eigen::Vector3d x;
+    for (int k = 0; k < 3; ++k) x[k] = low[k] + random.uniform() * (high[k] - low[k]);
+    const auto face = random.below(6);
+    x[face / 2] = face % 2 ? high[face / 2] : low[face / 2];
+    points.col(i) = x.cast<float>();
+  }
+  return points;
 }
 
 /// Errors of poses as small motions (w, t) of the target's frame, and the covariances that were said of them.
