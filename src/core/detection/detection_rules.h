@@ -80,7 +80,7 @@ struct DetectionRules {
   double odds_of_a_piece = 0.2;        ///< that a cloud lacks a piece although a plane explains all of it
   double least_told = 0.1;             ///< share of samples that tell something below which confidence falls
   double coarsest_tolerance = 0.03;    ///< share of the diameter; a sensor that resolves less decides at this
-  double coarsest_resolution = 0.06;   ///< share of the diameter; a sensor that resolves less decides nothing
+  double coarsest_resolution = 0.09;   ///< three times that; a sensor that resolves less decides nothing
   double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
   double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too
   double slanted_odds = 0.1;           ///< of a plane that slants over one that does not
