@@ -28,8 +28,6 @@
 
 namespace pcl_symmetry::apps {
 
-namespace {
-
 /// Finds the first triangle along a ray: Embree 3 takes a context for that, Embree 4 does not.
 inline void intersect(RTCScene scene, RTCRayHit& query) {
 #if PCL_SYMMETRY_EMBREE >= 4
@@ -169,6 +167,8 @@ double distanceAlong(const TriangleScene& scene, const Eigen::Vector3d& origin, 
   const double coarse = query.ray.tfar;
   return std::abs(distance - coarse) < kCoarseError ? distance : coarse;
 }
+
+namespace {
 
 /// Edge of the largest picture, pixels.
 constexpr int kMaxResolution = 8192;
