@@ -93,7 +93,7 @@ TEST_F(PlanesTool, KeepsCoordinatesBeyondFloatPrecision) {
     Eigen::Vector3d printed;
     std::getline(table, line);
     ASSERT_TRUE(std::istringstream(line) >> number >> printed.x() >> printed.y() >> printed.z() >> d) << line;
-    EXPECT_NEAR(printed.dot(pose.translation()) + d, 0.0, 1e-3) << "few digits, and still the plane at the points";
+    EXPECT_NEAR(printed.dot(pose.translation()) + d, 0.0, 2e-5) << "few digits, and still the plane at the points";
   }
   EXPECT_EQ(along, Eigen::Vector3i::Ones());
   const Shape saved = loadShape(folder_ / "s.pcd");
