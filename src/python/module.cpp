@@ -266,10 +266,16 @@ std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions
   return labels;
 }
 
-std::vector<int> segment(const AnyArray& points, const py::object& faces, int parts,
-                         const std::function<void(double)>& progress, std::uint64_t seed, int threads) {
+std::vector<int> segment(const AnyArray& points, const py::object& faces, int parts, const std::string& method,
+                         int depth, bool as_published, const std::function<void(double)>& progress, std::uint64_t seed,
+                         int threads) {
   auto options = optionsWith<SegmentationOptions>(seed, threads);
   options.num_parts = parts;
+  if (method != "merging" && method != "splitting")
+    throw std::invalid_argument("method = " + method + ", must be merging or splitting");
+  options.method = method == "merging" ? SegmentationMethod::Merging : SegmentationMethod::Splitting;
+  options.splitting.depth = depth;
+  options.splitting.as_published = as_published;
   if (progress)
     options.progress = [&progress](double share) {
       const py::gil_scoped_acquire acquire;
@@ -452,11 +458,9 @@ void addShapeFunctions(py::module_& module) {
              "Canonical frame of a cloud (Section 5.1). Parameters as in planes(). Returns Frame.");
   module.def("closest", &closest, py::arg("points"), py::arg("queries"));
   module.def("segment", &segment, py::arg("points"), py::arg("faces") = py::none(), py::kw_only(), py::arg("parts") = 0,
+             py::arg("method") = "merging", py::arg("depth") = 3, py::arg("as_published") = false,
              py::arg("progress") = py::none(), py::arg("seed") = 1, py::arg("threads") = 0,
-             "Cuts a surface into parts by its symmetries (Section 5.3).\n\n"
-             "points: (N, 3), points of a cloud or vertices of a mesh. faces: (F, 3), or None for a cloud.\n"
-             "parts: number of parts; 0: the method finds it. progress: called with the share done, in [0, 1].\n"
-             "Returns the label of each point or face; -1 for points that were left out.");
+             "Cuts a surface into parts by its symmetries (Section 5.3). See pcl_symmetry.segment.");
   module.def("describe", &describe, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
              py::arg("seed") = 1, py::arg("threads") = 0,
              "(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2).");

@@ -258,6 +258,10 @@ class OtherFunctions(unittest.TestCase):
         labels = pcl_symmetry.segment(box(num_points=2000), parts=2, progress=shares.append)
         self.assertEqual(len(labels), 2000)
         self.assertTrue(shares and max(shares) <= 1.0)
+        split = pcl_symmetry.segment(vertices, faces, method="splitting", depth=1, as_published=True)
+        self.assertLessEqual(len(set(split)), 2)
+        with self.assertRaisesRegex(ValueError, "method = cutting, must be merging or splitting"):
+            pcl_symmetry.segment(vertices, faces, method="cutting")
         self.assertEqual(pcl_symmetry.sample_mesh(vertices, faces, 500).shape, (500, 3))
 
     def test_merges_of_a_mesh_follow_their_weights(self):
@@ -276,6 +280,14 @@ class OtherFunctions(unittest.TestCase):
         self.assertEqual((prst.shape, prsd.shape, gedt.shape), ((32, 32, 32), (32, 32), (32, 32, 32)))
         by_equation_1 = pcl_symmetry.descriptors(box(), input_axes=True, by_equation_1=True)[0]
         np.testing.assert_allclose(by_equation_1, np.sqrt((1 + prst**2) / 2), atol=1e-5)
+
+    def test_descriptor_distances_count_planes_by_the_size_of_their_bins(self):
+        a, b = np.zeros((2, 3, 4)), np.ones((2, 3, 4))
+        self.assertAlmostEqual(pcl_symmetry.descriptor_distance(a, b, of_planes=False), np.sqrt(24))
+        of_bins = 12 * (np.sin(np.pi / 8) + np.sin(3 * np.pi / 8))
+        self.assertAlmostEqual(pcl_symmetry.descriptor_distance(a, b), np.sqrt(of_bins))
+        with self.assertRaisesRegex(ValueError, "a, b: shapes"):
+            pcl_symmetry.descriptor_distance(a, b[:1])
 
     def test_description_does_not_depend_on_the_pose(self):
         points = box()

@@ -16,6 +16,7 @@ from ._pcl_symmetry import __version__ as __version__
 from .functions import (
     complete,
     describe,
+    descriptor_distance,
     descriptors,
     frame,
     local_symmetry,
@@ -73,6 +74,7 @@ __all__ = [
     "View",
     "complete",
     "describe",
+    "descriptor_distance",
     "descriptors",
     "frame",
     "local_symmetry",

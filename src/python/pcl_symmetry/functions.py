@@ -373,6 +373,9 @@ def segment(
     faces: Optional["ArrayLike"] = None,
     *,
     parts: int = 0,
+    method: str = "merging",
+    depth: int = 3,
+    as_published: bool = False,
     progress: Optional[Callable[[float], None]] = None,
     seed: int = 1,
     threads: int = 0,
@@ -380,11 +383,13 @@ def segment(
     """Cuts a surface into parts by its symmetries (Section 5.3).
 
     points: (N, 3), points of a cloud or vertices of a mesh. faces: (F, 3), or None for a cloud.
-    parts: number of parts; 0: the method finds it. progress: called with the share done, in [0, 1].
-    Returns the label of each point or face; -1 for points that were left out.
+    parts: number of parts; 0: the method finds it. method: merging, or the paper's splitting; depth: splits in a row at
+    most; as_published: splitting to the letter of the paper. progress: called with the share done, in [0, 1].
+    Returns the label of each point or face; -1 for points that were left out. Raises ValueError for an unknown method.
     """
     array, _ = prepare("points", points)
-    return list(core.segment(array, faces, parts=parts, progress=progress, seed=seed, threads=threads))
+    options = dict(parts=parts, method=method, depth=depth, as_published=as_published, progress=progress)
+    return list(core.segment(array, faces, **options, seed=seed, threads=threads))
 
 
 def describe(points: Any, *, viewpoint: Viewpoint = "auto", seed: int = 1, threads: int = 0) -> "NDArray[np.float32]":
@@ -400,8 +405,8 @@ def descriptors(
     """The descriptors that the paper compares (Section 5.2): PRST and GEDT, (32, 32, 32), and PRSD, (32, 32).
 
     input_axes: about the center of mass in the axes of the input, as for models aligned by hand; False: in frame().
-    by_equation_1: sqrt((1 + D) / 2) in place of sqrt(max(D, 0)). Compare PRST and PRSD by the L2 distance of values times
-    sqrt(sin(theta)), theta along the first axis; the paper's best distance is that of PRST times that of GEDT.
+    by_equation_1: sqrt((1 + D) / 2) in place of sqrt(max(D, 0)). The paper's best distance is descriptor_distance() of PRST
+    times that of GEDT.
     """
     import numpy as np
 
@@ -409,6 +414,22 @@ def descriptors(
     options = dict(input_axes=input_axes, by_equation_1=by_equation_1, seed=seed, threads=threads)
     prst, prsd, gedt = (np.asarray(values, dtype=np.float32) for values in core.descriptors(array, **options))
     return prst.reshape(32, 32, 32), prsd.reshape(32, 32), gedt.reshape(32, 32, 32)
+
+
+def descriptor_distance(a: "ArrayLike", b: "ArrayLike", *, of_planes: bool = True) -> float:
+    """Distance of two descriptors() of one kind (Section 5.2), arrays of one shape: L2.
+
+    of_planes: PRST or PRSD, whose values count by the size of their bins, sin(theta) along the first axis; False: GEDT.
+    Raises ValueError if the shapes differ.
+    """
+    import numpy as np
+
+    first, second = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    if first.shape != second.shape:
+        raise ValueError(f"a, b: shapes {first.shape} and {second.shape}, must be equal")
+    sq_difference = ((first - second) ** 2).reshape(len(first), -1).sum(axis=1)
+    theta = (np.arange(len(first)) + 0.5) * np.pi / 2 / len(first)
+    return float(np.sqrt(sq_difference @ np.sin(theta) if of_planes else sq_difference.sum()))
 
 
 def transform(
