@@ -50,7 +50,7 @@ python=/usr/bin/python3
 
 models=$PWD/build/pictures_models
 mkdir -p "$gallery" "$pictures" "$models"
-bash apps/fetch_meshes.sh "$models" bull camel cow elephant hand
+bash apps/fetch_meshes.sh "$models" bull camel cow dino elephant hand
 "$python" -B apps/gallery/shapes.py "$models"
 drawings=("$python" -B "$PWD/apps/gallery/drawings.py")
 contours=$PWD/apps/gallery/contour.awk
@@ -139,8 +139,12 @@ draw_figure_15() {
   draw_parts figure_15_bull bull.off -up 0,1,0
   draw_parts figure_15_hand_4 hand.off -up 0,1,0 -method splitting -depth 2
   draw_parts figure_15_hand hand.off -up 0,1,0
+  draw_parts figure_15_teapot_4 teapot.ply -method splitting -as_published -depth 2
   draw_parts figure_15_teapot teapot.ply
+  draw_parts figure_15_octopus_8 octopus.ply -method splitting -as_published -depth 4
   draw_parts figure_15_octopus octopus.ply
+  draw_parts figure_15_dino_8 dino.off -up 0,-1,0 -method splitting -as_published -depth 3
+  draw_parts figure_15_dino dino.off -up 0,-1,0
   pcl_symmetry_scan elephant.off elephant_scan.pcd -quiet
   draw_parts figure_15_scan elephant_scan.pcd -up 0,1,0 -evidence concavity
 }
