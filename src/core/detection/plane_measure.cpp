@@ -224,9 +224,16 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
   const std::vector<int> samples = drawSamples(cloud_.points.cols(), detection_rules.deviation_samples, options_.seed);
   IspStep step;
   step.closest.assign(samples.size(), -1);
-  const Reflected all = reflected(plane, samples, step);
+  Reflected all = reflected(plane, samples, step);
   cloud_.search->search(all.points, 1, step.closest, step.sq_distances);
-  return deviationOf(surfaceDistances(all.points, step.closest, cloud_.samples));
+  all.distances = surfaceDistances(all.points, step.closest, cloud_.samples);
+  std::vector<char> matched;
+  for (const float distance : all.distances) matched.push_back(distance <= tolerance_);
+  const std::vector<float> unknown = unknownMatches(all, step, matched, 0.0, 0.0);
+  std::vector<float> telling;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (unknown[i] < 0.5f) telling.push_back(all.distances[i]);
+  return deviationOf(std::move(telling));
 }
 
 PlaneMeasure::QuickShare PlaneMeasure::quickShare(const Candidate& candidate) const {
