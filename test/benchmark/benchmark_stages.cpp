@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/geometry/axis_rotations.h"
 #include "core/matching/compact_index.h"
@@ -297,34 +296,6 @@ void NearestShapes(benchmark::State& state) {
   state.counters["found"] = num_found / kNumQueries;
 }
 
-/// The pose nearest to another one among those that the symmetry makes equal. Argument: 0 C2, 1 D6, 2 I, 3 Cinf.
-void ClosestPose(benchmark::State& state) {
-  const auto turn = [](const Eigen::Vector3d& axis, double angle) {
-    return Eigen::Isometry3d(Eigen::AngleAxisd(angle, axis));
-  };
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ(), origin = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Isometry3d> icosahedral;
-  for (const Eigen::Matrix3d& R : RotationGroup{RotationGroupKind::Icosahedral, 5}.generators())
-    icosahedral.emplace_back(Eigen::AngleAxisd(R));
-  const ObjectSymmetries groups[] = {
-      ObjectSymmetries::from({turn(z, kPi)}, {}), ObjectSymmetries::from({turn(z, kPi / 3.0), turn(x, kPi)}, {}),
-      ObjectSymmetries::from(icosahedral, {}), ObjectSymmetries::from({}, {{z, origin}})};
-  const char* const names[] = {"C2", "D6", "I", "Cinf"};
-  state.SetLabel(names[state.range(0)]);
-  RandomStream random(1);
-  std::vector<Eigen::Isometry3d> poses(256);
-  for (Eigen::Isometry3d& T : poses) {
-    const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
-    T = Eigen::Translation3d(number(), number(), number()) *
-        Eigen::Quaterniond(number(), number(), number(), number()).normalized();
-  }
-  std::size_t k = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(groups[state.range(0)].closestTo(poses[k % 256], poses[(k + 1) % 256]).matrix().sum());
-    ++k;
-  }
-}
-
 // "Time" is that of the clock, "CPU" the processor time of all threads.
 #define STAGE(name) BENCHMARK(name)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()
 STAGE(Edt)->ArgNames({"points", "cells", "threads"})->ArgsProduct({{10'000, 1'000'000}, {kCells}, {1, 2}});
@@ -341,7 +312,6 @@ STAGE(Segmentation)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Registration)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(NearestViews)->ArgName("threads")->Arg(1);
 STAGE(NearestShapes)->ArgName("shapes")->Arg(904)->Arg(100'000);
-BENCHMARK(ClosestPose)->ArgName("group")->DenseRange(0, 3);
 
 }  // namespace
 
