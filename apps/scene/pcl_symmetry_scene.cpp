@@ -63,7 +63,6 @@ CommandLine commandLine(SceneToolOptions& o) {
       .number("min_confidence", o.scene.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
       .flag("no_separation", o.no_separation, "leaves objects that touch together")
-      .flag("filter", o.scene.filter, "takes the errors of a depth camera out of organized frames first")
       .flag("no_frames", o.no_frames, "leaves the frames of the objects out")
       .flag("no_completion", o.no_completion, "leaves the completion of the objects out")
       .common(o.common, kAnalysisFlags);

@@ -37,9 +37,6 @@ struct SceneOptions {
   int max_points = 5'000;
   /// Cuts objects that touch apart where their surface bends inwards, and joins pieces that one symmetry explains.
   bool separate = true;
-  /// Takes the errors of depth cameras out of organized frames, see withoutDepthErrors(): smoother completions, but the
-  /// planes of boxes, whose edges it rounds, are decided less often.
-  bool filter = false;
   bool frames = true;  ///< finds the frame of each object
   /// Completes objects whose best plane, or a plane through their axis, decides.
   bool complete = true;
@@ -110,7 +107,8 @@ struct SceneAnalysis {
 /// \param frame organized.
 /// \param seen of this frame.
 /// \param num_threads 0 = one per core.
-/// \return a frame with the same pixels; \p frame itself where it is not organized or has no errors.
+/// \return a frame with the same pixels; \p frame itself where it is not organized, has no errors, or pixels share them
+/// with their neighbors, as of stereo and structured light.
 pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& frame,
                                                             const SeenSpace& seen, int num_threads = 0);
 

@@ -207,7 +207,7 @@ SceneAnalysis SymmetryScene::compute() const {
   std::future<void> prepared;
   if (database_ && analysis.seen && analysis.seen->visibility() && resolveNumThreads(options_.num_threads) > 1)
     prepared = std::async(std::launch::async, [&] { database_->prepare(); });
-  if (frame && options_.filter) frame = withoutDepthErrors(frame, *analysis.seen, options_.num_threads);
+  if (frame) frame = withoutDepthErrors(frame, *analysis.seen, options_.num_threads);
   if (frame != input_) analysis.seen = seenSpaceOf(*frame, viewpoint_);
   std::optional<Eigen::Vector3d> viewpoint;
   if (analysis.seen && analysis.seen->visibility()) viewpoint = analysis.seen->visibility()->viewpoint();

@@ -135,11 +135,12 @@ double deviationOfBends(const std::vector<float>& inverse, const DepthImage& ima
 
 }  // namespace
 
-double inverseDepthError(const DepthImage& image) {
+double inverseDepthError(const DepthImage& image, int apart) {
   const std::vector<float> inverse = inverted(image.depths);
-  const double error = deviationOfBends(inverse, image, 1);
+  const double error = deviationOfBends(inverse, image, apart);
   // Over twice the distance a shape bends four times as much, and errors are the same.
-  return deviationOfBends(inverse, image, 2) < kScan.most_growth * error ? error : 0.0;
+  const bool is_error = apart > 1 || deviationOfBends(inverse, image, 2) < kScan.most_growth * error;
+  return is_error ? error : 0.0;
 }
 
 FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads) {
@@ -155,6 +156,7 @@ FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads
   }
   // An error of depth over the size of a pixel, both at the mean inverse depth.
   if (count == 0.0 || error < kScan.least_error * image.pixel_angle * sum / count) return result;
+  if (inverseDepthError(image, kScan.window) > kScan.most_own * error) return result;
   result.inverse_error = error;
   const std::vector<float> before = result.depths;
   const DepthFilter filter(image, radius, error);

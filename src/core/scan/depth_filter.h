@@ -20,16 +20,18 @@ struct FilteredDepths {
 
 /// Errors of the inverse depths, from what neighbors on slanted planes cannot explain: there, inverse depths grow
 /// evenly from pixel to pixel. Errors of stereo and of structured light are the same for all inverse depths.
+/// \param apart pixels between those that are compared, >= 1.
 /// \return standard deviation, units of the inverse depths; 0 for fewer than three pixels in line, and where the shape
-/// bends by more.
-double inverseDepthError(const DepthImage& image);
+/// bends by more between neighbors.
+double inverseDepthError(const DepthImage& image, int apart = 1);
 
 /// Takes the errors of a depth camera out of its picture.
 ///
 /// Each depth becomes that of the plane through the pixels around it, fitted to their inverse depths: those of a
 /// slanted plane grow evenly from pixel to pixel. Pixels of other surfaces do not count, so that edges stay. A pixel
 /// that hardly any neighbor agrees with is a flying one, between two surfaces, and is left out. Pictures without
-/// errors stay as they are.
+/// errors stay as they are, and those whose pixels share errors with their neighbors, as of stereo and structured
+/// light: the mean keeps these, and edges are rounded.
 /// \param radius of the square around a pixel, pixels, >= 1.
 /// \param num_threads 0 = one per core; the result does not depend on it.
 FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads);

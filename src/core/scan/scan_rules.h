@@ -82,8 +82,12 @@ struct ScanRules {
   int most_moves = 4;         ///< of one size
 
   // Errors of a depth camera
-  /// Deviation in 11 x 11 pixels over that of differences between neighbors; 1.9 to 2.4 in frames of a Kinect.
-  double shared_with_neighbors = 2.2;
+  int window = 6;  ///< pixels between two whose errors are independent; a Kinect matches windows of up to 11
+  /// Deviation of such pixels over that of neighbors, at most, where each pixel has an error of its own.
+  double most_own = 1.5;
+  /// Deviation of such pixels over that of neighbors, at most: 1.8 to 2.5 in frames of a Kinect, more where shapes
+  /// bend.
+  double most_shared = 2.2;
 
   // One view or several
   double hidden_margin = 0.1;  ///< radii; more than the depth within a pixel of a slanting surface

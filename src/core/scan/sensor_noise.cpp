@@ -1,5 +1,6 @@
 #include "core/scan/sensor_noise.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/scan/depth_filter.h"
@@ -16,7 +17,8 @@ const double kResolvedDeviations = 2.17 * std::sqrt(2.0);
 }  // namespace
 
 double sensorError(const DepthImage& image) {
-  return kScan.shared_with_neighbors * inverseDepthError(image);
+  const double error = inverseDepthError(image);
+  return error > 0.0 ? std::min(kScan.most_shared * error, inverseDepthError(image, kScan.window)) : 0.0;
 }
 
 double resolvedTolerance(const PointsRef& points, const Visibility& seen) {

@@ -332,9 +332,23 @@ TEST(DepthFilter, PixelsWithoutAPointHaveNone) {
   EXPECT_EQ(inverseDepthError({1, 1, {1.0f}, kPixelAngle}), 0.0);
 }
 
+TEST(SensorNoise, NeighborsShareErrors) {
+  // Means of three by three pixels have a third of the error, which pixels that are six apart do not share.
+  DepthImage image = noisy(picture(slanted)), shared = image;
+  for (int v = 1; v + 1 < kHeight; ++v)
+    for (int u = 1; u + 1 < kWidth; ++u) {
+      double sum = 0.0;
+      for (int dv = -1; dv <= 1; ++dv)
+        for (int du = -1; du <= 1; ++du) sum += 1.0 / image.depths[(v + dv) * kWidth + u + du];
+      shared.depths[v * kWidth + u] = static_cast<float>(9.0 / sum);
+    }
+  EXPECT_LT(inverseDepthError(shared), 0.7 * kError / 3.0);
+  EXPECT_NEAR(sensorError(shared), kError / 3.0, 0.15 * kError / 3.0);
+}
+
 TEST(SensorNoise, ResolvesWhatItsErrorsLeave) {
   const double error = sensorError(noisy(picture(slanted)));
-  EXPECT_GT(error, kError) << "neighbors share a part of it";
+  EXPECT_NEAR(error, kError, 0.1 * kError) << "each pixel has its own";
   Visibility::Projection projection = Visibility::Projection::Zero();
   projection.leftCols<3>() = Eigen::Matrix3d::Identity();
   const Visibility seen = Visibility(projection, 1, 1, {1.0f}).withDepthErrors(error);
