@@ -78,6 +78,7 @@ struct DetectionRules {
   double nothing_missing = 0.01;       ///< share of the surface; less is missing by chance
   double piece_missing = 0.03;         ///< share of the surface; more is a piece
   double odds_of_a_piece = 0.2;        ///< that a cloud lacks a piece although a plane explains all of it
+  double as_likely = 0.05;             ///< difference of the confidences that other samples of a cloud make
   double least_told = 0.1;             ///< share of samples that tell something below which confidence falls
   double coarsest_tolerance = 0.03;    ///< share of the diameter; a sensor that resolves less decides at this
   double coarsest_resolution = 0.09;   ///< three times that; a sensor that resolves less decides nothing

@@ -118,8 +118,13 @@ void PlaneDecision::preferWhole(std::vector<SymmetryPlane>& planes) const {
 }
 
 void PlaneDecision::preferBest(std::vector<SymmetryPlane>& planes, bool has_family) const {
-  const auto best = std::max_element(planes.begin(), planes.end(), [](const SymmetryPlane& a, const SymmetryPlane& b) {
-    return a.confidence < b.confidence;
+  double most = 0.0;
+  for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
+  // Of planes that are as likely, the greatest D.
+  const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
+    const bool a_likely = a.confidence >= most - detection_rules.as_likely,
+               b_likely = b.confidence >= most - detection_rules.as_likely;
+    return a_likely != b_likely ? b_likely : a.score < b.score;
   });
   for (auto plane = planes.begin(); plane != planes.end(); ++plane)
     if (plane != best || has_family)
