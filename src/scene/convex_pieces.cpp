@@ -7,11 +7,49 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
+
+namespace {
+
+/// The piece of each supervoxel, named by one of its supervoxels. Small segments join their largest neighbor, the
+/// smallest one first: LCCPSegmentation joins them in the order of their addresses.
+std::map<std::uint32_t, std::uint32_t> piecesOf(pcl::LCCPSegmentation<pcl::PointXYZ>& segmentation) {
+  std::map<std::uint32_t, std::set<std::uint32_t>> members, neighbors;
+  segmentation.getSegmentToSupervoxelMap(members);
+  segmentation.getSegmentAdjacencyMap(neighbors);
+  const auto before = [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(members[a].size(), *members[a].begin()) < std::pair(members[b].size(), *members[b].begin());
+  };
+  while (true) {
+    std::set<std::uint32_t, decltype(before)> small(before);
+    for (const auto& [segment, around] : neighbors)
+      if (!around.empty() && members[segment].size() <= scene_rules.fewest) small.insert(segment);
+    if (small.empty()) break;
+    const std::uint32_t from = *small.begin();
+    const std::set<std::uint32_t> around = neighbors[from];
+    const std::uint32_t to = *std::max_element(around.begin(), around.end(), before);
+    for (const std::uint32_t other : around) {
+      neighbors[other].erase(from);
+      if (other == to) continue;
+      neighbors[other].insert(to);
+      neighbors[to].insert(other);
+    }
+    neighbors.erase(from);
+    members[to].merge(members[from]);
+    members.erase(from);
+  }
+  std::map<std::uint32_t, std::uint32_t> pieces;
+  for (const auto& [segment, supervoxels] : members)
+    for (const std::uint32_t supervoxel : supervoxels) pieces[supervoxel] = *supervoxels.begin();
+  return pieces;
+}
+
+}  // namespace
 
 std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
                                        const Eigen::Vector3d& viewpoint, double spacing, int min_points) {
@@ -33,13 +71,13 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
   segmentation.setConcavityToleranceThreshold(scene_rules.concavity);
   segmentation.setSmoothnessCheck(true, voxel, supervoxel, scene_rules.smoothness);
   segmentation.setKFactor(scene_rules.common_neighbors);
-  segmentation.setMinSegmentSize(scene_rules.fewest);
   segmentation.setInputSupervoxels(supervoxels, adjacent);
   segmentation.segment();
   const pcl::PointCloud<pcl::PointXYZL>::Ptr labeled = clustering.getLabeledCloud();
-  segmentation.relabelCloud(*labeled);
+  std::map<std::uint32_t, std::uint32_t> piece_of_supervoxel = piecesOf(segmentation);
   std::map<std::uint32_t, pcl::Indices> of_label;
-  for (std::size_t i = 0; i < cluster.size(); ++i) of_label[(*labeled)[i].label].push_back(cluster[i]);
+  for (std::size_t i = 0; i < cluster.size(); ++i)
+    of_label[piece_of_supervoxel[(*labeled)[i].label]].push_back(cluster[i]);
   std::vector<pcl::Indices> pieces;
   pcl::Indices rest, all;  // points that no supervoxel holds have label 0
   std::vector<std::size_t> piece_of;
