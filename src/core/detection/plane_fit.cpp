@@ -59,7 +59,8 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
     candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
     if (!stage.undo_slides) return;
     undoSlide(candidate, start, used, stage.isp.final_sigma);
-    if (cloud_.roughness > detection_rules.noisy_depth && candidate.merit >= detection_rules.climbing_merit)
+    if (stage.climbs && cloud_.roughness > detection_rules.noisy_depth &&
+        candidate.merit >= detection_rules.climbing_merit)
       climbOne(candidate, used, fewer);
   });
 }

@@ -60,6 +60,7 @@ struct RefinementStage {
   IspOptions rough_isp;   ///< of the others
   double least_merit;     ///< of candidates that may be symmetries
   bool undo_slides;       ///< of scans, at the narrowest weights
+  bool climbs = false;    ///< those of noisy scans, in the last stage
 };
 
 /// How well a cloud supports a plane, and the plane nearby that it supports best.

@@ -53,8 +53,10 @@ std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) co
 }
 
 RefinementStage StagedRefinement::fullStage() const {
-  return stage(options_.expert.num_refine_samples / cloud_.rules().full_share, cloud_.final_sigma, cloud_.final_sigma,
-               detection_rules.full_iterations);
+  RefinementStage full = stage(options_.expert.num_refine_samples / cloud_.rules().full_share, cloud_.final_sigma,
+                               cloud_.final_sigma, detection_rules.full_iterations);
+  full.climbs = true;
+  return full;
 }
 
 RefinementStage StagedRefinement::closeStage() const {
