@@ -74,7 +74,7 @@ SymmetryScene makeScene(const SceneToolOptions& options) {
   SceneOptions used = options.scene;
   options.common.applyTo(used.detection);
   options.common.applyTo(used.frame);
-  used.num_threads = used.recognition.num_threads = options.common.threads;
+  used.num_threads = used.completion.num_threads = used.recognition.num_threads = options.common.threads;
   used.frames = !options.no_frames;
   used.complete = !options.no_completion;
   used.separate = !options.no_separation;

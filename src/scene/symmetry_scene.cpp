@@ -115,7 +115,7 @@ private:
   void findFrame(SceneObject& object, const SeenSpace::ConstPtr& seen) const {
     SymmetryAlignment<pcl::PointXYZ> alignment;
     FrameOptions options = options_.frame;
-    options.turns = false;
+    options.turns = options.probabilities = false;
     alignment.setOptions(options);
     prepare(alignment, object, seen);
     SymmetryFrame frame = alignment.compute();
@@ -146,15 +146,15 @@ struct Pieces {
 
 Pieces piecesOf(const Cloud& scene, const std::vector<pcl::Indices>& clusters,
                 const std::optional<Eigen::Vector3d>& viewpoint, double spacing, const SceneOptions& options) {
+  std::vector<std::vector<pcl::Indices>> found(clusters.size());
+  parallelBlocks(clusters.size(), options.num_threads, [&](std::size_t k) {
+    found[k] = {clusters[k]};
+    if (options.separate && viewpoint)
+      found[k] = detail::convexPieces(scene, clusters[k], *viewpoint, spacing, options.min_points);
+  });
   std::vector<std::pair<pcl::Indices, int>> all;
-  for (std::size_t k = 0; k < clusters.size(); ++k) {
-    if (!options.separate || !viewpoint) {
-      all.emplace_back(clusters[k], static_cast<int>(k));
-      continue;
-    }
-    for (pcl::Indices& piece : detail::convexPieces(scene, clusters[k], *viewpoint, spacing, options.min_points))
-      all.emplace_back(std::move(piece), static_cast<int>(k));
-  }
+  for (std::size_t k = 0; k < found.size(); ++k)
+    for (pcl::Indices& piece : found[k]) all.emplace_back(std::move(piece), static_cast<int>(k));
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
   Pieces pieces;
@@ -169,7 +169,7 @@ Pieces piecesOf(const Cloud& scene, const std::vector<pcl::Indices>& clusters,
 SceneOptions ofOneObject(const SceneOptions& options, std::size_t num_objects) {
   SceneOptions of_one = options;
   if (num_objects >= static_cast<std::size_t>(resolveNumThreads(options.num_threads)))
-    of_one.num_threads = of_one.recognition.num_threads = 1;
+    of_one.num_threads = of_one.completion.num_threads = of_one.recognition.num_threads = 1;
   return of_one;
 }
 
