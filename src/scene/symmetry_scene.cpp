@@ -234,7 +234,8 @@ SceneAnalysis SymmetryScene::compute() const {
   std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
                                                             analysis.cluster_distance, options_.min_points);
   const auto is_bulge = [&](const pcl::Indices& cluster) {
-    return detail::isBulge(*frame, cluster, analysis.supports, options_.detection.tolerance, analysis.cluster_distance);
+    return detail::isBulge(*frame, cluster, analysis.seen->visibility(), options_.detection.tolerance,
+                           analysis.cluster_distance);
   };
   clusters.erase(std::remove_if(clusters.begin(), clusters.end(), is_bulge), clusters.end());
   Pieces pieces = piecesOf(*frame, clusters, viewpoint, distances.spacing, options_);
