@@ -48,14 +48,14 @@ Points sampled(const Shape& shape, const Points& vertices, int num_points, std::
 constexpr int kMostRejections = 3;
 constexpr double kFarFailure = 10.0;  // tolerances; as ObjectSymmetryOptions::max_feature has it
 
-pcl::PointXYZRGB colouredPoint(const Eigen::Vector3f& x, double distance, double tolerance) {
-  // Grey, vermilion and purple of Okabe and Ito: apart for all eyes.
-  const auto colour = [](std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
+pcl::PointXYZRGB coloredPoint(const Eigen::Vector3f& x, double distance, double tolerance) {
+  // Gray, vermilion and purple of Okabe and Ito: apart for all eyes.
+  const auto color = [](std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
     return pcl::PointXYZRGB(red, green, blue);
   };
-  pcl::PointXYZRGB point = distance <= tolerance                 ? colour(190, 190, 190)
-                           : distance <= kFarFailure * tolerance ? colour(213, 94, 0)
-                                                                 : colour(117, 36, 107);
+  pcl::PointXYZRGB point = distance <= tolerance                 ? color(190, 190, 190)
+                           : distance <= kFarFailure * tolerance ? color(213, 94, 0)
+                                                                 : color(117, 36, 107);
   point.getVector3fMap() = x;
   return point;
 }
@@ -77,7 +77,7 @@ void printRejections(const ObjectSymmetries& symmetries, int digits) {
 }
 
 /// Writes PREFIX_rejected_1.ply and so on, each the surface with what a rejected rotation maps off it: red beyond the
-/// tolerance, purple beyond ten; grey is mapped onto the surface.
+/// tolerance, purple beyond ten; gray is mapped onto the surface.
 /// \param surface in the frame of the symmetries.
 /// \param shift that is added to the points.
 /// \throws InputError where a file cannot be written.
@@ -89,7 +89,7 @@ void writeRejections(const std::string& prefix, const ObjectSymmetries& symmetri
     pcl::PointCloud<pcl::PointXYZRGB> points;
     for (std::size_t k = 0; k < distances.size(); ++k) {
       const Eigen::Vector3d x = surface.points().col(static_cast<Eigen::Index>(k)).cast<double>() + shift;
-      points.push_back(colouredPoint(x.cast<float>(), distances[k], surface.tolerance()));
+      points.push_back(coloredPoint(x.cast<float>(), distances[k], surface.tolerance()));
     }
     pcl::PCLPointCloud2 cloud;
     pcl::toPCLPointCloud2(points, cloud);
@@ -98,18 +98,18 @@ void writeRejections(const std::string& prefix, const ObjectSymmetries& symmetri
   }
 }
 
-/// Colours and the given file, in the frame of the shifted points.
+/// Colors and the given file, in the frame of the shifted points.
 void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const ModelOptions& options,
              const std::optional<ListedSymmetries>& given) {
-  const std::optional<SurfaceColours> colours =
-      options.use_colours ? surfaceColours(shape, info.file) : std::optional<SurfaceColours>();
-  info.has_unread_colours = hasColours(shape) && !colours;
+  const std::optional<SurfaceColors> colors =
+      options.use_colors ? surfaceColors(shape, info.file) : std::optional<SurfaceColors>();
+  info.has_unread_colors = hasColors(shape) && !colors;
   const std::uint64_t seed = options.symmetries.seed;
-  if (colours) {
+  if (colors) {
     const Points points = sampled(shape, vertices, options.mesh_points, seed);
     const std::string before = info.symmetries.name();
-    info.symmetries = keepingColours(info.symmetries, ColouredSurface(*colours, points, options.colour_tolerance));
-    if (info.symmetries.name() != before) info.group_without_colours = before;
+    info.symmetries = keepingColors(info.symmetries, ColoredSurface(*colors, points, options.color_tolerance));
+    if (info.symmetries.name() != before) info.group_without_colors = before;
   }
   if (!given && !options.failures_folder) return;
   const int num_points = std::max(options.mesh_points, kEvidencePoints);
@@ -131,7 +131,7 @@ void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const 
 
 }  // namespace
 
-ModelInfo analyseModel(const std::string& path, const ModelOptions& options,
+ModelInfo analyzeModel(const std::string& path, const ModelOptions& options,
                        const std::optional<ListedSymmetries>& given) {
   const Shape shape = loadShape(path);
   const Points vertices = finitePoints(*shape.points);
@@ -167,8 +167,8 @@ void printModel(const ModelInfo& info) {
   std::printf("model %s  %s  group %s, %zu discrete, %zu continuous, confidence %.3f\n", info.key.c_str(),
               info.file.c_str(), found.name().c_str(), found.discrete.size(), found.continuous.size(),
               found.confidence);
-  if (!info.group_without_colours.empty())
-    std::printf("  without its colours the group is %s\n", info.group_without_colours.c_str());
+  if (!info.group_without_colors.empty())
+    std::printf("  without its colors the group is %s\n", info.group_without_colors.c_str());
   std::printf("  diameter %.6g  size %.6g x %.6g x %.6g\n", info.diameter, info.size.x(), info.size.y(), info.size.z());
   const auto print_axis = [&](const Eigen::Vector3d& direction, const std::string& turns) {
     std::printf("  axis %9.6f %9.6f %9.6f through %s  %s\n", direction.x(), direction.y(), direction.z(),

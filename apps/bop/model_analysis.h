@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bop/colour_symmetry.h"
+#include "bop/color_symmetry.h"
 #include "bop/symmetry_check.h"
 #include "io/shape_input.h"
 #include "pcl_symmetry/object_symmetries.h"
@@ -16,8 +16,8 @@ namespace pcl_symmetry::apps {
 struct ModelOptions {
   ObjectSymmetryOptions symmetries;
   int mesh_points = 10'000;
-  bool use_colours = false;
-  double colour_tolerance = kColourTolerance;  ///< difference in CIELAB
+  bool use_colors = false;
+  double color_tolerance = kColorTolerance;    ///< difference in CIELAB
   bool explain = false;                        ///< tells of rejected rotations and other tolerances
   std::optional<std::string> failures_folder;  ///< where pictures of the rejected rotations go
 };
@@ -29,15 +29,15 @@ struct ModelInfo {
   double diameter = 0.0;
   int digits = 6;                      ///< significant ones of lengths that are printed
   ObjectSymmetries symmetries;         ///< input frame
-  bool has_unread_colours = false;     ///< of its vertices or a texture, which nobody asked for or can read
-  std::string group_without_colours;   ///< empty where they take nothing away
+  bool has_unread_colors = false;      ///< of its vertices or a texture, which nobody asked for or can read
+  std::string group_without_colors;    ///< empty where they take nothing away
   std::optional<SymmetryCheck> check;  ///< against a given file
   bool explain = false;                ///< prints the rejected rotations too
 };
 
 /// \param given what a file lists for this model; nothing where there is no file or no entry.
 /// \throws InputError naming the file.
-ModelInfo analyseModel(const std::string& path, const ModelOptions& options,
+ModelInfo analyzeModel(const std::string& path, const ModelOptions& options,
                        const std::optional<ListedSymmetries>& given);
 
 /// The entry of models_info.json.

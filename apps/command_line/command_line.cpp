@@ -178,7 +178,7 @@ CommandLine& CommandLine::common(CommonOptions& options, unsigned flags) {
           if (options.levels.size() != 2 || !(options.levels[0] < options.levels[1]))
             rejectValue("-levels", text, "must be LOW,HIGH with LOW < HIGH");
         });
-    number("surface", options.surface, Range{}, "volumes: analyse the surface of this intensity as a mesh");
+    number("surface", options.surface, Range{}, "volumes: analyze the surface of this intensity as a mesh");
   }
   if (flags & kGrid) number("grid", options.grid, Range::closed(8, 512), "cells along an edge of the distance field");
   if (flags & kSigma)

@@ -27,7 +27,7 @@ struct CommonOptions {
   Viewpoint viewpoint;
   bool takes_volumes = false;     ///< whether the tool analyses volumes
   std::vector<double> levels;     ///< intensities of volumes that count, two; empty: chosen from the values
-  std::optional<double> surface;  ///< the intensity whose surface is analysed in place of the volume
+  std::optional<double> surface;  ///< the intensity whose surface is analyzed in place of the volume
   bool quiet = false;
 
   /// \return the seed of the library, whose default is 1 where that of the flag is 0
@@ -69,7 +69,7 @@ enum CommonFlag : unsigned {
   kMeshPoints = 1u << 7,
   kVolumes = 1u << 8,
   kAnalysisFlags = (1u << 6) - 1,             ///< all but -sigma and -points
-  kShapeFlags = kAnalysisFlags | kMeshPoints  ///< of tools that analyse one cloud or mesh
+  kShapeFlags = kAnalysisFlags | kMeshPoints  ///< of tools that analyze one cloud or mesh
 };
 
 /// Declares the flags of a tool, each bound to a variable that holds its default, and reads them from argv.

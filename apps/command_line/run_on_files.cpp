@@ -53,7 +53,7 @@ int numToStandardOutput(const BatchOptions& batch, const CommonOptions& common) 
 }
 
 int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOptions& common,
-             const std::vector<std::string>& columns, const std::function<void(FileJob&)>& analyse) {
+             const std::vector<std::string>& columns, const std::function<void(FileJob&)>& analyze) {
   const bool text_wanted = numToStandardOutput(batch, common) == 0;
   if (batch.resume) throw UsageError("-resume needs several inputs: a folder, a pattern, a list or more arguments");
   for (const std::optional<std::string>* output : batch.outputs)
@@ -72,7 +72,7 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
     writeText(*batch.csv_path, csvLine(header) + csvLines(path, report));
   };
   try {
-    analyse(job);
+    analyze(job);
   } catch (...) {
     write();
     throw;
@@ -111,9 +111,9 @@ public:
         console_(common.quiet),
         step_(console_, "Working on " + std::to_string(files.size()) + " files") {}
 
-  int run(const std::function<void(FileJob&)>& analyse) {
+  int run(const std::function<void(FileJob&)>& analyze) {
     parallelBlocks(std::min(num_threads_, files_.size()), static_cast<int>(num_threads_), [&](std::size_t) {
-      for (std::size_t i = 0; takeNext(i);) finish(i, resultOf(files_.path(i), analyse));
+      for (std::size_t i = 0; takeNext(i);) finish(i, resultOf(files_.path(i), analyze));
     });
     if (failure_) std::rethrow_exception(failure_);
     std::string summary = std::to_string(files_.size() - num_failed_) + " done";
@@ -145,12 +145,12 @@ private:
     return !failure_;
   }
 
-  Result resultOf(const std::string& path, const std::function<void(FileJob&)>& analyse) const {
+  Result resultOf(const std::string& path, const std::function<void(FileJob&)>& analyze) const {
     const Console silent(true);
     FileJob job(path, silent, 1);
     Result result;
     try {
-      namingFile(path, [&] { analyse(job); });
+      namingFile(path, [&] { analyze(job); });
     } catch (const std::exception& error) {
       result.error = error.what();
     }
@@ -204,13 +204,13 @@ std::string FileJob::output(const std::string& pattern) const {
 }
 
 int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std::vector<std::string>& columns,
-               const std::function<void(FileJob&)>& analyse) {
+               const std::function<void(FileJob&)>& analyze) {
   if (batch.inputs.size() == 1 && !standsForSeveral(batch.inputs.front()))
-    return runOnOne(batch.inputs.front(), batch, common, columns, analyse);
+    return runOnOne(batch.inputs.front(), batch, common, columns, analyze);
   const InputFiles files = inputFiles(batch.inputs);
   numToStandardOutput(batch, common);
   checkOutputs(batch, files);
-  return Batch(files, batch, common, columns).run(analyse);
+  return Batch(files, batch, common, columns).run(analyze);
 }
 
 }  // namespace pcl_symmetry::apps

@@ -76,11 +76,11 @@ private:
 };
 
 /// \param columns of the CSV table, after "file".
-/// \param analyse called once for each input, from several threads at once; throws what stops this input.
+/// \param analyze called once for each input, from several threads at once; throws what stops this input.
 /// \return exit status of the tool: 1 if an input failed.
 /// \throws what the analysis of a single input throws; UsageError where outputs of several inputs would have one name;
 /// InputError where results cannot be written.
 int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std::vector<std::string>& columns,
-               const std::function<void(FileJob&)>& analyse);
+               const std::function<void(FileJob&)>& analyze);
 
 }  // namespace pcl_symmetry::apps

@@ -8,7 +8,7 @@
 int main(int argc, char** argv) {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
   if (argc != 3 || pcl::io::loadPCDFile(argv[1], *cloud) < 0) {
-    std::cerr << "usage: 07_segmentation CLOUD.pcd LABELLED.pcd\n";
+    std::cerr << "usage: 07_segmentation CLOUD.pcd LABELED.pcd\n";
     return 2;
   }
   pcl_symmetry::SymmetrySegmentation<pcl::PointXYZ> segmentation;
@@ -23,10 +23,10 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < image.size(); ++i)
       if (image[i] > static_cast<int>(i)) std::cout << "parts " << i << " and " << image[i] << " are images\n";
 
-  pcl::PointCloud<pcl::PointXYZL> labelled;
-  pcl::copyPointCloud(*cloud, labelled);
-  for (std::size_t i = 0; i < labelled.size(); ++i)
+  pcl::PointCloud<pcl::PointXYZL> labeled;
+  pcl::copyPointCloud(*cloud, labeled);
+  for (std::size_t i = 0; i < labeled.size(); ++i)
     // Points in no part have -1, which becomes the largest label.
-    labelled[i].label = static_cast<std::uint32_t>(segmentation.getLabels()[i]);
-  return pcl::io::savePCDFileBinary(argv[2], labelled) < 0 ? 1 : 0;
+    labeled[i].label = static_cast<std::uint32_t>(segmentation.getLabels()[i]);
+  return pcl::io::savePCDFileBinary(argv[2], labeled) < 0 ? 1 : 0;
 }

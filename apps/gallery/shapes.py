@@ -256,7 +256,7 @@ def propeller():
 
 
 def rim():
-    """The wheel of a car without its tyre."""
+    """The wheel of a car without its tire."""
     spoke = tube(((0.1, 0, 0.15), (0.5, 0, 0.25), (0.9, 0, 0.25), (1.35, 0, 0.1)), 0.17, 0.12)
     parts = [ellipsoid((0, 0, 0.15), (0.3, 0.3, 0.15)), ring((0, 0, 0.2), 1.35, 0.12), ring((0, 0, -0.3), 1.35, 0.12)]
     parts += [ring((0, 0, -0.05), 1.3, 0.17)] + [rotated(spoke, 2, 2 * np.pi * k / 5) for k in range(5)]

@@ -1,6 +1,6 @@
 /// Coordinates that need more digits than float has: read in double, shifted near zero, and shifted back on output.
 ///
-/// The library computes in float. A box of one metre at map coordinates such as (500000, 5000000, 100) would lose its
+/// The library computes in float. A box of one meter at map coordinates such as (500000, 5000000, 100) would lose its
 /// shape, so the loader subtracts a shift in double, and the tools add it to what they report.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// A file as the tools analyse it: the points of a cloud, points spread over a mesh, or a volume of CT, MR and other
+/// A file as the tools analyze it: the points of a cloud, points spread over a mesh, or a volume of CT, MR and other
 /// devices, which VTK reads: NIfTI, NRRD, MetaImage and VTK images.
 #pragma once
 

@@ -87,7 +87,7 @@ void writeFaceLabels(const std::string& path, const std::vector<int>& labels) {
   writeText(path, text);
 }
 
-void saveLabelled(const std::string& path, const Shape& shape, const std::vector<int>& labels) {
+void saveLabeled(const std::string& path, const Shape& shape, const std::vector<int>& labels) {
   if (boost::algorithm::iends_with(path, ".seg")) {
     writeFaceLabels(path, labels);
   } else if (shape.mesh && boost::algorithm::iends_with(path, ".ply")) {
@@ -113,7 +113,7 @@ void saveMesh(const std::string& path, const pcl::PolygonMesh& mesh, const Eigen
 }
 
 void checkMeshExtension(const std::string& path) {
-  if (!boost::iends_with(path, ".ply")) throw UsageError(path + ": a symmetrised mesh is written as .ply");
+  if (!boost::iends_with(path, ".ply")) throw UsageError(path + ": a symmetrized mesh is written as .ply");
 }
 
 }  // namespace pcl_symmetry::apps

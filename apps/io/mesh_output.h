@@ -22,9 +22,9 @@ void writeFaceLabels(const std::string& path, const std::vector<int>& labels);
 /// Writes the segments of a shape.
 /// \param path .seg: the labels of a mesh, one a line. .pcd or .ply of a cloud: with all its fields, and `label`
 /// (unsigned; 4294967295 where there is none). .pcd of a mesh: the middles of its faces with `label`. .ply of a mesh:
-/// its faces with `label` and a colour each.
+/// its faces with `label` and a color each.
 /// \param labels one per face of a mesh or point of a cloud; below 0: none.
-void saveLabelled(const std::string& path, const Shape& shape, const std::vector<int>& labels);
+void saveLabeled(const std::string& path, const Shape& shape, const std::vector<int>& labels);
 
 /// Writes a PLY file of the moved vertices, with one more property of type float, and the polygons.
 /// \param motion of the vertices; beyond what float resolves they are written in double.

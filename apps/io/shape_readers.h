@@ -25,7 +25,7 @@ CloudFile readPCD(const std::string& path, std::string_view text);
 CloudFile readPLY(const std::string& path, std::string_view text);
 
 /// The Object File Format of Geomview as text. Headers OFF, COFF, NOFF, CNOFF, STOFF and so on are understood, also
-/// with the counts on the same line or without any keyword; normals, colours and texture coordinates are read over.
+/// with the counts on the same line or without any keyword; normals, colors and texture coordinates are read over.
 /// Faces of fewer than three corners are left out.
 ExactShape readOFF(const std::string& path, std::string_view text);
 

@@ -17,7 +17,7 @@ Eigen::Vector3d distinctColor(std::size_t index) {
 
 Eigen::Vector3d segmentColor(int segment) {
   if (segment < 0) return Eigen::Vector3d::Constant(0.75);
-  constexpr int kNumColors = 8;  // the colours of Okabe and Ito
+  constexpr int kNumColors = 8;  // the colors of Okabe and Ito
   const double white = 1.0 - std::pow(0.65, segment / kNumColors);
   return (1.0 - white) * distinctColor(static_cast<std::size_t>(segment)) + white * Eigen::Vector3d::Ones();
 }

@@ -1,4 +1,4 @@
-/// The colours of planes, parts and support in pictures and pages.
+/// The colors of planes, parts and support in pictures and pages.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,14 +6,14 @@
 
 namespace pcl_symmetry::apps {
 
-/// Eight colours that remain apart for colour-blind eyes (Okabe and Ito), repeated from the start when they run out.
+/// Eight colors that remain apart for color-blind eyes (Okabe and Ito), repeated from the start when they run out.
 Eigen::Vector3d distinctColor(std::size_t index);
 
-/// The color of a segment: distinct colors, lighter with each round; grey for numbers below 0.
+/// The color of a segment: distinct colors, lighter with each round; gray for numbers below 0.
 Eigen::Vector3d segmentColor(int segment);
 
 /// \param value in [0, 1], clamped.
-/// \return its colour on the cividis scale (dark blue to yellow).
+/// \return its color on the cividis scale (dark blue to yellow).
 Eigen::Vector3d cividis(double value);
 
 }  // namespace pcl_symmetry::apps

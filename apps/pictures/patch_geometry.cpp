@@ -16,11 +16,11 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Neighbours that give the normal of a point.
-constexpr int kShadingNeighbours = 12;
+/// Neighbors that give the normal of a point.
+constexpr int kShadingNeighbors = 12;
 constexpr std::size_t kMinShadedPoints = 16;
 
-/// \return the corners of the square of the given size around the given centre, upright as far as the plane allows.
+/// \return the corners of the square of the given size around the given center, upright as far as the plane allows.
 std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eigen::Vector3d& up) {
   const double length = plane.normal.norm();
   const Eigen::Vector3d normal = plane.normal / length;
@@ -92,7 +92,7 @@ Points pointNormals(const pcl::PointCloud<pcl::PointXYZ>& points, const Normaliz
   Points finite = finitePoints(points, &index);
   if (index.size() < kMinShadedPoints || index.size() > kMaxShadedPoints) return result;
   for (auto x : finite.colwise()) x = normalize(x.cast<double>()).cast<float>();
-  const Points normals = localGeometry(finite, *makeFlannSearch(finite), kShadingNeighbours, 0).normals;
+  const Points normals = localGeometry(finite, *makeFlannSearch(finite), kShadingNeighbors, 0).normals;
   for (std::size_t i = 0; i < index.size(); ++i) result.col(index[i]) = normals.col(i);
   return result;
 }
@@ -103,8 +103,8 @@ Eigen::Vector3d pointColor(const PicturePanel& panel, std::size_t point) {
   return kPlainPointColor;
 }
 
-PointShade shadeOf(bool coloured) {
-  return coloured ? PointShade{0.65, 0.35} : PointShade{0.45, 0.75};
+PointShade shadeOf(bool colored) {
+  return colored ? PointShade{0.65, 0.35} : PointShade{0.45, 0.75};
 }
 
 std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const PictureScene& scene) {

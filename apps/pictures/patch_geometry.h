@@ -47,8 +47,8 @@ struct PointShade {
   double least, range;
 };
 
-/// \param coloured by support or segments, whose colors have to stay legible.
-PointShade shadeOf(bool coloured);
+/// \param colored by support or segments, whose colors have to stay legible.
+PointShade shadeOf(bool colored);
 
 const Eigen::Vector3d kPlainPointColor(0.30, 0.38, 0.52);
 const Eigen::Vector3d kPlainMeshColor(0.86, 0.86, 0.88);

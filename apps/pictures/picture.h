@@ -35,19 +35,19 @@ struct AxisLine {
 /// One view among several in a picture.
 struct PicturePanel {
   std::string label;                 ///< drawn at the top; empty for none
-  std::vector<double> support = {};  ///< one value in [0, 1] per point, cividis colours; empty for one plain colour
+  std::vector<double> support = {};  ///< one value in [0, 1] per point, cividis colors; empty for one plain color
   std::vector<PlanePatch> planes = {};
   std::vector<AxisLine> axes = {};
-  /// One number per polygon of the mesh, or per point where there is no mesh, each in a colour of its own (below 0:
-  /// grey); the points of the mesh are then not drawn. Empty for one plain colour.
+  /// One number per polygon of the mesh, or per point where there is no mesh, each in a color of its own (below 0:
+  /// gray); the points of the mesh are then not drawn. Empty for one plain color.
   std::vector<int> segments = {};
-  bool show_points = true;  ///< false: the mesh alone; it takes the colours where its vertices are the points
+  bool show_points = true;  ///< false: the mesh alone; it takes the colors where its vertices are the points
 };
 
 /// What a picture shows: the same shape in every panel.
 struct PictureScene {
   pcl::PointCloud<pcl::PointXYZ>::ConstPtr points;  ///< non-finite points are not drawn
-  std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light grey
+  std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light gray
   std::vector<PicturePanel> panels = {};            ///< at least one
   int num_columns = 0;                              ///< 0 = as square as the panels allow
   Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< from the scene towards the camera

@@ -24,7 +24,7 @@ vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePan
                                      const Normalization& normalize, const std::vector<double>& brightness,
                                      double panel_pixels);
 
-/// Light grey; in the colours of PicturePanel::segments of its polygons, or of the panel's support where it shows no
+/// Light gray; in the colors of PicturePanel::segments of its polygons, or of the panel's support where it shows no
 /// points and has one value per vertex.
 vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
                                     const Normalization& normalize);
@@ -42,7 +42,7 @@ void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene
 /// \param font_size pixels.
 vtkSmartPointer<vtkTextActor> labelActor(const std::string& text, int font_size);
 
-/// The colours of the support.
+/// The colors of the support.
 /// \param panel_width,panel_height,font_size pixels.
 vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, int font_size);
 

@@ -48,7 +48,7 @@ RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns = 
 /// \return whether the name ends as pictures do that readImage() knows: .png or .pgm, in capitals or not.
 bool isImagePath(const std::string& path);
 
-/// Grey pictures get three equal channels, transparent ones a white ground.
+/// Gray pictures get three equal channels, transparent ones a white ground.
 /// \throws InputError for a file that is no PNG or binary PGM picture of 8 or 16 bits.
 RasterImage readImage(const std::string& path);
 

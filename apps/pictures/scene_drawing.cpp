@@ -30,8 +30,8 @@ namespace {
 constexpr int kMaxSuperSampled = 4096;
 constexpr double kViewAngle = 25.0;  ///< degrees
 
-/// Places the camera so that all of the panel lies inside the picture, below the label and left of the colour bar.
-/// \param bar_share part of the panel's width that the colour bar takes.
+/// Places the camera so that all of the panel lies inside the picture, below the label and left of the color bar.
+/// \param bar_share part of the panel's width that the color bar takes.
 void fitCamera(vtkRenderer& renderer, const PictureScene& scene, double aspect, double bar_share) {
   vtkCamera* camera = renderer.GetActiveCamera();
   const Eigen::Vector3d view = scene.view.normalized(), up = scene.up.normalized();

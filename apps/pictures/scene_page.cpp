@@ -17,15 +17,15 @@ namespace pcl_symmetry::apps {
 
 // The parts of a page that are the same for all shapes; made of page.html, three.min.js and viewer.js by CMake.
 extern const char* const kPageHead;     ///< HTML up to the first script
-extern const char* const kPageLibrary;  ///< three.js with its licence
+extern const char* const kPageLibrary;  ///< three.js with its license
 extern const char* const kPageViewer;   ///< JavaScript
 
 namespace {
 
 /// Points of a page.
 constexpr std::size_t kMaxPagePoints = 200'000;
-constexpr int kBarColors = 12;  // the anchors of the colour scale
-/// Segments of a panel whose colours stand before its name.
+constexpr int kBarColors = 12;  // the anchors of the color scale
+/// Segments of a panel whose colors stand before its name.
 constexpr int kMostSwatches = 8;
 
 template <typename Value>

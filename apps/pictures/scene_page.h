@@ -14,7 +14,7 @@ struct PageText {
   RasterImage picture = {};  ///< of a camera, shown beside the scene; empty for none
 };
 
-/// Writes one file, with everything in it: the same scene, colours and legend as renderPicture(), a panel at a time. Of
+/// Writes one file, with everything in it: the same scene, colors and legend as renderPicture(), a panel at a time. Of
 /// more than 200 000 points it holds every second, third, ... one.
 /// \throws std::invalid_argument for a scene that does not fit together, InputError where no point is finite or the file
 /// cannot be written.

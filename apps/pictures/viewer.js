@@ -1,4 +1,4 @@
-// Shows the scene of the page. Colours are made by the tool: they are those of its pictures.
+// Shows the scene of the page. Colors are made by the tool: they are those of its pictures.
 (() => {
 const scene = JSON.parse(document.getElementById('scene').textContent);
 const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
@@ -76,7 +76,7 @@ try {
   view.innerHTML = '<p id="failure">This browser shows no WebGL.</p>';
   return;
 }
-// Colours are written as they are: those of the PNG pictures are not managed either.
+// Colors are written as they are: those of the PNG pictures are not managed either.
 renderer.outputColorSpace = 'srgb-linear';
 const managed = color => new THREE.Color().setRGB(color[0], color[1], color[2], 'srgb-linear');
 renderer.setClearColor(0xffffff);

@@ -43,7 +43,7 @@ struct Triangle {
   Eigen::Vector3d a, b, c;
 };
 
-/// Triangles in a frame of their own, centred and with unit diagonal, where single precision is enough to find which
+/// Triangles in a frame of their own, centerd and with unit diagonal, where single precision is enough to find which
 /// one is hit or closest; where exactly can be computed in double precision.
 class TriangleScene {
 public:
@@ -54,7 +54,7 @@ public:
   TriangleScene(const TriangleScene&) = delete;
   TriangleScene& operator=(const TriangleScene&) = delete;
 
-  /// Centre and diagonal of the bounding box of the triangles, input units.
+  /// Center and diagonal of the bounding box of the triangles, input units.
   const Eigen::Vector3d& center() const { return center_; }
   double diagonal() const { return diagonal_; }
 

@@ -16,7 +16,7 @@ namespace pcl_symmetry::apps {
 struct VirtualScannerOptions {
   int num_points = 10000;              ///< wanted number of hits, > 0
   double field_of_view = 0.4;          ///< full angle of the square picture, radians, in (0, pi)
-  double distance = 2.0;               ///< from the centre of the bounding box, in its diagonals, > 0.5
+  double distance = 2.0;               ///< from the center of the bounding box, in its diagonals, > 0.5
   double noise = 0.0;                  ///< standard deviation of the depth along the ray, in diagonals, >= 0
   bool random_pose = false;            ///< turn and move the model before it is scanned
   std::uint64_t seed = 0;              ///< of pose and noise
@@ -49,11 +49,11 @@ public:
   VirtualScanner(VirtualScanner&&) noexcept;
   VirtualScanner& operator=(VirtualScanner&&) noexcept;
 
-  /// Centre and diagonal of the bounding box of the triangles, input units.
+  /// Center and diagonal of the bounding box of the triangles, input units.
   Eigen::Vector3d center() const;
   double diagonal() const;
 
-  /// \param direction from the centre towards the scanner, in the model's frame; any length but zero.
+  /// \param direction from the center towards the scanner, in the model's frame; any length but zero.
   /// \param options with random_pose, scanner and model are turned and moved together, so what is seen stays.
   /// \throws std::invalid_argument for bad options or a zero direction, std::runtime_error if too few rays hit.
   VirtualScan scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options = {}) const;

@@ -57,7 +57,7 @@ CommandLine commandLine(SceneToolOptions& o) {
               "distance between points of one object, input units; 0 = from the points")
       .number("min_points", o.scene.min_points, Range::closed(20, 1'000'000'000), "least number of points of an object")
       .number("max_points", o.scene.max_points, Range::closed(100, 1'000'000'000),
-              "points of an object that are analysed")
+              "points of an object that are analyzed")
       .number("accept", o.scene.recognition.min_confidence, Range::closed(0, 1),
               "with -database: least confidence of a name that is accepted")
       .number("min_confidence", o.scene.detection.min_confidence, Range::closed(0, 1),
@@ -96,7 +96,7 @@ InputShape loadFrame(const Console& console, const std::string& path, const Comm
   return input;
 }
 
-SceneAnalysis analyse(const Console& console, SymmetryScene& scene, const InputShape& input,
+SceneAnalysis analyze(const Console& console, SymmetryScene& scene, const InputShape& input,
                       const SceneToolOptions& options) {
   scene.setViewpoint(shifted(options.common.viewpoint, input.shift()));
   if (options.ground) scene.setGround(shifted(*options.ground, input.shift()));
@@ -131,7 +131,7 @@ int watch(const SceneToolOptions& options) {
     try {
       namingFile(*path, [&] {
         const InputShape input = loadFrame(console, *path, options.common);
-        line = describeScene(input, analyse(console, scene, input, options));
+        line = describeScene(input, analyze(console, scene, input, options));
       });
     } catch (const InputError& error) {
       line = {{"file", *path}, {"error", error.what()}};
@@ -160,7 +160,7 @@ int run(int argc, char** argv) {
   const Console console(options.common.quiet);
   const InputShape input = loadFrame(console, *options.input, options.common);
   SymmetryScene searched = makeScene(options);
-  const SceneAnalysis scene = analyse(console, searched, input, options);
+  const SceneAnalysis scene = analyze(console, searched, input, options);
   const std::string table = tableOf(scene, input.shift());
   std::fputs(table.c_str(), stdout);
   if (options.common.json_path) writeText(*options.common.json_path, jsonText(describeScene(input, scene)) + "\n");

@@ -19,7 +19,7 @@ constexpr std::size_t kDrawnPoints = 150'000;
 constexpr std::size_t kMostPanels = 8;
 // Pixels.
 constexpr int kPanelWidth = 520, kPanelHeight = 440;
-// Colour of points that a symmetry added, counted from that of the object.
+// Color of points that a symmetry added, counted from that of the object.
 constexpr int kAddedColor = 5;
 // Above the line of sight, as a share of the distance: the scene is looked at slightly from above, so that depths tell.
 constexpr double kRaised = 0.25;

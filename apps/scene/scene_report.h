@@ -21,7 +21,7 @@ nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene
 /// symmetry added the point) of all finite points of the scene and the added ones.
 pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis& scene);
 
-/// The scene from where the sensor stood, each object in a colour of its own with its plane or axis.
+/// The scene from where the sensor stood, each object in a color of its own with its plane or axis.
 PictureScene overview(const InputShape& input, const SceneAnalysis& scene);
 
 /// The same, and the first objects one by one, each with its planes and axes and what it was decided at.

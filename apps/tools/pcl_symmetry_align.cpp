@@ -205,7 +205,7 @@ struct Symmetrized {
 Symmetrized symmetrized(const Console& console, const InputShape& input, const AlignOptions& options,
                         const CommonOptions& common) {
   const ReflectionPlane plane = bestPlane(console, input, common);
-  Step step(console, "Symmetrising");
+  Step step(console, "Symmetrizing");
   const SymmetrizedHalf half = options.symmetrise == "left"    ? SymmetrizedHalf::Left
                                : options.symmetrise == "right" ? SymmetrizedHalf::Right
                                                                : SymmetrizedHalf::Mean;
@@ -427,7 +427,7 @@ void save(const Console& console, const Shape& shape, pcl::PCLPointCloud2 fields
   step.done(std::to_string(static_cast<std::size_t>(fields.width) * fields.height) + " points");
 }
 
-void analyse(const AlignOptions& options, FileJob& job) {
+void analyze(const AlignOptions& options, FileJob& job) {
   const Console& console = job.console();
   CommonOptions common = options.common;
   common.threads = job.numThreads();
@@ -470,7 +470,7 @@ int run(int argc, char** argv) {
   std::vector<std::string> columns{"converged"};
   for (const char row : {'0', '1', '2', '3'})
     for (const char column : {'0', '1', '2', '3'}) columns.push_back(std::string("t") + row + column);
-  return runOnFiles(options.batch, options.common, columns, [&](FileJob& job) { analyse(options, job); });
+  return runOnFiles(options.batch, options.common, columns, [&](FileJob& job) { analyze(options, job); });
 }
 
 }  // namespace

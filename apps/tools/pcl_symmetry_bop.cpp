@@ -42,7 +42,7 @@ struct BopOptions {
 CommandLine commandLine(BopOptions& options) {
   CommandLine line("pcl_symmetry_bop",
                    "Finds the rotations that map models onto themselves, and writes them with diameter and extent as "
-                   "models_info.json of the BOP pose benchmark, in the unit of the input (BOP's is the millimetre).",
+                   "models_info.json of the BOP pose benchmark, in the unit of the input (BOP's is the millimeter).",
                    "pcl_symmetry_bop models -json models/models_info.json");
   line.positionals("input", options.inputs,
                    std::string(kShapeFiles) +
@@ -56,16 +56,16 @@ CommandLine commandLine(BopOptions& options) {
               "the same in the unit of the input; 0: the share decides")
       .number("min_confidence", options.models.symmetries.min_confidence, Range::closed(0, 1),
               "least confidence of rotations that are called symmetries")
-      .flag("colour", options.models.use_colours,
-            "only rotations that keep the colours of the vertices, or of the texture of a PLY file")
-      .number("colour_tolerance", options.models.colour_tolerance, Range::above(0),
-              "difference of colours that counts as none, in CIELAB")
+      .flag("colour", options.models.use_colors,
+            "only rotations that keep the colors of the vertices, or of the texture of a PLY file")
+      .number("colour_tolerance", options.models.color_tolerance, Range::above(0),
+              "difference of colors that counts as none, in CIELAB")
       .number("sphere_angle", options.sphere_angle, Range::upTo(0, 180),
               "degrees within which the tilts that are written for a sphere reach any rotation")
       .flag("explain", options.models.explain,
             "tell the groups at half and twice the tolerance, and which rotations fail, by how much and where")
       .text("failures", "DIR", options.models.failures_folder,
-            "write NAME_rejected_1.ply and so on: the surface, coloured where a rotation fails")
+            "write NAME_rejected_1.ply and so on: the surface, colored where a rotation fails")
       .text("check", "FILE", options.check_path,
             "compare with models_info.json, DOPE's model_info.json, or Isaac's symmetry_axes in YAML")
       .text("report", "FILE", options.report_path, "with -check: the comparison as JSON")
@@ -151,7 +151,7 @@ struct Results {
 };
 
 /// A model at a time on each thread: memory grows with the threads, not with the models.
-Results analyseAll(const std::vector<ModelFile>& files, const BopOptions& options, const GivenSymmetries& given) {
+Results analyzeAll(const std::vector<ModelFile>& files, const BopOptions& options, const GivenSymmetries& given) {
   ModelOptions model_options = options.models;
   const auto num_threads = static_cast<std::size_t>(resolveNumThreads(options.common.threads));
   model_options.symmetries.num_threads = static_cast<int>(std::max<std::size_t>(1, num_threads / files.size()));
@@ -163,7 +163,7 @@ Results analyseAll(const std::vector<ModelFile>& files, const BopOptions& option
   std::size_t num_done = 0;
   parallelBlocks(files.size(), options.common.threads, [&](std::size_t i) {
     try {
-      infos[i] = analyseModel(files[i].path, model_options, givenFor(given, files[i].key));
+      infos[i] = analyzeModel(files[i].path, model_options, givenFor(given, files[i].key));
       infos[i]->key = files[i].key;
     } catch (const InputError& error) {
       errors[i] = error.what();
@@ -195,13 +195,13 @@ std::string modelsInfo(std::vector<ModelInfo> infos, double sphere_angle) {
   return text + "\n}\n";
 }
 
-void printColourNote(const std::vector<ModelInfo>& infos, bool use_colours) {
-  const auto is_coloured = [](const ModelInfo& info) { return info.has_unread_colours; };
-  const auto num_coloured = std::count_if(infos.begin(), infos.end(), is_coloured);
-  if (num_coloured == 0) return;
-  std::printf("%td of %zu models have colours, which were not looked at: %s\n", num_coloured, infos.size(),
-              use_colours ? "only those of vertices, and textures that PLY files name, can be read"
-                          : "-colour asks for rotations that keep them");
+void printColorNote(const std::vector<ModelInfo>& infos, bool use_colors) {
+  const auto is_colored = [](const ModelInfo& info) { return info.has_unread_colors; };
+  const auto num_colored = std::count_if(infos.begin(), infos.end(), is_colored);
+  if (num_colored == 0) return;
+  std::printf("%td of %zu models have colors, which were not looked at: %s\n", num_colored, infos.size(),
+              use_colors ? "only those of vertices, and textures that PLY files name, can be read"
+                         : "-colour asks for rotations that keep them");
 }
 
 /// Prints how a given file compares, and writes that as JSON.
@@ -258,9 +258,9 @@ int run(int argc, char** argv) {
   symmetries.other_tolerances = options.models.explain;
   symmetries.max_points = std::max(symmetries.max_points, options.common.mesh_points);
   symmetries.seed = options.common.librarySeed();
-  const Results results = analyseAll(files, options, given);
+  const Results results = analyzeAll(files, options, given);
   for (const ModelInfo& info : results.infos) printModel(info);
-  printColourNote(results.infos, options.models.use_colours);
+  printColorNote(results.infos, options.models.use_colors);
   const double sphere_angle = options.sphere_angle * kDegree;
   if (!results.infos.empty()) {
     if (options.check_path) report(results.infos, options);

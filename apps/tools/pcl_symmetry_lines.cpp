@@ -22,7 +22,7 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
-const Eigen::Vector3d kContourColor(0.84, 0.37, 0.0);  // vermilion: apart from every grey, for all eyes
+const Eigen::Vector3d kContourColor(0.84, 0.37, 0.0);  // vermilion: apart from every gray, for all eyes
 
 struct LinesOptions {
   std::vector<std::string> inputs;
@@ -108,7 +108,7 @@ void checkFlat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Isomet
 
 /// Reads, transforms and prints one shape.
 /// \return its entry of the JSON; its picture where one is wanted.
-std::pair<nlohmann::json, std::optional<RasterImage>> analyse(const std::string& input, const LinesOptions& options,
+std::pair<nlohmann::json, std::optional<RasterImage>> analyze(const std::string& input, const LinesOptions& options,
                                                               const Console& console) {
   Step loading(console, "Loading " + input);
   const pcl::PointCloud<pcl::PointXYZ>::Ptr contour = loadContour(input, options.filled);
@@ -151,7 +151,7 @@ int run(int argc, char** argv) {
   std::vector<RasterImage> panels;
   std::printf("%5s %10s %10s %12s %7s  %s\n", "line", "a", "b", "c", "score", "shape");
   for (const std::string& input : options.inputs) {
-    auto [json, panel] = analyse(input, options, console);
+    auto [json, panel] = analyze(input, options, console);
     shapes.push_back(std::move(json));
     if (panel) panels.push_back(std::move(*panel));
   }

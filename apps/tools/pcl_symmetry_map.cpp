@@ -166,7 +166,7 @@ SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& co
   });
 }
 
-const Eigen::Vector3d kSurfaceColor(0.84, 0.37, 0.0);  // vermilion: apart from every grey, for all eyes
+const Eigen::Vector3d kSurfaceColor(0.84, 0.37, 0.0);  // vermilion: apart from every gray, for all eyes
 
 struct MapOptions {
   BatchOptions batch;
@@ -197,7 +197,7 @@ CommandLine commandLine(MapOptions& options) {
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
       .picture("slices", options.slices_path,
                "picture: three slices through the middle, the darker the greater, the shape on top")
-      .picture("png", options.png_path, "picture: the points in the colours of their symmetry")
+      .picture("png", options.png_path, "picture: the points in the colors of their symmetry")
       .number("cells", options.cells, Range::closed(8, 512), "cells of the volume along its longest edge")
       .number("size", options.size, Range::closed(16, 4096), "edge of each picture, pixels")
       .common(options.common, kShapeFlags | kSigma | kVolumes);
@@ -351,7 +351,7 @@ void writeSpace(const MapOptions& options, const FileJob& job, const InputShape&
     writeImage(drawSlices(map, volume, points, options.size, job.numThreads()), job.output(*options.slices_path));
 }
 
-void analyse(const MapOptions& options, FileJob& job) {
+void analyze(const MapOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   Step transforming(job.console(), "Transforming");
   CommonOptions common = options.common;
@@ -391,7 +391,7 @@ int run(int argc, char** argv) {
   if (options.fold == 1) rejectValue("-fold", "1", "must be 0 or >= 2: a turn of order 1 changes nothing");
   options.batch.inputs = {options.input};
   return runOnFiles(options.batch, options.common, {"points", "least", "greatest"},
-                    [&](FileJob& job) { analyse(options, job); });
+                    [&](FileJob& job) { analyze(options, job); });
 }
 
 }  // namespace

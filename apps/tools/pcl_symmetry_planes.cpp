@@ -415,7 +415,7 @@ void draw(const Console& console, const InputShape& input, const Findings& findi
   drawing.done();
 }
 
-void analyse(const PlanesOptions& options, FileJob& job) {
+void analyze(const PlanesOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   if (input.volume && (options.support_path || options.html_path))
     throw InputError(job.path() + ": -support and -html are of points; -surface VALUE makes some");
@@ -438,7 +438,7 @@ int run(int argc, char** argv) {
   if (options.profile_path && !boost::iends_with(*options.profile_path, ".csv") &&
       !boost::iends_with(*options.profile_path, ".svg"))
     throw UsageError(*options.profile_path + ": extension must be .csv or .svg");
-  return runOnFiles(options.batch, options.common, kColumns, [&](FileJob& job) { analyse(options, job); });
+  return runOnFiles(options.batch, options.common, kColumns, [&](FileJob& job) { analyze(options, job); });
 }
 
 }  // namespace

@@ -42,13 +42,13 @@ CommandLine commandLine(ScanOptions& options) {
                    "pcl_symmetry_scan bull.off bull.pcd -direction 1,-1,0.5 -noise 0.001");
   line.positional("mesh", options.input, ".off, .obj, .stl or .ply with faces")
       .positional("output", options.output, ".pcd or .ply; with -all eight files, NAME_0.pcd to NAME_7.pcd")
-      .direction("direction", options.direction, "from the object's centre towards the scanner (as -corner 7)")
+      .direction("direction", options.direction, "from the object's center towards the scanner (as -corner 7)")
       .number("corner", options.corner, Range::closed(0, 7),
               "corner of a cube around the object; bit 0, 1, 2 set: positive x, y, z")
       .flag("all", options.all, "scan from all eight corners")
       .number("points", options.scanner.num_points, Range::closed(1, 20000000), "wanted number of points")
       .number("fov", options.field_of_view, Range::open(0, 180), "field of view, degrees (22.9183)")
-      .number("distance", options.scanner.distance, Range::above(0.5), "from the centre, in bounding-box diagonals")
+      .number("distance", options.scanner.distance, Range::above(0.5), "from the center, in bounding-box diagonals")
       .number("noise", options.scanner.noise, Range::closed(0, 1), "deviation of the depth, in diagonals")
       .flag("random_pose", options.scanner.random_pose, "turn and move the model at random first")
       .choice("format", options.format, {"ascii", "binary", "binary_compressed"}, "encoding of PCD files")

@@ -43,11 +43,10 @@ CommandLine commandLine(SegmentOptions& o) {
                    "pcl_symmetry_segment bull.off bull.seg -json tree.json -png parts.png");
   o.batch.outputs = {&o.output, &o.png_path, &o.html_path};
   line.positional("input", o.input, kOneOrManyInputs)
-      .positional(
-          "output", o.output,
-          ".pcd or .ply: points with their segment in the field label; .ply of a mesh: with its faces coloured; "
-          ".seg: the segment of each face, one a line")
-      .picture("png", o.png_path, "picture: parts in colours")
+      .positional("output", o.output,
+                  ".pcd or .ply: points with their segment in the field label; .ply of a mesh: with its faces colored; "
+                  ".seg: the segment of each face, one a line")
+      .picture("png", o.png_path, "picture: parts in colors")
       .text("html", "FILE", o.html_path, "page with the same in three dimensions, for any browser, without network")
       .direction("up", o.up, "direction that is up in the picture, input frame (0,0,1)")
       .number("size", o.size, Range::closed(16, 4096), "edge of the picture, pixels")
@@ -163,7 +162,7 @@ std::vector<std::vector<nlohmann::json>> rowsOf(const std::vector<pcl::PointIndi
   return rows;
 }
 
-void analyse(const SegmentOptions& options, FileJob& job) {
+void analyze(const SegmentOptions& options, FileJob& job) {
   const Shape shape = load(job, options);
   SymmetrySegmentation<pcl::PointXYZ> segmentation;
   double ms = 0.0;
@@ -171,7 +170,7 @@ void analyse(const SegmentOptions& options, FileJob& job) {
   const std::vector<int>& labels = segmentation.getLabels();
   job.report({"", describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms),
               rowsOf(segments)});
-  if (options.output) saveLabelled(job.output(*options.output), shape, labels);
+  if (options.output) saveLabeled(job.output(*options.output), shape, labels);
   if (options.html_path) {
     PictureScene scene = sceneOf(options, shape, labels);
     scene.panels[0].label = counted(segments.size(), "part");
@@ -190,7 +189,7 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   checkOutput(options, line);
   options.batch.inputs = {options.input};
-  return runOnFiles(options.batch, options.common, {"part", "size"}, [&](FileJob& job) { analyse(options, job); });
+  return runOnFiles(options.batch, options.common, {"part", "size"}, [&](FileJob& job) { analyze(options, job); });
 }
 
 }  // namespace

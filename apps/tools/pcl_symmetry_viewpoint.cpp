@@ -78,7 +78,7 @@ PictureScene sceneOf(const InputShape& input, const SelectedView& view, const st
   return scene;
 }
 
-/// The score as a spherical function (Figure 16): directions scaled and coloured by it.
+/// The score as a spherical function (Figure 16): directions scaled and colored by it.
 PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView& best, const SelectedView& worst) {
   constexpr int kRings = 120, kAround = 240;  // 1.5 degrees
   const Eigen::Vector3d up = selection.getUpAxis(), side = up.unitOrthogonal(), front = up.cross(side);
@@ -197,7 +197,7 @@ void draw(const FileJob& job, const ViewpointToolOptions& options, const InputSh
   drawing.done();
 }
 
-void analyse(const ViewpointToolOptions& options, FileJob& job) {
+void analyze(const ViewpointToolOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   ViewpointSelection selection;
   const double searching_ms = choose(selection, input, options, job);
@@ -215,7 +215,7 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   return runOnFiles(options.batch, options.common, {"view", "x", "y", "z", "score"},
-                    [&](FileJob& job) { analyse(options, job); });
+                    [&](FileJob& job) { analyze(options, job); });
 }
 
 }  // namespace

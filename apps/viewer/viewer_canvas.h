@@ -20,7 +20,7 @@ namespace pcl_symmetry::apps {
 
 class KeyStyle;
 
-/// Colours that the legend names.
+/// Colors that the legend names.
 namespace viewer_colors {
 const Eigen::Vector3d kBlue(0.00, 0.45, 0.70), kVermilion(0.84, 0.37, 0.00), kGreen(0.00, 0.62, 0.45),
     kPlain(0.40, 0.47, 0.60), kFaint(0.78, 0.78, 0.80), kInk(0.1, 0.1, 0.1);

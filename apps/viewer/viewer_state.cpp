@@ -23,7 +23,7 @@ const std::vector<ViewerKey>& viewerKeys() {
       {{"o"}, "reflected points over the others, on, off", [](ViewerState& s) { s.reflection = !s.reflection; }},
       {{"a"}, "center of symmetry and axes on, off", [](ViewerState& s) { s.axes = !s.axes; }},
       {{"m"}, "mesh on, off", [](ViewerState& s) { s.mesh = s.has_mesh && !s.mesh; }},
-      {{"c"}, "parts in colours of their own on, off", [](ViewerState& s) { s.parts = !s.parts; }},
+      {{"c"}, "parts in colors of their own on, off", [](ViewerState& s) { s.parts = !s.parts; }},
       {{"i"}, "refinement: start, next step", [](ViewerState& s) { s.step += s.num_planes > 0 ? 1 : 0; }},
       {{"u"}, "refinement: step before", [](ViewerState& s) { s.step = std::max(-1, s.step - 1); }},
       {{"v"}, "best view", [](ViewerState& s) { s.camera = CameraMove::Best; }},

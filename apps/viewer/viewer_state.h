@@ -15,11 +15,11 @@ struct ViewerState {
 
   int plane = 0;            ///< the current one, in [0, num_planes)
   bool patch = true;        ///< the plane itself
-  bool support = true;      ///< points in the colours of their support of the plane
+  bool support = true;      ///< points in the colors of their support of the plane
   bool reflection = false;  ///< the cloud reflected, over itself
   bool axes = false;        ///< principal symmetry axes; axes of revolution and centers of spheres
   bool mesh = false;        ///< the mesh under the points
-  bool parts = false;       ///< segments, each in a colour of its own, in place of the support
+  bool parts = false;       ///< segments, each in a color of its own, in place of the support
   int step = -1;            ///< of Iterative Symmetric Points, from 0; -1 = not shown
   bool help = false;        ///< the list of keys
   CameraMove camera = CameraMove::Best;

@@ -114,7 +114,7 @@ private:
     canvas_.finish();
   }
 
-  /// Name, label of the current plane, and the legend of the colours.
+  /// Name, label of the current plane, and the legend of the colors.
   std::string title() {
     std::string title = name_ + ": " + model_.summary;
     if (state_.step >= 0) {
@@ -128,7 +128,7 @@ private:
     }
     if (state_.step < 0 && state_.parts)
       title += "\n" + counted(static_cast<std::size_t>(*std::max_element(parts().begin(), parts().end())) + 1, "part",
-                              "parts, each in a colour of its own");
+                              "parts, each in a color of its own");
     if (state_.axes) title += "\norange, green, blue: first, second, third principal symmetry axis";
     if (state_.axes && !model_.axes.empty()) title += "\nblack: axis of revolution";
     if (state_.axes && !model_.centers.empty()) title += "\nblack: every plane through their crossing is a symmetry";

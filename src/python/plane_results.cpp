@@ -32,7 +32,7 @@ const char* nameOf(PlaneKind kind) {
 void addPlane(py::module_& module) {
   py::class_<ReflectionPlane>(module, "ReflectionPlane", "A plane of reflection: normal . x = offset.")
       .def(py::init<const Eigen::Vector3d&, double>(), py::arg("normal"), py::arg("offset"),
-           "normal: (3,), finite, not zero; it is normalised, and the offset divided by its length.")
+           "normal: (3,), finite, not zero; it is normalized, and the offset divided by its length.")
       .def_property_readonly(
           "normal", [](const ReflectionPlane& p) { return Eigen::Vector3d(p.normal()); }, "(3,) unit")
       .def_property_readonly("offset", &ReflectionPlane::offset, "normal . x of points x in the plane, input units")

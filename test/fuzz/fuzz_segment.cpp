@@ -1,4 +1,4 @@
-/// Parts of arbitrary meshes and clouds: polygons of any corners, neighbours that may not exist.
+/// Parts of arbitrary meshes and clouds: polygons of any corners, neighbors that may not exist.
 #include <stdexcept>
 
 #include "fuzz/byte_source.h"

@@ -7,7 +7,7 @@ usage() {
 usage: bash test/fuzz/run.sh [-h] SECONDS [TARGET...]
 
 Builds the fuzzers with Clang and libFuzzer (cmake --preset fuzz) into build-fuzz/ and runs each for SECONDS with the address and
-undefined-behaviour sanitizers, from small files of make_seeds.py and what earlier runs kept in build-fuzz/corpus. An input that
+undefined-behavior sanitizers, from small files of make_seeds.py and what earlier runs kept in build-fuzz/corpus. An input that
 crashes, takes more than 120 s, or asks for more than 300 MB at once stays in build-fuzz/findings/TARGET.
 
 Targets: planes rotations segment packed database, and readers of files: pcd ply off xyz obj stl glb models_info isaac labels.

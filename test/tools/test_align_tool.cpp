@@ -169,7 +169,7 @@ TEST_F(AlignTool, CompletesAScanAndMarksWhatItAdds) {
 }
 
 /// A box whose right end stands 0.02 further out than its left one, about x = 0.01.
-TEST_F(AlignTool, SymmetrisesAMeshAndACloud) {
+TEST_F(AlignTool, SymmetrizesAMeshAndACloud) {
   Eigen::Matrix3Xd corners = boxCorners({2.0, 1.5, 1.0});
   corners(0, 1) = corners(0, 5) = 2.02;
   const std::string mesh = folder_.write("m.off", boxOFF(corners));

@@ -36,7 +36,7 @@ struct BatchTest : testing::Test {
   /// Fails for b, and is slow for a.
   int run() {
     return runOnFiles(batch, common, {"letter", "size"}, [this](FileJob& job) {
-      ++num_analysed;
+      ++num_analyzed;
       const std::string name = job.output("{}");
       if (name == "a") std::this_thread::sleep_for(std::chrono::milliseconds(20));
       if (name == failing) throw InputError(job.path() + ": is wrong");
@@ -50,7 +50,7 @@ struct BatchTest : testing::Test {
   BatchOptions batch;
   CommonOptions common;
   std::string failing;
-  std::atomic<int> num_analysed{0};
+  std::atomic<int> num_analyzed{0};
 };
 
 TEST_F(BatchTest, WritesALineForEachInputInTheirOrder) {
@@ -77,10 +77,10 @@ TEST_F(BatchTest, ResumesWhereItWasInterrupted) {
   const std::string whole = contentOf(folder / "out.jsonl");
   folder.write("out.jsonl", whole.substr(0, whole.size() - 4));
   failing.clear();
-  num_analysed = 0;
+  num_analyzed = 0;
   batch.resume = true;
   ASSERT_EQ(run(), 0);
-  EXPECT_EQ(num_analysed, 2) << "b failed and c was torn";
+  EXPECT_EQ(num_analyzed, 2) << "b failed and c was torn";
   ASSERT_EQ(lines().size(), 3u);
   std::set<std::string> letters;
   for (const nlohmann::json& line : lines()) letters.insert(line.at("letter"));
@@ -88,7 +88,7 @@ TEST_F(BatchTest, ResumesWhereItWasInterrupted) {
   const std::string csv = contentOf(folder / "out.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
   ASSERT_EQ(run(), 0);
-  EXPECT_EQ(num_analysed, 2) << "nothing is left to do";
+  EXPECT_EQ(num_analyzed, 2) << "nothing is left to do";
   folder.write("out.jsonl", "{\"shapes\": []}\n");
   EXPECT_THROW(run(), InputError) << "something else is not overwritten";
   EXPECT_EQ(contentOf(folder / "out.jsonl"), "{\"shapes\": []}\n");
@@ -102,7 +102,7 @@ TEST_F(BatchTest, TakesManyInputs) {
   common.threads = 4;
   for (const int kept : {0, 1500}) {
     batch.resume = kept > 0;
-    num_analysed = 0;
+    num_analyzed = 0;
     if (kept > 0) {
       std::istringstream all(contentOf(folder / "out.jsonl"));
       std::string some, line;
@@ -110,7 +110,7 @@ TEST_F(BatchTest, TakesManyInputs) {
       folder.write("out.jsonl", some);
     }
     ASSERT_EQ(run(), 0);
-    EXPECT_EQ(num_analysed, 2000 - kept);
+    EXPECT_EQ(num_analyzed, 2000 - kept);
     const auto found = lines();
     ASSERT_EQ(found.size(), 2000u);
     for (int i = 0; i < 2000; ++i) ASSERT_EQ(found[i]["letter"], std::to_string(i));

@@ -219,8 +219,8 @@ std::string cubePLY(const std::string& comment, const std::string& properties, i
          faces.str();
 }
 
-/// One side is red where it is told, all others are grey.
-std::string colouredCube(bool has_red_side) {
+/// One side is red where it is told, all others are gray.
+std::string coloredCube(bool has_red_side) {
   return cubePLY("", "property uchar red\nproperty uchar green\nproperty uchar blue\n", 6,
                  [=](int side, double, double) { return side == 4 && has_red_side ? "200 20 20" : "120 120 120"; });
 }
@@ -234,19 +234,19 @@ std::string texturedCube(const std::string& texture, bool is_printed) {
                  });
 }
 
-TEST_F(BopTool, AsksForColoursOnlyWhenItIsTold) {
-  const std::string plain = folder_.write("obj_1.ply", colouredCube(false)),
-                    red = folder_.write("obj_2.ply", colouredCube(true));
+TEST_F(BopTool, AsksForColorsOnlyWhenItIsTold) {
+  const std::string plain = folder_.write("obj_1.ply", coloredCube(false)),
+                    red = folder_.write("obj_2.ply", coloredCube(true));
   ASSERT_EQ(run(red + " -quiet -points 2000 -grid 32"), 0) << error_;
-  EXPECT_NE(output_.find("1 of 1 models have colours, which were not looked at"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("1 of 1 models have colors, which were not looked at"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_2.ply  group O"), std::string::npos) << output_;
   ASSERT_EQ(run(plain + " " + red + " -quiet -points 2000 -grid 32 -colour"), 0) << error_;
   EXPECT_EQ(output_.find("not looked at"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_1.ply  group O"), std::string::npos) << output_;
   EXPECT_NE(output_.find("obj_2.ply  group C4"), std::string::npos) << output_;
-  EXPECT_NE(output_.find("without its colours the group is O"), std::string::npos) << output_;
-  // The same red cube with its colours as coordinates in a texture that it does not name.
-  std::string textured = colouredCube(true);
+  EXPECT_NE(output_.find("without its colors the group is O"), std::string::npos) << output_;
+  // The same red cube with its colors as coordinates in a texture that it does not name.
+  std::string textured = coloredCube(true);
   for (const auto& [from, to] : {std::pair("uchar red", "uchar texture_u"), std::pair("uchar green", "uchar texture_v"),
                                  std::pair("uchar blue", "uchar other")})
     textured.replace(textured.find(from), std::string(from).size(), to);

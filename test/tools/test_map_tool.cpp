@@ -238,19 +238,19 @@ TEST_F(SegmentTool, LabelsPointsOfCloudsAndKeepsTheirFields) {
       << dumbbell_.polygons.size() << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << dumbbell_.polygons.size()
       << "\nDATA ascii\n";
   for (std::size_t f = 0; f < dumbbell_.polygons.size(); ++f) pcd << dumbbell_.center(f).transpose() << " 7\n";
-  const std::string cloud = folder_.write("cloud.pcd", pcd.str()), out = folder_ / "labelled.pcd";
+  const std::string cloud = folder_.write("cloud.pcd", pcd.str()), out = folder_ / "labeled.pcd";
   ASSERT_EQ(run(cloud + " " + out + " -parts 2 -png " + (folder_ / "p.png")), 0) << error_;
-  pcl::PCLPointCloud2 labelled;
-  ASSERT_EQ(pcl::io::loadPCDFile(out, labelled), 0);
-  ASSERT_EQ(labelled.fields.size(), 5u);
+  pcl::PCLPointCloud2 labeled;
+  ASSERT_EQ(pcl::io::loadPCDFile(out, labeled), 0);
+  ASSERT_EQ(labeled.fields.size(), 5u);
   std::set<std::string> names;
-  for (const pcl::PCLPointField& field : labelled.fields) names.insert(field.name);
+  for (const pcl::PCLPointField& field : labeled.fields) names.insert(field.name);
   EXPECT_EQ(names, (std::set<std::string>{"x", "y", "z", "weight", "label"}));
-  EXPECT_EQ(labelled.width, dumbbell_.polygons.size());
+  EXPECT_EQ(labeled.width, dumbbell_.polygons.size());
   EXPECT_EQ(run(cloud + " " + seg_), 1) << "a cloud has no faces";
 }
 
-TEST_F(SegmentTool, ColoursTheFacesOfAMeshInPLY) {
+TEST_F(SegmentTool, ColorsTheFacesOfAMeshInPLY) {
   const std::string out = folder_ / "parts.ply";
   ASSERT_EQ(run(mesh_ + " " + out + " -parts 2"), 0) << error_;
   const std::string ply = contentOf(out);

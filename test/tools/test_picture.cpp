@@ -171,7 +171,7 @@ TEST(ScenePage, HoldsEverythingInLittleRoom) {
   const std::string page = contentOf(folder / "a.html");
   EXPECT_LT(page.size(), 1'500'000u);
   EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
-  EXPECT_NE(page.find("The MIT License"), std::string::npos) << "the licence of three.js goes with it";
+  EXPECT_NE(page.find("The MIT License"), std::string::npos) << "the license of three.js goes with it";
   for (const char* outside : {"src=", "href=", "@import", "fetch(\"http"})
     EXPECT_EQ(page.find(outside), std::string::npos) << "nothing comes from elsewhere";
   std::size_t scripts = 0;

@@ -72,7 +72,7 @@ TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
   EXPECT_NE(output_.find("symmetry"), std::string::npos);
 }
 
-/// A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a metre; its planes are oblique.
+/// A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a meter; its planes are oblique.
 TEST_F(PlanesTool, KeepsCoordinatesBeyondFloatPrecision) {
   const Eigen::Vector3d half(0.5, 0.4, 0.3);
   const Eigen::Isometry3d pose =

@@ -262,7 +262,7 @@ TEST_F(LoadShape, RefusesGlTFThatPromisesTooMuch) {
             std::string::npos);
 }
 
-/// Map coordinates of a square of one metre, which float cannot tell apart: its spacing there is half a metre.
+/// Map coordinates of a square of one meter, which float cannot tell apart: its spacing there is half a meter.
 TEST_F(LoadShape, ShiftsCoordinatesThatFloatCannotHold) {
   const std::string a = "500000.25 5000000.125 100", b = "500001.25 5000000.125 100", c = "500001.25 5000001.125 100";
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
@@ -478,7 +478,7 @@ TEST_F(LoadShape, Pipes) {
   }
 }
 
-pcl::PointCloud<pcl::PointXYZRGBNormal> coloured() {
+pcl::PointCloud<pcl::PointXYZRGBNormal> colored() {
   pcl::PointCloud<pcl::PointXYZRGBNormal> cloud(4, 3);
   std::mt19937 generator(2);
   std::normal_distribution<float> normal;
@@ -530,9 +530,9 @@ void expectAsPCL(const std::string& path) {
 
 TEST(ReadPCD, ReadsWhatPCLReads) {
   const TemporaryFolder folder;
-  pcl::io::savePCDFileASCII(folder / "ascii.pcd", coloured());
-  pcl::io::savePCDFileBinary(folder / "binary.pcd", coloured());
-  pcl::io::savePCDFileBinaryCompressed(folder / "compressed.pcd", coloured());
+  pcl::io::savePCDFileASCII(folder / "ascii.pcd", colored());
+  pcl::io::savePCDFileBinary(folder / "binary.pcd", colored());
+  pcl::io::savePCDFileBinaryCompressed(folder / "compressed.pcd", colored());
   for (const char* name : {"ascii.pcd", "binary.pcd", "compressed.pcd"}) expectAsPCL(folder / name);
   folder.write("padded.pcd",
                "VERSION 0.7\nFIELDS x _ y z\nSIZE 4 1 4 4\nTYPE F U F F\nCOUNT 1 3 1 1\nWIDTH 1\nHEIGHT "

@@ -26,7 +26,7 @@ Eigen::Vector3d directionAcross(const Eigen::Vector3d& axis) {
   return (unit - axis.dot(unit) * axis).normalized();
 }
 
-/// A group of the normalised frame in the input frame.
+/// A group of the normalized frame in the input frame.
 ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, const BoundingBall& ball) {
   ObjectSymmetries result;
   result.kind = group.kind;

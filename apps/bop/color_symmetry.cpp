@@ -1,4 +1,4 @@
-#include "bop/colour_symmetry.h"
+#include "bop/color_symmetry.h"
 
 #include <algorithm>
 #include <array>
@@ -20,10 +20,10 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Share of the surface whose colour a symmetry may change.
+// Share of the surface whose color a symmetry may change.
 constexpr double kMostChanged = 0.05;
-// Samples around a place that may have its colour.
-constexpr int kNumColoursNear = 4;
+// Samples around a place that may have its color.
+constexpr int kNumColorsNear = 4;
 // Turns that stand for all turns about an axis.
 constexpr int kNumTurns = 8;
 // Greatest fold of stripes.
@@ -33,8 +33,8 @@ Eigen::Isometry3d turnAbout(const Eigen::Vector3d& axis, double angle, const Eig
   return motionFixing(center, rotationAbout(axis, angle));
 }
 
-/// The motions that keep the colours and are a group: the worst one goes until the rest is.
-ObjectSymmetries finiteGroup(const std::vector<Eigen::Isometry3d>& motions, const ColouredSurface& surface) {
+/// The motions that keep the colors and are a group: the worst one goes until the rest is.
+ObjectSymmetries finiteGroup(const std::vector<Eigen::Isometry3d>& motions, const ColoredSurface& surface) {
   std::vector<std::pair<double, std::size_t>> kept;  // changed share and index
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const double changed = surface.changedShare(motions[i]);
@@ -53,8 +53,8 @@ ObjectSymmetries finiteGroup(const std::vector<Eigen::Isometry3d>& motions, cons
   return ObjectSymmetries::from({}, {});
 }
 
-/// The turns about an axis by the greatest number of equal steps that keep the colours.
-std::vector<Eigen::Isometry3d> keptTurns(const ContinuousSymmetry& axis, const ColouredSurface& surface) {
+/// The turns about an axis by the greatest number of equal steps that keep the colors.
+std::vector<Eigen::Isometry3d> keptTurns(const ContinuousSymmetry& axis, const ColoredSurface& surface) {
   for (int fold = kMaxFold; fold > 1; --fold) {
     std::vector<Eigen::Isometry3d> turns;
     for (int k = 1; k < fold; ++k) turns.push_back(turnAbout(axis.axis, 2.0 * kPi * k / fold, axis.offset));
@@ -64,7 +64,7 @@ std::vector<Eigen::Isometry3d> keptTurns(const ContinuousSymmetry& axis, const C
 }
 
 /// The half turn about a line across an axis that changes least.
-Eigen::Isometry3d bestFlip(const ContinuousSymmetry& axis, const ColouredSurface& surface) {
+Eigen::Isometry3d bestFlip(const ContinuousSymmetry& axis, const ColoredSurface& surface) {
   constexpr int kNumLines = 90;
   const Eigen::Vector3d across = axis.axis.unitOrthogonal();
   Eigen::Isometry3d best = turnAbout(across, kPi, axis.offset);
@@ -79,7 +79,7 @@ Eigen::Isometry3d bestFlip(const ContinuousSymmetry& axis, const ColouredSurface
   return best;
 }
 
-ObjectSymmetries roundGroup(const ObjectSymmetries& found, const ColouredSurface& surface) {
+ObjectSymmetries roundGroup(const ObjectSymmetries& found, const ColoredSurface& surface) {
   const ContinuousSymmetry& axis = found.continuous.front();
   bool is_round = true;
   for (int k = 1; k <= kNumTurns && is_round; ++k)
@@ -93,7 +93,7 @@ ObjectSymmetries roundGroup(const ObjectSymmetries& found, const ColouredSurface
 }
 
 /// Of a ball with a pattern only turns about the coordinate axes are looked for.
-ObjectSymmetries sphereGroup(const ObjectSymmetries& found, const ColouredSurface& surface) {
+ObjectSymmetries sphereGroup(const ObjectSymmetries& found, const ColoredSurface& surface) {
   std::vector<Eigen::Isometry3d> turns;
   for (const Eigen::Vector3d& direction : evenDirections(kNumTurns))
     turns.push_back(turnAbout(direction, 2.0 * kPi * goldenFraction(static_cast<int>(turns.size()) + 1), found.center));
@@ -122,21 +122,21 @@ Eigen::Vector3f labOf(const Eigen::Vector3f& rgb) {
   return {116.0f * f.y() - 16.0f, 500.0f * (f.x() - f.y()), 200.0f * (f.y() - f.z())};
 }
 
-ColouredSurface::ColouredSurface(const SurfaceColours& colours, Points points, double tolerance)
+ColoredSurface::ColoredSurface(const SurfaceColors& colors, Points points, double tolerance)
     : points_(std::move(points)), tolerance_(tolerance), search_(makeFlannSearch(points_)) {
   std::vector<int> closest;
   std::vector<float> ignored;
-  makeFlannSearch(colours.points)->search(points_, 1, closest, ignored);
+  makeFlannSearch(colors.points)->search(points_, 1, closest, ignored);
   lab_.resize(3, points_.cols());
   for (Eigen::Index i = 0; i < points_.cols(); ++i)
-    lab_.col(i) = labOf(colours.rgb.col(closest[static_cast<std::size_t>(i)]));
+    lab_.col(i) = labOf(colors.rgb.col(closest[static_cast<std::size_t>(i)]));
 }
 
-double ColouredSurface::changedShare(const Eigen::Isometry3d& motion) const {
+double ColoredSurface::changedShare(const Eigen::Isometry3d& motion) const {
   const Points moved = (motion.cast<float>() * points_.colwise().homogeneous()).eval();
   std::vector<int> closest;
   std::vector<float> ignored;
-  const int num_near = std::min(kNumColoursNear, static_cast<int>(points_.cols()));
+  const int num_near = std::min(kNumColorsNear, static_cast<int>(points_.cols()));
   search_->search(moved, num_near, closest, ignored);
   Eigen::Index num_changed = 0;
   for (Eigen::Index i = 0; i < moved.cols(); ++i) {
@@ -148,11 +148,11 @@ double ColouredSurface::changedShare(const Eigen::Isometry3d& motion) const {
   return static_cast<double>(num_changed) / static_cast<double>(moved.cols());
 }
 
-bool ColouredSurface::keeps(const Eigen::Isometry3d& motion) const {
+bool ColoredSurface::keeps(const Eigen::Isometry3d& motion) const {
   return changedShare(motion) <= kMostChanged;
 }
 
-ObjectSymmetries keepingColours(const ObjectSymmetries& found, const ColouredSurface& surface) {
+ObjectSymmetries keepingColors(const ObjectSymmetries& found, const ColoredSurface& surface) {
   ObjectSymmetries kept;
   if (found.kind == RotationGroupKind::Spherical)
     kept = sphereGroup(found, surface);
@@ -189,21 +189,21 @@ Number valueOf(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field
   return value;
 }
 
-SurfaceColours vertexColours(const Shape& shape, const pcl::PCLPointField& field) {
-  SurfaceColours colours;
-  colours.points.resize(3, static_cast<Eigen::Index>(shape.points->size()));
-  colours.rgb.resize(3, colours.points.cols());
+SurfaceColors vertexColors(const Shape& shape, const pcl::PCLPointField& field) {
+  SurfaceColors colors;
+  colors.points.resize(3, static_cast<Eigen::Index>(shape.points->size()));
+  colors.rgb.resize(3, colors.points.cols());
   Eigen::Index size = 0;
   for (std::size_t i = 0; i < shape.points->size(); ++i) {
     if (!(*shape.points)[i].getVector3fMap().allFinite()) continue;
     const auto packed = valueOf<std::uint32_t>(shape.cloud, field, i);
-    colours.points.col(size) = (*shape.points)[i].getVector3fMap();
-    colours.rgb.col(size++) << static_cast<float>((packed >> 16) & 255) / 255.0f,
+    colors.points.col(size) = (*shape.points)[i].getVector3fMap();
+    colors.rgb.col(size++) << static_cast<float>((packed >> 16) & 255) / 255.0f,
         static_cast<float>((packed >> 8) & 255) / 255.0f, static_cast<float>(packed & 255) / 255.0f;
   }
-  colours.points.conservativeResize(3, size);
-  colours.rgb.conservativeResize(3, size);
-  return colours;
+  colors.points.conservativeResize(3, size);
+  colors.rgb.conservativeResize(3, size);
+  return colors;
 }
 
 /// Coordinates of the vertices in a texture, u to the right and v upwards.
@@ -239,7 +239,7 @@ RasterImage readOneAtATime(const std::string& path) {
   return readImage(path);
 }
 
-Eigen::Vector3f colourAt(const RasterImage& image, const Eigen::Vector2f& uv) {
+Eigen::Vector3f colorAt(const RasterImage& image, const Eigen::Vector2f& uv) {
   // Textures repeat.
   const Eigen::Vector2f in = uv.array() - uv.array().floor();
   const int x = std::min(image.width - 1, static_cast<int>(in.x() * static_cast<float>(image.width)));
@@ -281,11 +281,11 @@ void addPoints(const std::array<Corner, 3>& t, int parts, const RasterImage& ima
       const float b = (static_cast<float>(j) + 1.0f / 3.0f) / static_cast<float>(parts);
       const Corner at = t[0] + a * (t[1] - t[0]) + b * (t[2] - t[0]);
       points.push_back(at.head<3>());
-      rgb.push_back(colourAt(image, at.tail<2>()));
+      rgb.push_back(colorAt(image, at.tail<2>()));
     }
 }
 
-SurfaceColours textureColours(const Shape& shape, const Eigen::Matrix2Xf& coordinates, const RasterImage& image) {
+SurfaceColors textureColors(const Shape& shape, const Eigen::Matrix2Xf& coordinates, const RasterImage& image) {
   const std::vector<std::array<Corner, 3>> triangles = texturedTriangles(shape, coordinates);
   double area = 0.0;
   for (const auto& triangle : triangles) area += areaOf(triangle);
@@ -296,32 +296,32 @@ SurfaceColours textureColours(const Shape& shape, const Eigen::Matrix2Xf& coordi
     addPoints(triangle, std::max(1, static_cast<int>(std::lround(std::sqrt(2.0 * kTexturedPoints * share)))), image,
               points, rgb);
   }
-  SurfaceColours colours;
-  colours.points.resize(3, static_cast<Eigen::Index>(points.size()));
-  colours.rgb.resize(3, colours.points.cols());
-  for (Eigen::Index i = 0; i < colours.points.cols(); ++i) {
-    colours.points.col(i) = points[static_cast<std::size_t>(i)];
-    colours.rgb.col(i) = rgb[static_cast<std::size_t>(i)];
+  SurfaceColors colors;
+  colors.points.resize(3, static_cast<Eigen::Index>(points.size()));
+  colors.rgb.resize(3, colors.points.cols());
+  for (Eigen::Index i = 0; i < colors.points.cols(); ++i) {
+    colors.points.col(i) = points[static_cast<std::size_t>(i)];
+    colors.rgb.col(i) = rgb[static_cast<std::size_t>(i)];
   }
-  return colours;
+  return colors;
 }
 
 }  // namespace
 
-bool hasColours(const Shape& shape) {
+bool hasColors(const Shape& shape) {
   return fieldOf(shape.cloud, {"rgb", "rgba"}) || fieldOf(shape.cloud, {"texture_u", "s", "u"});
 }
 
-std::optional<SurfaceColours> surfaceColours(const Shape& shape, const std::string& path) {
+std::optional<SurfaceColors> surfaceColors(const Shape& shape, const std::string& path) {
   if (const pcl::PCLPointField* field = fieldOf(shape.cloud, {"rgb", "rgba"})) {
-    SurfaceColours colours = vertexColours(shape, *field);
-    return colours.points.cols() > 0 ? std::optional(std::move(colours)) : std::nullopt;
+    SurfaceColors colors = vertexColors(shape, *field);
+    return colors.points.cols() > 0 ? std::optional(std::move(colors)) : std::nullopt;
   }
   const std::optional<Eigen::Matrix2Xf> coordinates = textureCoordinates(shape.cloud);
   const std::string texture = coordinates && shape.mesh ? texturePath(path) : "";
   if (texture.empty()) return {};
-  SurfaceColours colours = textureColours(shape, *coordinates, readOneAtATime(texture));
-  return colours.points.cols() > 0 ? std::optional(std::move(colours)) : std::nullopt;
+  SurfaceColors colors = textureColors(shape, *coordinates, readOneAtATime(texture));
+  return colors.points.cols() > 0 ? std::optional(std::move(colors)) : std::nullopt;
 }
 
 }  // namespace pcl_symmetry::apps
