@@ -119,6 +119,15 @@ SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, con
   return symmetrizedCloud(input.points(), plane, kept, threads);
 }
 
+/// \return vertices, faces, and the row that each vertex comes from.
+py::tuple mirroredHalfOf(const AnyArray& vertices, const py::object& faces, const ReflectionPlane& plane, bool left) {
+  const MeshInput mesh(vertices, {arrayOf("faces", faces)});
+  const MirroredMesh half = mirroredHalf(mesh.vertices.points(), mesh.triangles, plane, left);
+  Eigen::MatrixX3i triangles(half.triangles.size(), 3);
+  for (std::size_t i = 0; i < half.triangles.size(); ++i) triangles.row(i) = half.triangles[i];
+  return py::make_tuple(rowsOf(half.vertices), triangles, half.sources);
+}
+
 /// \return (K, 4): radius, height, spread, count.
 Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3d& point,
                                     const Eigen::Vector3d& direction, int num_points) {
@@ -444,6 +453,8 @@ void addMeshFunctions(py::module_& module) {
       .def_readonly("deviation", &SymmetrizedShape::deviation);
   module.def("symmetrize", &symmetrize, py::arg("points"), py::arg("faces"), py::arg("plane"), py::arg("half"),
              py::arg("threads"));
+  module.def("mirrored_half", &mirroredHalfOf, py::arg("vertices"), py::arg("faces"), py::arg("plane"),
+             py::arg("left"));
   module.def("profile", &revolutionProfileOf, py::arg("points"), py::arg("point"), py::arg("direction"),
              py::arg("num_points"));
 }

@@ -277,14 +277,16 @@ def symmetrize(
     half: str = "mean",
     *,
     faces: Optional["ArrayLike"] = None,
+    cut: bool = False,
     threads: int = 0,
 ) -> Symmetrized:
     """The shape that a plane maps onto itself, and the asymmetry of each point.
 
     points: (N, 3), all finite, or a cloud or mesh of Open3D or trimesh. faces: (F, 3) of a mesh given by its vertices; a mesh
-        keeps them.
+        keeps them. Where faces of both sides do not match, it is its own reflection but for their deviation from the surface.
     half: mean: both halves are the mean of the two sides; left or right: the side that the normal of the plane points away
         from or to, and its reflection.
+    cut: cuts a mesh at the plane, and takes one side (of mean the left one) and its reflection: an exact one, with other faces.
     """
     import numpy as np
 
@@ -295,13 +297,17 @@ def symmetrize(
     moved = plane if shift is None else plane._moved(-shift)
     found = core.symmetrize(array, faces, _core_plane(moved), half, threads)
     result = found.points if shift is None else found.points + shift
-    rows = np.arange(len(array))
+    rows, deviation = np.arange(len(array)), found.deviation
     if faces is None:
         rows = np.asarray(found.kept, dtype=np.int64)
         result = np.concatenate([result[rows], plane.reflect(result[rows])])
         rows = np.concatenate([rows, rows])
-    measures = ("asymmetry", "mean_asymmetry", "greatest_asymmetry", "deviation")
-    return Symmetrized(points=result, rows=rows, **_fields(found, *measures))
+    elif cut:
+        result, faces, rows = core.mirrored_half(found.points, faces, _core_plane(moved), half != "right")
+        result, rows, deviation = result if shift is None else result + shift, np.asarray(rows), 0.0
+    own = None if faces is None else np.asarray(faces)
+    measures = _fields(found, "asymmetry", "mean_asymmetry", "greatest_asymmetry")
+    return Symmetrized(points=result, faces=own, rows=rows, deviation=deviation, **measures)
 
 
 def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:

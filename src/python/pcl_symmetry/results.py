@@ -285,6 +285,8 @@ class Symmetrized(Result):
     _in_repr = ("mean_asymmetry", "greatest_asymmetry")
     points: "NDArray[Any]"
     """(M, 3): the vertices of a mesh; of a cloud the points that stay, then their reflections."""
+    faces: Optional["NDArray[Any]"]
+    """(F, 3) rows of points, of a mesh."""
     rows: "NDArray[np.int64]"
     """(M,) row of the given point that each is, or is the reflection of."""
     asymmetry: "NDArray[np.float32]"
@@ -294,7 +296,7 @@ class Symmetrized(Result):
     """Mean of the absolute values, of a mesh by area."""
     greatest_asymmetry: float
     deviation: float
-    """Greatest distance of the result from its own reflection."""
+    """Greatest distance of the result from its own reflection; 0 where it was cut."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
