@@ -6,11 +6,12 @@ namespace pcl_symmetry {
 
 namespace detail {
 
-ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options) {
+ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options,
+                                        const MeshSurface* mesh) {
   return withBadArguments([&] {
     options.validate();
     std::string reason = reasonForNoAnswer(points);
-    if (reason.empty()) return objectSymmetries(points, options);
+    if (reason.empty()) return mesh ? objectSymmetries(points, *mesh, options) : objectSymmetries(points, options);
     warnOfNoAnswer("detectObjectSymmetries", reason);
     ObjectSymmetries none;
     none.support = none.confidence = 0.0;
@@ -24,9 +25,10 @@ ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmet
 ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const ObjectSymmetryOptions& options,
                                         int num_points) {
   const auto points = sampleMesh(mesh, num_points, options.seed);
-  ObjectSymmetries found = detectObjectSymmetries(*points, options);
-  if (!points->empty()) refineOnMesh(meshSurface(mesh), found);
-  return found;
+  if (points->empty()) return detectObjectSymmetries(*points, options);
+  const MeshSurface surface = meshSurface(mesh);
+  const Points all = detail::selectPoints(*points, nullptr, points->size(), options.seed).points;
+  return detail::objectSymmetriesOrNone(all, options, &surface);
 }
 
 }  // namespace pcl_symmetry

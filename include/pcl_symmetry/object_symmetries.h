@@ -18,7 +18,7 @@ template <typename PointT>
 ObjectSymmetries detectObjectSymmetries(const pcl::PointCloud<PointT>& cloud,
                                         const ObjectSymmetryOptions& options = {});
 
-/// The same for a mesh, whose axes are exact: see refineOnMesh().
+/// The same for a mesh, whose axes are exact: see objectSymmetries().
 /// \param num_points points spread over the mesh, >= 1.
 /// \throws pcl::BadArgumentException for bad options, and where the mesh refers to vertices that it does not have.
 ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const ObjectSymmetryOptions& options = {},
@@ -27,7 +27,9 @@ ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const Obje
 namespace detail {
 
 /// \param points 3 x N, finite.
-ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options);
+/// \param mesh that they are spread over, or none.
+ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options,
+                                        const MeshSurface* mesh = nullptr);
 
 }  // namespace detail
 

@@ -23,9 +23,7 @@ ObjectSymmetries rotations(const AnyArray& points, ObjectSymmetryOptions options
                            const std::optional<MeshSurface>& mesh) {
   const InputPoints input("points", points, 0, options.seed);
   const py::gil_scoped_release release;
-  ObjectSymmetries found = objectSymmetries(input.points(), options);
-  if (mesh) refineOnMesh(*mesh, found);
-  return found;
+  return mesh ? objectSymmetries(input.points(), *mesh, options) : objectSymmetries(input.points(), options);
 }
 
 void addClass(py::module_& module) {

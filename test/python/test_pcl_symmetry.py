@@ -398,12 +398,13 @@ class Meshes(unittest.TestCase):
             np.testing.assert_allclose(group.center, center, atol=1e-4)
             np.testing.assert_allclose(pcl_symmetry.frame(mesh).center, center, atol=1e-4)
 
-    def test_a_square_bar_has_four_folds_at_wide_tolerances(self):
+    def test_a_square_bar_has_four_folds_at_any_tolerance(self):
         mesh = bar(y=1.0)
-        for tolerance in (0.003, 0.01):
+        for tolerance in (0.0003, 0.001, 0.003, 0.01):
             for seed in (1, 2):
                 group = pcl_symmetry.rotations(mesh, tolerance=tolerance, seed=seed)
                 self.assertEqual(group.name, "D4", (tolerance, seed))
+                np.testing.assert_allclose(group.center, (15, 0.5, 0.5), atol=1e-4)
                 turns = np.abs(group.discrete[:, :3, :3])
                 self.assertLess(np.minimum(turns, abs(turns - 1)).max(), 1e-4, (tolerance, seed))
 
@@ -424,6 +425,12 @@ class Meshes(unittest.TestCase):
         self.assertAlmostEqual(found.asymmetry[vertices[:, 0].argmax()], height, delta=0.02 * height)
         self.assertAlmostEqual(found.asymmetry[vertices[:, 0].argmin()], -height, delta=0.02 * height)
         self.assertLess(found.deviation, 1e-5 * 2)
+        np.testing.assert_array_equal(found.faces, faces)
+        cut = pcl_symmetry.symmetrize(vertices, plane, faces=faces, cut=True)
+        again = pcl_symmetry.symmetrize(cut.points, plane, faces=cut.faces)
+        self.assertLess(max(again.deviation, again.greatest_asymmetry), 1e-6 * 2)
+        self.assertEqual(cut.faces.max(), len(cut.points) - 1)
+        self.assertEqual(cut.deviation, 0.0)
         same = pcl_symmetry.symmetrize(plain, plane, faces=faces)
         np.testing.assert_allclose(same.points, plain, atol=1e-5)
         # What has no other side stays.

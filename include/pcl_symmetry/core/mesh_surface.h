@@ -53,7 +53,9 @@ public:
   /// The same for one plane.
   ReflectionPlane fitted(const ReflectionPlane& plane) const;
 
+  /// Of the worst of the motions.
   /// \param tolerance input units, > 0.
+  MeshShares shares(const MotionsAbout& motions, double tolerance) const;
   MeshShares shares(const ReflectionPlane& plane, double tolerance) const;
 
   const BoundingBall& ball() const;  ///< of the triangles, input frame

@@ -151,8 +151,10 @@ struct ObjectSymmetries {
 /// \throws std::invalid_argument for bad options, values that are not finite, too few points and points on a line.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
 
-/// Moves a group, as a whole, that was found on points that were spread over a mesh to where it maps the mesh itself
-/// onto itself.
-void refineOnMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries);
+/// The same for a mesh: the group is moved, as a whole, to where it maps the mesh itself onto itself. At a tolerance
+/// that the points do not resolve, that of the default tolerance is taken too where the mesh keeps to the limits.
+/// \param points spread over the mesh.
+ObjectSymmetries objectSymmetries(const PointsRef& points, const MeshSurface& mesh,
+                                  const ObjectSymmetryOptions& options = {});
 
 }  // namespace pcl_symmetry

@@ -29,7 +29,8 @@ struct MeshRules {
   double settled = 1e-9;       // length of a step that ends the fit: below what float coordinates resolve
   double longest_step = 0.05;  // radians and radii: samples of the other side are not reached in one step
   double widths = 2.5;         // medians of the distances, the width of the weights: most samples of a symmetry agree
-  double first_width = 0.05;   // of the weights, halved each step: the ends of a bar are few, and far off
+  double first_width = 0.05;   // of the weights, halved after each short step: the ends of a bar are few, and far off
+  double short_step = 0.1;     // of the width
   double least_width = 1e-4;   // of the weights, far above rounding
   double exact_cost = 1e-6;    // of all samples: rounding
   double touching = 1e-5;      // distance below which its direction is rounding, and the normal counts
@@ -190,10 +191,9 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
   const Eigen::Vector3d start = moving.center;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Placement best{rotation, motions.center};
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), width = kMesh.first_width;
   for (int i = 0; i < kMesh.iterations; ++i) {
     MotionSums sums;
-    const double width = std::max(kMesh.least_width, std::ldexp(kMesh.first_width, -i));
     parts_->addTo(sums, parts_->faces, kMesh.fitted_samples, moving, width);
     if (parts_->borders.tree) parts_->addTo(sums, parts_->borders, kMesh.border_samples, moving, width);
     const bool is_near =
@@ -208,6 +208,7 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
     const double angle = step.head<3>().norm();
     const bool is_done = step.norm() < kMesh.settled && (width == kMesh.least_width || sums.cost < kMesh.exact_cost);
     if (is_done || !step.allFinite()) break;
+    if (step.norm() < kMesh.short_step * width) width = std::max(kMesh.least_width, 0.5 * width);
     const Eigen::Matrix3d next =
         angle > 0.0 ? Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
     rotation = next * rotation;
@@ -223,21 +224,30 @@ ReflectionPlane MeshSurface::fitted(const ReflectionPlane& plane) const {
   return {normal, normal.dot(placed.center)};
 }
 
-MeshShares MeshSurface::shares(const ReflectionPlane& plane, double tolerance) const {
+MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance) const {
   constexpr double kQuantile = 0.97;  // as of SymmetryPlane::deviation
-  const MotionsAbout motions = MotionsAbout::across(plane, parts_->ball.center);
-  std::vector<double> distances;
-  double sq_sum = 0.0, within = 0.0;
-  for (const Parts::Match& match : Parts::matches(parts_->faces, kMesh.samples, motions.linear.front(),
-                                                  (motions.center - parts_->ball.center) / parts_->ball.radius)) {
-    distances.push_back(parts_->ball.radius * match.apart.norm());
-    if (distances.back() > tolerance) continue;
-    within += 1.0;
-    sq_sum += distances.back() * distances.back();
+  MeshShares worst;
+  for (const Eigen::Matrix3d& linear : motions.linear) {
+    std::vector<double> distances;
+    double sq_sum = 0.0, within = 0.0;
+    for (const Parts::Match& match : Parts::matches(parts_->faces, kMesh.samples, linear,
+                                                    (motions.center - parts_->ball.center) / parts_->ball.radius)) {
+      distances.push_back(parts_->ball.radius * match.apart.norm());
+      if (distances.back() > tolerance) continue;
+      within += 1.0;
+      sq_sum += distances.back() * distances.back();
+    }
+    const auto quantile = distances.begin() + static_cast<std::ptrdiff_t>(kQuantile * kMesh.samples);
+    std::nth_element(distances.begin(), quantile, distances.end());
+    worst.share = std::min(worst.share, within / kMesh.samples);
+    worst.deviation = std::max(worst.deviation, *quantile);
+    if (within > 0.0) worst.residual = std::max(worst.residual, std::sqrt(sq_sum / within));
   }
-  const auto quantile = distances.begin() + static_cast<std::ptrdiff_t>(kQuantile * kMesh.samples);
-  std::nth_element(distances.begin(), quantile, distances.end());
-  return {within / kMesh.samples, *quantile, within > 0.0 ? std::sqrt(sq_sum / within) : 0.0};
+  return worst;
+}
+
+MeshShares MeshSurface::shares(const ReflectionPlane& plane, double tolerance) const {
+  return shares(MotionsAbout::across(plane, parts_->ball.center), tolerance);
 }
 
 const BoundingBall& MeshSurface::ball() const {

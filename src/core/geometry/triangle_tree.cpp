@@ -212,8 +212,8 @@ Eigen::Vector3f closestOffset(const Eigen::Vector3f& u, const Eigen::Vector3f& v
   if (b <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) return d2 / (d2 - d6) * v;
   const float a = d3 * d6 - d5 * d4;
   if (a <= 0.0f && d4 >= d3 && d5 >= d6) return u + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (v - u);
-  const float sum = a + b + c;
-  return b / sum * u + c / sum * v;
+  const Eigen::Vector3f normal = u.cross(v);  // a slender triangle has weights of its corners that are rounding
+  return w - normal.dot(w) / normal.squaredNorm() * normal;
 }
 
 }  // namespace
