@@ -7,6 +7,7 @@
 #include <boost/beast/core/detail/base64.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -26,7 +27,7 @@ namespace {
 constexpr std::size_t kMaxPagePoints = 200'000;
 constexpr int kBarColors = 12;  // the anchors of the color scale
 /// Segments of a panel whose colors stand before its name.
-constexpr int kMostSwatches = 8;
+constexpr std::size_t kMostSwatches = 8;
 
 template <typename Value>
 std::string base64(const std::vector<Value>& values) {
@@ -163,9 +164,10 @@ private:
 
   static nlohmann::json segmentSwatches(const PicturePanel& panel) {
     nlohmann::json swatches = nlohmann::json::array();
-    const auto last = std::max_element(panel.segments.begin(), panel.segments.end());
-    if (last == panel.segments.end() || *last >= kMostSwatches) return swatches;
-    for (int segment = 0; segment <= *last; ++segment) swatches.push_back({{"color", numbers(segmentColor(segment))}});
+    const std::set<int> shown(panel.segments.begin(), panel.segments.end());
+    if (shown.size() > kMostSwatches) return swatches;
+    for (const int segment : shown)
+      if (segment >= 0) swatches.push_back({{"color", numbers(segmentColor(segment))}});
     return swatches;
   }
 

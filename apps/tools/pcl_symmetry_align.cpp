@@ -1,6 +1,7 @@
 /// The canonical frame of a cloud by its symmetry, or the transform that brings it to another one; completion, and
 /// symmetrized shapes with their asymmetry.
 #include <pcl/common/io.h>
+#include <pcl/common/transforms.h>
 
 #include <algorithm>
 #include <cmath>
@@ -66,8 +67,8 @@ CommandLine commandLine(AlignOptions& options) {
           "faces and is written as .ply. The field asymmetry of a point tells how far the shape is outside of the "
           "reflection of its other side there, along the normal; -html and -png show it")
       .flag("cut", options.cut,
-            "with -symmetrise and a mesh: cut it at the plane, and write one side (of mean the left one) and its "
-            "reflection, whose faces match exactly")
+            "with -symmetrise and a mesh: cut it at the plane, and write one side (of mean the left one) and its exact "
+            "reflection. Without, faces of both sides that do not match leave a deviation, which the JSON tells")
       .text("landmarks", "FILE", options.landmarks,
             "with -symmetrise: lines of six numbers, a landmark and its counterpart, or of three, one of the midline; "
             "their asymmetry is reported")
@@ -141,8 +142,9 @@ ReflectionPlane bestPlane(const Console& console, const InputShape& input, const
 }
 
 /// Adds to the fields what its symmetry shows of the side that was not seen.
-void complete(const Console& console, const InputShape& input, const CommonOptions& common,
-              pcl::PCLPointCloud2& fields) {
+/// \return the points and what is added, in the frame of the shifted points.
+pcl::PointCloud<pcl::PointXYZ> complete(const Console& console, const InputShape& input, const CommonOptions& common,
+                                        pcl::PCLPointCloud2& fields) {
   const ReflectionPlane plane = bestPlane(console, input, common);
   Step step(console, "Completing");
   CompletionOptions options;
@@ -151,6 +153,7 @@ void complete(const Console& console, const InputShape& input, const CommonOptio
   fields = appendCopies(fields, completed.sources, "reflected_of");
   movePoints(fields, shiftedBack(plane, input.shift()).reflection(), input.points->size());
   step.done(std::to_string(completed.added.size()) + " points added");
+  return completed.cloud;
 }
 
 /// Landmarks of a file, minus the shift.
@@ -224,7 +227,7 @@ Symmetrized symmetrized(const Console& console, const InputShape& input, const A
     result.mesh_asymmetry = shape.asymmetry;
     result.mesh = options.cut ? mirroredHalf(shape.mesh, plane, half != SymmetrizedHalf::Right, &result.mesh_asymmetry)
                               : shape.mesh;
-    result.json["deviation"] = shape.deviation;
+    result.json["deviation"] = options.cut ? 0.0 : shape.deviation;
   } else {
     const SymmetrizedCloud<pcl::PointXYZ> shape = symmetrize(*input.points, plane, half, common.threads);
     report(shape);
@@ -294,24 +297,26 @@ PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
   return scene;
 }
 
-/// The target, and the input where the motion brings it, in two colors.
-PictureScene sceneOf(const InputShape& input, const InputShape& target, const Eigen::Isometry3d& T_target_input) {
-  const pcl::PointCloud<pcl::PointXYZ>::Ptr both(new pcl::PointCloud<pcl::PointXYZ>(*target.points));
-  for (const pcl::PointXYZ& point : *input.points) {
-    const Eigen::Vector3d x = T_target_input * (point.getVector3fMap().cast<double>() + input.shift());
-    both->emplace_back();
-    both->back().getVector3fMap() = (x - target.shift()).cast<float>();
-  }
+/// Two clouds in two colors.
+/// \param num_first points of the first.
+PictureScene sceneOf(const pcl::PointCloud<pcl::PointXYZ>& both, std::size_t num_first, const std::string& label) {
   PictureScene scene;
   PicturePanel panel;
-  panel.label = "target (1) and the input in it (2)";
-  panel.segments.assign(target.points->size(), 0);
-  panel.segments.resize(both->size(), 1);
-  both->width = static_cast<std::uint32_t>(both->size());
-  both->height = 1;
-  scene.points = both;
+  panel.label = label;
+  panel.segments.assign(num_first, 0);
+  panel.segments.resize(both.size(), 1);
+  scene.points = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(both);
   scene.panels = {panel};
   return scene;
+}
+
+/// The target, and the input where the motion brings it.
+PictureScene sceneOf(const InputShape& input, const InputShape& target, const Eigen::Isometry3d& T_target_input) {
+  pcl::PointCloud<pcl::PointXYZ> moved;
+  const Eigen::Isometry3d motion =
+      Eigen::Translation3d(-target.shift()) * T_target_input * Eigen::Translation3d(input.shift());
+  pcl::transformPointCloud(*input.points, moved, motion.matrix());
+  return sceneOf(*target.points + moved, target.points->size(), "target (1) and the input in it (2)");
 }
 
 Motion registerTo(const Console& console, const InputShape& input, const InputShape& target,
@@ -442,6 +447,11 @@ void analyze(const AlignOptions& options, FileJob& job) {
     motion.json["symmetrised"] = shape->json;
     if (motion.scene) motion.scene = sceneOf(input, *shape);
   }
+  pcl::PCLPointCloud2 fields = shape ? std::move(shape->fields) : input.fields();
+  if (options.complete && motion.converged) {
+    const pcl::PointCloud<pcl::PointXYZ> both = complete(console, input, common, fields);
+    if (motion.scene) motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)");
+  }
   job.report({motion.text, motion.json, rowsOf(motion)});
   if (!motion.converged) throw InputError(job.path() + ": does not fit " + *options.target + " in any pose");
   if (options.html_path) writePage(*motion.scene, {job.path(), motion.text}, job.output(*options.html_path));
@@ -452,8 +462,6 @@ void analyze(const AlignOptions& options, FileJob& job) {
       saveMesh(job.output(*options.output), *shape->mesh, T_output_shifted, "asymmetry", shape->mesh_asymmetry);
     return;
   }
-  pcl::PCLPointCloud2 fields = shape ? std::move(shape->fields) : input.fields();
-  if (options.complete) complete(console, input, common, fields);
   if (options.output) save(console, input.shape, std::move(fields), motion.transform, job.output(*options.output));
 }
 

@@ -2,6 +2,7 @@
 #include <pcl/common/io.h>
 #include <pcl/conversions.h>
 
+#include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem/path.hpp>
 #include <nlohmann/json.hpp>
@@ -174,6 +175,14 @@ void analyze(const SegmentOptions& options, FileJob& job) {
   if (options.html_path) {
     PictureScene scene = sceneOf(options, shape, labels);
     scene.panels[0].label = counted(segments.size(), "part");
+    constexpr int kMostPanels = 12;  // each has colors of its own in the page
+    for (int part = 0; part < std::min<int>(kMostPanels, segments.size()); ++part) {
+      PicturePanel alone;
+      for (const int label : labels) alone.segments.push_back(label == part ? part : -1);
+      alone.label =
+          formatted("part %d: %zu %s", part + 1, segments[part].indices.size(), shape.mesh ? "faces" : "points");
+      scene.panels.push_back(std::move(alone));
+    }
     writePage(scene, {job.path(), ""}, job.output(*options.html_path));
   }
   if (!options.png_path) return;

@@ -146,7 +146,10 @@ TEST_F(AlignTool, SaysThatNothingFits) {
 TEST_F(AlignTool, CompletesAScanAndMarksWhatItAdds) {
   Eigen::Isometry3d T_scan_model;
   const std::string scan = scanOfChair(T_scan_model);
-  ASSERT_EQ(run(scan + " " + (folder_ / "out.pcd") + " -complete -target " + chair_), 0) << error_;
+  ASSERT_EQ(run(scan + " " + (folder_ / "out.pcd") + " -complete -target " + chair_ + " -html " + (folder_ / "o.html")),
+            0)
+      << error_;
+  EXPECT_NE(contentOf(folder_ / "o.html").find("what completes it"), std::string::npos);
   const Shape before = loadShape(scan), after = loadShape(folder_ / "out.pcd");
   const Eigen::Vector3d normal = T_scan_model.linear().col(0);
   const ReflectionPlane true_plane(normal, normal.dot(T_scan_model.translation()));

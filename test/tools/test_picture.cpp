@@ -217,13 +217,16 @@ TEST(ScenePage, ShowsThePartsOfAMesh) {
     panel.segments.push_back(static_cast<int>(panel.segments.size()) % 3);
     num_triangles += polygon.vertices.size() - 2;
   }
-  scene.panels = {panel};
+  PicturePanel alone;
+  for (const int segment : panel.segments) alone.segments.push_back(segment == 2 ? 2 : -1);
+  scene.panels = {panel, alone};
   writePage(scene, {"box", ""}, folder / "a.html");
   const nlohmann::json page = sceneOf(contentOf(folder / "a.html"));
   EXPECT_EQ(numBytes(page["mesh"]), 36 * num_triangles);
   EXPECT_EQ(numBytes(page["panels"][0]["mesh_colors"]), 9 * num_triangles);
   EXPECT_EQ(page["panels"][0]["show_points"], false);
   EXPECT_EQ(page["panels"][0]["segments"].size(), 3u) << "a swatch for each";
+  EXPECT_EQ(page["panels"][1]["segments"].size(), 1u);
 }
 
 using pcl_symmetry::test::boxMesh;
