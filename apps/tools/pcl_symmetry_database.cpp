@@ -86,15 +86,15 @@ std::string modelName(const InputFile& file, bool by_path) {
 std::vector<ModelInput> modelInputs(const DatabaseToolOptions& options) {
   std::vector<std::string> tags;
   if (options.tag) tags.push_back(*options.tag);
-  const InputFiles files = inputFiles(options.arguments);
+  const std::vector<InputFile> files = inputFiles(options.arguments);
   std::vector<ModelInput> inputs;
   for (std::size_t i = 0; i < files.size(); ++i) {
     // The number of points is a part of the checksum: another number is another model.
-    const auto source = [path = files.path(i), num_points = options.common.mesh_points, tags] {
+    const auto source = [path = files[i].path, num_points = options.common.mesh_points, tags] {
       return ModelSource{fs::absolute(path).lexically_normal().string(),
                          fileChecksum(path) + "-" + std::to_string(num_points), tags};
     };
-    const auto load = [path = files.path(i), &common = options.common] {
+    const auto load = [path = files[i].path, &common = options.common] {
       const InputShape input = loadInput(path, common.mesh_points, common.librarySeed());
       // Poses of recognition are those of the model's file; a shift would be lost.
       if (!input.shift().isZero(0.0))
@@ -163,9 +163,8 @@ private:
   }
 
   int merge(SymmetryDatabase& database) const {
-    const InputFiles inputs = inputFiles(options_.arguments);
     std::vector<std::string> files;
-    for (std::size_t i = 0; i < inputs.size(); ++i) files.push_back(inputs.path(i));
+    for (const InputFile& file : inputFiles(options_.arguments)) files.push_back(file.path);
     Step step(console_, "Merging " + counted(files.size(), "database"));
     BuildReport report;
     report.num_added = database.merge(files, [&](double share) { return step.progress(share), true; });
@@ -225,9 +224,9 @@ private:
       damages = SymmetryDatabase::check(options_.file);
       step.done(damages.empty() ? "no damage" : std::to_string(damages.size()) + " damages");
     }
-    for (const std::string& damage : damages) std::printf("%s\n", damage.c_str());
     writeJson({{"damages", damages}});
-    return damages.empty() ? 0 : 1;
+    if (!damages.empty()) throw InputError(options_.file + ": " + boost::algorithm::join(damages, "; "));
+    return 0;
   }
 
   /// Files that are there are not replaced.

@@ -308,8 +308,14 @@ struct MappedCloud {
   std::vector<float> symmetry;
   float least, greatest;
 
-  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& input, const SymmetryMeasure& map, int threads)
-      : cloud(input), points(finitePoints(*input, &indices)), symmetry(map.through(points, threads)) {
+  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& input, const SymmetryMeasure& map, int threads, Step& step)
+      : cloud(input), points(finitePoints(*input, &indices)) {
+    constexpr Eigen::Index kAtATime = 100'000;
+    for (Eigen::Index i = 0; i < points.cols(); i += kAtATime) {
+      const auto values = map.through(points.middleCols(i, std::min(kAtATime, points.cols() - i)), threads);
+      symmetry.insert(symmetry.end(), values.begin(), values.end());
+      step.progress(static_cast<double>(symmetry.size()) / static_cast<double>(points.cols()));
+    }
     const auto [low, high] = std::minmax_element(symmetry.begin(), symmetry.end());
     least = *low;
     greatest = *high;
@@ -361,7 +367,7 @@ void analyze(const MapOptions& options, FileJob& job) {
   const double transforming_ms = transforming.done(std::to_string(map.num_tried) + " " + map.of);
 
   Step mapping(job.console(), "Mapping back to points");
-  const MappedCloud mapped(input.points, map, job.numThreads());
+  const MappedCloud mapped(input.points, map, job.numThreads(), mapping);
   const double mapping_ms = mapping.done(std::to_string(mapped.symmetry.size()) + " points");
 
   std::string text;

@@ -42,7 +42,7 @@ std::string reasonOf(sqlite3* database) {
       return "cannot be read or written" + system + "; the database is unchanged";
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
-      return "is damaged (" + std::string(sqlite3_errmsg(database)) + "), pcl_symmetry_database check names the damage";
+      return "is damaged (" + std::string(sqlite3_errmsg(database)) + ")";
     case SQLITE_NOMEM:
       return "is too large for the memory of this machine";
     default:

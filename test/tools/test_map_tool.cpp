@@ -50,6 +50,14 @@ TEST_F(MapTool, PointsOnThePlanesOfABoxAreTheMostSymmetric) {
   EXPECT_LT(far / num_far, 0.75);
 }
 
+TEST_F(MapTool, ShowsOnATerminalHowFarItIs) {
+  const std::string command = toolPath("map") + " " + mesh_ + " -points 150000 -grid 16";
+  if (std::system(("script -qec '" + command + "' " + (folder_ / "terminal") + " >/dev/null").c_str()) == 127)
+    GTEST_SKIP() << "needs the program script";
+  EXPECT_NE(contentOf(folder_ / "terminal").find("\rMapping back to points ["), std::string::npos);
+  EXPECT_NE(contentOf(folder_ / "terminal").find(" 66 %"), std::string::npos);
+}
+
 TEST_F(MapTool, WritesAVTKImageAndSlices) {
   ASSERT_EQ(
       run(mesh_ + " -quiet -cells 20 -size 50 -volume " + (folder_ / "a.vti") + " -slices " + (folder_ / "a.png")), 0)
@@ -205,8 +213,11 @@ protected:
 };
 
 TEST_F(SegmentTool, WritesASegmentForEachFaceATreeAndAPicture) {
-  ASSERT_EQ(run(mesh_ + " " + seg_ + " -parts 3 -json " + json_ + " -size 300 -png " + (folder_ / "p.png")), 0)
+  ASSERT_EQ(run(mesh_ + " " + seg_ + " -parts 3 -json " + json_ + " -size 300 -png " + (folder_ / "p.png") + " -html " +
+                (folder_ / "p.html")),
+            0)
       << error_;
+  EXPECT_NE(contentOf(folder_ / "p.html").find("\"part 3: "), std::string::npos) << "parts one by one";
   const std::vector<int> labels = readFaceLabels(seg_);
   ASSERT_EQ(labels.size(), dumbbell_.polygons.size());
   EXPECT_EQ(std::set<int>(labels.begin(), labels.end()), (std::set<int>{0, 1, 2}));

@@ -235,6 +235,7 @@ TEST_F(PlanesTool, AnswersBadInputWithOneLineAndAnExitCode) {
     EXPECT_EQ(run(box_ + output + "missing/out.pcd"), 1);
     EXPECT_EQ(output_, "") << "refused before the work";
   }
+  EXPECT_EQ(run(box_ + " -quiet -json /dev/null"), 0) << error_;
   EXPECT_EQ(run(folder_ / "missing.pcd"), 1);
   EXPECT_TRUE(fails(box_ + " -min_confidence 2", 2, "min_confidence"));
   EXPECT_EQ(run(box_ + " -nonsense"), 2);

@@ -110,6 +110,7 @@ TEST_F(DatabaseTools, BuildAskAndChange) {
   ASSERT_EQ(database("build " + models_ + " " + vase + " " + box), 0) << error_;
   ASSERT_EQ(database("add " + models_ + " " + (folder_ / "nothing.off") + " " + other), 1) << "one file is missing";
   EXPECT_NE(error_.find("nothing.off"), std::string::npos) << error_;
+  EXPECT_EQ(error_.find("1 models"), std::string::npos) << error_;
   ASSERT_EQ(database("list " + models_), 0);
   EXPECT_EQ(output_, "box\ntetrahedron\nvase\n");
   json answer = reportOf("./pcl_symmetry_match " + models_ + " " + vase + " -max 2");
@@ -119,6 +120,7 @@ TEST_F(DatabaseTools, BuildAskAndChange) {
   EXPECT_TRUE(answer["known"]);
   EXPECT_EQ(answer["models"][0]["name"], "box");
   EXPECT_EQ(answer["models"][0]["transform"].size(), 16u);
+  EXPECT_EQ(error_.find("1 models"), std::string::npos) << error_;
   ASSERT_EQ(database("remove " + models_ + " box vase"), 0) << error_;
   ASSERT_EQ(database("rebuild " + models_), 0) << error_;
   ASSERT_EQ(match(models_ + " " + box + " -recognize -min_merit 1"), 0) << error_;
@@ -153,6 +155,12 @@ TEST_F(DatabaseTools, GoOnTakeFoldersAndTellWhatTheyHold) {
   EXPECT_EQ(database("export " + models_ + " " + (folder_ / "clouds") + " a"), 1) << "files that are there stay";
   ASSERT_EQ(database("merge " + (folder_ / "other.db") + " " + models_), 0) << error_;
   ASSERT_EQ(database("check " + (folder_ / "other.db")), 0) << error_ << output_;
+  std::string damaged = contentOf(folder_ / "other.db");
+  std::fill(damaged.begin() + static_cast<std::ptrdiff_t>(damaged.size() / 2), damaged.end(), 'x');
+  EXPECT_EQ(database("check " + folder_.write("damaged.db", damaged) + " -quiet"), 1);
+  EXPECT_EQ(output_, "");
+  EXPECT_NE(error_.find("damaged.db: "), std::string::npos) << error_;
+  EXPECT_EQ(error_.find("check names"), std::string::npos) << error_;
   ASSERT_EQ(database("build " + (folder_ / "third.db") + " @" + (folder_ / "list.txt") + " -points 2000"), 0) << error_;
   ASSERT_EQ(database("list " + (folder_ / "third.db")), 0) << error_;
   EXPECT_EQ(output_, "a\nb\nvase\n");
