@@ -30,7 +30,7 @@ bool isFolder(const std::string& argument) {
   return fs::is_directory(argument, error);
 }
 
-void addFolder(const std::string& folder, InputFiles& files) {
+void addFolder(const std::string& folder, std::vector<InputFile>& files) {
   std::vector<std::string> found;
   try {
     for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -41,10 +41,10 @@ void addFolder(const std::string& folder, InputFiles& files) {
   }
   if (found.empty()) throw InputError(folder + ": holds no file of type " + kShapeFilesOfFolders);
   std::sort(found.begin(), found.end());
-  for (const std::string& path : found) files.add(path, folder);
+  for (const std::string& path : found) files.push_back({path, folder});
 }
 
-void addPattern(const std::string& pattern, InputFiles& files) {
+void addPattern(const std::string& pattern, std::vector<InputFile>& files) {
   glob_t found{};
   const int code = ::glob(pattern.c_str(), 0, nullptr, &found);
   const std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + (code == 0 ? found.gl_pathc : 0));
@@ -54,14 +54,14 @@ void addPattern(const std::string& pattern, InputFiles& files) {
     if (isFolder(path)) {
       addFolder(path, files);
     } else {
-      files.add(path);
+      files.push_back({path, ""});
     }
   }
 }
 
-void addArgument(const std::string& argument, InputFiles& files);
+void addArgument(const std::string& argument, std::vector<InputFile>& files);
 
-void addList(const std::string& path, InputFiles& files) {
+void addList(const std::string& path, std::vector<InputFile>& files) {
   checkReadableFile(path);
   std::ifstream text(path, std::ios::binary);
   for (std::string line; std::getline(text, line);) {
@@ -70,7 +70,7 @@ void addList(const std::string& path, InputFiles& files) {
   }
 }
 
-void addArgument(const std::string& argument, InputFiles& files) {
+void addArgument(const std::string& argument, std::vector<InputFile>& files) {
   if (isList(argument)) {
     addList(argument.substr(1), files);
   } else if (isFolder(argument)) {
@@ -78,23 +78,11 @@ void addArgument(const std::string& argument, InputFiles& files) {
   } else if (isPattern(argument)) {
     addPattern(argument, files);
   } else {
-    files.add(argument);
+    files.push_back({argument, ""});
   }
 }
 
 }  // namespace
-
-void InputFiles::add(const std::string& path, const std::string& folder) {
-  if (folders_.empty() || folders_.back() != folder) folders_.push_back(folder);
-  begins_.push_back(letters_.size());
-  folder_of_.push_back(static_cast<std::uint32_t>(folders_.size() - 1));
-  letters_ += path;
-}
-
-std::string InputFiles::path(std::size_t i) const {
-  const std::size_t end = i + 1 < begins_.size() ? begins_[i + 1] : letters_.size();
-  return letters_.substr(begins_[i], end - begins_[i]);
-}
 
 bool hasShapeExtension(const std::string& path) {
   const std::string ending = boost::algorithm::to_lower_copy(fs::path(path).extension().string());
@@ -107,8 +95,8 @@ bool standsForSeveral(const std::string& argument) {
   return isList(argument) || isFolder(argument) || isPattern(argument);
 }
 
-InputFiles inputFiles(const std::vector<std::string>& arguments) {
-  InputFiles files;
+std::vector<InputFile> inputFiles(const std::vector<std::string>& arguments) {
+  std::vector<InputFile> files;
   for (const std::string& argument : arguments) addArgument(argument, files);
   return files;
 }

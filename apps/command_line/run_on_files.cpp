@@ -82,7 +82,7 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
 }
 
 /// \throws UsageError or InputError where two inputs would write one file.
-void checkOutputs(const BatchOptions& batch, const InputFiles& files) {
+void checkOutputs(const BatchOptions& batch, const std::vector<InputFile>& files) {
   std::string pattern;
   for (const std::optional<std::string>* output : batch.outputs) {
     if (!*output) continue;
@@ -94,16 +94,16 @@ void checkOutputs(const BatchOptions& batch, const InputFiles& files) {
   if (pattern.empty()) return;
   std::map<std::string, std::size_t> input_of_name;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto [known, added] = input_of_name.emplace(stemOf(files.path(i)), i);
+    const auto [known, added] = input_of_name.emplace(stemOf(files[i].path), i);
     if (!added)
-      throw InputError(files.path(i) + ": has the name of " + files.path(known->second) + ", names must differ");
+      throw InputError(files[i].path + ": has the name of " + files[known->second].path + ", names must differ");
   }
 }
 
 /// Hands the inputs out, and their results on in the order of the inputs.
 class Batch {
 public:
-  Batch(const InputFiles& files, const BatchOptions& batch, const CommonOptions& common,
+  Batch(const std::vector<InputFile>& files, const BatchOptions& batch, const CommonOptions& common,
         const std::vector<std::string>& columns)
       : files_(files),
         results_(batch, common, columns),
@@ -113,7 +113,7 @@ public:
 
   int run(const std::function<void(FileJob&)>& analyze) {
     parallelBlocks(std::min(num_threads_, files_.size()), static_cast<int>(num_threads_), [&](std::size_t) {
-      for (std::size_t i = 0; takeNext(i);) finish(i, resultOf(files_.path(i), analyze));
+      for (std::size_t i = 0; takeNext(i);) finish(i, resultOf(files_[i].path, analyze));
     });
     if (failure_) std::rethrow_exception(failure_);
     std::string summary = std::to_string(files_.size() - num_failed_) + " done";
@@ -134,7 +134,7 @@ private:
   /// \return false where none is left. Waits while too many results wait for an earlier one.
   bool takeNext(std::size_t& i) {
     std::unique_lock<std::mutex> lock(mutex_);
-    while (next_ < files_.size() && results_.holds(files_.path(next_))) {
+    while (next_ < files_.size() && results_.holds(files_[next_].path)) {
       waiting_[next_++] = {};
       writeWaiting();
     }
@@ -184,7 +184,7 @@ private:
     written_.notify_all();
   }
 
-  const InputFiles& files_;
+  const std::vector<InputFile>& files_;
   ResultFiles results_;
   std::size_t num_threads_;
   Console console_;
@@ -207,7 +207,7 @@ int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std
                const std::function<void(FileJob&)>& analyze) {
   if (batch.inputs.size() == 1 && !standsForSeveral(batch.inputs.front()))
     return runOnOne(batch.inputs.front(), batch, common, columns, analyze);
-  const InputFiles files = inputFiles(batch.inputs);
+  const std::vector<InputFile> files = inputFiles(batch.inputs);
   numToStandardOutput(batch, common);
   checkOutputs(batch, files);
   return Batch(files, batch, common, columns).run(analyze);

@@ -187,8 +187,7 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   const Console console(options.common.quiet);
   std::vector<std::string> paths;
-  const InputFiles inputs = inputFiles(options.inputs);
-  for (std::size_t i = 0; i < inputs.size(); ++i) paths.push_back(inputs.path(i));
+  for (const InputFile& file : inputFiles(options.inputs)) paths.push_back(file.path);
   options.inputs = std::move(paths);
   const std::vector<std::string> outputs = outputPaths(options);
   std::vector<std::string> failures(options.inputs.size());

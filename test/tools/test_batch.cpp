@@ -137,14 +137,13 @@ TEST(InputFiles, AreFilesFoldersPatternsAndLists) {
   for (const char* name : {"b.pcd", "a.PLY", "c.txt", "d.glb"}) folder.write(name, "x");
   const auto paths = [&](const std::vector<std::string>& arguments) {
     std::vector<std::string> names;
-    const InputFiles files = inputFiles(arguments);
-    for (std::size_t i = 0; i < files.size(); ++i) names.push_back(files.path(i));
+    for (const InputFile& file : inputFiles(arguments)) names.push_back(file.path);
     return names;
   };
   EXPECT_EQ(paths({folder / "."}),
             (std::vector<std::string>{folder / "./a.PLY", folder / "./b.pcd", folder / "./d.glb"}));
   EXPECT_EQ(paths({folder / "*.txt"}), std::vector<std::string>{folder / "c.txt"});
-  const InputFiles files = inputFiles({folder / "c.txt", folder / ".", folder / "c.txt"});
+  const std::vector<InputFile> files = inputFiles({folder / "c.txt", folder / ".", folder / "c.txt"});
   ASSERT_EQ(files.size(), 5u);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(files[i].folder, i % 4 == 0 ? "" : folder / ".");
   const std::string list = folder.write("list", "# comment\n" + (folder / "c.txt") + "\n\n  missing.pcd \n");
