@@ -5,6 +5,8 @@
 #include <assimp/Importer.hpp>
 #include <boost/algorithm/string.hpp>
 #include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "command_line/tool_errors.h"
 #include "io/exact_coordinates.h"
@@ -32,10 +34,14 @@ public:
   }
 
 private:
+  static constexpr std::size_t kMostFaces = 50'000'000;  // small files can ask for any number
+
   void read(const aiNode& node, const Eigen::Affine3d& T_scene_parent) {
     const Eigen::Affine3d T_scene_node = T_scene_parent * poseOf(node.mTransformation);
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
       const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[m]];
+      if (shape_.polygons.size() + mesh.mNumFaces > kMostFaces)
+        throw std::length_error("it has more than 50 million faces, those of a mesh that nodes share counted for each");
       const auto corner = [&](unsigned i) {
         const aiVector3D& v = mesh.mVertices[i];
         return Eigen::Vector3d(T_scene_node * Eigen::Vector3d(v.x, v.y, v.z));
@@ -73,6 +79,35 @@ void prepareSTL(std::string& text) {
   if (text.rfind("solid", 0) != 0 && line != std::string::npos) text.erase(0, line + 1);
 }
 
+/// Assimp follows values and nodes by recursion, and reads a node again for each of its parents.
+void checkGLB(const std::string& path, const std::string& text) {
+  constexpr int kMostNested = 64, kMostLevels = 1000;
+  std::uint32_t size = 0;
+  if (text.size() >= 20) std::memcpy(&size, &text[12], sizeof(size));
+  if (size == 0 || size > text.size() - 20) return;  // Assimp tells
+  const auto keep = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+    if (depth > kMostNested) throw InputError(path + ": its values are nested too deeply");
+    return true;
+  };
+  const std::string_view chunk = std::string_view(text).substr(20, size);
+  const nlohmann::json scene = nlohmann::json::parse(chunk.substr(0, chunk.find('\0')), keep, false);
+  if (!scene.is_object()) throw InputError(path + ": cannot be read as glb, its JSON is damaged");
+  const nlohmann::json nodes = scene.value("nodes", nlohmann::json::array());
+  std::vector<int> parents(nodes.size(), -1);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (const nlohmann::json& child : nodes[i].value("children", nlohmann::json::array())) {
+      if (!child.is_number_unsigned() || child >= nodes.size()) continue;
+      int& parent = parents[child.get<std::size_t>()];
+      if (parent >= 0) throw InputError(path + ": node " + child.dump() + " has two parents, must have one");
+      parent = static_cast<int>(i);
+    }
+  for (const int first : parents) {
+    int levels = 0;
+    for (int i = first; i >= 0; i = parents[i])
+      if (++levels > kMostLevels) throw InputError(path + ": its nodes are nested too deeply, or in a circle");
+  }
+}
+
 }  // namespace
 
 void readMesh(const std::string& path, std::string& text, const std::string& kind, ExactShape& shape) {
@@ -81,6 +116,7 @@ void readMesh(const std::string& path, std::string& text, const std::string& kin
   for (const char* extension : {"KHR_mesh_quantization", "EXT_meshopt_compression"})
     if (kind == "glb" && text.find(extension) != std::string::npos)
       throw InputError(path + ": is compressed by " + extension + ", which is not supported");
+  if (kind == "glb") checkGLB(path, text);
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, kind.c_str());
   if (!scene || !scene->mRootNode) {

@@ -191,8 +191,8 @@ private:
     };
     if (!isByte(prefix + "red") || !isByte(prefix + "green") || !isByte(prefix + "blue")) return;
     const bool has_alpha = isByte(names[3]);
-    Column color{
-        has_alpha ? "rgba" : "rgb", has_alpha ? pcl::PCLPointField::UINT32 : pcl::PCLPointField::FLOAT32, 1, 4, 0, -1};
+    const std::uint8_t type = has_alpha ? pcl::PCLPointField::UINT32 : pcl::PCLPointField::FLOAT32;
+    Column color{has_alpha ? "rgba" : "rgb", type, 1, 4, 0, -1};
     addField(color, file_.cloud);
     for (int k = 0; k < (has_alpha ? 4 : 3); ++k) colors_[(k < 3 ? prefix : "") + names[k]] = color.offset + k;
   }
@@ -267,7 +267,8 @@ private:
       for (int j = 0; j < 3; ++j) rotation(k, j) = values[axis + "_axis" + "xyz"[j]];
     }
     const double width = values["viewportx"], height = values["viewporty"];
-    if (width >= 1.0 && height >= 1.0 && width * height == static_cast<double>(num_vertices_))
+    const bool is_grid = width == std::floor(width) && height == std::floor(height);
+    if (is_grid && width >= 1.0 && width * height == static_cast<double>(num_vertices_))
       makeRoom(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), file_.cloud);
     if (!origin.allFinite() || !rotation.isUnitary(1e-3) || rotation.determinant() < 0) return;
     file_.sensor_origin.head<3>() = origin.cast<float>();

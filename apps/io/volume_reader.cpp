@@ -43,6 +43,19 @@ std::string headerValue(const std::string& path, const std::string& key) {
   return {};
 }
 
+/// VTK's reader of NRRD runs in circles or crashes where a header is no text, or has a field without a value.
+void checkNRRD(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line);) {
+    boost::algorithm::trim(line);
+    if (line.empty()) return;
+    const std::size_t value = line.find_first_of(":=");
+    const bool is_whole = line[0] == '#' || line.rfind("NRRD", 0) == 0 || value + 1 < line.size();
+    if (!is_whole || !boost::algorithm::all(line, !boost::is_cntrl()))
+      throw InputError(path + ": cannot be read, a line of its header is no field with a value");
+  }
+}
+
 /// The numbers of a text, whatever stands between them; "none" is none.
 std::vector<double> numbersIn(std::string text) {
   for (char& c : text)
@@ -124,6 +137,7 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
     image.intercept = reader->GetRescaleIntercept();
     image.num_times = std::max(1, reader->GetTimeDimension());
   } else if (ends(".nrrd") || ends(".nhdr")) {
+    checkNRRD(path);
     vtkNew<vtkNrrdReader> reader;
     image.data = updated(*reader, path, messages);
     image.T_input_index = placedBy(*image.data, directionIn(path, "space directions"));

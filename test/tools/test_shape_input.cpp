@@ -251,7 +251,8 @@ TEST_F(LoadShape, RefusesGlTFThatPromisesTooMuch) {
       {R"("count":3)", R"("count":4)", "accessors[0]"},
       {R"({"asset":)", R"(x"asset":)", "cannot be read as glb"},
       {R"("buffer":0,"byteOffset":0,)", R"("buffer":0,"byteOffset":9,)", "out of range"},
-      {R"("translation":[0,0,5])", R"("children":[0])", "recursive reference"},
+      {R"("translation":[0,0,5])", R"("children":[0])", "in a circle"},
+      {R"("translation":[0,0,5])", R"("children":[0,0])", "node 0 has two parents"},
       {R"("mesh":0)", R"("mesh":7)", "out of bounds"},
       {R"("componentType":5126)", R"("componentType":5127)", "Unsupported Component Type"},
       {R"({"bufferView":0,"componentType":5126,)", R"({"componentType":5126,)", "accessors[0]"}};
@@ -260,6 +261,9 @@ TEST_F(LoadShape, RefusesGlTFThatPromisesTooMuch) {
   quantized.replace(quantized.find(R"("scene":0)"), 9, R"("e":"KHR_mesh_quantization")");
   EXPECT_NE(complaintOnReading(folder_.write("a.glb", quantized)).find("is compressed by KHR_mesh_quantization"),
             std::string::npos);
+  const std::string nested = std::string(100'000, '[') + std::string(100'000, ']');
+  const std::string deep = glb(R"({"attributes":{"POSITION":0},"extras":)" + nested + "}", values);
+  EXPECT_NE(complaintOnReading(folder_.write("a.glb", deep)).find("nested too deeply"), std::string::npos);
 }
 
 /// Map coordinates of a square of one meter, which float cannot tell apart: its spacing there is half a meter.
@@ -373,6 +377,10 @@ TEST_F(LoadShape, PLYPropertiesOfAnyTypeAndOrder) {
                                         "2 0 0 1 2 3\n0 4 5 6\n7\n"));
   EXPECT_EQ(pointsOf(lists).col(1), Eigen::Vector3f(4, 5, 6));
   EXPECT_EQ(lists.left_out, (std::vector<std::string>{"list parts of the vertices", "1 of element edge"}));
+  const std::string camera = "element camera 1\nproperty float viewportx\nproperty float viewporty\n";
+  const Shape no_grid =
+      read("e.ply", ply("ascii", camera + "element vertex 3\n" + kPLYVertex, "1.5 2\n1 2 3\n4 5 6\n7 8 9\n"));
+  EXPECT_EQ(no_grid.points->width, 3u) << "pixels are whole";
 }
 
 TEST_F(LoadShape, PLYThatIsWrongIsRefusedWithTheReason) {

@@ -99,15 +99,14 @@ RowTable::RowTable(const std::vector<float>& f, int num_cells, double clip, int 
 /// Looks the points of a bundle up, each in the cell that contains it.
 /// \param[out] values of each point kBundleLanes of them.
 PCL_SYMMETRY_MULTIVERSION
-void lookUp(const Bundle& bundle, const RowTable::Rows& rows, std::int32_t* __restrict offsets,
-            float* __restrict values) {
-  const auto [starts, step, first, last] = bundle;
+void lookUp(Bundle bundle, const RowTable::Rows& rows, std::int32_t* __restrict offsets, float* __restrict values) {
+  const int first = bundle.first, last = bundle.last;
   const std::int32_t* __restrict const of_x = rows.of_x;
   const int of_y = rows.of_y, of_z = rows.of_z, least_x = rows.least_x, last_cell = rows.last;
   for (int r = 0; r < kBundleRows; ++r) {
     for (int l = first; l < last; ++l) {
       const auto cell = [&](int axis, int least) {
-        const int at = (starts[r][axis] + l * step[axis]) >> LookupTable::kFractionBits;
+        const int at = (bundle.start[r][axis] + l * bundle.step[axis]) >> LookupTable::kFractionBits;
         return at < least ? least : at > last_cell ? last_cell : at;
       };
       offsets[l] = cell(2, 0) * of_z + cell(1, 0) * of_y + of_x[cell(0, least_x)];
