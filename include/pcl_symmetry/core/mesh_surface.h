@@ -56,6 +56,7 @@ public:
   /// Of the worst of the motions.
   /// \param tolerance input units, > 0.
   MeshShares shares(const MotionsAbout& motions, double tolerance) const;
+  /// The same of one plane.
   MeshShares shares(const ReflectionPlane& plane, double tolerance) const;
 
   const BoundingBall& ball() const;  ///< of the triangles, input frame
