@@ -7,6 +7,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "command_line/tool_errors.h"
 #include "io/exact_coordinates.h"
@@ -79,17 +80,24 @@ void prepareSTL(std::string& text) {
   if (text.rfind("solid", 0) != 0 && line != std::string::npos) text.erase(0, line + 1);
 }
 
-/// Assimp follows values and nodes by recursion, and reads a node again for each of its parents.
+/// Assimp trusts the sizes of chunks, follows values and nodes by recursion, and reads a node again for each of its
+/// parents.
 void checkGLB(const std::string& path, const std::string& text) {
   constexpr int kMostNested = 64, kMostLevels = 1000;
-  std::uint32_t size = 0;
-  if (text.size() >= 20) std::memcpy(&size, &text[12], sizeof(size));
-  if (size == 0 || size > text.size() - 20) return;  // Assimp tells
+  const auto chunkAt = [&](std::size_t begin) {
+    std::uint32_t size = 0;
+    if (text.size() >= begin + 8) std::memcpy(&size, &text[begin], sizeof(size));
+    if (text.size() < begin + 8 || size > text.size() - begin - 8)
+      throw InputError(path + ": cannot be read as glb, it is cut off");
+    return std::string_view(text).substr(begin + 8, size);
+  };
+  const std::string_view chunk = chunkAt(12);
+  const std::size_t next = (20 + chunk.size() + 3) / 4 * 4;
+  if (next < text.size()) chunkAt(next);
   const auto keep = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
     if (depth > kMostNested) throw InputError(path + ": its values are nested too deeply");
     return true;
   };
-  const std::string_view chunk = std::string_view(text).substr(20, size);
   const nlohmann::json scene = nlohmann::json::parse(chunk.substr(0, chunk.find('\0')), keep, false);
   if (!scene.is_object()) throw InputError(path + ": cannot be read as glb, its JSON is damaged");
   const nlohmann::json nodes = scene.value("nodes", nlohmann::json::array());

@@ -1,8 +1,11 @@
 #include <vtkCellArray.h>
+#include <vtkCharArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkFloatArray.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkImageCast.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
 #include <vtkMatrix4x4.h>
 #include <vtkMetaImageReader.h>
 #include <vtkNIFTIImageReader.h>
@@ -11,15 +14,21 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkXMLImageDataReader.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <new>
 #include <sstream>
 
 #include "command_line/tool_errors.h"
+#include "io/header_lines.h"
 #include "io/input_shape.h"
 #include "pictures/drawing.h"
 #include "pictures/vtk_messages.h"
@@ -38,22 +47,45 @@ Eigen::Affine3d affineOf(const vtkMatrix4x4& matrix) {
 /// The text after a key at the start of a line of a header; empty without one.
 std::string headerValue(const std::string& path, const std::string& key) {
   std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line) && line.size() < 4096;)
+  for (std::string line; std::getline(file, line) && !line.empty() && line.size() < 4096;)
     if (boost::algorithm::istarts_with(line, key)) return line.substr(line.find_first_of(":=", key.size()) + 1);
   return {};
 }
 
-/// VTK's reader of NRRD runs in circles or crashes where a header is no text, or has a field without a value.
-void checkNRRD(const std::string& path) {
+/// VTK's readers of NRRD and MetaImage run in circles or crash where a header is cut off, is no text, or has a field
+/// without a value.
+void checkFields(const std::string& path, bool is_nrrd) {
   std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line);) {
+  std::string line;
+  bool is_whole = !is_nrrd || (std::getline(file, line) && line.rfind("NRRD", 0) == 0);
+  while (is_whole && std::getline(file, line)) {
     boost::algorithm::trim(line);
-    if (line.empty()) return;
-    const std::size_t value = line.find_first_of(":=");
-    const bool is_whole = line[0] == '#' || line.rfind("NRRD", 0) == 0 || value + 1 < line.size();
-    if (!is_whole || !boost::algorithm::all(line, !boost::is_cntrl()))
-      throw InputError(path + ": cannot be read, a line of its header is no field with a value");
+    if (is_nrrd && line.empty()) return;
+    const std::size_t sign = line.find(is_nrrd ? ':' : '=');
+    is_whole = !(is_nrrd && file.eof()) && isPrintable(line) &&
+               ((is_nrrd && line[0] == '#') ||
+                (sign != std::string::npos && line.find_first_not_of(":= ", sign) != std::string::npos));
+    if (is_whole && line.rfind("ElementDataFile", 0) == 0) return;
   }
+  if (!is_whole) throw InputError(path + ": cannot be read, a line of its header is no field with a value");
+}
+
+/// VTK's reader of NIfTI trusts a header whose dimensions or type make no sense.
+void checkNIfTI(const std::string& path) {
+  char header[540] = {};
+  const gzFile file = gzopen(path.c_str(), "rb");  // also of files that are not compressed
+  const int size = file ? gzread(file, header, sizeof(header)) : 0;
+  if (file) gzclose(file);
+  const bool is_little = header[0] != 0, is_first = header[is_little ? 0 : 3] == 0x5c;  // 348, not 540
+  const auto number = [&](int at) {
+    const auto low = static_cast<unsigned char>(header[is_little ? at : at + 1]);
+    return 256 * header[is_little ? at + 1 : at] + low;
+  };
+  const int num_sizes = number(is_first ? 40 : is_little ? 16 : 22), type = number(is_first ? 70 : 12);
+  const int types[] = {2, 4, 8, 16, 64, 128, 256, 512, 768, 1024, 1280, 2304};
+  const bool is_known = std::find(std::begin(types), std::end(types), type) != std::end(types);
+  if (size < (is_first ? 348 : 540) || !is_known || num_sizes < 1 || num_sizes > 7)
+    throw InputError(path + ": cannot be read, its header is not of NIfTI or has an unknown type");
 }
 
 /// The numbers of a text, whatever stands between them; "none" is none.
@@ -99,12 +131,33 @@ private:
   std::streambuf* old_;
 };
 
+/// \return bytes of an image at most, as its header has it; 0 where it has no voxel.
+double sizeOf(vtkInformation* image) {
+  const int* const extent = image->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+  vtkInformation* const voxel = vtkDataObject::GetActiveFieldInformation(image, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                                                                         vtkDataSetAttributes::SCALARS);
+  double size = voxel ? sizeof(double) * std::max(1, voxel->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())) : 0.0;
+  for (int k = 0; k < 3; ++k) size *= extent ? std::max(0.0, 1.0 + extent[2 * k + 1] - extent[2 * k]) : 0.0;
+  return size;
+}
+
 template <typename Reader>
 vtkSmartPointer<vtkImageData> updated(Reader& reader, const std::string& path, const VtkMessages& messages) {
+  constexpr double kMostPacked = 8.0 * 1100.0;  // bytes of an image for one of the file: those of zlib, as double
   const Printed printed;
   reader.SetFileName(path.c_str());
-  reader.Update();
-  if (reader.GetErrorCode() != 0 || !messages.firstError().empty() || !messages.firstWarning().empty() ||
+  reader.UpdateInformation();
+  const double size = sizeOf(reader.GetOutputInformation(0));
+  const bool is_apart = boost::algorithm::iends_with(path, "hdr") || boost::algorithm::iends_with(path, "mhd");
+  const double most = is_apart ? 1e15 : kMostPacked * static_cast<double>(boost::filesystem::file_size(path));
+  const bool is_sound = size > 0.0 && size <= most;
+  if (is_sound) {
+    vtkNew<vtkCharArray> room;  // the readers write where they got none
+    if (!room->Allocate(static_cast<vtkIdType>(size))) throw std::bad_alloc();
+    room->Initialize();
+    reader.Update();
+  }
+  if (!is_sound || reader.GetErrorCode() != 0 || !messages.firstError().empty() || !messages.firstWarning().empty() ||
       !printed.nothing())
     throw InputError(path + ": cannot be read, it is cut off or its header does not fit its data");
   return reader.GetOutput();
@@ -125,6 +178,7 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
     image.data = updated(*reader, path, messages);
     image.T_input_index = affineOf(*image.data->GetIndexToPhysicalMatrix());
   } else if (ends(".nii") || ends(".gz")) {
+    checkNIfTI(path);
     vtkNew<vtkNIFTIImageReader> reader;
     image.data = updated(*reader, path, messages);
     image.T_input_index = placedBy(*image.data, Eigen::Matrix3d::Identity());
@@ -137,13 +191,21 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
     image.intercept = reader->GetRescaleIntercept();
     image.num_times = std::max(1, reader->GetTimeDimension());
   } else if (ends(".nrrd") || ends(".nhdr")) {
-    checkNRRD(path);
+    checkFields(path, true);
+    const std::vector<double> sizes = numbersIn(headerValue(path, "sizes"));
+    if (sizes.empty() || numbersIn(headerValue(path, "dimension")) != std::vector<double>{1.0 * sizes.size()} ||
+        headerValue(path, "type").empty() || headerValue(path, "encoding").empty())
+      throw InputError(path + ": cannot be read, its header must have type, dimension, sizes and encoding");
     vtkNew<vtkNrrdReader> reader;
     image.data = updated(*reader, path, messages);
     image.T_input_index = placedBy(*image.data, directionIn(path, "space directions"));
     const std::vector<double> origin = numbersIn(headerValue(path, "space origin"));
     if (origin.size() == 3) image.T_input_index.translation() = Eigen::Map<const Eigen::Vector3d>(origin.data());
   } else {
+    checkFields(path, false);
+    const std::vector<double> num_sizes = numbersIn(headerValue(path, "NDims"));
+    if (num_sizes.size() != 1 || num_sizes[0] < 1.0 || num_sizes[0] > 10.0)
+      throw InputError(path + ": cannot be read, NDims must be a number of axes");
     vtkNew<vtkMetaImageReader> reader;
     image.data = updated(*reader, path, messages);
     Eigen::Matrix3d direction = Eigen::Matrix3d::Identity();

@@ -261,6 +261,9 @@ TEST_F(LoadShape, RefusesGlTFThatPromisesTooMuch) {
   quantized.replace(quantized.find(R"("scene":0)"), 9, R"("e":"KHR_mesh_quantization")");
   EXPECT_NE(complaintOnReading(folder_.write("a.glb", quantized)).find("is compressed by KHR_mesh_quantization"),
             std::string::npos);
+  std::string cut = whole;
+  cut.replace(12, 4, "glTF");  // the length of the JSON
+  EXPECT_NE(complaintOnReading(folder_.write("a.glb", cut)).find("is cut off"), std::string::npos);
   const std::string nested = std::string(100'000, '[') + std::string(100'000, ']');
   const std::string deep = glb(R"({"attributes":{"POSITION":0},"extras":)" + nested + "}", values);
   EXPECT_NE(complaintOnReading(folder_.write("a.glb", deep)).find("nested too deeply"), std::string::npos);

@@ -137,7 +137,11 @@ TEST_F(Volumes, ThatAreBadGetASentence) {
                                               {"cut.nrrd", nrrd(data).substr(0, 90'000), "cut.nrrd"},
                                               {"cut.mha", metaImage(data).substr(0, 90'000), "cut.mha"},
                                               {"text.nii.gz", "no volume", "text.nii.gz"},
+                                              {"axes.mha", metaImage(data).replace(27, 1, "-3"), "number of axes"},
+                                              {"type.nii", nifti(data).replace(70, 2, "\x39\x30"), "unknown type"},
                                               {"text.vti", "<VTKFile", "text.vti"},
+                                              {"bare.nrrd", "NRRD0004\ntype: float\n\n" + data, "type, dimension"},
+                                              {"void.nrrd", "NRRD0004\ntype: float\nsizes:\n\n", "with a value"},
                                               {"zero.mha", metaImage(bytesOf(zero)), "equal"},
                                               {"nan.mha", metaImage(bytesOf(nan)), "finite"},
                                               {"one.mha", metaImage(data, "44 1920 1"), "slices"}};
