@@ -123,8 +123,8 @@ std::string lineOfTolerance(const Findings& findings) {
 /// The plane that all points lie on.
 std::string lineOfFlat(const ReflectionPlane& flat, const Eigen::Vector3d& shift, int digits) {
   const Eigen::Vector4d c = printedCoefficients(flat, shift);
-  return formatted("flat: the points lie on the plane %.6f %.6f %.6f %.*g; to be mirrored in it says nothing\n", c[0],
-                   c[1], c[2], digits, c[3]);
+  return formatted("flat: the points lie on the plane %.6f %.6f %.6f %.*g; a reflection across it is uninformative\n",
+                   c[0], c[1], c[2], digits, c[3]);
 }
 
 std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {

@@ -46,6 +46,7 @@ browse() {
     --user-data-dir="$work/profile" --window-size=1300,800 --virtual-time-budget=4000 "$@" "file://$work/$page.html" 2>"$work/log"
 }
 if (($# > 1)); then browse box --screenshot="$(realpath "$2")"; fi
+echo '<script>{ const t = document.getElementById("text"); document.body.dataset.cut = t.scrollWidth > t.clientWidth; }</script>' >>"$work/box.html"
 for page in box pose; do
   browse $page --dump-dom >"$work/$page"
   grep -q 'data-ready="true"' "$work/$page" || {
@@ -54,6 +55,7 @@ for page in box pose; do
     exit 1
   }
 done
+grep -q 'data-cut="false"' "$work/box" || { echo "check_page.sh: the table of planes is cut off" >&2; exit 1; }
 [[ $(grep -o '<button' "$work/box" | wc -l) == 3 ]] || { echo "check_page.sh: the page does not list three planes" >&2; exit 1; }
 [[ $(grep -o '<span class="swatch"' "$work/pose" | wc -l) == 2 ]] || { echo "check_page.sh: the pose has no two colors" >&2; exit 1; }
 echo "The pages open and list three planes, and two clouds in one frame."
