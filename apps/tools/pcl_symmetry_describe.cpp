@@ -23,6 +23,7 @@
 #include "core/base/parallel.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
+#include "io/answers.h"
 #include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
@@ -84,6 +85,8 @@ pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& opt
   const auto max_points = static_cast<std::size_t>(options.num_points);
   const detail::SelectedPoints selected =
       detail::selectPoints(cloud, nullptr, max_points, options.common.librarySeed());
+  if (const std::string reason = detail::reasonForNoAnswer(selected.points); !reason.empty())
+    throw InputError(input.path + ": " + reason);
   const std::optional<Visibility> seen =
       detail::seenSpace(cloud, selected.points, shifted(options.common.viewpoint, input.shift()));
   DescriptionOptions description;
@@ -193,7 +196,7 @@ int run(int argc, char** argv) {
   std::vector<std::string> failures(options.inputs.size());
   std::atomic<std::size_t> num_done{0};
   std::mutex mutex;
-  Step step(console, "Describing " + std::to_string(options.inputs.size()) + " shapes");
+  Step step(console, "Describing " + counted(options.inputs.size(), "shape"));
   parallelBlocks(options.inputs.size(), options.common.threads, [&](std::size_t i) {
     failures[i] = describeFile(options.inputs[i], outputs[i], options);
     const double share = static_cast<double>(++num_done) / static_cast<double>(options.inputs.size());
@@ -202,7 +205,7 @@ int run(int argc, char** argv) {
   });
   if (options.csv_path) writeTable(options, outputs, failures);
   failures.erase(std::remove(failures.begin(), failures.end(), ""), failures.end());
-  step.done(std::to_string(options.inputs.size() - failures.size()) + " descriptors");
+  step.done(counted(options.inputs.size() - failures.size(), "descriptor"));
   for (const std::string& failure : failures) console.error(failure);
   return failures.empty() ? 0 : 1;
 }

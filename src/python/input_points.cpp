@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/geometry/answerable_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/viewpoint_inference.h"
 
@@ -104,6 +105,12 @@ PointsRef InputPoints::points() const {
   if (array_.ndim() != 2) return copied_;
   const Eigen::OuterStride<> stride(array_.strides(0) / static_cast<py::ssize_t>(sizeof(float)));
   return Eigen::Map<const Points, 0, Eigen::OuterStride<>>(array_.data(), 3, array_.shape(0), stride);
+}
+
+PointsRef InputPoints::answerablePoints() const {
+  if (const std::string reason = whyUnanswerable(points()); !reason.empty())
+    throw std::invalid_argument("points: " + reason);
+  return points();
 }
 
 Points InputPoints::atPoints(const char* name, const py::array& normals) const {

@@ -37,6 +37,8 @@ public:
 
   /// \return 3 x M points, as long as this object lives.
   PointsRef points() const;
+  /// \throws std::invalid_argument with the reason where the points hold no answer, such as too few.
+  PointsRef answerablePoints() const;
   /// \return number of rows of the array.
   std::size_t numRows() const { return num_rows_; }
   /// \return the row of each point; empty where all rows are used.

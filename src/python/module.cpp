@@ -233,7 +233,7 @@ SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::si
   const py::gil_scoped_release release;
   auto options = optionsWith<FrameOptions>(seed, threads);
   options.as_published = as_published;
-  SymmetryFrame found = symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
+  SymmetryFrame found = symmetryFrame(input.answerablePoints(), options, seen ? &*seen : nullptr);
   if (mesh && !seen) refineOnMesh(*mesh, found);
   return found;
 }
@@ -303,7 +303,7 @@ Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, st
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   const py::gil_scoped_release release;
   const auto options = optionsWith<DescriptionOptions>(seed, threads);
-  return describeShape(input.points(), options, seen ? &*seen : nullptr).signatures.transpose();
+  return describeShape(input.answerablePoints(), options, seen ? &*seen : nullptr).signatures.transpose();
 }
 
 SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, const std::string& method,

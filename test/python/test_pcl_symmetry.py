@@ -153,6 +153,11 @@ class Planes(unittest.TestCase):
             found = pcl_symmetry.planes(points)
             self.assertEqual(len(found), 0)
             self.assertNotEqual(found.reason, "")
+        for function in (pcl_symmetry.frame, pcl_symmetry.rotations, pcl_symmetry.describe):
+            with self.assertRaisesRegex(ValueError, "points: 5 distinct points, at least 20 are needed"):
+                function(box(num_points=5))
+            with self.assertRaisesRegex(ValueError, "points: 1 distinct point"):
+                function(np.ones((1000, 3)))
 
     def test_wrong_parameters_name_field_value_and_rule(self):
         for arguments, words in (

@@ -85,6 +85,8 @@ TEST_F(DescribeTool, SaysWhatIsWrongAndDoesTheRest) {
   EXPECT_EQ(run(out + " " + (folder_ / "broken.off") + " " + (folder_ / "box.off") + " -points 2000 -quiet"), 1);
   EXPECT_NE(error_.find("broken.off"), std::string::npos) << "-quiet hides no failure: " << error_;
   EXPECT_TRUE(std::filesystem::exists(out + "/box.pcd"));
+  EXPECT_TRUE(fails(out + " " + folder_.write("few.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"), 1,
+                    "few.xyz: input cloud: 4 distinct points, at least 20 are needed"));
   std::filesystem::create_directories(folder_ / "other");
   folder_.write("other/box.off", boxOFF());
   EXPECT_TRUE(fails(out + " " + (folder_ / "box.off") + " " + (folder_ / "other/box.off"), 1, "names must differ"));
