@@ -69,9 +69,15 @@ if [[ -z $root ]]; then
   usr=$packages/unpacked/usr
   use_packages env PATH="$usr/bin:$PATH" PYTHONPATH="$usr/lib/python3/dist-packages"
   for file in include/pcl_symmetry/symmetry_detection.h share/man/man1/pcl_symmetry_planes.1.gz \
-    share/bash-completion/completions/pcl_symmetry_planes; do
+    share/bash-completion/completions/pcl_symmetry_planes share/doc/pcl_symmetry/README.md \
+    share/doc/pcl_symmetry/tools.md share/doc/pcl_symmetry/examples/01_first_plane.cpp; do
     [[ -s $usr/$file ]] || fail "no package holds /usr/$file"
   done
+  for word in database:merge map:voting; do
+    grep -qw "${word#*:}" "$usr/share/bash-completion/completions/pcl_symmetry_${word%:*}" || fail "completion lacks $word"
+  done
+  descriptions=$(for deb in "$packages"/*.deb; do dpkg-deb -f "$deb" Description | head -1; done | sort | uniq -d)
+  [[ -z $descriptions ]] || fail "packages share the description $descriptions"
   ! find "$usr" -name '*test*' | grep . || fail "tests are in the packages"
   # Shared libraries have a package of their own, and say of each symbol which of them it belongs to.
   mapfile -t libraries < <(find "$usr" -name 'libpcl_symmetry*.so.*.*.*')
