@@ -1,10 +1,11 @@
 #include "command_line/flag_values.h"
 
 #include <boost/algorithm/string.hpp>
-#include <cerrno>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
+
+#include "io/file_text.h"
 
 namespace pcl_symmetry::apps {
 
@@ -32,24 +33,19 @@ std::string Range::rule() const {
 }
 
 double parseNumber(const std::string& name, const std::string& text, const Range& range) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || std::isspace(static_cast<unsigned char>(text[0]))) {
-    rejectValue(name, text, "must be a number");
-  }
+  double value = 0.0;
+  if (!spellsNumber(text, &value)) rejectValue(name, text, "must be a number");
   if (!std::isfinite(value)) rejectValue(name, text, "must be finite");
   if (!range.contains(value)) rejectValue(name, text, range.rule());
   return value;
 }
 
 std::int64_t parseInteger(const std::string& name, const std::string& text, const Range& range) {
-  char* end = nullptr;
-  errno = 0;
-  const long long value = std::strtoll(text.c_str(), &end, 10);
-  if (text.empty() || *end != '\0' || std::isspace(static_cast<unsigned char>(text[0]))) {
-    rejectValue(name, text, "must be a whole number");
-  }
-  if (errno == ERANGE) rejectValue(name, text, "is too large");
+  std::int64_t value = 0;
+  const char* const begin = text.data() + (text.rfind('+', 0) == 0 ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) rejectValue(name, text, "is too large");
+  if (error != std::errc() || end != text.data() + text.size()) rejectValue(name, text, "must be a whole number");
   if (!range.contains(static_cast<double>(value))) rejectValue(name, text, range.rule());
   return value;
 }
@@ -65,23 +61,16 @@ std::vector<double> parseNumbers(const std::string& name, const std::string& tex
 Eigen::Vector3d parseVector(const std::string& name, const std::string& text) {
   std::vector<std::string> parts;
   boost::algorithm::split(parts, text, boost::is_any_of(","));
-  if (parts.size() != 3) rejectValue(name, text, "must be three numbers X,Y,Z");
   Eigen::Vector3d value;
-  for (int i = 0; i < 3; ++i) {
-    char* end = nullptr;
-    value[i] = std::strtod(parts[i].c_str(), &end);
-    if (parts[i].empty() || *end != '\0' || !std::isfinite(value[i])) {
+  for (int i = 0; i < 3; ++i)
+    if (parts.size() != 3 || !spellsNumber(parts[i], &value[i]) || !std::isfinite(value[i]))
       rejectValue(name, text, "must be three finite numbers X,Y,Z");
-    }
-  }
   return value;
 }
 
 int parseInt(const std::string& name, const std::string& text, const Range& range) {
   const std::int64_t value = parseInteger(name, text, range);
-  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) {
-    rejectValue(name, text, "is too large");
-  }
+  if (value != static_cast<int>(value)) rejectValue(name, text, "is too large");
   return static_cast<int>(value);
 }
 
