@@ -5,7 +5,7 @@
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/exports.h"
 
-/// Planes and axes of symmetry as models of PCL's segmentation, and back. The header of the coefficients is left empty.
+/// Planes and axes of symmetry as models of PCL's segmentation. The header of the coefficients is left empty.
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// \return [a, b, c, d] of a x + b y + c z + d = 0 with a unit normal (pcl::SACMODEL_PLANE), in float.
@@ -13,14 +13,5 @@ pcl::ModelCoefficients toModelCoefficients(const ReflectionPlane& plane);
 
 /// \return [point, direction], six values (pcl::SACMODEL_LINE), in float.
 pcl::ModelCoefficients toModelCoefficients(const SymmetryAxis& axis);
-
-/// \param coefficients [a, b, c, d], finite, [a, b, c] of any length but zero.
-/// \throws pcl::BadArgumentException for anything else.
-ReflectionPlane planeFromModelCoefficients(const pcl::ModelCoefficients& coefficients);
-
-/// \param coefficients [point, direction], six finite values, the direction of any length but zero.
-/// \return the axis with a unit direction; confidence, score and support are 0.
-/// \throws pcl::BadArgumentException for anything else.
-SymmetryAxis axisFromModelCoefficients(const pcl::ModelCoefficients& coefficients);
 
 }  // namespace pcl_symmetry

@@ -42,10 +42,6 @@ public:
   void setSigma(double sigma) {
     detail::changeOptions(edt_options_, [&](GaussianEdt2DOptions& changed) { changed.sigma = sigma; });
   }
-  /// \param options thresholds on the maxima that getLines() returns; default those of the paper.
-  void setMaximaOptions(const LocalMaximaOptions& options) {
-    detail::changeOptions(maxima_, [&](LocalMaximaOptions& changed) { changed = options; });
-  }
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     detail::changeOptions(maxima_, [&](LocalMaximaOptions& changed) { changed.num_threads = num_threads; });

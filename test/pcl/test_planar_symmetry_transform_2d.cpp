@@ -35,7 +35,7 @@ TEST(PlanarSymmetryTransform2D, LinesOfATiltedRectangleArePlanesAcrossItsSheet) 
   }
 }
 
-TEST(PlanarSymmetryTransform2D, HonoursIndicesAndTheGivenWidth) {
+TEST(PlanarSymmetryTransform2D, HonorsIndicesAndTheGivenWidth) {
   const auto cloud = toSheet(rectangle(1.6, 0.9, 800), Eigen::Isometry3d::Identity());
   cloud->emplace_back(9.0f, 3.0f, 0.0f);
   Transform transform;

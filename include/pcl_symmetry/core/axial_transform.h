@@ -10,11 +10,9 @@
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
-
-/// A straight line, such as the axis of turns: a point of it and its direction, unit.
-using Line3d = Eigen::ParametrizedLine<double, 3>;
 
 /// The discrete space of axes, the counterpart of PlaneGrid: theta in [0, pi/2] and phi in [0, 2 pi) of the direction,
 /// and the point (u, v) in which the axis meets the plane across it through a center, both in [-radius, radius]. u runs
@@ -73,11 +71,9 @@ private:
 struct AxialTransformOptions {
   /// Orders of the turns, each 0 or in [2, 60], without repetition; 0 = turns by any angle.
   std::vector<int> folds{0, 2, 3, 4, 5, 6, 7, 8};
-  int num_turns = 12;      ///< turns between 0 and pi that stand for all turns, in [4, 256]
   int num_samples = 192;   ///< points drawn for the whole map, in [1, 10^6]; the error falls about as num_samples^-0.7
   std::uint64_t seed = 1;  ///< of the points drawn
   int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
-  Simd simd = Simd::Auto;  ///< the map does not depend on it
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -99,8 +95,6 @@ struct AxisMap {
 
   /// \return index of the bin with the greatest value; 0 for an empty map.
   std::size_t strongest() const;
-  /// \return the fold at a bin, as from bestFold().
-  int fold(std::size_t index) const;
   bool empty() const { return greatest.empty(); }  ///< no transform was computed
 };
 
@@ -159,7 +153,7 @@ struct CenterMap {
 
 /// The point symmetry of f by sampling, on the bounding cube of the EDT's ball.
 /// \param num_centers along each edge, in [2, 512].
-/// \param options folds and num_turns are not used.
+/// \param options folds are not used.
 /// \param visibility as in axialTransform().
 /// \throws std::invalid_argument for bad options.
 CenterMap centralTransform(const GaussianEdt& edt, int num_centers = 64, const AxialTransformOptions& options = {},

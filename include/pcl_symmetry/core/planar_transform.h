@@ -10,18 +10,11 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// Instruction set of the inner loops. All give the same bytes.
-enum class Simd { Auto, Scalar, Avx2 };
-
-/// \return whether this processor supports the instruction set.
-bool simdSupported(Simd simd);
-
 /// Options of sampledTransform().
 struct SampledTransformOptions {
   int num_samples = 128;   ///< points drawn for the whole map, in [1, 10^7]; the error falls about as num_samples^-0.7
   std::uint64_t seed = 1;  ///< of the points drawn
   int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
-  Simd simd = Simd::Auto;  ///< the map does not depend on it
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -73,10 +66,7 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
 /// Options of rotationalTransform().
 struct RotationalTransformOptions {
   double spacing = 0.9;  ///< of the resampled points, in sigmas, in (0, 1]
-  /// Multiresolution, in [0, 1]: points and lines are first taken three cells apart, and the planes with this share of
-  /// the greatest D are computed anew from points and lines one cell apart; 1 = all planes are.
-  double refined_share = 1.0;
-  int num_threads = 0;  ///< >= 0; 0 = one per core; the map does not depend on it
+  int num_threads = 0;   ///< >= 0; 0 = one per core; the map does not depend on it
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -89,8 +79,8 @@ struct RotationalTransformOptions {
 ///
 /// The points lie on the three axes of the grid, a cell apart, so that each plane meets an axis in a point at less than
 /// 55 degrees from its normal; bins are interpolated between points, lines and angles by cubics. PRST differs from the
-/// full sum by 0.1 % root mean square at 64 cells a side, with multiresolution by up to 1 %. 64^3 planes take 45 s of
-/// processor time, with multiresolution of a tenth 14 s: convolutionTransform() computes the same in 0.1 s.
+/// full sum by 0.1 % root mean square at 64 cells a side. 64^3 planes take 45 s of processor time:
+/// convolutionTransform() computes the same in 0.1 s.
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
 /// \return D at the bin centers.
@@ -102,7 +92,6 @@ SymmetryMap rotationalTransform(const GaussianEdt& edt, const PlaneGrid& grid,
 struct VotingTransformOptions {
   std::int64_t num_pairs = 2'000'000;  ///< pairs of points drawn, >= 1; the paper's figure for 1 % at 64^3
   double near_distance = 4.0;  ///< cells, >= 0; closer pairs are drawn plane first, see below; 0 = the paper as written
-  double near_share = 0.2;     ///< share of the pairs that are drawn plane first, in (0, 1)
   std::uint64_t seed = 1;      ///< of the pairs drawn
   int num_threads = 0;         ///< >= 0; 0 = one per core; the map does not depend on it
 

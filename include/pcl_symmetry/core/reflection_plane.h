@@ -6,6 +6,9 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+/// A straight line, such as an axis of rotation: a point of it and its direction, unit.
+using Line3d = Eigen::ParametrizedLine<double, 3>;
+
 /// A plane of reflection gamma = { x : n.x = r } with unit normal n and signed offset r (Section 3 of the paper).
 ///
 /// Invariant: |n| = 1. (n, r) and (-n, -r) are the same plane: compare canonical forms, or use angleTo().
@@ -19,10 +22,6 @@ public:
   /// \throws std::invalid_argument for a zero normal or a value that is not finite.
   ReflectionPlane(const Eigen::Vector3d& normal, double offset);
 
-  /// \param coefficients [a, b, c, d] of a x + b y + c z + d = 0, as in PCL's plane models: [n, -r].
-  /// \throws std::invalid_argument as the constructor.
-  static ReflectionPlane fromCoefficients(const Eigen::Vector4d& coefficients);
-
   /// The plane that reflects \p x onto \p y.
   /// \throws std::invalid_argument for equal points.
   static ReflectionPlane between(const Eigen::Vector3d& x, const Eigen::Vector3d& y);
@@ -30,7 +29,7 @@ public:
   const Eigen::Vector3d& normal() const { return normal_; }  ///< n, unit, input frame
   double offset() const { return offset_; }                  ///< r, input units
 
-  /// \return [n, -r], the coefficients of n.x - r = 0.
+  /// \return [n, -r], the coefficients of n.x - r = 0, as in PCL's plane models.
   Eigen::Vector4d coefficients() const { return {normal_.x(), normal_.y(), normal_.z(), -offset_}; }
 
   /// \return n.x - r, input units.

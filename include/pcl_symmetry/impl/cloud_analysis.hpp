@@ -16,9 +16,9 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// The input of every class that analyses a cloud: which points it uses, and why they may hold no answer.
+/// The input of every class that analyzes a cloud: which points it uses, and why they may hold no answer.
 ///
-/// setIndices() is honoured, and points that are not finite are left out. Data that hold no answer give an empty
+/// setIndices() is honored, and points that are not finite are left out. Data that hold no answer give an empty
 /// result: PCL_WARN prints the reason, and getReason() returns it. A used object that is given a new cloud gives the
 /// results of a new object with the same options.
 template <typename PointT>
@@ -26,7 +26,7 @@ class CloudAnalysis : public pcl::PCLBase<PointT> {
 public:
   using typename pcl::PCLBase<PointT>::PointCloudConstPtr;
 
-  /// Sets the cloud to analyse and clears the results of the last one.
+  /// Sets the cloud to analyze and clears the results of the last one.
   void setInputCloud(const PointCloudConstPtr& cloud) override {
     pcl::PCLBase<PointT>::setInputCloud(cloud);
     volume_.reset();
@@ -151,7 +151,6 @@ public:
   /// viewpoint and the input tell.
   /// \param seen in the frame of the input; null (default): each analysis finds out for itself.
   void setSeenSpace(const SeenSpace::ConstPtr& seen) { seen_space_ = seen; }
-  const SeenSpace::ConstPtr& getSeenSpace() const { return seen_space_; }
 
   /// \return whether the last analysis used a viewpoint.
   bool usedViewpoint() const { return viewpoint_source_ != ViewpointSource::None; }

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/detection/detection_rules.h"
-#include "pcl_symmetry/core/axial_transform.h"
 #include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {

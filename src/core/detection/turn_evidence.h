@@ -8,8 +8,8 @@
 
 #include "core/detection/detection_rules.h"
 #include "core/detection/normalized_cloud.h"
-#include "pcl_symmetry/core/axial_transform.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
 

@@ -16,10 +16,6 @@ ReflectionPlane::ReflectionPlane(const Eigen::Vector3d& normal, double offset) {
   offset_ = offset / length;
 }
 
-ReflectionPlane ReflectionPlane::fromCoefficients(const Eigen::Vector4d& coefficients) {
-  return ReflectionPlane(coefficients.head<3>(), -coefficients[3]);
-}
-
 ReflectionPlane ReflectionPlane::between(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
   const Eigen::Vector3d normal = y - x;
   return ReflectionPlane(normal, normal.dot(0.5 * (x + y)));

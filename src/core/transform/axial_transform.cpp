@@ -11,7 +11,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/transform/free_space.h"
-#include "core/transform/moved_lines.h"
+#include "core/transform/line_sums.h"
 #include "core/transform/transform_rules.h"
 
 namespace pcl_symmetry {
@@ -23,9 +23,9 @@ constexpr std::size_t directions_per_block = 4;
 /// Sums of the table's functions over the rotated samples, for all axes of one direction.
 class AxesOfDirection {
 public:
-  AxesOfDirection(const GaussianEdt& edt, const AxisGrid& grid, const LookupTable& table, LineKernel accumulate)
+  AxesOfDirection(const GaussianEdt& edt, const AxisGrid& grid, const LookupTable& table)
       : grid_(grid),
-        lines_(edt, table, accumulate, grid.numOffset()),
+        lines_(edt, table, grid.numOffset()),
         cell_(edt.cellSize()),
         center_(toCells(edt, grid.center())),
         totals_(table.numFunctions(), std::vector<double>(grid.numOffset())) {}
@@ -42,7 +42,7 @@ public:
       if (begin == end) continue;
       for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
       const Eigen::Vector3d foot = (grid_.offset(0) * frame.col(0) + grid_.offset(v) * frame.col(1)) / cell_;
-      lines_.add(moved_, (rest * (center_ + foot)).cast<float>(), step.cast<float>(), begin, end, totals_);
+      lines_.addMoved(moved_, (rest * (center_ + foot)).cast<float>(), step.cast<float>(), begin, end, totals_);
       visit(v, begin, end, totals_);
     }
   }
@@ -59,11 +59,11 @@ private:
   }
 
   const AxisGrid& grid_;
-  MovedLines lines_;
+  LineSums lines_;
   double cell_;
   Eigen::Vector3d center_;
   Eigen::Matrix3Xf moved_;
-  std::vector<std::vector<double>> totals_;
+  LineSums::Totals totals_;
 };
 
 /// A rotation about an axis, and what it counts in D_n of each fold. Rotations by an angle and by its negative
@@ -74,9 +74,10 @@ struct AxialRotation {
 };
 
 /// The rotations that the D of all folds are made of, each once.
-/// \param folds,num_turns as in AxialTransformOptions.
+/// \param folds as in AxialTransformOptions.
 /// \param both_ways also rotations by more than pi.
-std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, int num_turns, bool both_ways) {
+std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, bool both_ways) {
+  const int num_turns = kTransform.num_turns;
   std::map<std::pair<int, int>, std::size_t> index_of;  // by reduced fraction of a full rotation
   std::vector<AxialRotation> rotations;
   const auto add = [&](int part, int whole, std::size_t fold, double weight) {
@@ -108,20 +109,12 @@ void AxialTransformOptions::validate() const {
     check(folds[i] == 0 || (folds[i] >= 2 && folds[i] <= 60), "fold", folds[i], "0 or in [2, 60]");
     check(std::count(folds.begin(), folds.end(), folds[i]) == 1, "fold", folds[i], "named once");
   }
-  check(num_turns >= 4 && num_turns <= 256, "num_turns", num_turns, "in [4, 256]");
   check(num_samples >= 1 && num_samples <= 1'000'000, "num_samples", num_samples, "in [1, 1000000]");
   checkNumThreads(num_threads);
-  check(simdSupported(simd), "simd", static_cast<int>(simd), "one that this processor supports");
 }
 
 std::size_t AxisMap::strongest() const {
   return greatest.empty() ? 0 : std::max_element(greatest.begin(), greatest.end()) - greatest.begin();
-}
-
-int AxisMap::fold(std::size_t index) const {
-  std::vector<double> of_bin;
-  for (const std::vector<float>& of_fold : values) of_bin.push_back(of_fold[index]);
-  return bestFold(folds, of_bin);
 }
 
 int bestFold(const std::vector<int>& folds, const std::vector<double>& values) {
@@ -155,14 +148,13 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
   options.validate();
   const LookupTable table = tableOf(edt, visibility, options.num_threads);
   const Eigen::Matrix3Xf samples = centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
-  const std::vector<AxialRotation> rotations = rotationsOf(options.folds, options.num_turns, visibility != nullptr);
-  const LineKernel accumulate = lineKernel(options.simd, table.numFunctions());
+  const std::vector<AxialRotation> rotations = rotationsOf(options.folds, visibility != nullptr);
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const std::size_t per_direction = static_cast<std::size_t>(grid.numOffset()) * grid.numOffset();
   AxisMap map{grid, options.folds, {}, std::vector<float>(grid.size(), 0.0f), edt.sigma()};
   map.values.assign(options.folds.size(), map.greatest);
   const auto run = [&](std::size_t begin, std::size_t end) {
-    AxesOfDirection axes(edt, grid, table, accumulate);
+    AxesOfDirection axes(edt, grid, table);
     const std::vector<std::vector<float>> nothing(options.folds.size(), std::vector<float>(per_direction, 0.0f));
     for (std::size_t direction = begin; direction < end; ++direction) {
       std::vector<std::vector<std::vector<float>>> sums(table.numFunctions(), nothing);
@@ -196,7 +188,7 @@ public:
   AxisClimb(const GaussianEdt& edt, const AxisMap& map, const AxialTransformOptions& options)
       : edt_(edt),
         map_(map),
-        rotations_(rotationsOf(map.folds, options.num_turns, false)),
+        rotations_(rotationsOf(map.folds, false)),
         samples_(
             centeredSamples(edt, kTransform.more_samples * options.num_samples, options.seed, options.num_threads)) {}
 

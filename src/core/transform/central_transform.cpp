@@ -3,7 +3,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/transform/free_space.h"
-#include "core/transform/moved_lines.h"
+#include "core/transform/line_sums.h"
 #include "pcl_symmetry/core/axial_transform.h"
 
 namespace pcl_symmetry {
@@ -54,14 +54,14 @@ CenterMap centralTransform(const GaussianEdt& edt, int num_centers, const AxialT
   map.origin = edt.center().array() - edt.radius() + 0.5 * map.step;
   map.values.resize(static_cast<std::size_t>(num_centers) * num_centers * num_centers);
   parallelBlocks(num_centers, options.num_threads, [&](std::size_t z) {
-    MovedLines lines(edt, table, lineKernel(options.simd, table.numFunctions()), num_centers);
-    std::vector<std::vector<double>> totals(table.numFunctions(), std::vector<double>(num_centers));
+    LineSums lines(edt, table, num_centers);
+    LineSums::Totals totals(table.numFunctions(), std::vector<double>(num_centers));
     const Eigen::Vector3f step(static_cast<float>(2.0 * map.step / edt.cellSize()), 0.0f, 0.0f);
     for (int y = 0; y < num_centers; ++y) {
       for (auto& total : totals) std::fill(total.begin(), total.end(), 0.0);
       const std::size_t first = (z * num_centers + y) * num_centers;
       const Eigen::Vector3d start = 2.0 * toCells(edt, map.center(first));
-      lines.add(mirrored, start.cast<float>(), step, 0, num_centers, totals);
+      lines.addMoved(mirrored, start.cast<float>(), step, 0, num_centers, totals);
       for (int x = 0; x < num_centers; ++x) {
         const double d = scale * totals[0][x];
         map.values[first + x] = static_cast<float>(visibility ? seenSymmetry(d, scale * totals[1][x]) : d);

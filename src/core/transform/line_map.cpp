@@ -5,7 +5,6 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/transform/direction_rows.h"
 
 namespace pcl_symmetry {
 
@@ -72,18 +71,6 @@ ReflectionLine ReflectionLine::canonical() const {
 double ReflectionLine::angleTo(const ReflectionLine& other) const {
   const double cross = normal_.x() * other.normal_.y() - normal_.y() * other.normal_.x();
   return std::atan2(std::abs(cross), std::abs(normal_.dot(other.normal_)));
-}
-
-std::vector<float> pointSymmetry(const LineMap& map, const Points2D& points, int num_threads) {
-  if (map.empty()) return std::vector<float>(points.cols(), 0.0f);
-  const LineGrid& grid = map.grid;
-  std::vector<Eigen::Vector3f> normals;
-  for (int t = 0; t < grid.numTheta(); ++t)
-    normals.push_back(Eigen::Vector3d(std::cos(grid.theta(t)), std::sin(grid.theta(t)), 0.0).cast<float>());
-  const DirectionRows rows(map.values, normals, grid.numRadius(), grid.radius());
-  Points embedded = Points::Zero(3, points.cols());
-  embedded.topRows<2>() = (points.cast<double>().colwise() - grid.center()).cast<float>();
-  return rows.greatestThrough(embedded, num_threads);
 }
 
 }  // namespace pcl_symmetry

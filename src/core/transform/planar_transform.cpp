@@ -23,13 +23,6 @@ SymmetryMap mapWithoutSight(const GaussianEdt& edt, const PlaneGrid& grid, const
 
 }  // namespace
 
-bool simdSupported(Simd simd) {
-#if defined(__x86_64__)
-  if (simd == Simd::Avx2) return __builtin_cpu_supports("avx2");
-#endif
-  return simd == Simd::Auto || simd == Simd::Scalar;
-}
-
 void PlanarTransformOptions::validate() const {
   sampled.validate();
   convolution.validate();

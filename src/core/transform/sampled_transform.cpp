@@ -9,8 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/transform/free_space.h"
-#include "core/transform/line_kernel.h"
-#include "core/transform/lookup_table.h"
+#include "core/transform/line_sums.h"
 
 namespace pcl_symmetry {
 
@@ -18,19 +17,13 @@ namespace {
 
 constexpr std::size_t sampled_per_block = 32;  // directions
 
-/// Points, the coordinates along each axis side by side.
-using CoordinateRows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
-
 /// Bins of a grid in cells of the EDT, relative to the middle of the EDT's cube.
 struct GridInCells {
-  GridInCells(const GaussianEdt& edt, const PlaneGrid& bins, const LookupTable& table) : grid(bins) {
+  GridInCells(const GaussianEdt& edt, const PlaneGrid& bins) : grid(bins) {
     const double middle = 0.5 * (edt.numCells() - 1);
     center = ((grid.center() - edt.origin()) / edt.cellSize()).cast<float>() - Eigen::Vector3f::Constant(middle);
     radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());
     first_offset = static_cast<float>(grid.offset(0) / edt.cellSize());
-    cube.middle = static_cast<float>(middle);
-    cube.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
-    cube.to_table = table.toTable(Eigen::Vector3d::Constant(middle)).cast<float>()[0];
   }
 
   /// The planes at the bin centers of one direction.
@@ -43,52 +36,6 @@ struct GridInCells {
   Eigen::Vector3f center;
   float radius_step;
   float first_offset;  ///< of the first bin center from the center of the grid
-  CubeInTable cube;
-};
-
-/// Sums of the table's functions over reflected samples, for all planes of one direction.
-class DirectionSums {
-public:
-  DirectionSums(const CoordinateRows& points, const LookupTable& table, LineKernel accumulate, int num_radius)
-      : points_(points),
-        table_(table),
-        accumulate_(accumulate),
-        chunk_sums_(table.numFunctions(), std::vector<std::int32_t>(num_radius + 2 * kLineLanes)),
-        storage_(5 * kMostLines),
-        totals_(table.numFunctions(), std::vector<double>(num_radius)) {
-    for (auto& sums : chunk_sums_) sums_of_.push_back(sums.data());
-    std::int32_t* const data = storage_.data();
-    lines_ = {data, data + kMostLines, data + 2 * kMostLines, data + 3 * kMostLines, data + 4 * kMostLines, 0, {}};
-  }
-
-  /// \return for each function of the table one sum per plane.
-  const std::vector<std::vector<double>>& over(const ParallelPlanes& planes, const CubeInTable& cube) {
-    const float one = static_cast<float>(1 << LookupTable::kFractionBits);
-    // The image of a point moves by twice the step between planes.
-    for (int axis = 0; axis < 3; ++axis)
-      lines_.step[axis] = static_cast<std::int32_t>(std::lround(2.0f * planes.step * planes.normal[axis] * one));
-    for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
-    const int num_samples = static_cast<int>(points_.cols());
-    for (int first = 0; first < num_samples; first += kMostLines) {
-      lines_.size = std::min(kMostLines, num_samples - first);
-      setUpLines({&points_(0, first), &points_(1, first), &points_(2, first)}, planes, cube, lines_);
-      for (auto& sums : chunk_sums_) std::fill(sums.begin(), sums.end(), 0);
-      accumulate_(lines_, table_.data(), table_.bits(), sums_of_.data());
-      for (std::size_t g = 0; g < totals_.size(); ++g)
-        for (int k = 0; k < planes.count; ++k) totals_[g][k] += chunk_sums_[g][k];
-    }
-    return totals_;
-  }
-
-private:
-  const CoordinateRows& points_;
-  const LookupTable& table_;
-  LineKernel accumulate_;
-  std::vector<std::vector<std::int32_t>> chunk_sums_;
-  std::vector<std::int32_t*> sums_of_;
-  std::vector<std::int32_t> storage_;
-  Lines lines_;
-  std::vector<std::vector<double>> totals_;
 };
 
 /// D(gamma) = (S / |f|^2) mean g(gamma x_i) at every bin, for each function g of the table.
@@ -96,15 +43,16 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
                                             const SampledTransformOptions& options, const LookupTable& table) {
   options.validate();
   const CoordinateRows points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
-  const LineKernel accumulate = lineKernel(options.simd, table.numFunctions());
-  const GridInCells bins(edt, grid, table);
+  const GridInCells bins(edt, grid);
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const int num_radius = grid.numRadius();
   std::vector<std::vector<float>> means(table.numFunctions(), std::vector<float>(grid.size()));
   const auto run = [&](std::size_t begin, std::size_t end) {
-    DirectionSums sums(points, table, accumulate, num_radius);
+    LineSums sums(edt, table, num_radius);
+    LineSums::Totals totals(table.numFunctions(), std::vector<double>(num_radius));
     for (std::size_t direction = begin; direction < end; ++direction) {
-      const auto& totals = sums.over(bins.planes(direction), bins.cube);
+      for (auto& total : totals) std::fill(total.begin(), total.end(), 0.0);
+      sums.addReflected(points, bins.planes(direction), totals);
       for (std::size_t g = 0; g < means.size(); ++g)
         for (int k = 0; k < num_radius; ++k)
           means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
@@ -124,7 +72,6 @@ const float* checkedFreeSpace(const GaussianEdt& edt, const std::vector<float>& 
 void SampledTransformOptions::validate() const {
   check(num_samples >= 1 && num_samples <= 10'000'000, "num_samples", num_samples, "in [1, 10000000]");
   checkNumThreads(num_threads);
-  check(simdSupported(simd), "simd", static_cast<int>(simd), "one that this processor supports");
 }
 
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options,

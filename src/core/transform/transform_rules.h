@@ -9,6 +9,7 @@ namespace pcl_symmetry {
 /// The numbers of this room that change answers.
 struct TransformRules {
   // Axes
+  int num_turns = 12;  ///< between 0 and pi that represent rotations by any angle
   /// D that count as equal: at the axis of a bottle they differ by 0.001, of a rim with five spokes by 0.010.
   double equal_orders = 0.005;
   std::size_t most_axis_bins = 50'000;  ///< that are looked at, strongest first
@@ -39,10 +40,10 @@ struct TransformRules {
   int max_line_moves = 8;         ///< with one step size
 
   // Planes through points
-  double pivot_step = 1.0;         ///< cells between points, and between planes at the far end of the shape
-  double coarse_pivot_step = 3.0;  ///< the same of planes that multiresolution does not refine; PRST is right to 0.7 %
+  double pivot_step = 1.0;  ///< cells between points, and between planes at the far end of the shape
 
   // Votes
+  double near_share = 0.2;          ///< of the pairs that are drawn plane first
   std::size_t num_vote_blocks = 8;  ///< partial maps, added up in their order
   double least_sine = 1e-6;         ///< bounds the weight of pairs along z: one in 10^12 is closer to the pole
 };

@@ -89,7 +89,7 @@ class Votes {
 public:
   Votes(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options)
       : edt_(edt), grid_(grid), sampler_(edt, options.num_threads), near_(options.near_distance * edt.cellSize()) {
-    num_near_ = near_ > 0.0 ? static_cast<std::int64_t>(options.near_share * options.num_pairs) : 0;
+    num_near_ = near_ > 0.0 ? static_cast<std::int64_t>(kTransform.near_share * options.num_pairs) : 0;
     num_far_ = options.num_pairs - num_near_;
     const double cell = edt.cellSize(), cell_volume = cell * cell * cell, sum = sampler_.sum();
     const double bin_measure = grid.thetaStep() * grid.phiStep() * grid.radiusStep();
@@ -151,7 +151,6 @@ std::int64_t shareOf(std::size_t block, std::int64_t total) {
 void VotingTransformOptions::validate() const {
   check(num_pairs >= 1, "num_pairs", num_pairs, ">= 1");
   check(std::isfinite(near_distance) && near_distance >= 0.0, "near_distance", near_distance, "finite and >= 0");
-  check(near_share > 0.0 && near_share < 1.0, "near_share", near_share, "in (0, 1)");
   checkNumThreads(num_threads);
 }
 

@@ -49,7 +49,7 @@ TEST(ReflectionPlane, ReflectsAsWritten) {
   EXPECT_EQ(ReflectionPlane().reflect({1.0, 2.0, 5.0}), Eigen::Vector3d(1.0, 2.0, -5.0));
 }
 
-TEST(ReflectionPlane, NormalisesNormalAndOffsetTogether) {
+TEST(ReflectionPlane, NormalizesNormalAndOffsetTogether) {
   const ReflectionPlane plane(Eigen::Vector3d(0.0, 3.0, 4.0), 10.0);
   EXPECT_TRUE(plane.normal().isApprox(Eigen::Vector3d(0.0, 0.6, 0.8), kRounding));
   EXPECT_NEAR(plane.offset(), 2.0, kRounding);
@@ -97,13 +97,10 @@ TEST(ReflectionPlane, CanonicalFormOnTheEquator) {
   EXPECT_EQ(canonical({0.6, 0.0, -0.8}).normal(), Vector3d(-0.6, 0.0, 0.8));
 }
 
-TEST(ReflectionPlane, CoefficientsRoundTrip) {
+TEST(ReflectionPlane, CoefficientsGiveTheSignedDistance) {
   RandomStream random(5);
   for (int i = 0; i < 100; ++i) {
     const ReflectionPlane plane = randomPlane(random);
-    const ReflectionPlane back = ReflectionPlane::fromCoefficients(7.0 * plane.coefficients());
-    EXPECT_LT((back.normal() - plane.normal()).norm(), kRounding);
-    EXPECT_NEAR(back.offset(), plane.offset(), kRounding);
     const Eigen::Vector3d x = randomPoint(random);
     EXPECT_NEAR(plane.coefficients().dot(x.homogeneous()), plane.signedDistance(x), kRounding);
   }
@@ -149,7 +146,6 @@ TEST(ReflectionPlane, RefusesWhatIsNoPlane) {
   EXPECT_THROW(ReflectionPlane(Eigen::Vector3d(kInfinity, 0.0, 1.0), 0.0), std::invalid_argument);
   EXPECT_THROW(ReflectionPlane(Eigen::Vector3d::UnitX(), kNaN), std::invalid_argument);
   EXPECT_THROW(ReflectionPlane(Eigen::Vector3d::UnitX(), kInfinity), std::invalid_argument);
-  EXPECT_THROW(ReflectionPlane::fromCoefficients({0.0, 0.0, 0.0, 1.0}), std::invalid_argument);
 }
 
 }  // namespace

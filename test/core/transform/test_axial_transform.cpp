@@ -118,7 +118,7 @@ TEST(AxialTransform, BestFoldIsTheGreatestOfEqualOnes) {
   EXPECT_EQ(bestFold({2, 4, 0}, {1.0, 0.6, 0.4}), 2);
 }
 
-TEST(AxialTransform, DoesNotDependOnThreadsAndInstructions) {
+TEST(AxialTransform, DoesNotDependOnThreads) {
   const GaussianEdt edt = edtOf(cloudOf(asymmetricBlob(1000, 3)));
   const AxisGrid grid(4, 8, 20, edt.center(), edt.radius());
   AxialTransformOptions options;
@@ -128,11 +128,6 @@ TEST(AxialTransform, DoesNotDependOnThreadsAndInstructions) {
   options.num_threads = 3;
   EXPECT_EQ(axialTransform(edt, grid, options).values, expected.values);
   EXPECT_EQ(centralTransform(edt, 12, options).values, centers.values);
-  for (const Simd simd : {Simd::Scalar, Simd::Avx2}) {
-    if (!simdSupported(simd)) continue;
-    options.simd = simd;
-    EXPECT_EQ(axialTransform(edt, grid, options).values, expected.values);
-  }
 }
 
 TEST(AxialTransform, RefusesBadOptions) {
@@ -144,9 +139,6 @@ TEST(AxialTransform, RefusesBadOptions) {
   EXPECT_EQ(message(), "fold = 2, must be named once");
   options.folds = {};
   EXPECT_EQ(message(), "number of folds = 0, must be >= 1");
-  options.folds = {2};
-  options.num_turns = 0;
-  EXPECT_EQ(message(), "num_turns = 0, must be in [4, 256]");
 }
 
 TEST(AxialTransform, PointsOnTheAxisHaveItsValue) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/transform/free_space.h"
+#include "core/transform/line_sums.h"
 #include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "shapes/scans.h"
@@ -162,17 +163,6 @@ TEST(RotationalTransform, IsTheFullSumToAFifthOfAPerCent) {
   for (const Scene& scene : scenes()) EXPECT_LE(scene.rmsError(rotationalTransform(scene.edt, scene.grid)), 0.002);
 }
 
-TEST(RotationalTransform, MultiresolutionRefinesTheGreatestValues) {
-  const Scene& scene = scenes()[1];
-  const SymmetryMap full = rotationalTransform(scene.edt, scene.grid);
-  RotationalTransformOptions options;
-  options.refined_share = 0.1;
-  const SymmetryMap map = rotationalTransform(scene.edt, scene.grid, options);
-  EXPECT_LE(scene.rmsError(map), 0.01);
-  EXPECT_EQ(map[full.strongest()], full[full.strongest()]);
-  EXPECT_NE(map.values, full.values);
-}
-
 TEST(ConvolutionTransform, ManyBundlesAreAddedUpInTurn) {
   // With 160 cells and half the spacing a direction has a thousand bundles; the sums of 200 fit in 32 bits.
   ConvolutionTransformOptions options;
@@ -247,18 +237,22 @@ TEST(VotingTransform, NoiseFallsAsTheRootOfThePairs) {
   EXPECT_NEAR(few / many, 4.0, 0.4);  // few large votes near the pole make the estimate of the noise itself uncertain
 }
 
-TEST(Transforms, AllInstructionSetsGiveTheSameBytes) {
-  const Scene& scene = scenes()[2];
-  for (const int num_radius : {1, 7, 16, 33}) {
-    const PlaneGrid grid(8, 10, num_radius, scene.edt.center(), scene.edt.radius());
-    SampledTransformOptions sampled;
-    sampled.num_samples = 1300;  // more than one chunk
-    sampled.simd = Simd::Scalar;
-    const auto expected = sampledTransform(scene.edt, grid, sampled).values;
-    for (const Simd simd : {Simd::Auto, Simd::Avx2}) {
-      if (!simdSupported(simd)) continue;
-      sampled.simd = simd;
-      EXPECT_EQ(sampledTransform(scene.edt, grid, sampled).values, expected) << static_cast<int>(simd);
+TEST(LineSums, VectorInstructionsGiveTheSumsOfThePlainLoop) {
+  const GaussianEdt& edt = scenes()[2].edt;
+  const CoordinateRows points = drawPoints(edt, 1300, 1, 1);  // more than one chunk
+  const float* const f = edt.interpolation().data();
+  for (const std::vector<const float*>& functions : {std::vector<const float*>{f}, {f, edt.values().data()}}) {
+    const LookupTable table(functions, edt.numCells(), 1);
+    for (const int num_planes : {1, 7, 16, 33}) {
+      const LineSums::Totals zero(functions.size(), std::vector<double>(num_planes, 0.0));
+      LineSums::Totals sums[2] = {zero, zero};
+      for (const bool scalar : {false, true}) {
+        LineSums lines(edt, table, num_planes, scalar);
+        lines.addReflected(points, {{0.6f, 0.0f, 0.8f}, -8.0f, 16.0f / num_planes, num_planes}, sums[scalar]);
+        lines.addMoved(points, {0.3f, -9.0f, 0.2f}, {0.1f, 0.5f, 0.2f}, 0, num_planes, sums[scalar]);
+      }
+      EXPECT_EQ(sums[0], sums[1]) << num_planes;
+      EXPECT_NE(sums[0], zero);
     }
   }
 }
@@ -270,7 +264,6 @@ TEST(Transforms, SameBytesForAnyNumberOfThreads) {
     ConvolutionTransformOptions convolution;
     VotingTransformOptions voting;
     RotationalTransformOptions rotational;
-    rotational.refined_share = 0.01;
     voting.num_pairs = 50'001;
     sampled.num_threads = convolution.num_threads = rotational.num_threads = voting.num_threads = num_threads;
     return std::array<std::vector<float>, 4>{sampledTransform(scene.edt, scene.grid, sampled).values,
@@ -324,15 +317,9 @@ TEST(Transforms, RefuseBadOptions) {
   EXPECT_THROW(convolutionTransform(scene.edt, scene.grid, {1.5}), std::invalid_argument);
   EXPECT_THROW(convolutionTransform(scene.edt, scene.grid, {0.9, -1}), std::invalid_argument);
   EXPECT_THROW(rotationalTransform(scene.edt, scene.grid, {0.0}), std::invalid_argument);
-  EXPECT_THROW(rotationalTransform(scene.edt, scene.grid, {0.9, 1.1}), std::invalid_argument);
   EXPECT_THROW(votingTransform(scene.edt, scene.grid, {0}), std::invalid_argument);
   EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, -1.0}), std::invalid_argument);
-  EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, 4.0, 0.0}), std::invalid_argument);
-  EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, 4.0, 1.0}), std::invalid_argument);
-  EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, 4.0, 0.2, 1, -1}), std::invalid_argument);
-  if (!simdSupported(Simd::Avx2)) {
-    EXPECT_THROW(sampledTransform(scene.edt, scene.grid, {100, 1, 0, Simd::Avx2}), std::invalid_argument);
-  }
+  EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, 4.0, 1, -1}), std::invalid_argument);
 }
 
 class TransformWithFreeSpace : public testing::Test {
@@ -372,11 +359,6 @@ TEST_F(TransformWithFreeSpace, SameBytesForAnyNumberOfThreads) {
   for (const int num_threads : {2, 8}) {
     options.num_threads = num_threads;
     EXPECT_EQ(sampledTransform(edt_, grid_, options, free_).values, one.values) << num_threads;
-  }
-  for (const Simd simd : {Simd::Scalar, Simd::Avx2}) {
-    if (!simdSupported(simd)) continue;
-    options.simd = simd;
-    EXPECT_EQ(sampledTransform(edt_, grid_, options, free_).values, one.values) << static_cast<int>(simd);
   }
 }
 

@@ -1,0 +1,218 @@
+#include "core/transform/line_sums.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/simd.h"
+#include "core/transform/free_space.h"
+#include "core/transform/sampled_transform.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace pcl_symmetry {
+
+namespace {
+
+using Cube = LineSums::Cube;
+using Lines = LineSums::Lines;
+
+constexpr int line_lanes = 8;     // 32-bit integers in an AVX2 register; sums are padded by twice as many
+constexpr int most_lines = 1024;  // at a time: they stay in the first cache, and sums of bytes fit in 32 bits
+
+/// Fills the lines that the images of points run along when the points are reflected in parallel planes.
+PCL_SYMMETRY_MULTIVERSION
+void setUpReflected(const float* px, const float* py, const float* pz, const ParallelPlanes& planes, const Cube& cube,
+                    Lines& lines) {
+  const float nx = planes.normal[0], ny = planes.normal[1], nz = planes.normal[2];
+  const float offset = planes.offset, inverse_step = 1.0f / planes.step, last = static_cast<float>(planes.count);
+  const float middle = cube.middle, sq_clip = cube.sq_clip, to_table = cube.to_table;
+  const float one = static_cast<float>(1 << LookupTable::kFractionBits);
+  std::int32_t *const lx = lines.x, *const ly = lines.y, *const lz = lines.z;
+  std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
+  const int size = lines.size;
+#pragma GCC ivdep
+  for (int i = 0; i < size; ++i) {
+    const float x = px[i] - middle, y = py[i] - middle, z = pz[i] - middle;
+    const float along = nx * x + ny * y + nz * z;
+    const float shift = 2.0f * (offset - along);
+    lx[i] = static_cast<std::int32_t>((x + shift * nx + to_table) * one);
+    ly[i] = static_cast<std::int32_t>((y + shift * ny + to_table) * one);
+    lz[i] = static_cast<std::int32_t>((z + shift * nz + to_table) * one);
+    // The reflected point lies at 2 r - along on the line through x: inside the ball while |2 r - along| <= chord.
+    const float sq_chord = sq_clip - (x * x + y * y + z * z - along * along);
+    const float chord = std::sqrt(std::max(0.0f, sq_chord));
+    const float begin = std::ceil((0.5f * (along - chord) - offset) * inverse_step);
+    const float end = std::floor((0.5f * (along + chord) - offset) * inverse_step) + 1.0f;
+    const auto k = static_cast<std::int32_t>(std::min(std::max(begin, 0.0f), last));
+    const auto k_behind = static_cast<std::int32_t>(std::min(std::max(end, 0.0f), last));
+    k_begin[i] = k;
+    k_end[i] = (sq_chord > 0.0f) & (k_behind > k) ? k_behind : 0;
+  }
+}
+
+/// Fills lines that run along start + moved + k * step, within the ball of the cube.
+/// \param moved 3 x lines.size.
+PCL_SYMMETRY_MULTIVERSION
+void setUpMoved(const float* moved, const float* start, const float* step, float begin, float end, const Cube& cube,
+                Lines& lines) {
+  const float one = static_cast<float>(1 << LookupTable::kFractionBits);
+  const float sx = start[0], sy = start[1], sz = start[2], tx = step[0], ty = step[1], tz = step[2];
+  const float sq_clip = cube.sq_clip, to_table = cube.to_table;
+  const float inverse = 1.0f / (tx * tx + ty * ty + tz * tz);
+  std::int32_t *const lx = lines.x, *const ly = lines.y, *const lz = lines.z;
+  std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
+  const int size = lines.size;
+  for (int i = 0; i < size; ++i) {
+    const float x = moved[3 * i] + sx, y = moved[3 * i + 1] + sy, z = moved[3 * i + 2] + sz;
+    lx[i] = static_cast<std::int32_t>((x + to_table) * one);
+    ly[i] = static_cast<std::int32_t>((y + to_table) * one);
+    lz[i] = static_cast<std::int32_t>((z + to_table) * one);
+    // |x + k step|^2 <= sq_clip, a quadratic inequality in k
+    const float middle = -(x * tx + y * ty + z * tz) * inverse;
+    const float sq_reach = (sq_clip - (x * x + y * y + z * z)) * inverse + middle * middle;
+    const float reach = std::sqrt(std::max(0.0f, sq_reach));
+    const float first = std::ceil(middle - reach), last = std::floor(middle + reach) + 1.0f;
+    k_begin[i] = static_cast<std::int32_t>(std::min(std::max(first, begin), end));
+    k_end[i] = sq_reach > 0.0f ? static_cast<std::int32_t>(std::min(std::max(last, begin), end)) : 0;
+  }
+}
+
+template <int kFunctions>
+void accumulateScalar(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums) {
+  for (int i = 0; i < lines.size; ++i) {
+    for (std::int32_t k = lines.k_begin[i]; k < lines.k_end[i]; ++k) {
+      const std::size_t index = LookupTable::index(lines.x[i] + k * lines.step[0], lines.y[i] + k * lines.step[1],
+                                                   lines.z[i] + k * lines.step[2], bits);
+      for (int g = 0; g < kFunctions; ++g) sums[g][k] += table[kFunctions * index + g];
+    }
+  }
+}
+
+#if defined(__x86_64__)
+
+template <int kFunctions>
+__attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const std::uint8_t* table, int bits,
+                                                    std::int32_t* const* sums) {
+  constexpr int num_lanes = line_lanes;
+  const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  const __m256i byte = _mm256_set1_epi32(0xFF);
+  const __m256i zero = _mm256_setzero_si256();
+  const __m128i fraction = _mm_cvtsi32_si128(LookupTable::kFractionBits);
+  const __m128i row = _mm_cvtsi32_si128(bits), slice = _mm_cvtsi32_si128(2 * bits);
+  __m256i ramp[3], stride[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    ramp[axis] = _mm256_mullo_epi32(lane, _mm256_set1_epi32(lines.step[axis]));
+    stride[axis] = _mm256_set1_epi32(num_lanes * lines.step[axis]);
+  }
+  for (int i = 0; i < lines.size; ++i) {
+    const std::int32_t k_begin = lines.k_begin[i], k_end = lines.k_end[i];
+    std::int32_t k = k_begin & ~(num_lanes - 1);
+    __m256i x = _mm256_add_epi32(_mm256_set1_epi32(lines.x[i] + k * lines.step[0]), ramp[0]);
+    __m256i y = _mm256_add_epi32(_mm256_set1_epi32(lines.y[i] + k * lines.step[1]), ramp[1]);
+    __m256i z = _mm256_add_epi32(_mm256_set1_epi32(lines.z[i] + k * lines.step[2]), ramp[2]);
+    const __m256i before = _mm256_set1_epi32(k_begin - 1), behind = _mm256_set1_epi32(k_end);
+    for (; k < k_end; k += num_lanes) {
+      const __m256i at = _mm256_add_epi32(_mm256_set1_epi32(k), lane);
+      const __m256i inside = _mm256_and_si256(_mm256_cmpgt_epi32(at, before), _mm256_cmpgt_epi32(behind, at));
+      const __m256i index = _mm256_add_epi32(_mm256_add_epi32(_mm256_sll_epi32(_mm256_sra_epi32(z, fraction), slice),
+                                                              _mm256_sll_epi32(_mm256_sra_epi32(y, fraction), row)),
+                                             _mm256_sra_epi32(x, fraction));
+      __m256i values =
+          _mm256_mask_i32gather_epi32(zero, reinterpret_cast<const int*>(table), index, inside, kFunctions);
+      for (int g = 0; g < kFunctions; ++g) {
+        auto* sum = reinterpret_cast<__m256i*>(sums[g] + k);
+        _mm256_storeu_si256(sum, _mm256_add_epi32(_mm256_loadu_si256(sum), _mm256_and_si256(values, byte)));
+        values = _mm256_srli_epi32(values, 8);
+      }
+      x = _mm256_add_epi32(x, stride[0]);
+      y = _mm256_add_epi32(y, stride[1]);
+      z = _mm256_add_epi32(z, stride[2]);
+    }
+  }
+}
+
+#endif
+
+/// sums[g][k] += sum over lines of function g of the table at point k. The sums are integers, so that both kernels give
+/// the same bytes.
+template <int kFunctions>
+auto* kernelOf(bool scalar) {
+#if defined(__x86_64__)
+  if (!scalar && __builtin_cpu_supports("avx2")) return accumulateAvx2<kFunctions>;
+#endif
+  return accumulateScalar<kFunctions>;
+}
+
+}  // namespace
+
+LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_steps, bool scalar)
+    : table_(table),
+      accumulate_(table.numFunctions() == 1 ? kernelOf<1>(scalar) : kernelOf<LookupTable::kMaxFunctions>(scalar)),
+      sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + 2 * line_lanes)),
+      storage_(5 * most_lines) {
+  const double middle = 0.5 * (edt.numCells() - 1);
+  cube_.middle = static_cast<float>(middle);
+  cube_.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
+  cube_.to_table = table.toTable(Eigen::Vector3d::Constant(middle)).cast<float>()[0];
+  for (auto& sums : sums_) sums_of_.push_back(sums.data());
+}
+
+/// \param set_up fills lines that begin at a sample; size and step are given.
+template <typename SetUp>
+void LineSums::add(int num_samples, const Eigen::Vector3f& step, int begin, int end, Totals& totals,
+                   const SetUp& set_up) {
+  std::int32_t* const data = storage_.data();
+  Lines lines{data, data + most_lines, data + 2 * most_lines, data + 3 * most_lines, data + 4 * most_lines, 0, {}};
+  for (int axis = 0; axis < 3; ++axis)
+    lines.step[axis] = static_cast<std::int32_t>(std::lround(step[axis] * (1 << LookupTable::kFractionBits)));
+  for (int first = 0; first < num_samples; first += most_lines) {
+    lines.size = std::min(most_lines, num_samples - first);
+    set_up(first, lines);
+    for (auto& sums : sums_) std::fill(sums.begin(), sums.end(), 0);
+    accumulate_(lines, table_.data(), table_.bits(), sums_of_.data());
+    for (std::size_t g = 0; g < totals.size(); ++g)
+      for (int k = begin; k < end; ++k) totals[g][k] += sums_[g][k];
+  }
+}
+
+void LineSums::addReflected(const CoordinateRows& points, const ParallelPlanes& planes, Totals& totals) {
+  // The image of a point moves by twice the step between planes.
+  const Eigen::Vector3f step = 2.0f * planes.step * Eigen::Map<const Eigen::Vector3f>(planes.normal);
+  add(static_cast<int>(points.cols()), step, 0, planes.count, totals, [&](int first, Lines& lines) {
+    setUpReflected(&points(0, first), &points(1, first), &points(2, first), planes, cube_, lines);
+  });
+}
+
+void LineSums::addMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step,
+                        int begin, int end, Totals& totals) {
+  add(static_cast<int>(moved.cols()), step, begin, end, totals, [&](int first, Lines& lines) {
+    float rounded[3];
+    for (int axis = 0; axis < 3; ++axis)
+      rounded[axis] = static_cast<float>(lines.step[axis]) / (1 << LookupTable::kFractionBits);
+    setUpMoved(moved.data() + 3 * first, start.data(), rounded, static_cast<float>(begin), static_cast<float>(end),
+               cube_, lines);
+  });
+}
+
+LookupTable tableOf(const GaussianEdt& edt, const Visibility* visibility, int num_threads) {
+  // Sharpened by 1/12: a sample's uniform position in its cell and the look-up of the nearest cell are two boxes.
+  std::vector<const float*> functions{edt.interpolation().data()};
+  std::vector<float> free_space;
+  if (visibility) free_space = freeSpace(edt, *visibility, num_threads);
+  if (visibility) functions.push_back(free_space.data());
+  return LookupTable(functions, edt.numCells(), num_threads);
+}
+
+Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads) {
+  Eigen::Matrix3Xf samples = drawPoints(edt, num_samples, seed, num_threads);
+  samples.array() -= 0.5f * static_cast<float>(edt.numCells() - 1);
+  return samples;
+}
+
+Eigen::Vector3d toCells(const GaussianEdt& edt, const Eigen::Vector3d& x) {
+  return ((x - edt.origin()) / edt.cellSize()).array() - 0.5 * (edt.numCells() - 1);
+}
+
+}  // namespace pcl_symmetry

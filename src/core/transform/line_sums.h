@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/transform/lookup_table.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
+#include "pcl_symmetry/core/visibility.h"
+
+namespace pcl_symmetry {
+
+/// Points, the coordinates along each axis side by side.
+using CoordinateRows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Equally spaced planes of one normal: n.x = offset + k * step for k in [0, count).
+struct ParallelPlanes {
+  float normal[3];
+  float offset;  ///< cells from the middle of the EDT's cube
+  float step;    ///< cells
+  int count;
+};
+
+/// Sums of a table's functions over images of samples that lie on straight lines through it: what the transforms of
+/// planes, of axes and of centers are made of. Lengths are cells. f is taken as 0 beyond the ball in the EDT's cube.
+class LineSums {
+public:
+  /// \param table of f, and for scans of the free space; outlives this.
+  /// \param num_steps greatest number of images of a sample.
+  /// \param scalar takes the plain loop, which vector instructions have to equal bit by bit.
+  LineSums(const GaussianEdt& edt, const LookupTable& table, int num_steps, bool scalar = false);
+
+  /// For each function of the table one sum per step.
+  using Totals = std::vector<std::vector<double>>;
+
+  /// Adds up the images of samples reflected in parallel planes.
+  /// \param points in cells from the first cell center.
+  void addReflected(const CoordinateRows& points, const ParallelPlanes& planes, Totals& totals);
+
+  /// Adds up moved samples.
+  /// \param moved 3 x N, the samples at step 0, relative to \p start, which is measured from the middle of the cube.
+  /// \param start,step the image k of a sample is its moved position + start + k * step.
+  /// \param begin,end steps to add up, in [0, num_steps].
+  void addMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step, int begin,
+                int end, Totals& totals);
+
+  /// The EDT's cube of cells and its place in a LookupTable.
+  struct Cube {
+    float middle;    ///< coordinate of its middle, in cells from the first cell center
+    float sq_clip;   ///< squared radius of the ball about the middle
+    float to_table;  ///< table coordinate of the middle
+  };
+  /// Point k of line i is start_i + k * step, in fixed-point table coordinates, inside the ball for k in
+  /// [k_begin_i, k_end_i).
+  struct Lines {
+    std::int32_t *x, *y, *z;  ///< start of each line
+    std::int32_t *k_begin, *k_end;
+    int size;
+    std::int32_t step[3];  ///< of all lines
+  };
+
+private:
+  template <typename SetUp>
+  void add(int num_samples, const Eigen::Vector3f& step, int begin, int end, Totals& totals, const SetUp& set_up);
+
+  const LookupTable& table_;
+  void (*accumulate_)(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums);
+  Cube cube_;
+  std::vector<std::vector<std::int32_t>> sums_;
+  std::vector<std::int32_t*> sums_of_;
+  std::vector<std::int32_t> storage_;
+};
+
+/// The table that the samples are looked up in: f, sharpened for the blur of two boxes, and the free space of a scan.
+/// \param visibility null for a whole object.
+LookupTable tableOf(const GaussianEdt& edt, const Visibility* visibility, int num_threads);
+
+/// Samples of f in cells from the middle of the cube.
+Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads);
+
+/// A position of the input frame in cells from the middle of the cube.
+Eigen::Vector3d toCells(const GaussianEdt& edt, const Eigen::Vector3d& x);
+
+}  // namespace pcl_symmetry
