@@ -13,8 +13,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 ///
 /// Iterative Symmetric Points finds its pairs here: iterateSymmetricPoints() reflects all samples and calls
 /// searchWithin() once for all of them. makeFlannSearch() answers by FLANN's k-d tree
-/// (src/core/geometry/flann_search.cpp): it is asked once for each cell of a coarse grid which points can be closest
-/// to a query in the cell, and the closest of these few is the answer, the same as if it were asked for each query.
+/// (src/core/geometry/flann_search.cpp).
 ///
 /// Derive from it to use a search structure of your own. Implement search(); searchWithin() has a default that calls
 /// it. Both are called from several threads at once. Results are written into vectors of the caller, so that repeated

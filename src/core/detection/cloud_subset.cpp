@@ -13,7 +13,6 @@
 #include "core/geometry/diameter.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/spread_subset.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {

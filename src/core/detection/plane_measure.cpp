@@ -9,8 +9,8 @@
 #include "core/evidence/plane_stiffness.h"
 #include "core/evidence/plane_support.h"
 #include "core/evidence/surface_samples.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/symmetric_share.h"
 #include "core/scan/sensor_noise.h"
 #include "core/scan/single_view.h"
 

@@ -8,7 +8,7 @@
 #include "core/detection/plane_fit.h"
 #include "core/evidence/missing_surface.h"
 #include "core/evidence/split_surface.h"
-#include "core/geometry/thin_shape.h"
+#include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {

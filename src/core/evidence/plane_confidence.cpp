@@ -6,7 +6,7 @@
 
 #include "core/evidence/confidence_fit.h"
 #include "core/evidence/evidence_rules.h"
-#include "core/geometry/symmetric_share.h"
+#include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {
 

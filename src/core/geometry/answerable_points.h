@@ -16,7 +16,7 @@ constexpr int kMinDistinctPoints = 20;
 ///
 /// Positions are compared up to the rounding of the coordinates; a line may be 1e-6 of its length thick.
 /// \param points 3 x N, N >= 0, finite.
-/// \return one sentence such as "12 distinct points, at least 20 are needed"; empty where the points can be analysed.
+/// \return one sentence such as "12 distinct points, at least 20 are needed"; empty where the points can be analyzed.
 /// \throws std::invalid_argument where a coordinate is not finite.
 std::string whyUnanswerable(const PointsRef& points);
 

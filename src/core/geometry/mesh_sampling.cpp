@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/random.h"
+#include "core/geometry/distinct_points.h"
 
 namespace pcl_symmetry {
 
@@ -51,16 +51,7 @@ Points sampleTriangles(const PointsRef& vertices, const std::vector<Eigen::Vecto
 }
 
 std::vector<std::pair<int, int>> openEdges(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles) {
-  std::vector<int> order(vertices.cols()), same(order.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto before = [&](int a, int b) {
-    for (int k = 0; k < 3; ++k)
-      if (vertices(k, a) != vertices(k, b)) return vertices(k, a) < vertices(k, b);
-    return false;
-  };
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return before(a, b) || (!before(b, a) && a < b); });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    same[order[i]] = i > 0 && !before(order[i - 1], order[i]) ? same[order[i - 1]] : order[i];
+  const std::vector<int> same = firstCopies(vertices);
   std::vector<std::pair<int, int>> edges, open;
   for (const Eigen::Vector3i& triangle : triangles)
     for (int k = 0; k < 3; ++k) {

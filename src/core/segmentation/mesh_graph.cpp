@@ -1,10 +1,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <map>
-#include <numeric>
 
 #include "core/base/check.h"
+#include "core/geometry/distinct_points.h"
 #include "core/segmentation/graph_completion.h"
 #include "pcl_symmetry/core/surface_graph.h"
 
@@ -14,30 +13,16 @@ namespace {
 
 using Polygons = std::vector<std::vector<int>>;
 
-/// \return for each vertex the first one at the same position; -1 for a vertex that is not finite.
-std::vector<int> weld(const PointsRef& vertices) {
-  std::vector<int> order(vertices.cols());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int i) { return std::array<float, 3>{vertices(0, i), vertices(1, i), vertices(2, i)}; };
-  order.erase(std::remove_if(order.begin(), order.end(), [&](int i) { return !vertices.col(i).allFinite(); }),
-              order.end());
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
-  std::vector<int> first(vertices.cols(), -1);
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-  return first;
-}
-
 /// The polygons on welded vertices; a polygon with a vertex that is not finite becomes empty.
 Polygons weldedPolygons(const PointsRef& vertices, const Polygons& polygons) {
-  const std::vector<int> welded = weld(vertices);
+  const std::vector<int> welded = firstCopies(vertices);
   Polygons faces(polygons.size());
   for (std::size_t f = 0; f < polygons.size(); ++f) {
     for (const int v : polygons[f]) {
       check(v >= 0 && v < vertices.cols(), "vertex of a polygon", v, "an index of a vertex");
       faces[f].push_back(welded[v]);
     }
-    if (std::find(faces[f].begin(), faces[f].end(), -1) != faces[f].end()) faces[f].clear();
+    if (!vertices(Eigen::all, polygons[f]).allFinite()) faces[f].clear();
   }
   return faces;
 }

@@ -13,7 +13,7 @@
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/distinct_points.h"
-#include "core/geometry/spread_subset.h"
+#include "core/geometry/point_samples.h"
 #include "shapes/shapes.h"
 
 namespace {

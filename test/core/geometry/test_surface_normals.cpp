@@ -15,7 +15,6 @@
 #include "core/geometry/directions.h"
 #include "core/geometry/principal_axes.h"
 #include "core/geometry/revolution_of_normals.h"
-#include "core/geometry/thin_shape.h"
 #include "core/geometry/viewing_frame.h"
 #include "shapes/shapes.h"
 
