@@ -69,7 +69,7 @@ CommandLine commandLine(SegmentOptions& o) {
 SegmentationOptions segmentationOptions(const SegmentOptions& o, int num_threads) {
   SegmentationOptions options;
   options.method = o.method == "splitting" ? SegmentationMethod::Splitting : SegmentationMethod::Merging;
-  options.merging.evidence = o.evidence == "all" ? MergingEvidence::All : MergingEvidence::SymmetryAndConcavity;
+  options.evidence = o.evidence == "all" ? MergingEvidence::All : MergingEvidence::SymmetryAndConcavity;
   options.splitting.depth = o.depth;
   options.splitting.concavity_weight = o.concavity;
   options.splitting.as_published = o.as_published;

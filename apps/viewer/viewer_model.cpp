@@ -63,7 +63,7 @@ SegmentationOptions segmentationOf(const ViewerModelOptions& options, bool seen_
   segmentation.seed = options.detection.seed;
   segmentation.num_threads = options.detection.num_threads;
   // Thickness and line of sight need an inside, which a scan from one side does not have.
-  if (seen_from_one_side) segmentation.merging.evidence = MergingEvidence::SymmetryAndConcavity;
+  if (seen_from_one_side) segmentation.evidence = MergingEvidence::SymmetryAndConcavity;
   return segmentation;
 }
 

@@ -56,10 +56,6 @@ public:
   }
   const SegmentationOptions& getOptions() const { return options_; }  ///< see setOptions()
 
-  /// \param depth greatest number of splits in a row, for SegmentationMethod::Splitting, in [0, 30]; default 3.
-  void setDepth(int depth) {
-    change([&](SegmentationOptions& changed) { changed.splitting.depth = depth; });
-  }
   /// \param num_parts number of parts where the shape allows it, >= 0; 0 = as many as the method finds (default).
   void setNumberOfParts(int num_parts) {
     change([&](SegmentationOptions& changed) { changed.num_parts = num_parts; });
@@ -75,11 +71,6 @@ public:
   /// \param search is given a cloud of the points used, then clouds of samples of the surface and of its parts, and is
   /// called as in SymmetryMaximaRefinement::setSearchMethod(). Null: FLANN (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
-  /// \param num_neighbors number of neighbors that each point is joined with, >= 3; default 12.
-  void setNumberOfNeighbors(int num_neighbors) {
-    detail::checkAtLeast("num_neighbors", num_neighbors, 3);
-    num_neighbors_ = num_neighbors;
-  }
 
   /// \param segments is filled with the segments, by falling area: indices into the cloud or the polygons of the mesh.
   /// Empty where the input holds no answer, see getReason().
@@ -118,7 +109,6 @@ private:
   SegmentationOptions options_;
   pcl::PolygonMesh::ConstPtr mesh_;
   SearchPtr search_;
-  int num_neighbors_ = 12;
   Segmentation segmentation_;
   std::vector<int> labels_;
 };
@@ -158,8 +148,9 @@ void SymmetrySegmentation<PointT>::segmentCloud() {
   SegmentationOptions options = options_;
   options.make_search = detail::searchOf<PointT>(search_, "SymmetrySegmentation", options_.num_threads);
   const MakeSearch make_search = options.make_search ? options.make_search : makeFlannSearch;
+  constexpr int num_neighbors = 12;  // that each point is joined with
   const std::vector<std::vector<int>> neighbors =
-      nearestOthers(points, *make_search(points), num_neighbors_, options_.num_threads);
+      nearestOthers(points, *make_search(points), num_neighbors, options_.num_threads);
   segmentation_ = segmentSurface(cloudGraph(points, neighbors), options);
 
   labels_.assign(input_->size(), -1);

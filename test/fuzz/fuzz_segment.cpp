@@ -11,8 +11,7 @@ using namespace pcl_symmetry;
 SegmentationOptions quickOptions(fuzz::ByteSource& source) {
   SegmentationOptions options;
   options.method = source.flag() ? SegmentationMethod::Merging : SegmentationMethod::Splitting;
-  options.merging.num_patches = 1 + source.below(40);
-  options.merging.evidence = static_cast<MergingEvidence>(source.below(2));
+  options.evidence = static_cast<MergingEvidence>(source.below(2));
   options.splitting.depth = source.below(4);
   options.num_parts = source.below(6);
   options.num_threads = 1;

@@ -39,7 +39,7 @@ TEST_F(SymmetrySegmentationTest, EveryFaceOfAMeshIsInOneSegment) {
   EXPECT_FALSE(segmentation_.getTree().empty());
 }
 
-TEST_F(SymmetrySegmentationTest, CloudsHonourIndicesAndLeaveOutWhatIsNotFinite) {
+TEST_F(SymmetrySegmentationTest, CloudsHonorIndicesAndLeaveOutWhatIsNotFinite) {
   const auto cloud = sampleMesh(*mesh_, 3000);
   (*cloud)[7].x = std::numeric_limits<float>::quiet_NaN();
   auto indices = pcl::make_shared<pcl::Indices>();
@@ -116,10 +116,10 @@ TEST_F(SymmetrySegmentationTest, AUsedObjectIsAsGoodAsANewOne) {
 }
 
 TEST_F(SymmetrySegmentationTest, SettersNameFieldValueAndRule) {
-  EXPECT_THAT(test::messageOf([&] { segmentation_.setDepth(-1); }),
+  SegmentationOptions options;
+  options.splitting.depth = -1;
+  EXPECT_THAT(test::messageOf([&] { segmentation_.setOptions(options); }),
               testing::HasSubstr("depth = -1, must be in [0, 30]"));
-  EXPECT_THAT(test::messageOf([&] { segmentation_.setNumberOfNeighbors(2); }),
-              testing::HasSubstr("num_neighbors = 2, must be >= 3"));
   EXPECT_THAT(test::messageOf([&] { segmentation_.setMaxPoints(19); }),
               testing::HasSubstr("max_points = 19, must be >= 20"));
   EXPECT_THAT(test::messageOf([&] { segmentation_.setNumberOfParts(-2); }),

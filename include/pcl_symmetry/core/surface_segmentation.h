@@ -25,36 +25,6 @@ enum class MergingEvidence {
   All  ///< also thickness of the body and lines of sight within it
 };
 
-/// Options of SegmentationMethod::Merging.
-struct MergingOptions {
-  MergingEvidence evidence = MergingEvidence::All;  ///< what the costs of merging are made of
-
-  /// Patches at the beginning, >= 1. Fewer lose small parts; time and memory grow with the square.
-  int num_patches = 200;
-
-  /// Divisions into patches, each grown from other seeds, whose merges are averaged, >= 1. With one, borders and parts
-  /// depend on where patches happen to lie: a Rand distance of 0.134 on 65 models, 0.124 with four.
-  int num_divisions = 4;
-
-  /// Smaller regions join a neighbor; share of the surface, in [0, 1). Ears are larger, fragments of noise smaller.
-  double least_area = 0.003;
-
-  /// Whether parts on one side of a plane that maps nearly all of the surface onto itself become the reflections of
-  /// those on the other side. Without effect if the number of parts is given.
-  bool agree_across_planes = true;
-
-  /// Borders between parts move to a minimum cut within this distance, in square roots of the area of the surface, >=
-  /// 0. With 0 they stay along the patches.
-  double cut_band = 0.03;
-
-  /// Preference of that cut for concave edges, as SplittingOptions::concavity_weight, >= 0.
-  /// Smaller values shorten borders across creases; larger values let them follow every crease.
-  double concavity_weight = 3.0;
-
-  /// \throws std::invalid_argument naming field, value and rule.
-  void validate() const;
-};
-
 /// Options of SegmentationMethod::Splitting (Section 5.3). A part is split if a plane maps at least min_share and at
 /// most max_share of it onto itself. This rule hardly ever ends the splitting, so that the depth decides.
 struct SplittingOptions {
@@ -70,9 +40,6 @@ struct SplittingOptions {
 
   /// Strongest maxima that serve as features, >= 1.
   int max_planes = 20;
-
-  /// The minimum cut may lie within this distance of the border of the clusters, in radii of the part, > 0.
-  double cut_band = 0.1;
 
   /// An edge of concavity c > 0 radians costs length * exp(-concavity_weight * c) to cut; >= 0. With the paper's 0 the
   /// length alone counts: cuts take the shortest way, as through the thighs in the paper's Figure 15.
@@ -91,7 +58,7 @@ struct SplittingOptions {
 /// Options of segmentSurface().
 struct SegmentationOptions {
   SegmentationMethod method = SegmentationMethod::Merging;  ///< how parts are found
-  MergingOptions merging;                                   ///< with SegmentationMethod::Merging
+  MergingEvidence evidence = MergingEvidence::All;          ///< with SegmentationMethod::Merging
   SplittingOptions splitting;                               ///< strength and max_planes are used by merging, too
   int num_parts = 0;       ///< >= 0; 0: the method finds the number. Splitting then splits the largest part first.
   std::uint64_t seed = 1;  ///< of the random samples

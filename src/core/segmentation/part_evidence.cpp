@@ -179,15 +179,16 @@ int firstSeed(const SurfaceGraph& graph, int division, std::uint64_t seed) {
 }  // namespace
 
 WholeEvidence::WholeEvidence(const SurfaceGraph& graph, const SegmentationOptions& options)
-    : graph_(graph), merging_(options.merging), seed_(options.seed), features_(featuresOfWhole(graph, options)) {
-  if (merging_.evidence == MergingEvidence::All) tree_.emplace(graph.corners, graph.triangles);
+    : graph_(graph), seed_(options.seed), features_(featuresOfWhole(graph, options)) {
+  if (options.evidence == MergingEvidence::All) tree_.emplace(graph.corners, graph.triangles);
 }
 
 PartEvidence WholeEvidence::ofDivision(int division) const {
   const std::uint64_t seed = seed_ + static_cast<std::uint64_t>(division);
   PartEvidence evidence;
-  evidence.patches = measuredPatches(graph_, growPatches(graph_, merging_.num_patches, kSegmentation.concave_detour,
-                                                         firstSeed(graph_, division, seed)));
+  evidence.patches = measuredPatches(
+      graph_,
+      growPatches(graph_, kSegmentation.num_patches, kSegmentation.concave_detour, firstSeed(graph_, division, seed)));
   evidence.borders = patchBorders(graph_, evidence.patches);
   BodyEvidence body = tree_ ? bodyEvidence(graph_, *tree_, evidence.patches, seed) : noBodyEvidence(evidence.size());
   evidence.thickness = std::move(body.thickness);

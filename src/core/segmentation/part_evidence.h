@@ -44,7 +44,6 @@ public:
 
 private:
   const SurfaceGraph& graph_;
-  const MergingOptions merging_;
   const std::uint64_t seed_;
   SymmetryFeatures features_;
   std::optional<TriangleTree> tree_;

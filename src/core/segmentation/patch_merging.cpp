@@ -28,7 +28,7 @@ struct Mirror {
 };
 
 std::optional<Mirror> mirrorOf(const WholeEvidence& whole, const SegmentationOptions& options) {
-  if (!options.merging.agree_across_planes || options.num_parts > 0) return std::nullopt;
+  if (options.num_parts > 0) return std::nullopt;
   const std::optional<GlobalPlane> global = globalPlane(whole.planes());
   if (!global) return std::nullopt;
   return Mirror{*global, reflectedElements(whole.graph(), global->plane)};
@@ -37,15 +37,10 @@ std::optional<Mirror> mirrorOf(const WholeEvidence& whole, const SegmentationOpt
 /// Borders that follow the surface instead of the patches, equal on both sides of the mirror, and no small segments.
 std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> labels, const std::optional<Mirror>& mirror,
                                int most_segments, const SegmentationOptions& options) {
-  const MergingOptions& merging = options.merging;
-  const double least_area = options.num_parts == 0 ? merging.least_area * graph.area() : 0.0;
+  const double crumb = kSegmentation.least_part * graph.area(), least_area = options.num_parts == 0 ? crumb : 0.0;
   labels = joinSmallSegments(graph, std::move(labels), least_area, most_segments);
-  if (merging.cut_band > 0.0) {
-    BorderCutOptions cut;
-    cut.band = merging.cut_band * std::sqrt(graph.area());
-    cut.concavity_weight = merging.concavity_weight;
-    labels = joinCrumbs(graph, smoothBorders(graph, std::move(labels), cut), merging.least_area * graph.area());
-  }
+  const BorderCutOptions cut{kSegmentation.part_cut_band * std::sqrt(graph.area()), kSegmentation.part_concavity};
+  labels = joinCrumbs(graph, smoothBorders(graph, std::move(labels), cut), crumb);
   if (mirror) labels = mirroredLabels(graph, labels, mirror->global.plane, mirror->reflected);
   return joinSmallSegments(graph, std::move(labels), least_area, most_segments);
 }
@@ -83,8 +78,8 @@ Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptio
   };
   const WholeEvidence whole(graph, options);
   tell(0.3);
-  const MergeWeights& weights = kMergeFit[static_cast<std::size_t>(options.merging.evidence)];
-  const auto num_divisions = static_cast<std::size_t>(options.merging.num_divisions);
+  const MergeWeights& weights = kMergeFit[static_cast<std::size_t>(options.evidence)];
+  const std::size_t num_divisions = kSegmentation.num_divisions;
   std::vector<MergedDivision> divisions(num_divisions);
   std::optional<PartEvidence> first;
   parallelBlocks(num_divisions, options.num_threads, [&](std::size_t d) {

@@ -71,11 +71,6 @@ std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights) {
   return merges;
 }
 
-Regions merged(Regions regions, const std::vector<Merge>& merges, std::size_t num_merges) {
-  for (std::size_t i = 0; i < num_merges; ++i) regions.merge(merges[i].into, merges[i].from);
-  return regions;
-}
-
 namespace {
 
 /// The first merge that is not sure, or that leaves fewer regions than asked for.
@@ -99,7 +94,7 @@ MergedDivision mergedDivision(const PartEvidence& evidence, const MergeWeights& 
   const std::vector<Merge> merges = mergeRegions(regions, weights);
   const auto num_made = static_cast<std::size_t>(std::max(0, evidence.size() - num_parts));
   const std::size_t doubt = num_parts > 0 ? std::min(merges.size(), num_made) : firstDoubt(merges, merges.size());
-  regions = merged(std::move(regions), merges, doubt);
+  for (std::size_t i = 0; i < doubt; ++i) regions.merge(merges[i].into, merges[i].from);
   const std::map<int, int> number = numbersOf(regions.ofPatches());
   MergedDivision division;
   for (const int patch : evidence.patches.of_element) division.cell.push_back(number.at(regions.ofPatches()[patch]));

@@ -19,10 +19,6 @@ struct Merge {
 /// \param regions by value: the merges are made on a copy.
 std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights);
 
-/// Makes the first merges of a sequence.
-/// \param num_merges at most their number.
-Regions merged(Regions regions, const std::vector<Merge>& merges, std::size_t num_merges);
-
 /// What the merges of one division into patches say about pairs of elements.
 struct MergedDivision {
   std::vector<int> cell;        ///< of each element, from 0: regions that are surely one part

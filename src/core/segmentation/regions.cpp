@@ -31,8 +31,7 @@ void Regions::Border::add(const Border& other) {
 }
 
 Regions::Regions(const PartEvidence& evidence)
-    : exists_(evidence.patches.areas.size(), 1),
-      region_(evidence.patches.areas.size()),
+    : region_(evidence.patches.areas.size()),
       areas_(evidence.patches.areas),
       log_thickness_(evidence.patches.areas.size()),
       perimeters_(evidence.patches.areas.size(), 0.0),
@@ -129,7 +128,6 @@ void Regions::merge(int a, int b) {
   for (Eigen::MatrixXf& image : images_) join(image);
   joinImages(a, b);
   std::replace(region_.begin(), region_.end(), b, a);
-  exists_[b] = 0;
   joinNeighbors(a, b);
 }
 

@@ -19,7 +19,6 @@ public:
 
   /// \return the number of patches; regions have numbers below it.
   int size() const { return static_cast<int>(areas_.size()); }
-  bool exists(int region) const { return exists_[region]; }
 
   /// \return share of the surface.
   double area(int region) const { return areas_[region]; }
@@ -47,7 +46,6 @@ private:
   void joinNeighbors(int a, int b);
   void joinImages(int a, int b);
 
-  std::vector<char> exists_;
   std::vector<int> region_;              ///< of each patch
   std::vector<double> areas_;            ///< shares of the surface
   std::vector<double> log_thickness_;    ///< sums over patches, weighted by area

@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <map>
@@ -79,12 +77,10 @@ public:
     const int patch = num_patches_++;
     distance_[seed] = 0.0f;
     patch_[seed] = patch;
-    front_.assign(1, keyOf(0.0f, seed));
+    front_.emplace(0.0f, seed);
     while (!front_.empty()) {
-      std::pop_heap(front_.begin(), front_.end(), std::greater<>());
-      const auto element = static_cast<int>(front_.back() & 0xffffffffu);
-      const float reached = wayOf(front_.back());
-      front_.pop_back();
+      const auto [reached, element] = front_.top();
+      front_.pop();
       if (reached > distance_[element]) continue;
       for (int i = steps_.first[element]; i < steps_.first[element + 1]; ++i) {
         const auto [to, length] = steps_.steps[i];
@@ -92,8 +88,7 @@ public:
         if (there >= distance_[to]) continue;
         distance_[to] = there;
         patch_[to] = patch;
-        front_.push_back(keyOf(there, to));
-        std::push_heap(front_.begin(), front_.end(), std::greater<>());
+        front_.emplace(there, to);
       }
     }
   }
@@ -101,24 +96,11 @@ public:
   int size() const { return num_patches_; }
 
 private:
-  /// Numbers in the order of ways and, where these are equal, of elements: the bits of a float >= 0 rise with it, and
-  /// one number is compared faster than a pair.
-  static std::uint64_t keyOf(float way, int element) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &way, sizeof(bits));
-    return std::uint64_t{bits} << 32 | static_cast<std::uint32_t>(element);
-  }
-  static float wayOf(std::uint64_t key) {
-    const auto bits = static_cast<std::uint32_t>(key >> 32);
-    float way = 0.0f;
-    std::memcpy(&way, &bits, sizeof(way));
-    return way;
-  }
-
   const Steps steps_;
   std::vector<float> distance_;
   std::vector<int> patch_;
-  std::vector<std::uint64_t> front_;  ///< a heap of keys, the shortest way first
+  using Way = std::pair<float, int>;  ///< length and element
+  std::priority_queue<Way, std::vector<Way>, std::greater<>> front_;
   int num_patches_ = 0;
 };
 
@@ -128,15 +110,10 @@ std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> p
   std::vector<int> reached, missed;
   for (int i = 0; i < graph.size(); ++i) (patch[i] >= 0 ? reached : missed).push_back(i);
   if (missed.empty()) return patch;
-  const auto centersOf = [&](const std::vector<int>& elements) {
-    Points centers(3, static_cast<Eigen::Index>(elements.size()));
-    for (std::size_t k = 0; k < elements.size(); ++k)
-      centers.col(static_cast<Eigen::Index>(k)) = graph.centers.col(elements[k]);
-    return centers;
-  };
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeFlannSearch(centersOf(reached))->search(centersOf(missed), 1, closest, sq_distances);
+  const Points centers = graph.centers(Eigen::all, reached);
+  makeFlannSearch(centers)->search(graph.centers(Eigen::all, missed), 1, closest, sq_distances);
   for (std::size_t k = 0; k < missed.size(); ++k) patch[missed[k]] = patch[reached[closest[k]]];
   return patch;
 }

@@ -1,9 +1,7 @@
 #include "pcl_symmetry/core/surface_segmentation.h"
 
-#include <array>
-#include <set>
-
 #include "core/base/check.h"
+#include "core/geometry/distinct_points.h"
 #include "core/segmentation/patch_merging.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/symmetry_splitting.h"
@@ -14,10 +12,7 @@ namespace {
 
 bool showsASurface(const SurfaceGraph& graph) {
   if (!graph.is_cloud) return true;
-  std::set<std::array<float, 3>> distinct;
-  for (int i = 0; i < graph.size() && distinct.size() < kSegmentation.fewest_points; ++i)
-    distinct.insert({graph.centers(0, i), graph.centers(1, i), graph.centers(2, i)});
-  return distinct.size() >= kSegmentation.fewest_points;
+  return DistinctPoints(graph.centers).points.cols() >= kSegmentation.fewest_points;
 }
 
 Segmentation oneSegment(const SurfaceGraph& graph) {
@@ -36,20 +31,10 @@ void SplittingOptions::validate() const {
   check(max_share <= 1.0, "max_share", max_share, "<= 1");
   check(strength >= 0.0 && strength <= 1.0, "strength", strength, "in [0, 1]");
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");
-  check(cut_band > 0.0, "cut_band", cut_band, "> 0");
-  check(concavity_weight >= 0.0, "concavity_weight", concavity_weight, ">= 0");
-}
-
-void MergingOptions::validate() const {
-  check(num_patches >= 1, "num_patches", num_patches, ">= 1");
-  check(num_divisions >= 1, "num_divisions", num_divisions, ">= 1");
-  check(least_area >= 0.0 && least_area < 1.0, "least_area", least_area, "in [0, 1)");
-  check(cut_band >= 0.0, "cut_band", cut_band, ">= 0");
   check(concavity_weight >= 0.0, "concavity_weight", concavity_weight, ">= 0");
 }
 
 void SegmentationOptions::validate() const {
-  merging.validate();
   splitting.validate();
   check(num_parts >= 0, "num_parts", num_parts, ">= 0");
   checkNumThreads(num_threads);

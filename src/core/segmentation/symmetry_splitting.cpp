@@ -10,8 +10,9 @@
 #include "core/base/k_means.h"
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/segment_tree.h"
+#include "core/segmentation/segmentation_rules.h"
+#include "core/segmentation/surface_patches.h"
 #include "core/segmentation/symmetry_features.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
@@ -21,14 +22,6 @@ namespace {
 struct SplitPart {
   std::vector<int> first, second;
 };
-
-/// k-means with k = 2 on the support of the elements, weighted by area.
-Clusters twoMeans(const SurfaceGraph& graph, const std::vector<int>& elements, const Eigen::MatrixXf& support,
-                  std::uint64_t seed) {
-  std::vector<float> areas;
-  for (const int element : elements) areas.push_back(graph.areas[element]);
-  return kMeans(support, areas, 2, seed);
-}
 
 /// The two pieces with the largest areas; -1 for a missing one.
 std::pair<int, int> largestPieces(const SurfaceGraph& graph, const std::vector<int>& pieces) {
@@ -47,22 +40,6 @@ std::pair<int, int> largestPieces(const SurfaceGraph& graph, const std::vector<i
   return {first, second};
 }
 
-/// Gives each element of side -2 the side of the closest element of side 0 or 1.
-std::vector<int> sidesOfClosest(const SurfaceGraph& graph, std::vector<int> side) {
-  std::vector<int> known, unknown;
-  for (std::size_t i = 0; i < side.size(); ++i) {
-    if (side[i] >= 0) known.push_back(static_cast<int>(i));
-    if (side[i] == -2) unknown.push_back(static_cast<int>(i));
-  }
-  if (unknown.empty()) return side;
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  const Points known_centers = graph.centers(Eigen::all, known);
-  makeFlannSearch(known_centers)->search(graph.centers(Eigen::all, unknown), 1, closest, sq_distances);
-  for (std::size_t k = 0; k < unknown.size(); ++k) side[unknown[k]] = side[known[closest[k]]];
-  return side;
-}
-
 /// Splits a part in two by its symmetries (Section 5.3): k-means with k = 2 on the support, the two largest connected
 /// components, and the minimum cut between them.
 /// \param elements those of the part.
@@ -72,7 +49,9 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
                                          const SymmetryFeatures& features, const SplittingOptions& options,
                                          std::uint64_t seed) {
   // "a rough segmentation": two clusters of support
-  const Clusters clusters = twoMeans(graph, elements, features.support, seed);
+  std::vector<float> areas;
+  for (const int element : elements) areas.push_back(graph.areas[element]);
+  const Clusters clusters = kMeans(features.support, areas, 2, seed);
   if (clusters.centers.cols() < 2) return std::nullopt;
   std::vector<int> side(static_cast<std::size_t>(graph.size()), -1);
   for (std::size_t i = 0; i < elements.size(); ++i) side[elements[i]] = clusters.labels[i];
@@ -87,14 +66,15 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
     if (pieces[element] != first && pieces[element] != second) open.push_back(element);
   }
   if (options.as_published) {
-    for (const int element : open) side[element] = -2;  // of neither, but of the part
-    side = sidesOfClosest(graph, std::move(side));
+    for (const int element : open) side[element] = -1;
+    const std::vector<int> closest = filledFromClosest(graph, side);
+    for (const int element : open) side[element] = closest[element];
     open.clear();
   }
 
   // "the exact boundary between them"
   BorderCutOptions cut;
-  cut.band = options.cut_band * features.radius;
+  cut.band = kSegmentation.cut_band * features.radius;
   cut.concavity_weight = options.concavity_weight;
   side = cutBorder(graph, std::move(side), open, cut);
   SplitPart split;

@@ -176,7 +176,7 @@ TEST(Merging, ConcavityWithoutTheBodySeparatesTheCubes) {
   const Mesh mesh = test::dumbbell();
   const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
   SegmentationOptions options;
-  options.merging.evidence = MergingEvidence::SymmetryAndConcavity;
+  options.evidence = MergingEvidence::SymmetryAndConcavity;
   const Segmentation segmentation = segmentSurface(graph, options);
   expectNumberedByFallingArea(graph, segmentation);
   EXPECT_NE(segmentAt(graph, segmentation, kLeftCube), segmentAt(graph, segmentation, kRightCube));
@@ -276,9 +276,6 @@ TEST(SurfaceSegmentation, RefusesBadOptions) {
   EXPECT_THROW(segmentSurface(graph, splittingTo(-1)), std::invalid_argument);
   SegmentationOptions options;
   options.splitting.min_share = 0.95;
-  EXPECT_THROW(segmentSurface(graph, options), std::invalid_argument);
-  options = {};
-  options.merging.num_patches = 0;
   EXPECT_THROW(segmentSurface(graph, options), std::invalid_argument);
   options = {};
   options.num_parts = -1;
