@@ -1,11 +1,9 @@
 #include "pcl_symmetry/prst.h"
 
-#include <pcl/point_types.h>
-
+#include <algorithm>
 #include <cmath>
-#include <utility>
+#include <vector>
 
-#include "core/base/check.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
@@ -17,15 +15,10 @@ static_assert(PRSDSignature1024::descriptorSize() == kPRSDSize);
 static_assert(GEDTSignature32768::descriptorSize() == kGEDTSize);
 static_assert(ShapeSignature20736::descriptorSize() == kSignatureSize);
 
-void detail::PRSTParameters::validate() const {
-  check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
-  checkNumThreads(num_threads);
-}
+namespace {
 
-std::vector<float> detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters,
-                                              const Visibility* seen, SymmetryDescriptorKind kind) {
+SymmetryDescriptors described(const Points& points, const detail::PRSTParameters& parameters, const Visibility* seen) {
   DescriptorOptions options;
-  options.radius = parameters.radius;
   options.by_equation_1 = parameters.by_equation_1;
   options.seed = parameters.seed;
   options.num_threads = parameters.num_threads;
@@ -40,10 +33,27 @@ std::vector<float> detail::describeBySymmetry(const Points& points, const PRSTPa
     frame.num_threads = parameters.num_threads;
     T_frame_input = symmetryFrame(points, frame, seen).T_canonical_input;
   }
-  SymmetryDescriptors all = symmetryDescriptors(points, T_frame_input, options);
-  return std::move(kind == SymmetryDescriptorKind::PRST   ? all.prst
-                   : kind == SymmetryDescriptorKind::PRSD ? all.prsd
-                                                          : all.gedt);
+  return symmetryDescriptors(points, T_frame_input, options);
+}
+
+}  // namespace
+
+void detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
+                                PRSTSignature32768& descriptor) {
+  const std::vector<float> values = described(points, parameters, seen).prst;
+  std::copy(values.begin(), values.end(), descriptor.prst);
+}
+
+void detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
+                                PRSDSignature1024& descriptor) {
+  const std::vector<float> values = described(points, parameters, seen).prsd;
+  std::copy(values.begin(), values.end(), descriptor.prsd);
+}
+
+void detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
+                                GEDTSignature32768& descriptor) {
+  const std::vector<float> values = described(points, parameters, seen).gedt;
+  std::copy(values.begin(), values.end(), descriptor.gedt);
 }
 
 float descriptorDistance(const PRSTSignature32768& a, const PRSTSignature32768& b) {
@@ -62,12 +72,5 @@ float productDistance(const PRSTSignature32768& prst_a, const GEDTSignature32768
                       const PRSTSignature32768& prst_b, const GEDTSignature32768& gedt_b) {
   return descriptorDistance(prst_a, prst_b) * descriptorDistance(gedt_a, gedt_b);
 }
-
-template class PRSTEstimation<pcl::PointXYZ>;
-template class PRSTEstimation<pcl::PointXYZI>;
-template class PRSTEstimation<pcl::PointXYZRGB>;
-template class PRSTEstimation<pcl::PointXYZRGBA>;
-template class PRSTEstimation<pcl::PointNormal>;
-template class PRSTEstimation<pcl::PointXYZRGBNormal>;
 
 }  // namespace pcl_symmetry

@@ -5,12 +5,10 @@
 #include <pcl/features/feature.h>
 #include <pcl/impl/pcl_base.hpp>
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/point_set.h"
@@ -23,45 +21,25 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
-/// Which of the paper's descriptors an output holds.
-enum class SymmetryDescriptorKind { PRST, PRSD, GEDT };
-inline SymmetryDescriptorKind kindOf(const PRSTSignature32768&) {
-  return SymmetryDescriptorKind::PRST;
-}
-inline SymmetryDescriptorKind kindOf(const PRSDSignature1024&) {
-  return SymmetryDescriptorKind::PRSD;
-}
-inline SymmetryDescriptorKind kindOf(const GEDTSignature32768&) {
-  return SymmetryDescriptorKind::GEDT;
-}
-inline float* valuesOf(PRSTSignature32768& signature) {
-  return signature.prst;
-}
-inline float* valuesOf(PRSDSignature1024& signature) {
-  return signature.prsd;
-}
-inline float* valuesOf(GEDTSignature32768& signature) {
-  return signature.gedt;
-}
-
 /// Parameters of PRSTEstimation.
 struct PRSTParameters {
   bool use_input_axes = false;
   bool by_equation_1 = false;
-  double radius = 2.0;  ///< in mean distances of the points from the center, > 0
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
-
-  /// \throws std::invalid_argument naming field, value and rule.
-  void validate() const;
 };
 
 /// \param points 3 x N, finite, input units.
 /// \param seen what a scanner saw; null = the points show the object from all sides.
-/// \return the values of a descriptor.
 /// \throws std::invalid_argument for points without extent.
-std::vector<float> describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
-                                      SymmetryDescriptorKind kind);
+void describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
+                        PRSTSignature32768& descriptor);
+/// The same.
+void describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
+                        PRSDSignature1024& descriptor);
+/// The same.
+void describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
+                        GEDTSignature32768& descriptor);
 
 }  // namespace detail
 
@@ -93,23 +71,14 @@ public:
   /// \param by_equation_1 values of PRST and PRSD are sqrt((1 + D) / 2) as in equation 1; false (default):
   /// sqrt(max(D, 0)), which is 0 for planes without any symmetry.
   void setByEquation1(bool by_equation_1) { parameters_.by_equation_1 = by_equation_1; }
-  bool getUseInputAxes() const { return parameters_.use_input_axes; }  ///< see setUseInputAxes()
-
-  /// Sets the size of the ball that is described. It is relative to the cloud, unlike that of setRadiusSearch(), which
-  /// is ignored.
-  /// \param radius in mean distances of the points from the center, > 0; default 2.
-  /// \throws pcl::BadArgumentException for another radius.
-  void setRadius(double radius) {
-    detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.radius = radius; });
-  }
-  double getRadius() const { return parameters_.radius; }  ///< see setRadius()
 
   void setRandomSeed(std::uint64_t seed) { parameters_.seed = seed; }  ///< of all random draws
 
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   /// \throws pcl::BadArgumentException for a negative number.
   void setNumberOfThreads(int num_threads) {
-    detail::changeOptions(parameters_, [&](detail::PRSTParameters& changed) { changed.num_threads = num_threads; });
+    detail::checkAtLeast("num_threads", num_threads, 0);
+    parameters_.num_threads = num_threads;
   }
 
   /// \param max_points points that are drawn from a larger cloud, >= 2; default 20 000.
@@ -152,9 +121,7 @@ protected:
   void computeFeature(PointCloudOut& output) override {
     output.width = output.height = 1;
     try {
-      const std::vector<float> values =
-          detail::describeBySymmetry(points_, parameters_, seen_ ? &*seen_ : nullptr, detail::kindOf(output[0]));
-      std::copy(values.begin(), values.end(), detail::valuesOf(output[0]));
+      detail::describeBySymmetry(points_, parameters_, seen_ ? &*seen_ : nullptr, output[0]);
     } catch (const std::invalid_argument& reason) {
       warnOfNoAnswer(std::string("input cloud: ") + reason.what());
       output.clear();
@@ -172,8 +139,7 @@ private:
   void warnOfIgnoredSearch() {
     if (warned_ || (this->search_radius_ == 0.0 && this->k_ == 0)) return;
     warned_ = true;
-    PCL_WARN("[pcl_symmetry::%s] setRadiusSearch and setKSearch are ignored; setRadius is the size of the ball\n",
-             this->getClassName().c_str());
+    PCL_WARN("[pcl_symmetry::%s] setRadiusSearch and setKSearch are ignored\n", this->getClassName().c_str());
   }
 
   detail::PRSTParameters parameters_;
@@ -208,15 +174,5 @@ float descriptorDistance(const PRSDSignature1024& a, const PRSDSignature1024& b)
 /// L2 distance.
 /// \return >= 0.
 float descriptorDistance(const GEDTSignature32768& a, const GEDTSignature32768& b);
-
-#ifndef PCL_NO_PRECOMPILE
-// Marked one by one: where all is hidden, so are the point types of PCL and what is made of them.
-extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZ>;
-extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZI>;
-extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGB>;
-extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGBA>;
-extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointNormal>;
-extern template class PCL_SYMMETRY_EXPORTS PRSTEstimation<pcl::PointXYZRGBNormal>;
-#endif
 
 }  // namespace pcl_symmetry

@@ -32,10 +32,6 @@ public:
   }
   const FrameOptions& getOptions() const { return options_; }  ///< see setOptions()
 
-  /// \param tie frames whose scores differ by no more than this are equally good, >= 0; default 0.06.
-  void setTie(double tie) {
-    change([&](FrameOptions& changed) { changed.tie = tie; });
-  }
   /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
   void setGridSize(int num_cells) {
     change([&](FrameOptions& changed) { changed.num_cells = num_cells; });

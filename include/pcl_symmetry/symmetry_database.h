@@ -51,16 +51,10 @@ struct RecognitionOptions {
   /// For scans from a viewpoint: models with the best coarse poses, whose poses are refined, >= 1, of num_candidates
   /// and again of the others.
   int num_refined = 4;
-  /// Added to the distance of two views if their radii differ by a factor of e, >= 0; 0 ignores the size. A smaller
-  /// value is better where other objects hide much of the object.
-  double size_weight = 0.25;
   double min_confidence = 0.5;  ///< of an accepted model, in [0, 1], see RecognizedModel::confidence
   double min_merit = 0.5;       ///< of the pose of an accepted model, in [-1, 1], see RecognizedModel::score
-  CloudRegistrationOptions registration = quickRegistration();  ///< search for poses and their refinement
-  int num_threads = 0;                                          ///< >= 0; 0 = one per core
+  int num_threads = 0;          ///< >= 0; 0 = one per core
 
-  /// \return a search for poses that takes a tenth of the time of the default.
-  static CloudRegistrationOptions quickRegistration();
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

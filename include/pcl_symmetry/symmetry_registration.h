@@ -29,8 +29,7 @@ struct PoseNeighborhood {
 struct CloudRegistrationOptions {
   /// Only poses around the guess, as a track needs them; not set: all poses. Frames are then not looked for.
   std::optional<PoseNeighborhood> around = {};
-  bool frames = true;        ///< tries the poses that bring symmetry frames together, beside evenly spread rotations
-  FrameOptions frame;        ///< of these frames
+  FrameOptions frame;        ///< of the frames that poses come from, beside evenly spread rotations
   PoseSearchOptions search;  ///< of the search for poses
   int max_iterations = 30;   ///< of the refinement by PCL's point-to-plane ICP, >= 1
   /// Greatest distance of corresponding points in the refinement, input units, > 0; not set: from the data.
@@ -184,15 +183,6 @@ public:
     target_viewpoint_ = viewpoint;
     prepared_target_.reset();
   }
-  /// Gives what the scanners of a scene saw, made once for all its objects, in place of what the viewpoint tells.
-  /// \param seen in the frame of that cloud; null (default): each align() finds out for itself.
-  void setSourceSeenSpace(const SeenSpace::ConstPtr& seen) { source_seen_space_ = seen; }
-  /// See setSourceSeenSpace().
-  void setTargetSeenSpace(const SeenSpace::ConstPtr& seen) {
-    target_seen_space_ = seen;
-    prepared_target_.reset();
-  }
-
   /// \param min_merit a pose of at least this getScore().merit() has converged, if its points lie on the surface, too
   /// (CloudRegistration::converged()), in [-1, 1]; default 0.4: scans of benchmark models, also scans with noise and
   /// holes, reach 0.5 at their own model and stay below 0.32 at models of other kinds.
@@ -213,16 +203,6 @@ public:
   void setSearchAround(double angle, double distance) {
     detail::changeOptions(options_, [&](CloudRegistrationOptions& changed) { changed.around = {angle, distance}; });
   }
-  /// Searches all poses again (default).
-  void setSearchEverywhere() { options_.around.reset(); }
-  /// \param use_frames whether the symmetry frames of both clouds give candidates (default), or evenly spread rotations
-  /// alone.
-  void setUseFrames(bool use_frames) { options_.frames = use_frames; }
-  /// \param options of the search for poses.
-  void setSearchOptions(const PoseSearchOptions& options) {
-    detail::changeOptions(options_.search, [&](PoseSearchOptions& changed) { changed = options; });
-  }
-  const PoseSearchOptions& getSearchOptions() const { return options_.search; }  ///< see setSearchOptions()
   /// Larger clouds are reduced to this number of points, see CloudAnalysis::setMaxPoints().
   /// \param max_points >= 3; default 10 000.
   void setMaxPoints(std::size_t max_points) {
@@ -280,7 +260,6 @@ private:
   void findPose(const Points& source, const Matrix4& guess);
 
   Viewpoint source_viewpoint_, target_viewpoint_;
-  SeenSpace::ConstPtr source_seen_space_, target_seen_space_;
   CloudRegistrationOptions options_;
   std::optional<RegistrationTarget> prepared_target_;
   // A lower value calls models of other kinds a fit, a higher one refuses scans with noise and holes.

@@ -65,22 +65,23 @@ FittedForms DatabaseParts::storedForms() {
   }
 }
 
-std::shared_ptr<const ShapeSearch> DatabaseParts::shapes() {
+template <typename Search>
+std::shared_ptr<const Search> DatabaseParts::latest(std::shared_ptr<const Search>& made,
+                                                    std::uint64_t& version_of_made) {
   const std::lock_guard<std::mutex> lock(mutex);
   const std::uint64_t version = store.version();
-  if (shapes_version_ != version) shapes_.reset();  // first: both together would take twice the memory
-  if (!shapes_) shapes_ = std::make_shared<const ShapeSearch>(store, storedForms(), options);
-  shapes_version_ = version;
-  return shapes_;
+  if (version_of_made != version) made.reset();  // first: both together would take twice the memory
+  if (!made) made = std::make_shared<const Search>(store, storedForms(), options);
+  version_of_made = version;
+  return made;
+}
+
+std::shared_ptr<const ShapeSearch> DatabaseParts::shapes() {
+  return latest(shapes_, shapes_version_);
 }
 
 std::shared_ptr<const ViewSearch> DatabaseParts::views() {
-  const std::lock_guard<std::mutex> lock(mutex);
-  const std::uint64_t version = store.version();
-  if (views_version_ != version) views_.reset();
-  if (!views_) views_ = std::make_shared<const ViewSearch>(store, storedForms(), options);
-  views_version_ = version;
-  return views_;
+  return latest(views_, views_version_);
 }
 
 std::shared_ptr<const PairSearch> DatabaseParts::pairs() {

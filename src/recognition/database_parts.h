@@ -48,6 +48,9 @@ struct DatabaseParts {
   ModelStore store;
 
 private:
+  template <typename Search>
+  std::shared_ptr<const Search> latest(std::shared_ptr<const Search>& made, std::uint64_t& version_of_made);
+
   std::shared_ptr<const ShapeSearch> shapes_;
   std::shared_ptr<const ViewSearch> views_;
   std::shared_ptr<const PairSearch> pairs_;

@@ -181,10 +181,10 @@ std::vector<PackedForms> formsOfModels(ModelStore& store, const std::vector<Stor
 
 std::vector<std::string> allForms(ModelStore& store, const std::vector<StoredModel>& models, std::int64_t stored,
                                   const CompactForms* forms, const ViewCoder* coder, int num_threads) {
+  const FormPart part = forms ? FormPart::Compact : FormPart::ViewCodes;
   std::vector<std::string> all(models.size());
   const auto fail = [&](std::int64_t id, const std::string& reason) {
-    failIO(store.file(), (forms ? "the compact form of model " : "the code of views of model ") + std::to_string(id) +
-                             reason + ", pcl_symmetry_database rebuild makes new ones");
+    failIO(store.file(), nameOf(part) + std::to_string(id) + reason + ", pcl_symmetry_database rebuild makes new ones");
   };
   const auto take = [&](std::int64_t id, const std::string& bytes) {
     const auto model =
@@ -192,8 +192,7 @@ std::vector<std::string> allForms(ModelStore& store, const std::vector<StoredMod
     if (model == models.end() || model->id != id) fail(id, " is that of another model");
     all[static_cast<std::size_t>(model - models.begin())] = bytes;
   };
-  if (stored != 0 && forms) store.eachForms(stored, take);
-  if (stored != 0 && coder) store.eachViewCodes(stored, take);
+  if (stored != 0) store.each(part, stored, take);
   const std::vector<StoredModel> without = stored != 0 ? store.modelsWithoutForms() : models;
   for (const PackedForms& made : formsOfModels(store, without, forms, coder, num_threads))
     take(made.model, forms ? made.forms : made.view_codes);

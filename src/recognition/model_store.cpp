@@ -234,9 +234,9 @@ std::optional<PackedProjection> ModelStore::projection() {
   return projection;
 }
 
-void ModelStore::each(const std::string& table, const std::string& what, std::int64_t projection,
-                      const EachBytes& take) {
+void ModelStore::each(FormPart part, std::int64_t projection, const EachBytes& take) {
   if (!startReading()) return;
+  const std::string table = part == FormPart::Compact ? "compact" : "view_codes";
   SQLiteStatement row =
       connection_->prepare("SELECT model, data, checksum FROM " + table + " WHERE projection = ? ORDER BY model");
   row.bind(1, projection);
@@ -244,18 +244,9 @@ void ModelStore::each(const std::string& table, const std::string& what, std::in
     const std::int64_t model = row.integer(0);
     const std::string data = row.blob(1);
     if (checksumOf(table, model, data) != row.integer(2))
-      failIO(file_,
-             what + " of model " + std::to_string(model) + " is damaged, pcl_symmetry_database rebuild makes new ones");
+      failIO(file_, nameOf(part) + std::to_string(model) + " is damaged, pcl_symmetry_database rebuild makes new ones");
     take(model, data);
   }
-}
-
-void ModelStore::eachForms(std::int64_t projection, const EachBytes& take) {
-  each("compact", "the compact form", projection, take);
-}
-
-void ModelStore::eachViewCodes(std::int64_t projection, const EachBytes& take) {
-  each("view_codes", "the code of views", projection, take);
 }
 
 template <typename Body>

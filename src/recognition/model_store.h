@@ -40,6 +40,13 @@ struct PackedForms {
   std::string view_codes;
 };
 
+/// Which of the PackedForms.
+enum class FormPart { Compact, ViewCodes };
+/// \return how messages name the part of a model, up to its number.
+inline const char* nameOf(FormPart part) {
+  return part == FormPart::Compact ? "the compact form of model " : "the code of views of model ";
+}
+
 /// The file of a database. Every function throws pcl::IOException, which names the file and the reason.
 ///
 /// What is read is one consistent state, the one at the first reading, until refresh() or a change of this store. What
@@ -75,10 +82,8 @@ public:
   int numReferences();
   std::vector<StoredModel> modelsWithoutForms();
   std::optional<PackedProjection> projection();
-  /// Compact forms of a projection, by rising id of the model.
-  void eachForms(std::int64_t projection, const EachBytes& take);
-  /// Codes of views, in the same way.
-  void eachViewCodes(std::int64_t projection, const EachBytes& take);
+  /// What was made of the models with a projection, by rising id of the model.
+  void each(FormPart part, std::int64_t projection, const EachBytes& take);
 
   /// Adds a model or replaces that of its name.
   /// \param forms of this model, of any id, and the projection that they were made with; 0: none.
@@ -109,7 +114,6 @@ private:
   template <typename Body>
   void change(const Body& body);
   std::size_t checkBeforeMerge(const std::vector<std::string>& files);
-  void each(const std::string& table, const std::string& what, std::int64_t projection, const EachBytes& take);
   void insertForms(std::int64_t projection, const std::vector<PackedForms>& forms);
 
   std::string file_, unit_;

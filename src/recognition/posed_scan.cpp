@@ -5,6 +5,7 @@
 
 #include "core/base/constants.h"
 #include "core/geometry/principal_axes.h"
+#include "core/matching/shape_signature.h"
 #include "core/registration/pose_scoring.h"
 
 namespace pcl_symmetry::detail {
@@ -16,9 +17,19 @@ double sharedSurface(const PosedModel& a, const PosedModel& b) {
                   PoseScorer(*b.surface, *a.surface).score(T_b_a.inverse(), detail).support);
 }
 
-PosedScan::PosedScan(const Points& points, const std::optional<Visibility>& seen,
-                     const CloudRegistrationOptions& options)
-    : options_(options),
+CloudRegistrationOptions quickRegistration(int num_threads) {
+  CloudRegistrationOptions options;
+  options.frame = signatureFrameOptions();
+  options.search.num_rotations = 200;
+  options.search.num_screened = 16;
+  options.search.num_refined = 6;
+  options.search.max_poses = 2;
+  options.num_threads = num_threads;
+  return options;
+}
+
+PosedScan::PosedScan(const Points& points, const std::optional<Visibility>& seen, int num_threads)
+    : options_(quickRegistration(num_threads)),
       ball_(boundingBall(points)),
       scale_(ball_.radius / recognition_rules.seen_radius),
       surface_(surfaceOf(points, ball_.center,
@@ -55,8 +66,7 @@ std::vector<PosedModel> PosedScan::refined(int num_refined) {
 }
 
 PosedModel PosedScan::refined(const SearchedModel& model, std::shared_ptr<const PosedSurface> surface) const {
-  const Eigen::Isometry3d pose =
-      refinePoses(surface_, *surface, RefinementTarget(*surface), model.poses, options_).front().T_model_scan;
+  const Eigen::Isometry3d pose = refinePoses(surface_, *surface, model.poses, options_).front().T_model_scan;
   return {{model.name, model.frames.toInput(pose), scoreOf(*surface, pose), 0.0}, surface, pose, model.frames};
 }
 

@@ -27,13 +27,9 @@ using detail::StoredModel;
 std::vector<detail::ModelOfView> candidatesFor(DatabaseParts& database, const detail::PairSearch* pairs,
                                                const Points& points, const Points& scan_points, const Visibility& seen,
                                                const RecognitionOptions& options, int num_alike) {
-  ViewSearchOptions search;
-  search.num_nearest = num_alike;
-  search.size_weight = options.size_weight;
-  search.num_threads = options.num_threads;
   const View view = viewOf(points, boundingBall(points).center - seen.viewpoint());
   const auto read = [&](const StoredModel& model) { return database.viewsOf(model); };
-  std::vector<detail::ModelOfView> candidates = database.views()->nearest(view, search, read);
+  std::vector<detail::ModelOfView> candidates = database.views()->nearest(view, num_alike, options.num_threads, read);
   if (!pairs) return candidates;
   PoseScreeningOptions screening;
   screening.num_shapes = options.num_candidates;
@@ -95,7 +91,7 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   const int num_alike = pairs ? options.num_candidates : std::max(options.num_candidates, options.max_candidates);
   const std::vector<detail::ModelOfView> candidates =
       candidatesFor(database, pairs.get(), points, scan_points, seen, options, num_alike);
-  PosedScan scan(scan_points, seen, options.registration);
+  PosedScan scan(scan_points, seen, options.num_threads);
   const auto points_of = [&](const StoredModel& model, Points detail::ModelPoints::*part, std::size_t max_points) {
     const detail::ModelPoints* const kept = pairs ? pairs->pointsOf(model) : nullptr;
     return kept ? kept->*part : database.points(model, max_points);
@@ -126,11 +122,12 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
 std::vector<PosedModel> fitLikeShapes(DatabaseParts& database, const Points& points, const Points& scan_points,
                                       const RecognitionOptions& options) {
   std::vector<PosedModel> found;
-  const PosedScan scan(scan_points, std::nullopt, options.registration);
+  const PosedScan scan(scan_points, std::nullopt, options.num_threads);
   for (const auto& [model, distance] : database.shapes()->nearest(points, nullptr, options.num_candidates)) {
     const Points model_points = database.points(model, recognition_rules.num_scan_points);
-    const CloudRegistration posed = registerClouds(scan_points, std::nullopt, model_points, std::nullopt,
-                                                   Eigen::Isometry3d::Identity(), options.registration);
+    const CloudRegistration posed =
+        registerClouds(scan_points, std::nullopt, model_points, std::nullopt, Eigen::Isometry3d::Identity(),
+                       detail::quickRegistration(options.num_threads));
     found.push_back(scan.judged(model.name, model_points, posed.T_target_source));
   }
   rank(found);
@@ -142,14 +139,12 @@ std::vector<PosedModel> fitLikeShapes(DatabaseParts& database, const Points& poi
 template <typename FindSeen>
 Recognition recognizeIn(DatabaseParts& database, const Points& points, const Points& scan_points,
                         const RecognitionOptions& options, const FindSeen& find_seen) {
-  RecognitionOptions used = options;
-  used.registration.num_threads = options.num_threads;
-  detail::withBadArguments([&] { used.validate(); });
+  detail::withBadArguments([&] { options.validate(); });
   return detail::emptyWithoutAnswer(points, [&] {
     const std::optional<Visibility> seen = detail::withBadArguments(find_seen);
     Recognition accepted;
-    for (PosedModel& posed : seen ? fitLikeViews(database, points, scan_points, *seen, used)
-                                  : fitLikeShapes(database, points, scan_points, used))
+    for (PosedModel& posed : seen ? fitLikeViews(database, points, scan_points, *seen, options)
+                                  : fitLikeShapes(database, points, scan_points, options))
       if (isAccepted(posed.model, options)) accepted.push_back(std::move(posed.model));
     return accepted;
   });
@@ -157,26 +152,13 @@ Recognition recognizeIn(DatabaseParts& database, const Points& points, const Poi
 
 }  // namespace
 
-CloudRegistrationOptions RecognitionOptions::quickRegistration() {
-  // Less than the defaults of the search, as candidates come with poses or frames of their own.
-  CloudRegistrationOptions options;
-  options.frame = signatureFrameOptions();
-  options.search.num_rotations = 200;
-  options.search.num_screened = 16;
-  options.search.num_refined = 6;
-  options.search.max_poses = 2;
-  return options;
-}
-
 void RecognitionOptions::validate() const {
   check(num_candidates >= 1, "num_candidates", num_candidates, ">= 1");
   check(max_candidates >= 1, "max_candidates", max_candidates, ">= 1");
   check(num_refined >= 1, "num_refined", num_refined, ">= 1");
-  check(size_weight >= 0.0, "size_weight", size_weight, ">= 0");
   check(min_merit >= -1.0 && min_merit <= 1.0, "min_merit", min_merit, "in [-1, 1]");
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
   checkNumThreads(num_threads);
-  registration.validate();
 }
 
 void SymmetryDatabase::prepare() const {

@@ -76,22 +76,21 @@ void SQLiteStatement::Finalizer::operator()(sqlite3_stmt* statement) const {
 SQLiteStatement::SQLiteStatement(sqlite3* database, sqlite3_stmt* statement, const std::string& file)
     : database_(database), statement_(statement), file_(file) {}
 
-SQLiteStatement& SQLiteStatement::bind(int index, std::int64_t value) {
-  if (sqlite3_bind_int64(statement_.get(), index, value) != SQLITE_OK) failIO(file_, reasonOf(database_));
+SQLiteStatement& SQLiteStatement::bound(int code) {
+  if (code != SQLITE_OK) failIO(file_, reasonOf(database_));
   return *this;
+}
+
+SQLiteStatement& SQLiteStatement::bind(int index, std::int64_t value) {
+  return bound(sqlite3_bind_int64(statement_.get(), index, value));
 }
 
 SQLiteStatement& SQLiteStatement::bind(int index, const std::string& text) {
-  if (sqlite3_bind_text64(statement_.get(), index, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8) !=
-      SQLITE_OK)
-    failIO(file_, reasonOf(database_));
-  return *this;
+  return bound(sqlite3_bind_text64(statement_.get(), index, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
 }
 
 SQLiteStatement& SQLiteStatement::bindBlob(int index, const std::string& bytes) {
-  if (sqlite3_bind_blob64(statement_.get(), index, bytes.data(), bytes.size(), SQLITE_TRANSIENT) != SQLITE_OK)
-    failIO(file_, reasonOf(database_));
-  return *this;
+  return bound(sqlite3_bind_blob64(statement_.get(), index, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
 }
 
 bool SQLiteStatement::next() {

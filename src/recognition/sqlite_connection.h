@@ -33,6 +33,7 @@ public:
 private:
   friend class SQLiteConnection;
   SQLiteStatement(sqlite3* database, sqlite3_stmt* statement, const std::string& file);
+  SQLiteStatement& bound(int code);
 
   struct Finalizer {
     void operator()(sqlite3_stmt* statement) const;

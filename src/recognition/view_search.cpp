@@ -46,19 +46,18 @@ ViewSearch::ViewSearch(ModelStore& store, const FittedForms& stored, const Datab
   }
 }
 
-std::vector<ModelOfView> ViewSearch::nearest(const View& scan, const ViewSearchOptions& options,
+std::vector<ModelOfView> ViewSearch::nearest(const View& scan, int num_nearest, int num_threads,
                                              const ViewReader& read) const {
   std::vector<StoredModel> candidates;
   ViewIndex index;
   if (coder_) {
-    const auto count = std::max(recognition_rules.num_view_models, static_cast<std::size_t>(options.num_nearest));
-    for (const int model :
-         codes_.nearest(coder_->codeOf(scan), options.size_weight, static_cast<int>(count), options.num_threads))
+    const auto count = std::max(recognition_rules.num_view_models, static_cast<std::size_t>(num_nearest));
+    for (const int model : codes_.nearest(coder_->codeOf(scan), static_cast<int>(count), num_threads))
       candidates.push_back(models_[static_cast<std::size_t>(model)]);
-    index = indexOf(candidates, read, options.num_threads);
+    index = indexOf(candidates, read, num_threads);
   }
   std::vector<ModelOfView> found;
-  for (ShapeOfView& shape : (coder_ ? index : all_).nearest(scan, options))
+  for (ShapeOfView& shape : (coder_ ? index : all_).nearest(scan, num_nearest, num_threads))
     found.push_back(
         {(coder_ ? candidates : models_)[static_cast<std::size_t>(shape.shape)], std::move(shape.T_shape_scan)});
   return found;

@@ -29,8 +29,8 @@ public:
   /// \throws pcl::IOException naming file and reason.
   ViewSearch(ModelStore& store, const FittedForms& stored, const DatabaseOptions& options);
 
-  /// Models that look like a scan from some side, nearest first.
-  std::vector<ModelOfView> nearest(const View& scan, const ViewSearchOptions& options, const ViewReader& read) const;
+  /// Models that look like a scan from some side, nearest first, at most \p num_nearest.
+  std::vector<ModelOfView> nearest(const View& scan, int num_nearest, int num_threads, const ViewReader& read) const;
 
 private:
   std::vector<StoredModel> models_;         // in the order of the indexes

@@ -25,13 +25,11 @@ public:
         scan_cloud_(swapped_ ? target : source),
         model_cloud_(swapped_ ? source : target),
         scan_(scan_cloud_.surface(frames_.scale)),
-        model_(model_cloud_.surface(frames_.scale)),
-        refinement_target_(model_cloud_.refinementTarget(frames_.scale)) {}
+        model_(model_cloud_.surface(frames_.scale)) {}
 
   const SearchFrames& frames() const { return frames_; }
   const PosedSurface& scan() const { return *scan_; }
   const PosedSurface& model() const { return *model_; }
-  const RefinementTarget& refinementTarget() const { return *refinement_target_; }
   std::shared_ptr<const SymmetryFrame> scanFrame() const { return scan_cloud_.frame(frames_.scale); }
   std::shared_ptr<const SymmetryFrame> modelFrame() const { return model_cloud_.frame(frames_.scale); }
 
@@ -71,7 +69,6 @@ private:
   SearchFrames frames_;
   const PreparedCloud &scan_cloud_, &model_cloud_;
   std::shared_ptr<const PosedSurface> scan_, model_;
-  std::shared_ptr<const RefinementTarget> refinement_target_;
 };
 
 /// The poses that bring the symmetry frames of both clouds together. Each is tried with the center of symmetry that was
@@ -199,14 +196,14 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (options.around) {
     add(posesAround(clouds.scan(), clouds.model(), hypotheses.front(), inner));
     search.num_rotations = 0;
-  } else if (options.frames) {
+  } else {
     add(posesFromFrames(clouds));
     done("frames");
   }
   std::vector<RankedPose> poses = searchPoses(clouds.scan(), clouds.model(), hypotheses, search);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("search");
-  if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), clouds.refinementTarget(), poses, inner);
+  if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
   for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});

@@ -1,12 +1,14 @@
 #include "registration/pose_refinement.h"
 
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
 #include <pcl/registration/icp.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "core/geometry/point_samples.h"
 #include "core/registration/pose_scoring.h"
 
 namespace pcl_symmetry {
@@ -78,11 +80,11 @@ private:
 /// Point-to-plane ICP from several poses.
 class PoseRefinement {
 public:
-  PoseRefinement(const PosedSurface& scan, const PosedSurface& model, const RefinementTarget& target, double reach,
+  PoseRefinement(const PosedSurface& scan, const PosedSurface& model, double reach,
                  const CloudRegistrationOptions& options) {
     icp_.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>(), true);  // which is not asked
     icp_.setCorrespondenceEstimation(pcl::make_shared<ModelCorrespondences>(model.search));
-    icp_.setInputTarget(target.cloud);
+    icp_.setInputTarget(cloudOf(model, allOf(model.points.cols())));
     icp_.setInputSource(fewPoints(scan));
     icp_.setUseSymmetricObjective(true);
     icp_.setEnforceSameDirectionNormals(true);
@@ -105,12 +107,6 @@ private:
 };
 
 }  // namespace
-
-RefinementTarget::RefinementTarget(const PosedSurface& model) {
-  std::vector<int> all(model.order.size());
-  std::iota(all.begin(), all.end(), 0);
-  cloud = cloudOf(model, all);
-}
 
 double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence) {
   return max_correspondence.value_or(
@@ -139,10 +135,10 @@ double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const
   return std::max(0.0, share - 1.5 / std::sqrt(size));
 }
 
-std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model, const RefinementTarget& target,
+std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options) {
   const double accuracy = std::max(scan.accuracy, model.accuracy);
-  PoseRefinement icp(scan, model, target, refinementReach(scan, model, options.max_correspondence), options);
+  PoseRefinement icp(scan, model, refinementReach(scan, model, options.max_correspondence), options);
   const PoseScorer scorer(scan, model);
   const PoseScorer::Detail detail{kRefinement.judged_points, std::max(kRefinement.least_width, accuracy), true};
   const auto judged = [&](const Eigen::Isometry3d& pose, int num_points) {
@@ -156,7 +152,7 @@ std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface
     refined.push_back(after.score.merit() > before.score.merit() ? after : before);
   }
   const std::size_t size = refined.size();
-  return distinctPoses(std::move(refined), size, options.search);
+  return distinctPoses(std::move(refined), size);
 }
 
 }  // namespace pcl_symmetry

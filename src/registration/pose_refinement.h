@@ -1,8 +1,5 @@
 #pragma once
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-
 #include <Eigen/Geometry>
 #include <optional>
 #include <vector>
@@ -23,24 +20,16 @@ struct SearchFrames {
   Eigen::Isometry3d toInput(const Eigen::Isometry3d& T_target_source) const;
 };
 
-/// A model as PCL's ICP takes it: its points in their order.
-struct RefinementTarget {
-  pcl::PointCloud<pcl::PointNormal>::Ptr cloud;
-
-  explicit RefinementTarget(const PosedSurface& model);
-};
-
 /// \param max_correspondence in units of the search; not set: from the accuracy of the surfaces.
 /// \return distance in which refinePoses() looks for corresponding points, units of the search.
 double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence);
 
 /// Poses and their refinements by PCL's point-to-plane ICP, of each the one of greater merit.
 /// \param scan,model in search frames.
-/// \param target of this model.
 /// \param poses from searchPoses(), best first, at least one. Poses far behind the best are left out.
 /// \param options of the refinement; max_correspondence in units of the search.
 /// \return distinct ones, at least one, best first; T_model_scan between search frames.
-std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model, const RefinementTarget& target,
+std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options);
 
 /// \return a lower limit of the share of the scan's points that lie on the surface of the model, in [0, 1]: by a width that does not grow

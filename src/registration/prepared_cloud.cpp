@@ -27,7 +27,6 @@ const std::shared_ptr<const PosedSurface>& PreparedCloud::surfaceIn(double unit)
   surface_ = std::make_shared<const PosedSurface>(normalizePoints(points_, ball_.center, unit), seen, options_.seed,
                                                   options_.num_threads);
   frame_.reset();
-  refinement_target_.reset();
   unit_ = unit;
   return surface_;
 }
@@ -48,13 +47,6 @@ std::shared_ptr<const SymmetryFrame> PreparedCloud::frame(double unit) const {
   options.turns = false;
   const Visibility* seen = surface.seen ? &*surface.seen : nullptr;
   return frame_ = std::make_shared<const SymmetryFrame>(symmetryFrame(surface.points, options, seen));
-}
-
-std::shared_ptr<const RefinementTarget> PreparedCloud::refinementTarget(double unit) const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  const PosedSurface& surface = *surfaceIn(unit);
-  if (!refinement_target_) refinement_target_ = std::make_shared<const RefinementTarget>(surface);
-  return refinement_target_;
 }
 
 }  // namespace pcl_symmetry

@@ -8,7 +8,6 @@
 #include "core/registration/posed_surface.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/symmetry_registration.h"
-#include "registration/pose_refinement.h"
 
 namespace pcl_symmetry {
 
@@ -31,8 +30,6 @@ public:
   /// \param unit input units, > 0.
   std::shared_ptr<const PosedSurface> surface(double unit) const;
   std::shared_ptr<const SymmetryFrame> frame(double unit) const;
-  /// Of this cloud as the model that others are refined against.
-  std::shared_ptr<const RefinementTarget> refinementTarget(double unit) const;
   Eigen::Index size() const { return points_.cols(); }
 
 private:
@@ -44,7 +41,6 @@ private:
   mutable double unit_ = 0.0;
   mutable std::shared_ptr<const PosedSurface> surface_;
   mutable std::shared_ptr<const SymmetryFrame> frame_;
-  mutable std::shared_ptr<const RefinementTarget> refinement_target_;
 
   /// With the mutex locked.
   const std::shared_ptr<const PosedSurface>& surfaceIn(double unit) const;

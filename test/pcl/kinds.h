@@ -60,13 +60,6 @@ inline const Kind kKinds[] = {{"cube", {1.0, 0.95, 0.9}, 0.5},
                               {"beam", {1.5, 0.2, 0.3}, 0.3},
                               {"post", {0.3, 0.3, 0.6}, 2.0}};
 
-/// Points drawn at random lie less evenly, and meet less well, than those of scanners and of samples of meshes.
-inline RecognitionOptions optionsForRandomPoints() {
-  RecognitionOptions options;
-  options.min_merit = 0.5;
-  return options;
-}
-
 inline Eigen::Isometry3d elsewhere() {
   return Eigen::Translation3d(4.0, -2.0, 1.0) * Eigen::AngleAxisd(2.1, Eigen::Vector3d(0.3, -1.0, 0.8).normalized());
 }

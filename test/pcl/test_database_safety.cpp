@@ -80,10 +80,10 @@ private:
         if (info && info->second.source.path != "source of " + model.name) return "another source of " + model.name;
       }
       if (store.projection() && store.projection()->values != partOf("projection")) return "another projection";
-      store.eachForms(1, [](std::int64_t, const std::string& bytes) {
+      store.each(detail::FormPart::Compact, 1, [](std::int64_t, const std::string& bytes) {
         if (bytes != partOf("form")) throw std::runtime_error("another compact form");
       });
-      store.eachViewCodes(1, [](std::int64_t, const std::string& bytes) {
+      store.each(detail::FormPart::ViewCodes, 1, [](std::int64_t, const std::string& bytes) {
         if (bytes != partOf("codes")) throw std::runtime_error("other codes of views");
       });
       for (const std::string& name : names)

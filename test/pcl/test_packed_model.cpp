@@ -103,7 +103,7 @@ double angleOf(const detail::PosedModel& posed) {
 TEST(PosedScan, TriesRotationsAboutTheAxesOfAModel) {
   const Points points = mug();
   for (const double degrees : {50.0, 120.0, 180.0}) {
-    detail::PosedScan scan(points, std::nullopt, RecognitionOptions::quickRegistration());
+    detail::PosedScan scan(points, std::nullopt, 0);
     scan.bringTo("mug", points, {Eigen::Isometry3d(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitZ()))},
                  [&] { return points; });
     const std::vector<detail::PosedModel> found = scan.refined(1);
@@ -120,7 +120,7 @@ TEST(PosedScan, RefinesNoModelsFarBehindTheBest) {
   const Points points = mug();
   Points flat = points;
   flat.row(0) *= 0.2f;
-  detail::PosedScan scan(points, std::nullopt, RecognitionOptions::quickRegistration());
+  detail::PosedScan scan(points, std::nullopt, 0);
   for (const char* name : {"flat 1", "flat 2", "flat 3"})
     scan.bringTo(name, flat, {Eigen::Isometry3d::Identity()}, [&] { return flat; });
   scan.bringTo("mug", points, {Eigen::Isometry3d::Identity()}, [&] { return points; });

@@ -67,7 +67,6 @@ TEST(SymmetryAlignment, GivesAnEmptyFrameWhereThereIsNoAnswer) {
 
 TEST(SymmetryAlignment, RefusesWrongParameters) {
   SymmetryAlignment<pcl::PointXYZ> alignment;
-  EXPECT_EQ(test::messageOf([&] { alignment.setTie(-1.0); }), "tie = -1, must be >= 0");
   EXPECT_EQ(test::messageOf([&] { alignment.setGridSize(2); }), "num_cells = 2, must be in [8, 512]");
   EXPECT_EQ(test::messageOf([&] { alignment.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
   EXPECT_EQ(test::messageOf([&] { alignment.setMaxPoints(1); }), "max_points = 1, must be >= 2");

@@ -96,14 +96,14 @@ TEST_F(SymmetryDatabaseTest, RecognizesAViewWithItsPose) {
   fill(database);
   for (const Kind& kind : kKinds) {
     const Cloud view = viewOf(kind);
-    const auto found = database.recognize(view, optionsForRandomPoints());
+    const auto found = database.recognize(view);
     ASSERT_FALSE(found.empty()) << kind.name;
     EXPECT_EQ(found[0].name, kind.name);
     const Eigen::Isometry3d error = found[0].T_model_scan * elsewhere();
     EXPECT_LT(error.translation().norm(), 0.05) << kind.name;
     EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.05) << kind.name;
   }
-  EXPECT_TRUE(database.recognize(seenFrom(ball(), {0.0f, 0.0f, 6.0f}), optionsForRandomPoints()).empty());
+  EXPECT_TRUE(database.recognize(seenFrom(ball(), {0.0f, 0.0f, 6.0f})).empty());
 }
 
 TEST_F(SymmetryDatabaseTest, PreparedOnesRecognizeTheSame) {
@@ -113,8 +113,8 @@ TEST_F(SymmetryDatabaseTest, PreparedOnesRecognizeTheSame) {
   fill(prepared);
   prepared.prepare();
   const Cloud view = viewOf(kKinds[0]);
-  const auto expected = database.recognize(view, optionsForRandomPoints());
-  const auto found = prepared.recognize(view, optionsForRandomPoints());
+  const auto expected = database.recognize(view);
+  const auto found = prepared.recognize(view);
   ASSERT_FALSE(expected.empty());
   ASSERT_EQ(found.size(), expected.size());
   EXPECT_EQ(found[0].name, expected[0].name);
@@ -159,7 +159,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesWhatIsHiddenInPart) {
     const HalfHidden view(rodOnBox(kind.half, kind.rod, elsewhere(), 2), viewpoint);
     EXPECT_LT(view.cluster.size(), 0.8 * static_cast<double>(view.num_alone)) << kind.name;
     const auto seen = std::make_shared<const SeenSpace>(view.scene, given);
-    const Recognition found = database.recognize(view.scene, view.cluster, optionsForRandomPoints(), seen);
+    const Recognition found = database.recognize(view.scene, view.cluster, {}, seen);
     ASSERT_FALSE(found.empty()) << kind.name;
     EXPECT_EQ(found[0].name, kind.name);
     double sum = 0.0;
@@ -174,11 +174,11 @@ TEST_F(SymmetryDatabaseTest, AModelThatIsStoredTwiceIsAsCertainAsOnce) {
   fill(database);
   // Another one of its kind fits, but not well.
   const Cloud view = seenFrom(rodOnBox(1.05 * kKinds[0].half, kKinds[0].rod, elsewhere(), 2), {-2.0f, 6.0f, 4.0f});
-  const Recognition once = database.recognize(view, optionsForRandomPoints());
+  const Recognition once = database.recognize(view);
   ASSERT_EQ(once.size(), 1u);
   EXPECT_EQ(once[0].name, "cube");
   database.add("cube again", rodOnBox(kKinds[0].half, kKinds[0].rod, Eigen::Isometry3d::Identity(), 9));
-  const Recognition twice = database.recognize(view, optionsForRandomPoints());
+  const Recognition twice = database.recognize(view);
   ASSERT_EQ(twice.size(), 2u);
   for (const RecognizedModel& model : twice) {
     EXPECT_EQ(model.name.substr(0, 4), "cube");
@@ -196,7 +196,7 @@ TEST_F(SymmetryDatabaseTest, ModelsOfAnotherSizeHaveNoPairsInCommon) {
     database.add("cube" + std::to_string(scale), scaled);
   }
   const Cloud view = viewOf(kKinds[0]);
-  const Recognition found = database.recognize(view, optionsForRandomPoints());
+  const Recognition found = database.recognize(view);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].name, "cube");
 }
@@ -221,7 +221,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
   const DatabaseOptions options = fewViews();
   const std::string few = filled(options);
   fillWithCopies(few, file_, 52);
-  RecognitionOptions recognition = optionsForRandomPoints();
+  RecognitionOptions recognition;
   recognition.num_candidates = 2;
   recognition.num_refined = 1;
   const Cloud view = viewOf(kKinds[1]);
@@ -252,7 +252,7 @@ TEST_F(SymmetryDatabaseTest, TriesMoreModelsWhereNoneOfTheFirstIsAccepted) {
   }
   const SymmetryDatabase database(file_, options);
   const Cloud view = viewOf(kKinds[1]);
-  RecognitionOptions recognition = optionsForRandomPoints();
+  RecognitionOptions recognition;
   recognition.num_candidates = 2;
   recognition.max_candidates = 2;
   EXPECT_TRUE(database.recognize(view, recognition).empty());
@@ -384,7 +384,7 @@ TEST_F(SymmetryDatabaseTest, TakesAllPointTypes) {
   pcl::copyPointCloud(cube(), cloud);
   database.add("cube", cloud);
   EXPECT_EQ(database.match(cloud, 1).at(0).name, "cube");
-  EXPECT_FALSE(database.recognize(cloud, optionsForRandomPoints()).empty());
+  EXPECT_FALSE(database.recognize(cloud).empty());
 }
 
 TEST_F(SymmetryDatabaseTest, CloudsWithoutAnswerFindNothing) {

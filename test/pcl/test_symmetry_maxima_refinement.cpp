@@ -22,7 +22,7 @@ using test::expectSamePlanes;
 using test::numFound;
 using test::Sampling;
 
-TEST(SymmetryMaximaRefinement, HonoursIndicesAndLeavesOutPointsThatAreNotFinite) {
+TEST(SymmetryMaximaRefinement, HonorsIndicesAndLeavesOutPointsThatAreNotFinite) {
   const auto cloud = test::toCloud(test::box(2000, Sampling::Random, 4));
   const auto expected = detectSymmetryPlanes(*cloud);
   const auto holes = test::withHoles(*cloud, 5);

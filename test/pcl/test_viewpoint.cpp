@@ -38,7 +38,7 @@ void setOrigin(Cloud& cloud, const Eigen::Vector3d& origin) {
   cloud.sensor_origin_ << origin.cast<float>(), 0.0f;
 }
 
-bool recognised(const Cloud::ConstPtr& cloud) {
+bool recognized(const Cloud::ConstPtr& cloud) {
   return detail::seenSpace(*cloud, detail::selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{})
       .has_value();
 }
@@ -51,14 +51,14 @@ ViewpointSource sourceOf(const Cloud::ConstPtr& cloud) {
 TEST(Viewpoint, AnOrganizedCloudTellsByItsOwnRays) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const Scan scan = randomScan(seed);
-    EXPECT_TRUE(recognised(pictureOf(scan, scan.T_camera_object))) << seed << ": in the frame of the camera";
+    EXPECT_TRUE(recognized(pictureOf(scan, scan.T_camera_object))) << seed << ": in the frame of the camera";
     const Eigen::Isometry3d away = test::randomPose(seed, 0.2) * scan.T_camera_object;
     EXPECT_TRUE(
         detail::seenByOrganizedCloud((away * scan.pixels.cast<double>()).cast<float>(), scan.width, scan.height))
         << seed << ": from the rays alone";
     // Here sensor_origin_ = 0 lies in the middle of the box.
-    EXPECT_TRUE(recognised(pictureOf(scan))) << seed << ": in the frame of the object";
-    EXPECT_TRUE(recognised(pictureOf(scan, test::randomPose(seed)))) << seed << ": in any other";
+    EXPECT_TRUE(recognized(pictureOf(scan))) << seed << ": in the frame of the object";
+    EXPECT_TRUE(recognized(pictureOf(scan, test::randomPose(seed)))) << seed << ": in any other";
   }
 }
 
@@ -92,7 +92,7 @@ TEST(Viewpoint, RowsAndColumnsThatAreNoPictureAreNone) {
   auto whole = toCloud(test::box(4000, Sampling::Random, 1));
   whole->width = 80;
   whole->height = 50;
-  EXPECT_FALSE(recognised(whole));
+  EXPECT_FALSE(recognized(whole));
   // The pixels of a scan in a wrong order.
   const Scan scan = randomScan(1);
   auto shuffled = pictureOf(scan);

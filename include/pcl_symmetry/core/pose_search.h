@@ -7,15 +7,11 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Options of the search for poses that bring a scan, or a whole object, to a model of it (Section 5.1). Lengths are in
 /// radii of the model.
 struct PoseSearchOptions {
-  int num_rotations = 1000;     ///< spread evenly over all rotations, tried beside the given poses, >= 0
-  int num_screened = 60;        ///< the best of these that are improved coarsely, with all given poses, >= 1
-  int num_refined = 20;         ///< the best of those that are improved finely, >= 1
-  int max_poses = 4;            ///< the best of those that are returned, >= 1
-  double coarse_width = 0.25;   ///< width of the Gaussian at the start, radii, > 0
-  double fine_width = 0.05;     ///< width of the Gaussian at the end, radii, > 0
-  double merge_angle = 0.2;     ///< radians, >= 0: poses closer than this and than merge_distance are one
-  double merge_distance = 0.1;  ///< radii, >= 0
-  int num_threads = 0;          ///< >= 0; 0 = one per core
+  int num_rotations = 1000;  ///< spread evenly over all rotations, tried beside the given poses, >= 0
+  int num_screened = 60;     ///< the best of these that are improved coarsely, with all given poses, >= 1
+  int num_refined = 20;      ///< the best of those that are improved finely, >= 1
+  int max_poses = 4;         ///< the best of those that are returned, >= 1
+  int num_threads = 0;       ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

@@ -2,8 +2,8 @@
 
 #include <pcl/common/point_tests.h>
 #include <pcl/common/transforms.h>
-#include <pcl/impl/pcl_base.hpp>
 #include <pcl/search/kdtree.h>
+#include <pcl/impl/pcl_base.hpp>
 
 #include <cmath>
 #include <limits>
@@ -70,10 +70,7 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::prepareTarget() {
   const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
   reason_ = detail::reasonForNoAnswer(target.points, "target", kLeastRegistrationPoints);
   if (!reason_.empty()) return;
-  const std::optional<Visibility> seen = target_seen_space_
-                                             ? detail::visibilityOf(*target_seen_space_)
-                                             : detail::seenSpace(*target_, target.points, target_viewpoint_);
-  prepared_target_.emplace(target.points, seen, options_);
+  prepared_target_.emplace(target.points, detail::seenSpace(*target_, target.points, target_viewpoint_), options_);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -85,9 +82,7 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   if (corr_dist_threshold_ < std::sqrt(std::numeric_limits<double>::max()))
     options.max_correspondence = corr_dist_threshold_;
   const bool is_part = this->use_indices_ && indices_->size() < input_->size();
-  const std::optional<Visibility> source_seen = source_seen_space_
-                                                    ? detail::visibilityOf(*source_seen_space_)
-                                                    : detail::seenSpace(*input_, source, source_viewpoint_, is_part);
+  const std::optional<Visibility> source_seen = detail::seenSpace(*input_, source, source_viewpoint_, is_part);
   const CloudRegistration result =
       registerClouds(source, source_seen, *prepared_target_, Eigen::Isometry3d(guess.template cast<double>()), options);
   poses_ = result.poses;

@@ -7,10 +7,9 @@
 namespace pcl_symmetry {
 
 struct CompactIndexOptions {
-  int num_leading = 24;           ///< components of greatest variance, by which candidates are chosen, >= 1
-  int num_candidates = 512;       ///< forms, at least, whose components are all compared, >= 1
-  double candidate_share = 0.02;  ///< the same as a share of all forms, in [0, 1]
-  int num_threads = 0;            ///< >= 0; 0 = one per core
+  int num_leading = 24;      ///< components of greatest variance, by which candidates are chosen, >= 1
+  int num_candidates = 512;  ///< forms, at least, whose components are all compared, >= 1
+  int num_threads = 0;       ///< >= 0; 0 = one per core
 };
 
 /// The mean distance of a shape to the nearest shapes of a fixed reference set.

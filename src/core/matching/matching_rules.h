@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 namespace pcl_symmetry {
 
 /// Numbers of matching that decide which shapes are found.
@@ -8,19 +10,28 @@ struct MatchingRules {
   double signature_reach = 2.5;  // mean distances from the middle: half the side of the cube
   int normal_cells = 60;         // across the bounding ball, one normal each
   float min_spread = 0.05f;      // of the greatest root mean square: flat shapes are stretched no further
+  int num_iterations = 4;        // of the search for the components of greatest variance
+  // Power of their standard deviation that coefficients are divided by: what all shapes have in common counts less. 0
+  // is the L2 distance of the signatures, 1 lets noise count as much as shape.
+  double whitening = 0.4;
+  double candidate_share = 0.02;      // of all compact forms, whose components are all compared
+  Eigen::Index frame_points = 4'096;  // that the symmetry frame of a signature is made of
 
   // Descriptors of the paper
+  double described_radius = 2.0;        // of the ball that they describe, mean distances of the points from the origin
   int transform_cells = 64;             // of the distance transform that planes are measured in,
   double transform_sigma = 1.0 / 16.0;  // and its width, radii: planes need a narrower one than positions
 
   // Views
-  int outline_cells = 48;         // across the larger side of an outline
-  int picture_cells = 32;         // across a picture
-  float picture_reach = 2.5f;     // radii of the outline: half the side of a picture
-  double outer_ring = 2.3;        // radii of the outline: outer edge of the rings
-  float deepest = 2.0f;           // radii of the outline: greater depths count as this
-  float magnitude_weight = 0.7f;  // of the magnitudes in ViewAgreement::distance
-  int num_mean_views = 2;         // views of a shape whose mean distance ranks it: a scan lies between views
+  int outline_cells = 48;          // across the larger side of an outline
+  int picture_cells = 32;          // across a picture
+  float picture_reach = 2.5f;      // radii of the outline: half the side of a picture
+  double outer_ring = 2.3;         // radii of the outline: outer edge of the rings
+  float deepest = 2.0f;            // radii of the outline: greater depths count as this
+  float magnitude_weight = 0.7f;   // of the magnitudes in ViewAgreement::distance
+  int num_mean_views = 2;          // views of a shape whose mean distance ranks it: a scan lies between views
+  double size_weight = 0.25;       // distance that radii a factor of e apart add; parts that are hidden change them
+  std::size_t num_view_poses = 6;  // of each shape: its nearest views
 
   // Pairs of points
   int num_neighbors = 16;          // that give a normal

@@ -61,10 +61,8 @@ std::vector<Trial> trialsOf(const ScreenedSurface& scan, const std::vector<Poses
 /// The distinct ones of the poses of a shape, in input frames.
 std::vector<Eigen::Isometry3d> distinctInInput(std::vector<RankedPose> poses, const ScreenedSurface& scan,
                                                const ScreenedSurface& shape, int num_poses) {
-  PoseSearchOptions merge;
-  merge.merge_distance *= shape.radius;
   std::vector<Eigen::Isometry3d> found;
-  for (const RankedPose& pose : distinctPoses(std::move(poses), static_cast<std::size_t>(num_poses), merge)) {
+  for (const RankedPose& pose : distinctPoses(std::move(poses), static_cast<std::size_t>(num_poses), shape.radius)) {
     found.push_back(pose.T_model_scan);
     found.back().translation() += shape.center - pose.T_model_scan.linear() * scan.center;
   }

@@ -160,7 +160,7 @@ Points stretched(const Points& points) {
 }
 
 /// At most \p max_points points, at equal steps in the input.
-Points thinned(const PointsRef& points, int max_points) {
+Points thinned(const PointsRef& points, Eigen::Index max_points) {
   if (points.cols() <= max_points) return points;
   Points kept(3, max_points);
   for (Eigen::Index i = 0; i < max_points; ++i) kept.col(i) = points.col(i * points.cols() / max_points);
@@ -230,7 +230,7 @@ ShapeDescription describeShape(const PointsRef& points, const DescriptionOptions
   frame_options.seed = options.seed;
   frame_options.num_threads = options.num_threads;
   ShapeDescription result;
-  result.frame = symmetryFrame(thinned(points, options.max_frame_points), frame_options, visibility);
+  result.frame = symmetryFrame(thinned(points, matching_rules.frame_points), frame_options, visibility);
   const Points used = thinned(points, options.max_points);
   const std::vector<Eigen::Matrix3d> frames = signatureFrames(used, result.frame);
   result.signatures.resize(kSignatureSize, static_cast<Eigen::Index>(frames.size()));

@@ -47,8 +47,7 @@ FrameOptions signatureFrameOptions();
 void rotateSignature(const float* signature, int rotation, float* rotated);
 
 struct DescriptionOptions {
-  int max_points = 20'000;       ///< that signatures are made of, spread evenly over the input, >= 2
-  int max_frame_points = 4'096;  ///< that the symmetry frame is made of, >= 2
+  int max_points = 20'000;  ///< that signatures are made of, spread evenly over the input, >= 2
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 };

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/geometry/axis_rotations.h"
+#include "core/matching/matching_rules.h"
 #include "core/matching/shape_signature.h"
 
 namespace pcl_symmetry {
@@ -62,13 +63,14 @@ struct Components {
 Components principalComponents(const Eigen::MatrixXf& products, const ProjectionOptions& options) {
   const Eigen::Index size = products.rows();
   const Eigen::Index searched = std::min<Eigen::Index>(size, options.num_dimensions + 16);
-  RandomStream random(options.seed);
+  RandomStream random(1);
   const auto orthonormal = [&](const Eigen::MatrixXf& spanning) -> Eigen::MatrixXf {
     return Eigen::HouseholderQR<Eigen::MatrixXf>(spanning).householderQ() * Eigen::MatrixXf::Identity(size, searched);
   };
   Eigen::MatrixXf space =
       Eigen::MatrixXf::NullaryExpr(size, searched, [&] { return static_cast<float>(random.uniform() - 0.5); });
-  for (int i = 0; i < options.num_iterations; ++i) space = product(products, orthonormal(space), options.num_threads);
+  for (int i = 0; i < matching_rules.num_iterations; ++i)
+    space = product(products, orthonormal(space), options.num_threads);
   space = orthonormal(space);
   const Eigen::MatrixXf within = space.transpose() * product(products, space, options.num_threads);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(within);
@@ -106,7 +108,7 @@ Eigen::MatrixXf whitenedBasis(const Eigen::MatrixXf& signatures, const Component
     });
   }
   const Eigen::ArrayXf deviations = components.variances.array().sqrt();
-  const Eigen::ArrayXf weights = deviations.pow(-static_cast<float>(options.whitening));
+  const Eigen::ArrayXf weights = deviations.pow(-static_cast<float>(matching_rules.whitening));
   basis *= (weights / deviations).matrix().asDiagonal();
   return basis;
 }

@@ -10,12 +10,7 @@ namespace pcl_symmetry {
 
 struct ProjectionOptions {
   int num_dimensions = 256;  ///< of the compact form, >= 1; fewer where the references span fewer
-  /// Coefficients are divided by their standard deviation to this power, in [0, 1]: what all shapes have in common
-  /// counts less. 0 is the L2 distance of the signatures, 1 lets noise count as much as shape.
-  double whitening = 0.4;
-  int num_iterations = 4;  ///< of the search for the components of greatest variance, >= 1
-  std::uint64_t seed = 1;
-  int num_threads = 0;  ///< >= 0; 0 = one per core
+  int num_threads = 0;       ///< >= 0; 0 = one per core
 };
 
 /// Rotates a signature or another descriptor by one of the axisRotations().

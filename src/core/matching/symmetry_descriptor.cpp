@@ -28,7 +28,6 @@ std::vector<float> prstOf(const GaussianEdt& edt, int num_radius, const Descript
 }  // namespace
 
 void DescriptorOptions::validate() const {
-  check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
   check(num_samples >= 1, "num_samples", num_samples, ">= 1");
   checkNumThreads(num_threads);
 }
@@ -39,7 +38,7 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
   if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
   if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
   const Eigen::Matrix3Xd moved = T_frame_input * points.cast<double>();
-  const double scale = options.radius * moved.colwise().norm().mean();
+  const double scale = matching_rules.described_radius * moved.colwise().norm().mean();
   check(scale > 0.0, "mean distance from the origin", scale, "> 0");
   const Points scaled = (moved / scale).cast<float>();
   GaussianEdtOptions edt_options;

@@ -17,7 +17,6 @@ constexpr int kPRSDSize = kDescriptorBins * kDescriptorBins;                    
 constexpr int kGEDTSize = kPRSTSize;                                            // cells x cells x cells
 
 struct DescriptorOptions {
-  double radius = 2.0;    ///< of the ball that is described, in mean distances of the points from the origin, > 0
   int num_samples = 256;  ///< of the transform, >= 1
   /// PRST and PRSD by equation 1, sqrt((1 + D) / 2), in place of sqrt(max(D, 0)).
   bool by_equation_1 = false;

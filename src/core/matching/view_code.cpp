@@ -132,9 +132,9 @@ void ViewCodeIndex::add(const std::string& codes) {
   begins_.push_back(begins_.back() + codes.size() / kBytesOfView);
 }
 
-std::vector<int> ViewCodeIndex::nearest(const ViewCode& scan, double size_weight, int count, int num_threads) const {
+std::vector<int> ViewCodeIndex::nearest(const ViewCode& scan, int count, int num_threads) const {
   check(count >= 0, "count", count, ">= 0");
-  const auto weight = static_cast<float>(size_weight) * kViewSizeStep;
+  const auto weight = static_cast<float>(matching_rules.size_weight) * kViewSizeStep;
   std::vector<float> distances(numShapes());
   parallelRanges(numShapes(), 256, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -163,12 +163,11 @@ struct NearView {
 };
 
 /// The nearest views of one shape, nearest first.
-std::vector<NearView> nearestViews(const std::vector<View>& views, const View& scan, const ViewComparison& comparison,
-                                   const ViewSearchOptions& options) {
+std::vector<NearView> nearestViews(const std::vector<View>& views, const View& scan, const ViewComparison& comparison) {
   std::vector<NearView> nearest;
   for (const View& view : views) {
-    const double size = options.size_weight * std::abs(std::log(view.radius / scan.radius));
-    const bool full = nearest.size() >= static_cast<std::size_t>(options.num_poses);
+    const double size = matching_rules.size_weight * std::abs(std::log(view.radius / scan.radius));
+    const bool full = nearest.size() >= matching_rules.num_view_poses;
     const double enough = full ? nearest.back().distance - size : 2.0;  // the greatest distance of unit vectors
     if (enough <= 0.0) continue;
     const ViewAgreement agreement = comparison.compare(view.values.data(), static_cast<float>(enough));
@@ -195,11 +194,11 @@ void ViewIndex::add(const std::vector<View>& views) {
   shapes_.push_back(views);
 }
 
-std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, const ViewSearchOptions& options) const {
+std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, int num_nearest, int num_threads) const {
   const ViewComparison comparison(scan);
   std::vector<std::vector<NearView>> views(shapes_.size());
-  parallelRanges(shapes_.size(), 16, options.num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) views[i] = nearestViews(shapes_[i], scan, comparison, options);
+  parallelRanges(shapes_.size(), 16, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) views[i] = nearestViews(shapes_[i], scan, comparison);
   });
 
   std::vector<int> order;
@@ -207,7 +206,7 @@ std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, const ViewSearchOp
     if (!views[i].empty()) order.push_back(static_cast<int>(i));
   const auto distance = [&](int shape) { return meanDistance(views[static_cast<std::size_t>(shape)]); };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
-  order.resize(std::min(order.size(), static_cast<std::size_t>(options.num_nearest)));
+  order.resize(std::min(order.size(), static_cast<std::size_t>(num_nearest)));
 
   std::vector<ShapeOfView> found;
   for (const int shape : order) {

@@ -62,21 +62,13 @@ public:
   std::size_t numShapes() const { return begins_.size() - 1; }
   std::size_t numViews() const { return begins_.back(); }
 
-  /// \param size_weight see ViewSearchOptions.
   /// \param count >= 0.
   /// \return the numbers of the nearest shapes, rising, at most \p count. Shapes without views are never found.
-  std::vector<int> nearest(const ViewCode& scan, double size_weight, int count, int num_threads) const;
+  std::vector<int> nearest(const ViewCode& scan, int count, int num_threads) const;
 
 private:
   std::vector<std::int8_t> codes_;         // of all shapes, one after the other
   std::vector<std::size_t> begins_ = {0};  // of the shapes, and the end, in views
-};
-
-struct ViewSearchOptions {
-  int num_nearest = 10;       ///< shapes that are returned, >= 0
-  int num_poses = 6;          ///< poses of each shape, >= 1
-  double size_weight = 0.25;  ///< distance that radii a factor of e apart add, >= 0
-  int num_threads = 0;        ///< >= 0; 0 = one per core
 };
 
 /// A shape that looks like a scan from some side.
@@ -95,8 +87,8 @@ public:
 
   int numShapes() const { return static_cast<int>(shapes_.size()); }
 
-  /// \return nearest first, at most ViewSearchOptions::num_nearest. Shapes without views are never found.
-  std::vector<ShapeOfView> nearest(const View& scan, const ViewSearchOptions& options = {}) const;
+  /// \return nearest first, at most \p num_nearest. Shapes without views are never found.
+  std::vector<ShapeOfView> nearest(const View& scan, int num_nearest = 10, int num_threads = 0) const;
 
 private:
   std::vector<std::vector<View>> shapes_;

@@ -68,22 +68,17 @@ void PoseSearchOptions::validate() const {
   check(num_screened >= 1, "num_screened", num_screened, ">= 1");
   check(num_refined >= 1, "num_refined", num_refined, ">= 1");
   check(max_poses >= 1, "max_poses", max_poses, ">= 1");
-  check(coarse_width > 0.0, "coarse_width", coarse_width, "> 0");
-  check(fine_width > 0.0, "fine_width", fine_width, "> 0");
-  check(merge_angle >= 0.0, "merge_angle", merge_angle, ">= 0");
-  check(merge_distance >= 0.0, "merge_distance", merge_distance, ">= 0");
   checkNumThreads(num_threads);
 }
 
-std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most,
-                                      const PoseSearchOptions& options) {
+std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius) {
   std::stable_sort(poses.begin(), poses.end(), better);
   std::vector<RankedPose> kept;
   for (const RankedPose& pose : poses) {
     const auto same = [&](const RankedPose& other) {
       const Eigen::Isometry3d motion = other.T_model_scan * pose.T_model_scan.inverse();
-      return Eigen::AngleAxisd(motion.linear()).angle() < options.merge_angle &&
-             motion.translation().norm() < options.merge_distance;
+      return Eigen::AngleAxisd(motion.linear()).angle() < kRegistration.merge_angle &&
+             motion.translation().norm() < kRegistration.merge_distance * radius;
     };
     if (std::none_of(kept.begin(), kept.end(), same)) kept.push_back(pose);
     if (kept.size() == most) break;
@@ -99,13 +94,13 @@ std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface
   std::vector<RankedPose> poses = screened(PoseStarts(scan, model), scorer, options);
   for (const Eigen::Isometry3d& hypothesis : hypotheses) poses.push_back({hypothesis, {}});
 
-  const double middle_width = std::sqrt(options.coarse_width * options.fine_width);
-  improve(poses, scorer, {kRegistration.coarse_steps, kRegistration.coarse_points, options.coarse_width, middle_width},
+  const auto& rules = kRegistration;
+  const double middle_width = std::sqrt(rules.coarse_width * rules.fine_width);
+  improve(poses, scorer, {rules.coarse_steps, rules.coarse_points, rules.coarse_width, middle_width},
           options.num_threads);
-  poses = distinctPoses(std::move(poses), options.num_refined, options);
-  improve(poses, scorer, {kRegistration.fine_steps, kRegistration.fine_points, middle_width, options.fine_width},
-          options.num_threads);
-  return distinctPoses(std::move(poses), options.max_poses, options);
+  poses = distinctPoses(std::move(poses), options.num_refined);
+  improve(poses, scorer, {rules.fine_steps, rules.fine_points, middle_width, rules.fine_width}, options.num_threads);
+  return distinctPoses(std::move(poses), options.max_poses);
 }
 
 }  // namespace pcl_symmetry

@@ -15,10 +15,9 @@ struct RankedPose {
   int num_points = 0;  ///< of the scan that the pose was fitted to; 0 = it was not fitted
 };
 
-/// The best poses, at most \p most, that differ from all better ones by the merge_angle or the merge_distance of the
-/// options.
-std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most,
-                                      const PoseSearchOptions& options);
+/// The best poses, at most \p most, that differ from all better ones.
+/// \param radius of the model, in the unit of the poses.
+std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius = 1.0);
 
 /// A few distinct poses of greatest merit (Section 5.1). Evenly spread rotations are screened by merit. The best of
 /// them and all hypotheses are improved coarsely, the best of those finely, by Gauss-Newton steps with a shrinking

@@ -28,9 +28,13 @@ struct RegistrationRules {
   int fine_points = 400;    ///< that poses are improved finely by
   /// Radii, width of the Gaussian: half the gap between 1000 rotations at the rim, and as much for the positions.
   double screen_width = 0.2;
-  int coarse_steps = 10;     ///< over which the Gaussian shrinks
-  int fine_steps = 10;       ///< the same
-  int outline_points = 200;  ///< of the model
+  int coarse_steps = 10;        ///< over which the Gaussian shrinks
+  int fine_steps = 10;          ///< the same
+  int outline_points = 200;     ///< of the model
+  double coarse_width = 0.25;   ///< radii, width of the Gaussian at the start
+  double fine_width = 0.05;     ///< radii, at the end
+  double merge_angle = 0.2;     ///< radians; poses closer than this and than merge_distance are one
+  double merge_distance = 0.1;  ///< radii
 
   // Surfaces
   double rough_share = 0.15;     ///< of the spacing; rougher surfaces take normals from more neighbors

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/matching/matching_rules.h"
 #include "core/matching/pose_screening.h"
 #include "core/matching/view_code.h"
+#include "shapes/shapes.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -41,24 +43,28 @@ std::vector<SurfacePoints> shapes(double scale) {
   return made;
 }
 
+Eigen::Isometry3d motion(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& translation) {
+  return Eigen::Translation3d(translation) * Eigen::AngleAxisd(angle, axis.normalized());
+}
+
 Eigen::Isometry3d elsewhere(double scale) {
-  Eigen::Isometry3d pose(Eigen::AngleAxisd(1.1, Eigen::Vector3d(0.3, -0.8, 0.5).normalized()));
-  pose.translation() = scale * Eigen::Vector3d(3.0, -1.0, 2.0);
-  return pose;
+  return motion(1.1, {0.3, -0.8, 0.5}, scale * Eigen::Vector3d(3.0, -1.0, 2.0));
+}
+
+/// The points that are kept, scaled and then moved.
+template <typename IsKept>
+Points scaledPart(const Points& all, double scale, const Eigen::Isometry3d& motion, const IsKept& is_kept) {
+  std::vector<int> kept;
+  for (int i = 0; i < static_cast<int>(all.cols()); ++i)
+    if (is_kept(all.col(i))) kept.push_back(i);
+  return (motion * (scale * all(Eigen::all, kept).cast<double>())).cast<float>();
 }
 
 /// The side of a shape that faces a viewer above it, without what lies beyond a plane: about half of what is
 /// seen.
 Points halfHidden(const Eigen::Vector3d& half, double scale) {
-  const Points all = lumpyEllipsoid(half, 6000, 2);
-  std::vector<int> kept;
-  for (Eigen::Index i = 0; i < all.cols(); ++i)
-    if (all(2, i) > 0.0f && all(0, i) > 0.0f) kept.push_back(static_cast<int>(i));
-  Points points(3, static_cast<Eigen::Index>(kept.size()));
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    points.col(static_cast<Eigen::Index>(i)) =
-        (elsewhere(scale) * Eigen::Vector3d(scale * all.col(kept[i]).cast<double>())).cast<float>();
-  return points;
+  return scaledPart(lumpyEllipsoid(half, 6000, 2), scale, elsewhere(scale),
+                    [](const Eigen::Vector3f& x) { return x.z() > 0.0f && x.x() > 0.0f; });
 }
 
 /// \return at the best of the poses, how far points of a scan are from the closest one of a shape. The 250 points of a shape
@@ -147,19 +153,8 @@ TEST(PointPairIndex, DegenerateShapesAreFoundByNoPair) {
   EXPECT_TRUE(PointPairIndex({}, 1).nearest(scan).empty());
 }
 
-/// Points spread over the faces of a box about the origin, as many to each unit of area.
 Points pointsOfBox(const Eigen::Vector3d& half, int count, std::uint64_t seed) {
-  RandomStream random(seed);
-  const Eigen::Vector3d areas(half.y() * half.z(), half.z() * half.x(), half.x() * half.y());
-  Points points(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double at = random.uniform() * areas.sum();
-    const int axis = at < areas.x() ? 0 : at < areas.x() + areas.y() ? 1 : 2;
-    Eigen::Vector3d x = Eigen::Vector3d::NullaryExpr([&] { return 2.0 * random.uniform() - 1.0; });
-    x[axis] = x[axis] < 0.0 ? -1.0 : 1.0;
-    points.col(i) = x.cwiseProduct(half).cast<float>();
-  }
-  return points;
+  return test::box(half, count, test::Sampling::Random, seed).cloud();
 }
 
 ScreenedSurface screenedBox(const Eigen::Vector3d& half) {
@@ -169,22 +164,13 @@ ScreenedSurface screenedBox(const Eigen::Vector3d& half) {
 const Eigen::Vector3d kBoxes[] = {{1.0, 0.6, 0.3}, {0.8, 0.8, 0.5}, {1.2, 0.2, 0.4}};
 
 Eigen::Isometry3d scannedBox(double scale) {
-  Eigen::Isometry3d T_shape_scan(Eigen::AngleAxisd(0.9, Eigen::Vector3d(0.2, 0.5, -0.8).normalized()));
-  T_shape_scan.translation() = scale * Eigen::Vector3d(4.0, -2.0, 1.0);
-  return T_shape_scan;
+  return motion(0.9, {0.2, 0.5, -0.8}, scale * Eigen::Vector3d(4.0, -2.0, 1.0));
 }
 
 /// What is on one side of an oblique plane: the ends of the box and other corners are missing.
 SurfacePoints scanOfHalfABox(const Eigen::Vector3d& half, double scale) {
-  const Points all = pointsOfBox(half, 6000, 2);
-  std::vector<int> kept;
-  for (Eigen::Index i = 0; i < all.cols(); ++i)
-    if (all(0, i) + 0.3f * all(1, i) - 0.4f * all(2, i) > 0.0f) kept.push_back(static_cast<int>(i));
-  Points points(3, static_cast<Eigen::Index>(kept.size()));
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    points.col(static_cast<Eigen::Index>(i)) =
-        (scannedBox(scale).inverse() * Eigen::Vector3d(scale * all.col(kept[i]).cast<double>())).cast<float>();
-  return evenSurfacePoints(points, 120, 1);
+  const auto is_kept = [](const Eigen::Vector3f& x) { return x.x() + 0.3f * x.y() - 0.4f * x.z() > 0.0f; };
+  return evenSurfacePoints(scaledPart(pointsOfBox(half, 6000, 2), scale, scannedBox(scale).inverse(), is_kept), 120, 1);
 }
 
 /// A box is the same after half turns about its axes.
@@ -300,25 +286,12 @@ TEST(PoseScreening, WithoutPosesOrSizeThereIsNoShape) {
   EXPECT_TRUE(screenPoses(scan, {{&box, {scannedBox(1.0)}}}, none).empty());
 }
 
-/// Points spread over an ellipsoid with a lump on it.
-Points lumpyEllipsoid(const Eigen::Vector3d& half, std::uint64_t seed) {
-  Points points(3, 1500);
-  RandomStream random(seed);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    Eigen::Vector3d x = Eigen::Vector3d::NullaryExpr([&] { return 2.0 * random.uniform() - 1.0; }).normalized();
-    x = x.cwiseProduct(half);
-    if (i % 6 == 0) x = Eigen::Vector3d(half.x(), 0.3 * half.y(), 0.0) + 0.25 * x;
-    points.col(i) = x.cast<float>();
-  }
-  return points;
-}
-
 std::vector<std::vector<View>> viewsOfShapes(int count) {
   std::vector<std::vector<View>> shapes;
   RandomStream random(4);
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d half(1.0, 0.2 + 0.8 * random.uniform(), 0.2 + 0.8 * random.uniform());
-    shapes.push_back(viewsAround(lumpyEllipsoid(half, 10 + static_cast<std::uint64_t>(i)), 12, 1));
+    shapes.push_back(viewsAround(lumpyEllipsoid(half, 1500, 10 + static_cast<std::uint64_t>(i)), 12, 1));
   }
   return shapes;
 }
@@ -330,7 +303,7 @@ std::vector<View> joined(const std::vector<std::vector<View>>& shapes) {
 }
 
 TEST(ViewCode, RotationsOfThePictureDoNotChangeIt) {
-  const Points points = lumpyEllipsoid({1.0, 0.6, 0.3}, 1);
+  const Points points = lumpyEllipsoid({1.0, 0.6, 0.3}, 1500, 1);
   const Eigen::Vector3d forward = Eigen::Vector3d(0.3, -1.0, 0.5).normalized();
   const View view = viewOf(points, forward);
   const Eigen::VectorXf own = magnitudesOf(view.values);
@@ -370,7 +343,6 @@ TEST(ViewCodeIndex, FindsWhatAComparisonOfAllCodesFinds) {
   index.add("");  // a shape without views is never found
   EXPECT_EQ(index.numShapes(), 61u);
   EXPECT_EQ(index.numViews(), 720u);
-  const double weight = 0.25;
   const ViewCode scan = coder.codeOf(shapes[17][5]);
   std::vector<std::pair<double, int>> distances;
   for (int i = 0; i < 60; ++i) {
@@ -379,8 +351,9 @@ TEST(ViewCodeIndex, FindsWhatAComparisonOfAllCodesFinds) {
       const ViewCode code = coder.codeOf(view);
       double sum = 0.0;
       for (std::size_t k = 0; k < kViewCodeSize; ++k) sum += std::pow(code.values[k] - scan.values[k], 2.0);
-      least = std::min(least, static_cast<double>(kViewCodeStep) * std::sqrt(sum) +
-                                  weight * static_cast<double>(kViewSizeStep) * std::abs(code.size - scan.size));
+      least = std::min(
+          least, static_cast<double>(kViewCodeStep) * std::sqrt(sum) +
+                     matching_rules.size_weight * static_cast<double>(kViewSizeStep) * std::abs(code.size - scan.size));
     }
     distances.emplace_back(least, i);
   }
@@ -389,11 +362,11 @@ TEST(ViewCodeIndex, FindsWhatAComparisonOfAllCodesFinds) {
   std::vector<int> expected;
   for (std::size_t i = 0; i < 10; ++i) expected.push_back(distances[i].second);
   std::sort(expected.begin(), expected.end());
-  EXPECT_EQ(index.nearest(scan, weight, 10, 1), expected);
-  EXPECT_EQ(index.nearest(scan, weight, 10, 3), expected);
-  EXPECT_EQ(index.nearest(scan, weight, 100, 1).size(), 60u);
-  EXPECT_TRUE(index.nearest(scan, weight, 0, 1).empty());
-  EXPECT_THROW(index.nearest(scan, weight, -1, 1), std::invalid_argument);
+  EXPECT_EQ(index.nearest(scan, 10, 1), expected);
+  EXPECT_EQ(index.nearest(scan, 10, 3), expected);
+  EXPECT_EQ(index.nearest(scan, 100, 1).size(), 60u);
+  EXPECT_TRUE(index.nearest(scan, 0, 1).empty());
+  EXPECT_THROW(index.nearest(scan, -1, 1), std::invalid_argument);
   EXPECT_THROW(index.add("12345"), std::invalid_argument);
 }
 
@@ -411,13 +384,6 @@ Points slabWithTower(double length, double height) {
     points.col(i) = x.cast<float>();
   }
   return points;
-}
-
-Eigen::Isometry3d motion(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& translation) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-  T.translation() = translation;
-  return T;
 }
 
 Points moved(const Points& points, const Eigen::Isometry3d& T) {
@@ -518,21 +484,15 @@ TEST(ViewIndex, AsksForNoMoreThanItHolds) {
   index.add({});
   EXPECT_TRUE(index.nearest(view).empty());
   index.add({view});
-  ViewSearchOptions options;
-  EXPECT_EQ(index.nearest(view, options).size(), 1u);
-  options.num_nearest = 0;
-  EXPECT_TRUE(index.nearest(view, options).empty());
+  EXPECT_EQ(index.nearest(view).size(), 1u);
+  EXPECT_TRUE(index.nearest(view, 0).empty());
 }
 
 TEST(ViewIndex, AnyNumberOfThreadsGivesTheSame) {
   ViewIndex index;
   for (int i = 0; i < 20; ++i) index.add(viewsAround(slabWithTower(0.5 + 0.1 * i, 0.6), 10, 1));
   const View scan = viewOf(slabWithTower(1.07, 0.6), {0.3, -1.0, 0.6});
-  ViewSearchOptions options;
-  options.num_threads = 1;
-  const std::vector<ShapeOfView> one = index.nearest(scan, options);
-  options.num_threads = 8;
-  const std::vector<ShapeOfView> many = index.nearest(scan, options);
+  const std::vector<ShapeOfView> one = index.nearest(scan, 10, 1), many = index.nearest(scan, 10, 8);
   ASSERT_EQ(one.size(), many.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].shape, many[i].shape);

@@ -66,10 +66,6 @@ TEST(PoseSearchOptions, RefusesOptionsOutOfRange) {
   refused([](PoseSearchOptions& o) { o.num_screened = 0; });
   refused([](PoseSearchOptions& o) { o.num_refined = 0; });
   refused([](PoseSearchOptions& o) { o.max_poses = 0; });
-  refused([](PoseSearchOptions& o) { o.coarse_width = 0.0; });
-  refused([](PoseSearchOptions& o) { o.fine_width = -1.0; });
-  refused([](PoseSearchOptions& o) { o.merge_angle = -0.1; });
-  refused([](PoseSearchOptions& o) { o.merge_distance = -0.1; });
   refused([](PoseSearchOptions& o) { o.num_threads = -1; });
 }
 
