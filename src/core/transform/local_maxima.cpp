@@ -51,9 +51,12 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
       const float* const values = &map.values[grid.index({t, p, 0})];
       const double center_offset = grid.normal(t, p).dot(map.center_of_mass - grid.center());
       for (int k = 0; k < grid.numRadius(); ++k) {
+        // Most bins fail at those beside them along r.
+        const float beside = std::max(k > 0 ? values[k - 1] : 0.0f, k + 1 < grid.numRadius() ? values[k + 1] : 0.0f);
+        if (values[k] <= 0.0f || values[k] < beside) continue;
         const PlaneGrid::Bin bin{t, p, k};
         const double share = 1.0 - std::abs(grid.offset(k) - center_offset) / grid.radius();
-        if (values[k] <= 0.0f || values[k] < strength * share) continue;
+        if (values[k] < strength * share) continue;
         if (!isLocalMaximum(map, grid.index(bin)) || -laplacian(map, bin) < curvature) continue;
         rows[row].push_back({bin, grid.plane(bin), values[k]});
       }
