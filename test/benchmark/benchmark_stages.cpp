@@ -204,7 +204,7 @@ void Rotations(benchmark::State& state) {
 void Description(benchmark::State& state) {
   DescriptionOptions options;
   options.num_threads = static_cast<int>(state.range(0));
-  const Points &points = cloud(1, options.max_points), &frame_points = cloud(1, options.max_frame_points);
+  const Points &points = cloud(1, options.max_points), &frame_points = cow();
   for (auto _ : state) benchmark::DoNotOptimize(describeShape(points, options));
   const GaussianEdt edt(frame_points, edtOptions(1));
   const FrameOptions frame;
@@ -262,7 +262,7 @@ void NearestViews(benchmark::State& state) {
   }
   const ViewCode query = randomCode();
   for (auto _ : state)
-    benchmark::DoNotOptimize(index.nearest(query, 0.25, 50, static_cast<int>(state.range(0))).data());
+    benchmark::DoNotOptimize(index.nearest(query, 50, static_cast<int>(state.range(0))).data());
   needs(state, "byte_near", static_cast<double>(kNumModels) * kNumViews * (kViewCodeSize + 2));
 }
 
