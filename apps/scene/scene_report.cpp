@@ -77,7 +77,7 @@ std::string toleranceOf(const SceneObject& object) {
   if (!(object.diameter > 0.0)) return "";
   const auto share = [&](double length) { return 100.0 * length / object.diameter; };
   std::string text = formatted("decided at %.1f %% of the diameter", share(object.tolerance));
-  if (object.resolution > 0.0) text += formatted(", the sensor resolves %.1f %%", share(object.resolution));
+  if (object.resolution > 0.0) text += formatted(", the points resolve %.1f %%", share(object.resolution));
   return text;
 }
 

@@ -95,7 +95,7 @@ struct Findings {
   std::optional<SymmetryPlane> best;         ///< where nothing else was found
   std::optional<ReflectionPlane> flat;       ///< that all points lie near
   double tolerance = 0.0;                    ///< that was decided at, input units
-  double resolution = 0.0;                   ///< least tolerance that the sensor resolves, input units; 0: not known
+  double resolution = 0.0;                   ///< least tolerance that is resolved, input units; 0: not known
   double diameter = 0.0;                     ///< greatest distance between two points used, input units
   std::size_t num_points = 0;                ///< that were used
   std::vector<std::pair<std::string, double>> timing_ms;
@@ -111,12 +111,12 @@ std::string lineOfBest(const SymmetryPlane& best, double tolerance, const Eigen:
                    c[0], c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
 }
 
-/// What the sensor resolves.
+/// What the sensor and the points resolve.
 std::string lineOfTolerance(const Findings& findings) {
   const double share = 100.0 * findings.tolerance / findings.diameter;
   if (findings.tolerance >= findings.resolution)
-    return formatted("decided at %.1f %% of the diameter; the sensor resolves no less\n", share);
-  return formatted("decided at %.1f %% of the diameter; the sensor resolves %.1f %%\n", share,
+    return formatted("decided at %.1f %% of the diameter; the points resolve no less\n", share);
+  return formatted("decided at %.1f %% of the diameter; the points resolve %.1f %%\n", share,
                    100.0 * findings.resolution / findings.diameter);
 }
 

@@ -199,6 +199,7 @@ def list_models(arguments):
         if classes is not None:
             folds = range(arguments.folds) if arguments.fold is None else [arguments.fold]
             paths = [p for p in paths if p.stem in classes and classes[p.stem].number % arguments.folds in folds]
+            paths = [p for p in paths if arguments.within in classes[p.stem].name.split("/") or not arguments.within]
         paths = paths[arguments.first :: arguments.every][: arguments.max]
         models += [Model(p.stem, str(p), f"{folder.resolve().name}/{p.name}") for p in paths]
     if not models:
@@ -665,6 +666,7 @@ def make_parser(description, models=True):
         add("models", nargs="*", help="folders of .off, .ply, .obj and .stl meshes")
         add("--classes", metavar="FILE", help="class file (.cla): take only the models that it names")
         add("--fold", type=int, help="with --classes: only models whose leaf class number modulo --folds is this one")
+        add("--within", metavar="CLASS", help="with --classes: only models of this class and of those below it")
         add("--folds", type=natural, default=3, help="number of folds")
         add("--every", type=natural, default=1, help="take every N-th mesh of each folder")
         add("--first", type=int, default=0, help="index of the first mesh that is taken")

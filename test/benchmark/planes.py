@@ -16,7 +16,7 @@ import references
 
 MAX_ANGLE, MAX_AXIS_ANGLE, MAX_OFFSET = math.radians(3), math.radians(1), 0.02  # offset in diagonals
 MIN_CONFIDENCE = 0.5
-ROWS = ("whole", "noise", "scan", "moved", "crop", "sampling", "counts")
+ROWS = ("whole", "noise", "scan", "moved", "crop", *bench.PATTERNS, "counts")
 SHARES = (0, 0.8, 0.9, 0.92, 0.94, 0.95, 0.96, 0.97, 0.99, 1.01)
 
 
@@ -57,7 +57,7 @@ def clouds_of(mesh, key, arguments):
                 yield "moved scan" + after, "moved_" + name, bench.moved(motion, scan.rows), motion @ pose, lost
     for cut in arguments.crops if "crop" in arguments.rows else ():
         yield whole(f"cut off {100 * cut:g} %", even, cut=cut)
-    for pattern in bench.PATTERNS if "sampling" in arguments.rows else ():
+    for pattern in [row for row in bench.PATTERNS if row in arguments.rows]:
         points = bench.sample_pattern(mesh, pattern, arguments.points, bench.generator(arguments.seed, key, pattern))
         yield whole(pattern, points)
     for count in arguments.counts if "counts" in arguments.rows else ():
@@ -177,6 +177,14 @@ def contradicted(surface, mesh, scan, kind, answer):
     return False
 
 
+def maps_at_twice(mesh, pose, answer, tolerance):
+    """Whether a plane maps as much of the mesh as a symmetry within twice the tolerance."""
+    row = plane_row(answer)
+    offset = row[:3] @ bench.moved(pose, mesh.center) - row[3]
+    plane = np.r_[row[:3] @ pose[:3, :3], -offset / mesh.diagonal]
+    return bool(references.Surface(mesh, 2 * tolerance, 4000).share(plane, 4000)[0] >= references.MIN_SHARE)
+
+
 def evaluate(model, arguments):
     """Rows of the clouds of one model."""
     mesh = bench.read_mesh(model.path)
@@ -187,9 +195,12 @@ def evaluate(model, arguments):
         here = references.moved(truth, pose)
         sensor = None if scan is None or scan.points is None else scan.T_cloud_sensor
         truths[name] = {**here, "model": model.name, "group": group}
-        answers = bench.ask(name, points, sensor, arguments, tolerance=arguments.tolerance)
+        asked = {} if arguments.tolerance == references.TOLERANCE else {"tolerance": arguments.tolerance}
+        answers = bench.ask(name, points, sensor, arguments, **asked)
         row = judge(answers, here)
         row["contradicted"] = 0
+        called = [answer for kind, answer, is_called in _in_order(answers) if kind == "plane" and is_called]
+        row["at_twice"] = [maps_at_twice(mesh, pose, answer, arguments.tolerance) for answer in called]
         if scan is not None and row["false"]:
             surface = references.Surface(mesh, arguments.tolerance, 4000)
             wrong = [a for a, r in zip(_in_order(answers), row["answers"]) if r["called"] and r["verdict"] == "false"]
@@ -214,6 +225,7 @@ def summarize(rows):
         "asymmetric_called": bench.Rate(row["called"] for row in asymmetric),
         "asymmetric_contradicted": bench.Rate(row["contradicted"] > 0 for row in asymmetric if row["scan"]),
         "nearly_called": bench.Rate(row["called"] for row in nearly),
+        "at_twice": bench.Rate(at_twice for row in rows for at_twice in row["at_twice"]),
         "false_per_cloud": sum(row["false"] for row in symmetric) / max(1, len(symmetric)),
         "recall": sum(row["found"] for row in symmetric) / max(1, sum(row["references"] for row in symmetric)),
         "calibration": bench.calibration([a["confidence"] for a in stated], [a["at_reference"] for a in stated]),
@@ -240,9 +252,9 @@ def report(rows, arguments):
     bench.print_table(
         "Decisions at one operating point: kind symmetry, confidence >= 0.5; 95 % Wilson intervals",
         ["clouds", "decided and right, of symmetric", "called, of asymmetric", "against a visible point",
-         "called, of nearly symmetric", "false a cloud"],
+         "called, of nearly symmetric", "false a cloud", "planes called that map 97 % at twice the tolerance"],
         [[g, s["decided_right"].text, s["asymmetric_called"].text, s["asymmetric_contradicted"].text,
-          s["nearly_called"].text, f"{s['false_per_cloud']:.2f}"] for g, s in sums.items()])  # fmt: skip
+          s["nearly_called"].text, f"{s['false_per_cloud']:.2f}", s["at_twice"].text] for g, s in sums.items()])  # fmt: skip
     of_group = lambda group, field: [row[field] for row in rows if row["group"] == group]
     number = lambda value: f"{value:.3f}"
     bench.print_table(

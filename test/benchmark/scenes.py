@@ -3,10 +3,12 @@
 
 scenes.py PSB --classes train.cla --fold 1 --every 3 --scenes 45 --noise 0,1 --most-in-band 60 --json scenes.json
 
-Models of 0.15 to 0.3 m stand on a table or in a bin, none meets another, and a sensor looks at them. Each object that
-shows enough points is asked for twice:
+Models of 0.15 to 0.3 m stand on a table or in a bin, none meets another, and a sensor looks at them; or they stand on
+a road, as large as vehicles, 5 to 30 m from a scanner, with y up as in most files of PSB. Each object that shows enough
+points is asked for twice:
 
-  alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes() and Database.recognize()
+  alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes() and Database.recognize();
+          on a road pcl_symmetry_planes, which is told the ground, too
   scene   the whole frame: pcl_symmetry_scene; the object that it finds must share half of the points (IoU >= 0.5)
 
 Answers of kind symmetry with a confidence of at least 0.5 decide, as in planes.py. A name is right with the pose where no
@@ -36,6 +38,7 @@ RIGHT_POSE = 0.05  # of the diameter: the limit of the BOP benchmark
 MIN_IOU = 0.5
 DEVIATION, STEP, FLYING, EDGE = 1.425e-3, 2.85e-3, 0.5, 0.02  # structured light at 1 m (Khoshelham and Elberink 2012); shares
 RANGE_DEVIATION = 0.001  # of a LiDAR scanner: 2 cm at a car of 4.5 m, for an object of 0.22 m
+ROAD = 20  # a road is this many times smaller: 5 to 30 m from a scanner at a height of 1.8 m
 TABLE_RIM, BIN_HEIGHT, BIN_WALL, BIN_GAP = 0.4, 0.15, 0.01, 0.01  # metres
 
 
@@ -56,9 +59,10 @@ def prepare(model, arguments):
 # Scenes
 
 
-def standing(random):
+def standing(random, place):
     """Rotation that stands a model on one face of its bounding box, at any angle about the vertical."""
     up, sign, angle = random.integers(3), random.choice([1, -1]), random.uniform(0, 2 * np.pi)
+    up, sign = (1, 1) if place == "road" else (up, sign)
     upright = np.roll(np.eye(3), 2 - up, axis=0)  # brings the axis to z
     upright = upright if sign > 0 else np.diag([1, -1, -1]) @ upright
     c, s = math.cos(angle), math.sin(angle)
@@ -71,7 +75,7 @@ def draw_scene(models, arguments, number):
     count = random.integers(1, arguments.objects + 1)
     half_side, placed = 0.02 + 0.08 * math.sqrt(count), []
     for index in random.integers(len(models), size=count):
-        rotation = standing(random)
+        rotation = standing(random, arguments.place)
         corners = bench.mesh_of_size(models[index]["path"], models[index]["diagonal"]).corners.reshape(-1, 3) @ rotation.T
         middle = 0.5 * (corners.min(0) + corners.max(0))[:2]
         radius = np.linalg.norm(corners[:, :2] - middle, axis=1).max()
@@ -93,9 +97,13 @@ def look_at_middle(placed, arguments, random):
         nearest = away[np.argmin(np.linalg.norm(away, axis=1))]
         azimuth = math.atan2(nearest[1], nearest[0]) + random.uniform(-0.5, 0.5)
     elevation = math.radians(random.uniform(45, 80) if arguments.place == "bin" else random.uniform(10, 40))
+    distance, aim = random.uniform(0.9, 1.3), 0.0
+    if arguments.place == "road":
+        distance, aim = random.uniform(5, 30) / ROAD, 0.75 / ROAD
+        elevation = math.asin(1.8 / ROAD / distance)
     towards = np.array([math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)])
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = bench.look_along(-towards), random.uniform(0.9, 1.3) * towards
+    pose[:3, :3], pose[:3, 3] = bench.look_along([0, 0, aim] - distance * towards), distance * towards
     return pose
 
 
@@ -283,7 +291,8 @@ def judge_frame(frame, arguments):
         own = points[finite & (labels == k)]
         if "alone" in arguments.seen:
             models = ask_database(own, viewpoint, arguments) if arguments.leave_out else []
-            ways.append(("alone", True, {**bench.detect(own, sensor, arguments.seed + 1), "models": models}))
+            road = {"tool": f"{arguments.tools}/pcl_symmetry_planes", "ground": "0,0,1,0"} if arguments.place == "road" else {}
+            ways.append(("alone", True, {**bench.detect(own, sensor, arguments.seed + 1, **road), "models": models}))
         if "scene" in arguments.seen:
             best = max(range(len(found)), key=lambda i: iou[i, k], default=None)
             is_found = best is not None and bool(iou[best, k] >= MIN_IOU)
@@ -396,7 +405,7 @@ if __name__ == "__main__":
     add("--scenes", type=int, default=100, help="number of scenes")
     add("--objects", type=int, default=12, help="greatest number of objects of a scene")
     add("--noise", type=bench.numbers(float), default="0,1", help="factors of the sensor's noise")
-    add("--place", choices=("table", "bin"), default="table")
+    add("--place", choices=("table", "bin", "road"), default="table")
     add("--sensor", choices=("camera", "lidar"), default="camera")
     add("--rings", type=int, default=64, help="of a LiDAR scanner")
     add("--seen", type=bench.numbers(str, ("alone", "scene")), default="alone,scene", help="how objects are asked for")

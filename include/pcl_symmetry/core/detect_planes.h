@@ -46,9 +46,9 @@ struct DetectionOptions {
   /// How far a symmetric surface may be off, as a share of the greatest distance between two points, in (0, 0.1]: a
   /// symmetry maps 97 % of the surface to within this of the surface.
   double tolerance = 0.01;
-  /// Where the errors of a depth camera hide a tolerance, planes are decided at what the camera resolves, up to this
-  /// share, in (0, 0.1]; at most `tolerance`: that one decides, and where the camera does not resolve it, symmetries
-  /// are possible ones.
+  /// Where the errors of a depth camera or few points hide a tolerance, planes are decided at what is resolved, up to
+  /// this share, in (0, 0.1]; at most `tolerance`: that one decides, and where the camera does not resolve it,
+  /// symmetries are possible ones.
   double most_tolerance = 0.03;
   double absolute_tolerance = 0.0;  ///< a tolerance in input units in place of both, >= 0; 0 = they decide
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]

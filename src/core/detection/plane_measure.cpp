@@ -35,7 +35,8 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
       tolerance_(options.absolute_tolerance > 0.0
                      ? options.absolute_tolerance / cloud.scale
                      : std::max(options.tolerance * cloud.extent,
-                                std::min(resolution_, options.most_tolerance * cloud.extent))),
+                                std::min(std::max(resolution_, cloud.spacing / detection_rules.resolving_spacing),
+                                         options.most_tolerance * cloud.extent))),
       cut_share_(resolution_ > 0.0 ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), detection_rules.beside_outline)
                                    : 0.0),
       thinness_(

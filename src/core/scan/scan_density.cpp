@@ -79,6 +79,7 @@ ScanDensity::ScanDensity(const PointsRef& points) : ball_(boundingBall(points)) 
   const int count = static_cast<int>(
       std::min(indices.size(), 1 + std::clamp(indices.size() / kScan.neighborhoods, kScan.fewest_density_neighbors,
                                               kScan.most_density_neighbors)));
+  num_neighbors_ = count - 1;
   std::vector<int> neighbors;
   std::vector<float> sq_distances;
   makeFlannSearch(used)->search(used.leftCols(num_samples), count, neighbors, sq_distances);

@@ -32,6 +32,9 @@ public:
   /// \return the variance of log(density): what a viewpoint has to explain.
   double variance() const;
 
+  /// \return the variance of log(density) of points at random, which no viewpoint explains.
+  double varianceAtRandom() const { return 1.0 / num_neighbors_; }
+
   /// \return the viewpoint that explains most, up to 30 radii away, frame of the points; nothing where no direction comes
   /// near to explaining the density.
   std::optional<Eigen::Vector3d> bestViewpoint() const;
@@ -55,6 +58,7 @@ private:
 
   BoundingBall ball_;
   Eigen::Index num_points_ = 0;  // that are used
+  int num_neighbors_ = 1;        // that a density is from
   Points samples_;               // on the surface, in radii about the center, in random order
   Points normals_;               // unit, of arbitrary sign
   std::vector<float> log_density_;

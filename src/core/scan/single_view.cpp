@@ -73,7 +73,10 @@ std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Ve
   if (!((viewpoint - ball.center).norm() > ball.radius)) return std::nullopt;
   std::optional<Visibility> visibility = Visibility::fromPoints(points, viewpoint);
   if (!visibility) return std::nullopt;
-  if (visibility->hiddenShare(points, kScan.hidden_margin * ball.radius) > limits.most_hidden) return std::nullopt;
+  // The surface slants by as much as in layeredShare(), over half of a pixel.
+  const double pixel = 2.0 / std::max(visibility->width(), visibility->height());
+  const double margin = std::max(kScan.hidden_margin, 0.5 * kScan.steepest * pixel) * ball.radius;
+  if (visibility->hiddenShare(points, margin) > limits.most_hidden) return std::nullopt;
   if (layeredShare(points, viewpoint) > limits.most_layered) return std::nullopt;
   return visibility;
 }

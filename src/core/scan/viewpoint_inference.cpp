@@ -20,7 +20,7 @@ namespace {
 constexpr SingleViewLimits kLimits{0.12, 0.15};
 // The same where a viewpoint explains nearly all of the variance of the density: leaves and wires lie in layers from
 // the true viewpoint, too.
-constexpr SingleViewLimits kSureLimits{0.12, 0.4};
+constexpr SingleViewLimits kSureLimits{kScan.most_hidden, 0.4};
 
 /// Whether all points are at a border, as those of a wire: its density says nothing, and it is seen once from
 /// everywhere.
@@ -83,20 +83,22 @@ std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vect
     return left + kScan.least_variance < share * (density.variance() + kScan.least_variance);
   };
   if (!leaves(kScan.most_unexplained)) return std::nullopt;
+  // Few points leave much to chance, and no chance lays them as evenly as a scanner does.
+  const bool surely = left + kScan.least_variance <
+                      kScan.surely_explained * std::min(density.variance() + kScan.least_variance, density.varianceAtRandom());
   const double as_good = kScan.as_good * left + kScan.as_good_beyond;
   const bool as_stored = density.unexplained(stored) <= as_good;
   const auto seenFrom = [&](const Eigen::Vector3d& position, double most_uneven) {
     const double by_patches = density.unexplainedByPatches(position);
     if (by_patches > most_uneven) return std::optional<Visibility>();
-    const bool surely = by_patches <= kScan.surely_even && leaves(kScan.surely_explained);
-    return spaceSeenFrom(points, position, surely ? kSureLimits : kLimits);
+    return spaceSeenFrom(points, position, by_patches <= kScan.surely_even && surely ? kSureLimits : kLimits);
   };
   const Eigen::Vector3d position = as_stored ? stored : onItsSide(points, density, *best);
   std::optional<InferredView> view;
   if (std::optional<Visibility> seen = seenFrom(position, kScan.most_uneven))
     view = {std::move(*seen), position, as_stored};
   if (!view) view = leastLayered(points, density.viewpoints(std::min(as_good, kScan.most_of_several)), seenFrom);
-  if (!view || isWire(points)) return std::nullopt;
+  if (!view || (!surely && isWire(points))) return std::nullopt;
   return view;
 }
 
