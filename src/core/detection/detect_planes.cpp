@@ -207,8 +207,10 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
     detection.best->deviation = judge.measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
   detection.flat = flatPlane(cloud, judge.measure.thinness());
   detection.tolerance = judge.measure.tolerance() * cloud.scale;
-  const bool is_raised = options.absolute_tolerance == 0.0 && judge.measure.tolerance() > options.tolerance * cloud.extent;
-  detection.resolution = std::max(judge.measure.resolution(), is_raised ? judge.measure.tolerance() : 0.0) * cloud.scale;
+  const bool is_raised =
+      options.absolute_tolerance == 0.0 && judge.measure.tolerance() > options.tolerance * cloud.extent;
+  detection.resolution =
+      std::max(judge.measure.resolution(), is_raised ? judge.measure.tolerance() : 0.0) * cloud.scale;
   detection.diameter = cloud.extent * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
   decision.doubtSlanted(detection.planes);

@@ -123,7 +123,9 @@ ShareInterval shareInterval(const PlaneEvidence& evidence) {
 double planeConfidence(const PlaneEvidence& evidence) {
   const std::vector<double> terms = logOddsTerms(evidence);
   const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(evidence.kind)];
-  const double coarsest = evidence.flat                        ? evidence_rules.coarsest_flat
+  // Of a flat cloud the outline alone tells, of a scan one side.
+  const bool tells_little = evidence.flat || evidence.kind == CloudKind::Scan;
+  const double coarsest = tells_little                         ? evidence_rules.coarsest_flat
                           : evidence.kind == CloudKind::Volume ? evidence_rules.coarsest_volume
                                                                : evidence_rules.coarsest;
   const double unresolved = evidence_rules.lost_per_coarseness * std::max(0.0, coarseness(evidence) - coarsest);

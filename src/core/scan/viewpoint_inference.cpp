@@ -84,8 +84,9 @@ std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vect
   };
   if (!leaves(kScan.most_unexplained)) return std::nullopt;
   // Few points leave much to chance, and no chance lays them as evenly as a scanner does.
-  const bool surely = left + kScan.least_variance <
-                      kScan.surely_explained * std::min(density.variance() + kScan.least_variance, density.varianceAtRandom());
+  const bool surely =
+      left + kScan.least_variance <
+      kScan.surely_explained * std::min(density.variance() + kScan.least_variance, density.varianceAtRandom());
   const double as_good = kScan.as_good * left + kScan.as_good_beyond;
   const bool as_stored = density.unexplained(stored) <= as_good;
   const auto seenFrom = [&](const Eigen::Vector3d& position, double most_uneven) {
