@@ -67,8 +67,10 @@ def clouds_of(mesh, key, arguments):
 # Judging
 
 
-def judge(answers, truth):
-    """Judges the answers for a cloud by the references in its frame. Returns a dictionary of what tables count."""
+def judge(answers, truth, slack=1.0):
+    """Judges the answers for a cloud by the references in its frame, within slack times the limits. Returns a dictionary of
+    what tables count."""
+    _within = lambda error: error[0] <= slack * error[2] and error[1] <= slack * MAX_OFFSET
     center, diagonal = np.array(truth["center"]), truth["diagonal"]
     refs = [("plane", r) for r in truth["planes"]] + [("axis", r) for r in truth["axes"]]
     refs += [("center", r) for r in truth["centers"]]
@@ -107,10 +109,6 @@ def _in_order(answers):
         for answer in answers[{"center": "centers", "axis": "axes", "plane": "planes"}[kind]]:
             called = answer.get("kind", "symmetry") == "symmetry" and answer.get("confidence", 1) >= MIN_CONFIDENCE
             yield kind, answer, called
-
-
-def _within(error):
-    return error[0] <= error[2] and error[1] <= MAX_OFFSET
 
 
 def plane_row(answer):

@@ -81,7 +81,6 @@ struct DetectionRules {
   double as_likely = 0.05;             ///< difference of the confidences that other samples of a cloud make
   double least_told = 0.1;             ///< share of samples that tell something below which confidence falls
   double coarsest_tolerance = 0.03;    ///< share of the diameter; a sensor that resolves less decides at this
-  double resolving_spacing = 3.0;      ///< tolerances; points that are farther apart decide at what they resolve
   double coarsest_resolution = 0.09;   ///< three times that; a sensor that resolves less decides nothing
   double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
   double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too

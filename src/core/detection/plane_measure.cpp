@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/detection/detection_rules.h"
+#include "core/evidence/evidence_rules.h"
 #include "core/evidence/plane_stiffness.h"
 #include "core/evidence/plane_support.h"
 #include "core/evidence/surface_samples.h"
@@ -35,7 +36,7 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
       tolerance_(options.absolute_tolerance > 0.0
                      ? options.absolute_tolerance / cloud.scale
                      : std::max(options.tolerance * cloud.extent,
-                                std::min(std::max(resolution_, cloud.spacing / detection_rules.resolving_spacing),
+                                std::min(std::max(resolution_, cloud.spacing / evidence_rules.coarsest),
                                          options.most_tolerance * cloud.extent))),
       cut_share_(resolution_ > 0.0 ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), detection_rules.beside_outline)
                                    : 0.0),

@@ -23,9 +23,10 @@ struct EvidenceRules {
   float empty_without_depth = 0.15f;  ///< the same as a share where errors are larger
 
   // Confidence.
-  double coarsest = 5.0, coarsest_volume = 4.0, coarsest_flat = 2.0;  ///< tolerances; a wider spacing resolves none
-  double lost_per_coarseness = 2.0;                                   ///< log odds per tolerance beyond
-  double unknown_share = 0.5;  ///< units of a share per share that is uninformative
+  double coarsest = 3.0;       ///< tolerances; by default, points with a wider spacing decide at what they resolve
+  double coarsest_part = 1.5;  ///< the same of scans and of flat clouds, which lose confidence beyond
+  double lost_per_coarseness = 2.0;  ///< log odds per tolerance beyond
+  double unknown_share = 0.5;        ///< units of a share per share that is uninformative
 
   // Where a cloud ends.
   float least_explained = 0.4f, explained = 0.75f;  ///< share of an edge from which its region is missing, and fully

@@ -102,7 +102,7 @@ struct ScanRules {
   double most_unexplained = 0.75;
   /// Variance of the logarithm of the density over 64 patches; scans have 0.005, two put together 0.015.
   double most_uneven = 0.008;
-  /// Share of the variance left from which on more layers are allowed: leaves and wires.
+  /// Share of the variance, and of that of points at random, left from which on more layers are allowed: leaves, wires.
   double surely_explained = 0.25;
   double surely_even = 0.002;  ///< variance over patches for the same
   double as_good = 1.3;        ///< what the true viewpoint of 1000 points leaves over what the best one leaves
