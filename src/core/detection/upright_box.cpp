@@ -47,8 +47,6 @@ struct Rectangle {
   std::array<std::array<double, 2>, 2> sides;
   std::vector<double> distances;  // of each point from the nearest side
   double sq_error = 0.0;          // mean
-
-  double width(std::size_t k) const { return sides[k][1] - sides[k][0]; }
 };
 
 Rectangle rectangleAt(const PointsRef& points, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
@@ -138,12 +136,18 @@ private:
   float sq_reach_ = 0.0f;
 };
 
-/// The middle plane across one of two directions of a box; none where the box is flat or nothing is met.
-std::optional<SymmetryPlane> middlePlane(const PointsRef& points, const Rectangle& box, std::size_t across,
-                                         const Beams& beams, double reach) {
-  if (!(box.width(across) > 2.0 * reach)) return std::nullopt;
+}  // namespace
+
+std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
+                                              const Eigen::Vector3d& viewpoint) {
+  const Rectangle box = bestRectangle(points, up.normalized());
+  const auto width = [&](std::size_t k) { return box.sides[k][1] - box.sides[k][0]; };
+  const std::size_t across = width(0) <= width(1) ? 0 : 1;
+  const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
+  const double reach = kBox.meets * diagonal;
+  if (!(width(across) > 2.0 * reach)) return std::nullopt;
   SymmetryPlane plane(ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])));
-  const std::vector<Beams::Meets> met = beams.at(reflectedPoints(points, plane));
+  const std::vector<Beams::Meets> met = Beams(points, viewpoint, reach).at(reflectedPoints(points, plane));
   double num_moved = 0.0, num_met = 0.0, num_free = 0.0;
   for (std::size_t i = 0; i < met.size(); ++i) {
     plane.point_support.push_back(met[i] == Beams::Meets::Surface ? 1.0f : 0.0f);
@@ -153,9 +157,8 @@ std::optional<SymmetryPlane> middlePlane(const PointsRef& points, const Rectangl
     num_free += met[i] == Beams::Meets::Nothing ? 1.0 : 0.0;
   }
   if (!(num_met > 0.0)) return std::nullopt;
-  const double shorter = std::min(box.width(0), box.width(1));
   const auto num_near = std::count_if(box.distances.begin(), box.distances.end(),
-                                      [&](double distance) { return distance < kBox.near * shorter; });
+                                      [&](double distance) { return distance < kBox.near * width(across); });
   const double near = static_cast<double>(num_near) / static_cast<double>(points.cols());
   plane.confidence =
       1.0 / (1.0 + std::exp(-(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(num_free / num_moved))));
@@ -167,21 +170,6 @@ std::optional<SymmetryPlane> middlePlane(const PointsRef& points, const Rectangl
   plane.residual = std::sqrt(box.sq_error);
   plane.converged = true;
   return plane;
-}
-
-}  // namespace
-
-std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
-                                              const Eigen::Vector3d& viewpoint) {
-  const Rectangle box = bestRectangle(points, up.normalized());
-  const std::size_t shorter = box.width(0) <= box.width(1) ? 0 : 1;
-  const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
-  const double reach = kBox.meets * diagonal;
-  const Beams beams(points, viewpoint, reach);
-  std::optional<SymmetryPlane> plane = middlePlane(points, box, shorter, beams, reach);
-  // Of a vehicle that is seen from behind, the longer side is mostly hidden.
-  const std::optional<SymmetryPlane> other = middlePlane(points, box, 1 - shorter, beams, reach);
-  return other && (!plane || other->confidence > plane->confidence) ? other : plane;
 }
 
 double spacingOf(const PointsRef& points) {
