@@ -26,6 +26,14 @@ std::array<double, 2> sharesWithin(const std::vector<float>& distances, double t
   return shares;
 }
 
+/// What the spacing of a surface resolves, up to the greatest tolerance at which shares are measured; 0 of points that
+/// resolve no surface.
+double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
+  if (cloud.rules().by_halves) return 0.0;
+  return std::min(cloud.spacing / evidence_rules.coarsest,
+                  detection_rules.tolerances.back() * tolerance * cloud.extent);
+}
+
 }  // namespace
 
 PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
@@ -36,7 +44,7 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
       tolerance_(options.absolute_tolerance > 0.0
                      ? options.absolute_tolerance / cloud.scale
                      : std::max(options.tolerance * cloud.extent,
-                                std::min(std::max(resolution_, cloud.spacing / evidence_rules.coarsest),
+                                std::min(std::max(resolution_, sampledTolerance(cloud, options.tolerance)),
                                          options.most_tolerance * cloud.extent))),
       cut_share_(resolution_ > 0.0 ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), detection_rules.beside_outline)
                                    : 0.0),
