@@ -57,14 +57,15 @@ std::string headerValue(const std::string& path, const std::string& key) {
 void checkFields(const std::string& path, bool is_nrrd) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
-  bool is_whole = !is_nrrd || (std::getline(file, line) && line.rfind("NRRD", 0) == 0);
+  bool is_whole = !is_nrrd || (std::getline(file, line) && line.rfind("NRRD", 0) == 0 &&
+                               isPrintable(boost::algorithm::trim_copy(line)));
   while (is_whole && std::getline(file, line)) {
     boost::algorithm::trim(line);
     if (is_nrrd && line.empty()) return;
     const std::size_t sign = line.find(is_nrrd ? ':' : '=');
     is_whole = !(is_nrrd && file.eof()) && isPrintable(line) &&
                ((is_nrrd && line[0] == '#') ||
-                (sign != std::string::npos && line.find_first_not_of(":= ", sign) != std::string::npos));
+                (sign < 200 && line.size() < 4000 && line.find_first_not_of(":= ", sign) != std::string::npos));
     if (is_whole && line.rfind("ElementDataFile", 0) == 0) return;
   }
   if (!is_whole) throw InputError(path + ": cannot be read, a line of its header is no field with a value");
@@ -136,7 +137,10 @@ double sizeOf(vtkInformation* image) {
   const int* const extent = image->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
   vtkInformation* const voxel = vtkDataObject::GetActiveFieldInformation(image, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                                                          vtkDataSetAttributes::SCALARS);
-  double size = voxel ? sizeof(double) * std::max(1, voxel->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())) : 0.0;
+  if (!voxel) return 0.0;
+  double size = sizeof(double);
+  if (voxel->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()))
+    size *= voxel->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS());
   for (int k = 0; k < 3; ++k) size *= extent ? std::max(0.0, 1.0 + extent[2 * k + 1] - extent[2 * k]) : 0.0;
   return size;
 }
@@ -192,8 +196,9 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
     image.num_times = std::max(1, reader->GetTimeDimension());
   } else if (ends(".nrrd") || ends(".nhdr")) {
     checkFields(path, true);
-    const std::vector<double> sizes = numbersIn(headerValue(path, "sizes"));
-    if (sizes.empty() || numbersIn(headerValue(path, "dimension")) != std::vector<double>{1.0 * sizes.size()} ||
+    const std::string sizes = headerValue(path, "sizes");
+    const bool are_whole = boost::algorithm::all(sizes, boost::is_digit() || boost::is_space());
+    if (!are_whole || numbersIn(headerValue(path, "dimension")) != std::vector<double>{1.0 * numbersIn(sizes).size()} ||
         headerValue(path, "type").empty() || headerValue(path, "encoding").empty())
       throw InputError(path + ": cannot be read, its header must have type, dimension, sizes and encoding");
     vtkNew<vtkNrrdReader> reader;
