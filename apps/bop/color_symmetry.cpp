@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <mutex>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -232,13 +231,6 @@ std::string texturePath(const std::string& path) {
   return "";
 }
 
-/// Only one thread at a time reads pictures.
-RasterImage readOneAtATime(const std::string& path) {
-  static std::mutex mutex;
-  const std::lock_guard<std::mutex> lock(mutex);
-  return readImage(path);
-}
-
 Eigen::Vector3f colorAt(const RasterImage& image, const Eigen::Vector2f& uv) {
   // Textures repeat.
   const Eigen::Vector2f in = uv.array() - uv.array().floor();
@@ -296,14 +288,10 @@ SurfaceColors textureColors(const Shape& shape, const Eigen::Matrix2Xf& coordina
     addPoints(triangle, std::max(1, static_cast<int>(std::lround(std::sqrt(2.0 * kTexturedPoints * share)))), image,
               points, rgb);
   }
-  SurfaceColors colors;
-  colors.points.resize(3, static_cast<Eigen::Index>(points.size()));
-  colors.rgb.resize(3, colors.points.cols());
-  for (Eigen::Index i = 0; i < colors.points.cols(); ++i) {
-    colors.points.col(i) = points[static_cast<std::size_t>(i)];
-    colors.rgb.col(i) = rgb[static_cast<std::size_t>(i)];
-  }
-  return colors;
+  const auto columns = [](const std::vector<Eigen::Vector3f>& all) {
+    return Points(Eigen::Map<const Points>(reinterpret_cast<const float*>(all.data()), 3, all.size()));
+  };
+  return {columns(points), columns(rgb)};
 }
 
 }  // namespace
@@ -320,7 +308,7 @@ std::optional<SurfaceColors> surfaceColors(const Shape& shape, const std::string
   const std::optional<Eigen::Matrix2Xf> coordinates = textureCoordinates(shape.cloud);
   const std::string texture = coordinates && shape.mesh ? texturePath(path) : "";
   if (texture.empty()) return {};
-  SurfaceColors colors = textureColors(shape, *coordinates, readOneAtATime(texture));
+  SurfaceColors colors = textureColors(shape, *coordinates, readImage(texture));
   return colors.points.cols() > 0 ? std::optional(std::move(colors)) : std::nullopt;
 }
 

@@ -5,33 +5,13 @@
 namespace pcl_symmetry::apps {
 
 const char* toString(PlaneKind kind) {
-  switch (kind) {
-    case PlaneKind::Symmetry:
-      return "symmetry";
-    case PlaneKind::Possible:
-      return "possible";
-    case PlaneKind::Local:
-      return "local";
-    case PlaneKind::Approximate:
-      break;
-  }
-  return "approximate";
+  static const char* const names[] = {"symmetry", "possible", "approximate", "local"};
+  return names[static_cast<int>(kind)];
 }
 
 const char* toString(ViewpointSource source) {
-  switch (source) {
-    case ViewpointSource::Given:
-      return "given";
-    case ViewpointSource::Rays:
-      return "rays";
-    case ViewpointSource::Stored:
-      return "stored";
-    case ViewpointSource::Inferred:
-      return "inferred";
-    case ViewpointSource::None:
-      break;
-  }
-  return "none";
+  static const char* const names[] = {"none", "given", "rays", "stored", "inferred"};
+  return names[static_cast<int>(source)];
 }
 
 std::string counted(std::size_t number, const std::string& one, const std::string& many) {
