@@ -24,7 +24,7 @@ struct EvidenceRules {
 
   // Confidence.
   double coarsest = 3.0;       ///< tolerances; by default, points with a wider spacing decide at what they resolve
-  double coarsest_part = 1.5;  ///< the same of scans and of flat clouds, which lose confidence beyond
+  double coarsest_part = 1.5;  ///< of flat clouds, and of scans so wide, which lose confidence beyond
   double lost_per_coarseness = 2.0;  ///< log odds per tolerance beyond
   double unknown_share = 0.5;        ///< units of a share per share that is uninformative
 

@@ -124,7 +124,7 @@ double planeConfidence(const PlaneEvidence& evidence) {
   const std::vector<double> terms = logOddsTerms(evidence);
   const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(evidence.kind)];
   // Of a flat cloud the outline alone tells, of a scan one side.
-  const bool tells_little = evidence.flat || evidence.kind == CloudKind::Scan;
+  const bool tells_little = evidence.flat || (evidence.kind == CloudKind::Scan && evidence.sparse);
   const double coarsest = tells_little ? evidence_rules.coarsest_part : evidence_rules.coarsest;
   const double unresolved = evidence_rules.lost_per_coarseness * std::max(0.0, coarseness(evidence) - coarsest);
   const double log_odds = std::inner_product(terms.begin(), terms.end(), coefficients.begin(), 0.0) - unresolved;
