@@ -56,6 +56,10 @@ public:
   void setFolds(const std::vector<int>& folds) {
     detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.folds = folds; });
   }
+  /// \param num_samples points drawn, >= 1; default 192, for an error below 1 %.
+  void setNumSamples(int num_samples) {
+    detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.num_samples = num_samples; });
+  }
   void setRandomSeed(std::uint64_t seed) { transform_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {

@@ -36,6 +36,7 @@ public:
 
   /// \param method sampled (default), convolution, rotational or voting; all estimate the same normalized quantity.
   void setMethod(TransformMethod method) { transform_.method = method; }
+  TransformMethod getMethod() const { return transform_.method; }  ///< see setMethod()
 
   /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
   /// even, in [8, 512].
@@ -61,10 +62,32 @@ public:
   void setSigma(double sigma) {
     detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.sigma = sigma; });
   }
+  /// Covers this ball in place of the bounding ball of the points.
+  /// \param center,radius input frame and units; radius > 0.
+  void setBounds(const Eigen::Vector3d& center, double radius) {
+    detail::withBadArguments([&] { PlaneGrid(1, 2, 1, center, radius); });
+    edt_options_.center = center;
+    edt_options_.radius = radius;
+  }
+
+  /// \param num_samples points drawn by the sampled estimator, >= 1; default 128, for an error below 1 %.
+  void setNumSamples(int num_samples) {
+    detail::changeOptions(transform_.sampled,
+                          [&](SampledTransformOptions& changed) { changed.num_samples = num_samples; });
+  }
+  /// \param num_pairs pairs drawn by voting, >= 1; default 2 million.
+  void setNumPairs(std::int64_t num_pairs) {
+    detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.num_pairs = num_pairs; });
+  }
   /// \param cells pairs of points closer than this are drawn plane first by voting, >= 0; 0: voting as the paper writes
   /// it; default 4.
   void setNearDistance(double cells) {
     detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.near_distance = cells; });
+  }
+  /// \param share of the planes that the rotational estimator refines, in [0, 1]; 1 (default) = all, no multiresolution.
+  void setRefinedShare(double share) {
+    detail::changeOptions(transform_.rotational,
+                          [&](RotationalTransformOptions& changed) { changed.refined_share = share; });
   }
   void setRandomSeed(std::uint64_t seed) { transform_.setSeed(seed); }  ///< of all draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcl/PolygonMesh.h>
+#include <pcl/correspondence.h>
 
 #include <limits>
 #include <vector>
@@ -71,5 +72,23 @@ SymmetrizedMesh symmetrize(const pcl::PolygonMesh& mesh, const ReflectionPlane& 
 /// fields of their sources; where the mesh has values of its vertices, theirs are \p values.
 pcl::PolygonMesh mirroredHalf(const pcl::PolygonMesh& mesh, const ReflectionPlane& plane, bool left = true,
                               std::vector<float>* values = nullptr);
+
+/// The counterpart of each point of a cloud: the point closest to its reflection.
+/// \param max_distance of a counterpart from the reflection, input units, >= 0; 0 = 1 % of the diameter.
+/// \return for each point that has one, its index, that of the counterpart, and the squared distance of the counterpart
+/// from the reflection, as PCL's correspondences have it.
+/// \throws pcl::BadArgumentException for a negative distance.
+template <typename PointT>
+pcl::Correspondences reflectedCorrespondences(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
+                                              double max_distance = 0.0) {
+  return detail::withBadArguments([&] {
+    const detail::SelectedPoints all = detail::selectPoints(cloud, nullptr, cloud.size(), 0);
+    const ReflectedPairs pairs = reflectedPairs(all.points, plane, max_distance);
+    pcl::Correspondences result;
+    for (std::size_t i = 0; i < pairs.index.size(); ++i)
+      if (pairs.index[i] >= 0) result.emplace_back(all.indices[i], all.indices[pairs.index[i]], pairs.sq_distances[i]);
+    return result;
+  });
+}
 
 }  // namespace pcl_symmetry

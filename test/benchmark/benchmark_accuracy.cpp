@@ -134,7 +134,7 @@ void Error_convolution(benchmark::State& state) {
 void Error_rotational(benchmark::State& state) {
   RotationalTransformOptions options;
   options.num_threads = 1;
-  options.spacing = 0.01 * static_cast<double>(state.range(0));
+  options.refined_share = 0.01 * static_cast<double>(state.range(0));
   run(state, [&](const Reference& reference) { return rotationalTransform(reference.edt, reference.grid, options); });
 }
 void vote(benchmark::State& state, double near_distance) {
@@ -155,7 +155,7 @@ void Error_voting_as_published(benchmark::State& state) {
   BENCHMARK(name)->ArgNames({setting, "model"})->ArgsProduct({__VA_ARGS__})->Unit(benchmark::kMillisecond)
 ESTIMATOR(Error_sampled, "samples", {32, 64, 128, 256, 512, 1024, 2048, 4096}, {0, 1, 2, 3, 4});
 ESTIMATOR(Error_convolution, "spacing_percent", {100, 90, 70, 50}, {0, 1, 2, 3, 4});
-ESTIMATOR(Error_rotational, "spacing_percent", {90}, {0, 1, 2, 3, 4});
+ESTIMATOR(Error_rotational, "refined_percent", {100, 10}, {0, 1, 2, 3, 4});
 ESTIMATOR(Error_voting, "pairs", {200'000, 2'000'000, 20'000'000}, {0, 1, 2, 3, 4});
 ESTIMATOR(Error_voting_as_published, "pairs", {200'000, 2'000'000, 20'000'000}, {0, 1, 2, 3, 4});
 

@@ -44,8 +44,12 @@ TEST(PlanarSymmetryTransform, SaysWhatIsWrongWithFieldValueAndRule) {
   EXPECT_NE(messageOf([&] { transform.setGridSize(4); }).find("num_cells = 4, must be in [8, 512]"), std::string::npos);
   EXPECT_NE(messageOf([&] { transform.setMapSize(8, 7, 8); }).find("num_phi = 7, must be even"), std::string::npos);
   EXPECT_NE(messageOf([&] { transform.setSigma(-1.0); }).find("sigma = -1, must be"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setNumSamples(0); }).find("num_samples = 0, must be"), std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setNumPairs(0); }).find("num_pairs = 0, must be"), std::string::npos);
   EXPECT_NE(messageOf([&] { transform.setMaxPoints(1); }).find("max_points = 1, must be >= 2"), std::string::npos);
   EXPECT_NE(messageOf([&] { transform.setNumberOfThreads(-2); }).find("num_threads = -2, must be >= 0"),
+            std::string::npos);
+  EXPECT_NE(messageOf([&] { transform.setBounds(Eigen::Vector3d::Zero(), 0.0); }).find("radius = 0, must be"),
             std::string::npos);
 }
 

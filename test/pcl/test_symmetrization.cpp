@@ -57,4 +57,17 @@ TEST(Symmetrize, AMeshKeepsItsPolygons) {
   EXPECT_NE(messageOf([&] { symmetrize(mesh, kPlane); }).find("extent of the mesh"), std::string::npos);
 }
 
+TEST(ReflectedCorrespondences, AreThoseOfPCL) {
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (const auto& [x, y] : {std::pair{none, 0.0f}, {1.0f, 0.0f}, {-1.001f, 0.0f}, {2.0f, 1.0f}})
+    cloud.emplace_back(x, y, 0.0f);
+  const pcl::Correspondences pairs = reflectedCorrespondences(cloud, kPlane, 0.01);
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_EQ(pairs[0].index_query, 1);
+  EXPECT_EQ(pairs[0].index_match, 2);
+  EXPECT_NEAR(pairs[0].distance, 1e-6f, 1e-8f) << "squared";
+  EXPECT_NE(messageOf([&] { reflectedCorrespondences(cloud, kPlane, -1.0); }).find("max_distance"), std::string::npos);
+}
+
 }  // namespace

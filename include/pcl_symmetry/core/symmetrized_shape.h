@@ -61,6 +61,16 @@ MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Ve
 SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane& plane, SymmetrizedHalf half,
                                   int num_threads = 0);
 
+/// The counterpart of each point: the point closest to its reflection.
+struct ReflectedPairs {
+  std::vector<int> index;           ///< N; -1 where no point is within the distance, as on the unseen side of a scan
+  std::vector<float> sq_distances;  ///< N, of the counterpart from the reflection, squared input units
+};
+
+/// \param points 3 x N, finite.
+/// \param max_distance of a counterpart from the reflection, input units, >= 0; 0 = 1 % of the diameter.
+ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance = 0.0);
+
 /// The asymmetry of landmarks, as morphometrics takes it.
 struct LandmarkAsymmetry {
   /// Of each pair: from the second landmark to the reflection of the first, input frame and units.

@@ -8,6 +8,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/geometry/diameter.h"
 #include "core/geometry/mesh_sampling.h"
 #include "core/geometry/reflected_points.h"
 #include "core/geometry/surface_normals.h"
@@ -22,10 +23,11 @@ struct SymmetrizingRules {
   int passes = 3;       // the mean of closest points slides along slopes by their square: the third pass is below 1e-6
   float paired = 0.5f;  // of the distance of the second closest vertex: closer ones are counterparts
   float gap = 0.02f;    // radii beside a border, beyond which the other side has a hole there
-  float at_border = 1e-5f;  // radii
-  int judged = 5000;        // vertices that the deviation is measured at
-  float beside = 2.0f;      // spacings beside a sample of a cloud, beyond which nothing is there
-  double on_plane = 1e-6;   // of the greatest distance from the plane: closer vertices lie on it
+  float at_border = 1e-5f;   // radii
+  int judged = 5000;         // vertices that the deviation is measured at
+  float beside = 2.0f;       // spacings beside a sample of a cloud, beyond which nothing is there
+  double on_plane = 1e-6;    // of the greatest distance from the plane: closer vertices lie on it
+  double pair_share = 0.01;  // of the diameter, greatest distance of a counterpart by default
 };
 constexpr SymmetrizingRules kSymmetrizing;
 
@@ -261,6 +263,17 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
   }
   summarize(result, std::vector<double>(result.asymmetry.size(), 1.0));
   return result;
+}
+
+ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance) {
+  check(max_distance >= 0.0, "max_distance", max_distance, ">= 0");
+  ReflectedPairs pairs;
+  if (points.cols() == 0) return pairs;
+  if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * farthestPair(points);
+  makeFlannSearch(points)->search(reflectedPoints(points, plane), 1, pairs.index, pairs.sq_distances);
+  for (std::size_t i = 0; i < pairs.index.size(); ++i)
+    if (pairs.sq_distances[i] > max_distance * max_distance) pairs.index[i] = -1;
+  return pairs;
 }
 
 LandmarkAsymmetry landmarkAsymmetry(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs,

@@ -40,7 +40,8 @@ struct TransformRules {
   int max_line_moves = 8;         ///< with one step size
 
   // Planes through points
-  double pivot_step = 1.0;  ///< cells between points, and between planes at the far end of the shape
+  double pivot_step = 1.0;         ///< cells between points, and between planes at the far end of the shape
+  double coarse_pivot_step = 3.0;  ///< the same of planes that multiresolution does not refine; PRST is right to 0.7 %
 
   // Votes
   double near_share = 0.2;          ///< of the pairs that are drawn plane first

@@ -82,6 +82,15 @@ TEST(MirroredHalf, IsItsOwnReflectionWhateverTheTriangles) {
   }
 }
 
+TEST(ReflectedPairs, FindsWhatIsThere) {
+  Points points(3, 4);
+  points << 1, -1.001f, 2, 0, 0, 0, 1, 3, 0, 0, 0, 0;
+  const ReflectedPairs pairs = reflectedPairs(points, kPlane, 0.01);
+  EXPECT_EQ(pairs.index, (std::vector<int>{1, 0, -1, 3}));
+  EXPECT_NEAR(pairs.sq_distances[0], 1e-6, 1e-8);
+  EXPECT_THROW(reflectedPairs(points, kPlane, -1.0), std::invalid_argument);
+}
+
 TEST(LandmarkAsymmetry, MeasuresPairsAndTheMidline) {
   const LandmarkAsymmetry found = landmarkAsymmetry({{{1.0, 0.0, 0.0}, {-1.0, 0.3, 0.4}}}, {{0.5, 0.0, 0.0}}, kPlane);
   EXPECT_TRUE(found.paired[0].isApprox(Eigen::Vector3d(0.0, -0.3, -0.4)));

@@ -237,6 +237,17 @@ TEST(VotingTransform, NoiseFallsAsTheRootOfThePairs) {
   EXPECT_NEAR(few / many, 4.0, 0.4);  // few large votes near the pole make the estimate of the noise itself uncertain
 }
 
+TEST(RotationalTransform, MultiresolutionRefinesTheGreatestValues) {
+  const Scene& scene = scenes()[1];
+  const SymmetryMap full = rotationalTransform(scene.edt, scene.grid);
+  RotationalTransformOptions options;
+  options.refined_share = 0.1;
+  const SymmetryMap map = rotationalTransform(scene.edt, scene.grid, options);
+  EXPECT_LE(scene.rmsError(map), 0.01);
+  EXPECT_EQ(map[full.strongest()], full[full.strongest()]);
+  EXPECT_NE(map.values, full.values);
+}
+
 TEST(LineSums, VectorInstructionsGiveTheSumsOfThePlainLoop) {
   const GaussianEdt& edt = scenes()[2].edt;
   const CoordinateRows points = drawPoints(edt, 1300, 1, 1);  // more than one chunk
@@ -264,6 +275,7 @@ TEST(Transforms, SameBytesForAnyNumberOfThreads) {
     ConvolutionTransformOptions convolution;
     VotingTransformOptions voting;
     RotationalTransformOptions rotational;
+    rotational.refined_share = 0.01;
     voting.num_pairs = 50'001;
     sampled.num_threads = convolution.num_threads = rotational.num_threads = voting.num_threads = num_threads;
     return std::array<std::vector<float>, 4>{sampledTransform(scene.edt, scene.grid, sampled).values,
@@ -317,6 +329,7 @@ TEST(Transforms, RefuseBadOptions) {
   EXPECT_THROW(convolutionTransform(scene.edt, scene.grid, {1.5}), std::invalid_argument);
   EXPECT_THROW(convolutionTransform(scene.edt, scene.grid, {0.9, -1}), std::invalid_argument);
   EXPECT_THROW(rotationalTransform(scene.edt, scene.grid, {0.0}), std::invalid_argument);
+  EXPECT_THROW(rotationalTransform(scene.edt, scene.grid, {0.9, 1.1}), std::invalid_argument);
   EXPECT_THROW(votingTransform(scene.edt, scene.grid, {0}), std::invalid_argument);
   EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, -1.0}), std::invalid_argument);
   EXPECT_THROW(votingTransform(scene.edt, scene.grid, {100, 4.0, 1, -1}), std::invalid_argument);
