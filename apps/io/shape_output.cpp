@@ -92,7 +92,7 @@ private:
   int descriptor_;
 };
 
-/// Of a cloud to be written; standard output takes PCD.
+/// Extension of the file that a cloud is written to, in lower case; .pcd for standard output.
 std::string lowerExtension(const std::string& path) {
   if (isStandardStream(path)) return ".pcd";
   return boost::algorithm::to_lower_copy(fs::path(path).extension().string());

@@ -308,7 +308,8 @@ struct MappedCloud {
   std::vector<float> symmetry;
   float least, greatest;
 
-  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& input, const SymmetryMeasure& map, int threads, Step& step)
+  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& input, const SymmetryMeasure& map, int threads,
+              Step& step)
       : cloud(input), points(finitePoints(*input, &indices)) {
     constexpr Eigen::Index kAtATime = 100'000;
     for (Eigen::Index i = 0; i < points.cols(); i += kAtATime) {

@@ -13,11 +13,11 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-// Tolerances, root mean square distance of the points of a flat piece from their plane. measured: 17 pieces of the wall
-// of PCL's stereo picture have 0.5 to 2.4. At half, a third of them stay, at twice, low objects count as flat.
+// Root mean square distance of the points of a flat piece from their plane, in tolerances. 17 pieces of the wall in
+// PCL's stereo picture have 0.5 to 2.4.
 constexpr double kFlat = 3.0;
 // Shares of the outline of a piece of a wall or table along which the surface goes on, at least, and behind which
-// something farther is seen, at most. measured: 0.3 to 0.94 and 0.01 to 0.02 for such pieces in PCL's frames of a
+// something farther is seen, at most: 0.3 to 0.94 and 0.01 to 0.02 for such pieces in PCL's frames of a
 // stereo camera and of a Kinect; 0.22 to 0.43 of the outlines of flat objects on tables are before something farther.
 constexpr double kGoesOn = 0.25, kBeforeFarther = 0.05;
 constexpr double kDepthErrors = 4.0;  // of the sensor, by which neighbors on one surface may be apart

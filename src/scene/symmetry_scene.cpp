@@ -60,7 +60,7 @@ std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const 
   return object.planes.front();
 }
 
-/// Of single objects.
+/// Analyzes single objects.
 class ObjectAnalysis {
 public:
   /// \param found has what the sensor saw and the supporting planes.

@@ -261,8 +261,7 @@ void NearestViews(benchmark::State& state) {
     index.add(packedViewCodes(codes));
   }
   const ViewCode query = randomCode();
-  for (auto _ : state)
-    benchmark::DoNotOptimize(index.nearest(query, 50, static_cast<int>(state.range(0))).data());
+  for (auto _ : state) benchmark::DoNotOptimize(index.nearest(query, 50, static_cast<int>(state.range(0))).data());
   needs(state, "byte_near", static_cast<double>(kNumModels) * kNumViews * (kViewCodeSize + 2));
 }
 

@@ -23,7 +23,7 @@ void readPart(const std::string& bytes, void (*unpack)(const std::string&)) {
 void compareCodes(const std::string& part) {
   ViewCodeIndex index;
   index.add(part);
-  index.nearest(ViewCode{}, 0.25, 3, 1);
+  index.nearest(ViewCode{}, 3, 1);
 }
 
 }  // namespace

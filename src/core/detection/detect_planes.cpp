@@ -218,8 +218,8 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   return detection;
 }
 
-/// The same where one side of the cloud is thinner than the other, by points as dense on both; the support of all
-/// points.
+/// Detects planes on the evenly dense subset of a cloud whose density differs between its sides, then computes the
+/// support of all its points.
 /// \param input the points of the cloud in the input frame.
 /// \param kept indices of the points to judge by.
 Detection planesOfEvenCloud(const NormalizedCloud& cloud, const Points& input, const std::vector<int>& kept,
@@ -295,7 +295,7 @@ Detection planesOfPoints(const PlaneInput& input, const DetectionOptions& option
   return detection;
 }
 
-/// What the points that decide for a large cloud say, as the answer of the whole cloud.
+/// Detects planes on a subset of a large cloud, and turns them into the answer of the whole cloud.
 Detection planesOfSubset(const PlaneInput& input, const CloudSubset& subset, const DetectionOptions& options) {
   const Points normals = input.normals ? pointsAt(*input.normals, subset.kept) : Points();
   PlaneInput kept(subset.points, input.visibility);

@@ -111,8 +111,8 @@ PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double s
   evidence.tolerance = tolerance_;
   evidence.own_score = own_score_;
   evidence.flat = thinness_ == Thinness::Sheet;
-  evidence.sparse = options_.absolute_tolerance == 0.0 &&
-                    tolerance_ > std::max(resolution_, options_.tolerance * cloud_.extent);
+  evidence.sparse =
+      options_.absolute_tolerance == 0.0 && tolerance_ > std::max(resolution_, options_.tolerance * cloud_.extent);
   return evidence;
 }
 

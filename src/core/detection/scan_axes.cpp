@@ -242,17 +242,12 @@ std::vector<ReflectionPlane> planesOfAxes(const std::vector<SymmetryPlane>& plan
   return found;
 }
 
-bool isNear(const Line3d& a, const Line3d& b, double angle, double offset) {
-  return std::abs(a.direction().dot(b.direction())) > std::cos(angle) &&
-         a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
-}
-
 bool isNearly(const Line3d& a, const Line3d& b) {
-  return isNear(a, b, detection_rules.fitted_angle, detection_rules.fitted_offset);
+  return isOne(a, b, detection_rules.fitted_angle, detection_rules.fitted_offset);
 }
 
 bool isSameLine(const Line3d& a, const Line3d& b) {
-  return isNear(a, b, detection_rules.same_turn_angle, detection_rules.same_turn_offset);
+  return isOne(a, b, detection_rules.same_turn_angle, detection_rules.same_turn_offset);
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ struct InferredView {
 /// Whole objects, open shells, cut clouds and several views put together have none: so do flat sheets of even density,
 /// which are seen once from everywhere. Single views of which a voxel grid has evened out the density have none either:
 /// nothing tells them from open shells. Neither have fewer than 300 points, whose density is known too little, nor
-/// wires, which are seen once from everywhere. Where a viewpoint leaves less than a quarter of the variance, and of what
-/// points at random have, the cloud may lie in more layers, and be as thin as a wire.
+/// wires, which are seen once from everywhere. Where a viewpoint leaves less than a quarter of the variance, and of
+/// what points at random have, the cloud may lie in more layers, and be as thin as a wire.
 /// \param points 3 x N, finite.
 /// \param stored a viewpoint that may be a default, frame of the points. It is preferred where it explains the points
 /// as well as the best.
