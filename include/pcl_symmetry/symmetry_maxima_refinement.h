@@ -65,7 +65,8 @@ public:
     change([&](DetectionOptions& changed) { changed.min_confidence = min_confidence; });
   }
   /// \param tolerance how far a symmetric surface may be off, as a share of the greatest distance between two points, in
-  /// (0, 0.1], whatever the sensor resolves; default 0.01, or what a depth camera resolves, up to 0.03.
+  /// (0, 0.1], whatever the sensor resolves; default 0.01, or what a depth camera (up to 0.03) or sparse points (up to
+  /// 0.02) resolve.
   void setTolerance(double tolerance) {
     change([&](DetectionOptions& changed) { changed.tolerance = changed.most_tolerance = tolerance; });
   }
@@ -142,7 +143,8 @@ public:
   /// \return the greatest distance between two points of the last compute(), which the tolerance is a share of, input
   /// units.
   double getDiameter() const { return found_.diameter; }
-  /// \return the least tolerance that the sensor of the last compute() resolves, input units; 0 where it is not known.
+  /// \return the least tolerance that the sensor or the spacing of the points of the last compute() resolves, input
+  /// units; 0 where it is not known.
   double getResolution() const { return found_.resolution; }
   /// \return the map that was given, or else the map that the last compute() made.
   const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : found_.map; }

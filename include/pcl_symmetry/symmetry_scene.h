@@ -64,7 +64,7 @@ struct SceneObject {
   std::vector<SymmetryAxis> axes;       ///< as in Detection
   std::vector<SymmetryCenter> centers;  ///< as in Detection
   double tolerance = 0.0;               ///< that was decided at, input units
-  double resolution = 0.0;              ///< least tolerance that the sensor resolves, input units; 0 = not known
+  double resolution = 0.0;              ///< as Detection::resolution
   double diameter = 0.0;                ///< greatest distance between two points, input units
   std::optional<SymmetryFrame> frame;   ///< nothing without SceneOptions::frames
   /// The plane that the object was completed by: the best one, or through the axis and across the view. Nothing where

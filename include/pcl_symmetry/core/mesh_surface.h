@@ -53,10 +53,10 @@ public:
   /// The same for one plane.
   ReflectionPlane fitted(const ReflectionPlane& plane) const;
 
-  /// Of the worst of the motions.
+  /// Shares of the worst of the motions.
   /// \param tolerance input units, > 0.
   MeshShares shares(const MotionsAbout& motions, double tolerance) const;
-  /// The same of one plane.
+  /// The same for one plane.
   MeshShares shares(const ReflectionPlane& plane, double tolerance) const;
 
   const BoundingBall& ball() const;  ///< of the triangles, input frame

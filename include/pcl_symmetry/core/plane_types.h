@@ -104,14 +104,14 @@ struct Detection {
   /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and are
   /// uninformative.
   std::optional<ReflectionPlane> flat;
-  double tolerance = 0.0;                       ///< that was decided at, input units
-  double resolution = 0.0;                      ///< least tolerance that the sensor resolves, input units; 0 = unknown
-  double diameter = 0.0;                        ///< greatest distance between two points, input units
-  std::vector<SymmetryAxis> axes;               ///< best first; their planes are not among planes
-  std::vector<SymmetryCenter> centers;          ///< of spheres
-  std::vector<SymmetryTurn> turns;              ///< of scans: axes of rotations, most confident first
-  SymmetryMap map;                              ///< that was made; empty where one was given
-  std::shared_ptr<DetectionEvidence> evidence;  ///< with DetectionOptions::evidence; else null
+  double tolerance = 0.0;               ///< that was decided at, input units
+  double resolution = 0.0;              ///< least tolerance that sensor or spacing resolve, input units; 0 = unknown
+  double diameter = 0.0;                ///< greatest distance between two points, input units
+  std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
+  std::vector<SymmetryCenter> centers;  ///< of spheres
+  std::vector<SymmetryTurn> turns;      ///< of scans: axes of rotations, most confident first
+  SymmetryMap map;                      ///< that was made; empty where one was given
+  std::shared_ptr<DetectionEvidence> evidence;            ///< with DetectionOptions::evidence; else null
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
